@@ -1,0 +1,140 @@
+"""THE equation: the damped spring whose stiffness and damping are fractions of complete rigidity (Nissen 2019).
+
+    J = -(Cs x / h + Cd u) m_r          impulse along the spring [N s]
+
+with distance error x [m], velocity error u [m/s], reduced mass m_r [kg], time step h [s], Cs and Cd in 0..1.
+"""
+
+import math
+
+from sandbox.physics.jit import kernel
+
+# Below this separation [m] a spring has no direction of its own; squares of smaller numbers underflow.
+SHORTEST = 1e-150
+
+
+@kernel
+def reduced_mass(inverse_a, inverse_b):  # type: ignore[no-untyped-def]
+    """Reduced mass [kg] of two particles from their inverse masses [1/kg]; 0 where both are pinned."""
+    # m_r = 1 / (w_a + w_b)
+    total = inverse_a + inverse_b
+    if total > 0.0:
+        return 1.0 / total
+    return 0.0
+
+
+@kernel
+def spring_impulse(stiffness, damping, distance_error, velocity_error, mass, h):  # type: ignore[no-untyped-def]
+    """Impulse [N s] of one spring along its direction (Nissen 2019, impulse-based spring)."""
+    # J = -(Cs x / h + Cd u) m_r
+    return -(stiffness * distance_error / h + damping * velocity_error) * mass
+
+
+@kernel
+def direction(dx, dy, du, dv):  # type: ignore[no-untyped-def]
+    """Unit vector and length [m] of the separation (dx, dy) between particles of relative velocity (du, dv).
+
+    Coincident particles take the direction in which they separate, or +x when they do not move apart at all.
+    """
+    # l = |d|, n = d / l
+    length = math.sqrt(dx * dx + dy * dy)
+    if length > SHORTEST:
+        return dx / length, dy / length, length
+    speed = math.sqrt(du * du + dv * dv)
+    if speed > SHORTEST:
+        return du / speed, dv / speed, 0.0
+    return 1.0, 0.0, 0.0
+
+
+@kernel
+def half_step(stiffness, damping):  # type: ignore[no-untyped-def]
+    """Cs and Cd of half the time step that leave the spring's motion from tick to tick as it was.
+
+    The map keeps 0..1, Cs <= Cd, and (1, 1); it preserves the eigenvalues of one spring's step.
+    """
+    # e = sqrt(1 - Cd);  Cd' = 1 - e;  Cs' = 1 + e - sqrt(2 - Cs - Cd + 2 e)
+    e = math.sqrt(max(0.0, 1.0 - damping))
+    return 1.0 + e - math.sqrt(max(0.0, 2.0 - stiffness - damping + 2.0 * e)), 1.0 - e
+
+
+def double_step(stiffness: float, damping: float) -> tuple[float, float]:
+    """Inverse of `half_step`: the coefficients of the whole step from those of its half."""
+    e = 1.0 - damping
+    trace = 2.0 - stiffness - damping
+    whole_damping = 1.0 - e * e
+    return 2.0 - whole_damping - (trace * trace - 2.0 * e), whole_damping
+
+
+def coefficients_from_frequency(frequency: float, damping_ratio: float, h: float) -> tuple[float, float]:
+    """Cs and Cd that give one spring the frequency [Hz] and damping ratio at time step h [s], exactly.
+
+    Raises ValueError, naming the highest frequency possible, where Cs would leave 0..1.
+    Source: the pole match of x'' + 2 z w x' + w^2 x = 0 with the spring's own two-term recurrence.
+    """
+    if not (frequency >= 0.0 and damping_ratio >= 0.0 and h > 0.0 and math.isfinite(frequency + damping_ratio + h)):
+        raise ValueError("frequency and damping ratio are finite numbers of 0 or more, and the time step is above 0")
+    stiffness, damping = _pole_match(frequency, damping_ratio, h)
+    if not _reachable(frequency, damping_ratio, h):
+        highest = highest_frequency(damping_ratio, h)
+        raise ValueError(
+            f"{frequency:g} Hz at damping ratio {damping_ratio:g} needs Cs = {stiffness:.3g}, above 1; "
+            f"the highest frequency here is {highest:.3g} Hz"
+        )
+    return min(max(stiffness, 0.0), 1.0), damping
+
+
+def _pole_match(frequency: float, damping_ratio: float, h: float) -> tuple[float, float]:
+    phase = 2.0 * math.pi * frequency * h
+    decay = math.exp(-damping_ratio * phase)
+    damping = 1.0 - decay * decay
+    if damping_ratio < 1.0:
+        return 2.0 - damping - 2.0 * decay * math.cos(phase * math.sqrt(1.0 - damping_ratio**2)), damping
+    # e cosh(y) as two decaying exponentials: cosh alone overflows for strongly damped springs.
+    root = phase * math.sqrt(damping_ratio**2 - 1.0)
+    fall = damping_ratio * phase
+    return 2.0 - damping - math.exp(root - fall) - math.exp(-root - fall), damping
+
+
+def _reachable(frequency: float, damping_ratio: float, h: float) -> bool:
+    """Whether Cs is in 0..1 and the frequency is not an alias beyond half the tick rate."""
+    phase = 2.0 * math.pi * frequency * h
+    if damping_ratio < 1.0 and phase * math.sqrt(1.0 - damping_ratio**2) > math.pi:
+        return False
+    return _pole_match(frequency, damping_ratio, h)[0] <= 1.0
+
+
+def highest_frequency(damping_ratio: float, h: float) -> float:
+    """Highest frequency [Hz] that Cs <= 1 can give at this damping ratio and time step [s]; inf where there is none."""
+    low, high = 0.0, 1.0 / h
+    while _reachable(high, damping_ratio, h):
+        high *= 2.0
+        if high > 1e9 / h:
+            return math.inf
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if _reachable(middle, damping_ratio, h) else (low, middle)
+    return low
+
+
+def frequency_from_coefficients(stiffness: float, damping: float, h: float) -> tuple[float, float]:
+    """Frequency [Hz] and damping ratio of one spring with these Cs and Cd at time step h [s].
+
+    Cd = 1 leaves a mode that dies within one step, which no finite frequency describes: both are inf.
+    """
+    product = 1.0 - damping
+    if product <= 0.0:
+        return math.inf, math.inf
+    # The roots r of r^2 - trace r + product = 0 are exp(h times the poles).
+    trace = 2.0 - stiffness - damping
+    fall = -0.5 * math.log(product)
+    cosine = 0.5 * trace / math.sqrt(product)
+    if cosine >= 1.0:
+        turn_squared = -(math.acosh(cosine) ** 2)
+    elif cosine > -1.0:
+        turn_squared = math.acos(cosine) ** 2
+    else:
+        return math.inf, math.inf
+    natural = math.sqrt(max(0.0, turn_squared + fall * fall))
+    if natural == 0.0:
+        return 0.0, 0.0 if fall == 0.0 else math.inf
+    return natural / (2.0 * math.pi * h), fall / natural

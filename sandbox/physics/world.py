@@ -1,0 +1,302 @@
+"""World: particles, springs, settings and tick, with the only methods that change them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+Slots = NDArray[np.int64]
+
+PARTICLE_ARRAYS = {
+    "position": np.float64,
+    "velocity": np.float64,
+    "mass": np.float64,
+    "inverse_mass": np.float64,
+    "radius": np.float64,
+    "particle_active": np.bool_,
+}
+SPRING_ARRAYS = {
+    "particle_a": np.int32,
+    "particle_b": np.int32,
+    "rest_length": np.float64,
+    "stiffness": np.float64,
+    "damping": np.float64,
+    "law": np.int8,
+    "hooke_stiffness": np.float64,
+    "hooke_damping": np.float64,
+    "material": np.int32,
+    "spring_active": np.bool_,
+    "impulse": np.float64,
+}
+# Every array of a world's state, in the order in which it is hashed and stored: part of the replay contract.
+STATE_ARRAYS = (*PARTICLE_ARRAYS, *SPRING_ARRAYS)
+VECTOR_ARRAYS = frozenset({"position", "velocity", "impulse"})
+
+LAW_NISSEN = 0
+LAW_HOOKE = 1
+
+# How many particles can be held at once. A hand is a pinned cursor particle and one spring, in slots reserved when
+# the world is built, so that grabbing never moves another slot.
+HAND_COUNT = 10
+# Cs and Cd of a hand's spring, for a whole tick. (Cs + 2 Cd) = 0.8 of the proven bound 4, so that a body inside the
+# article's 1/(n+1) stays bounded while it is held; higher values grip harder and use that margin up.
+HAND_STIFFNESS = 0.2
+HAND_DAMPING = 0.3
+
+
+@dataclass(frozen=True)
+class WorldSettings:
+    """What a tick needs besides the arrays: gravity [m/s^2], tick rate [1/s], substeps and the solver's own settings."""
+
+    gravity: tuple[float, float] = (0.0, -9.81)
+    tick_rate: int = 60
+    substeps: int = 1
+    solver: str = "iterative"
+    iterations: int = 10
+    warm_start: float = 0.5
+
+
+class World:
+    """Particles and springs as a struct of arrays, plus the settings of a tick.
+
+    Arrays, n particles and m springs, float64 unless said: position [m] (n, 2), velocity [m/s] (n, 2), mass [kg],
+    inverse_mass [1/kg] (0 = pinned), radius [m], particle_active (bool); particle_a, particle_b (int32 slots),
+    rest_length [m], stiffness, damping (Cs, Cd per tick), law (int8), hooke_stiffness [N/m], hooke_damping [N s/m],
+    material (int32 index into material_names, -1 = a hand's), spring_active (bool), impulse [N s] (m, 2) = what the
+    iterative solver keeps for its warm start.
+
+    Slots are append-only: an index stays a particle's or spring's handle for ever; removing clears the active flag.
+    Pinned particles have velocity 0, except a hand's cursor while it moves.
+    """
+
+    position: Floats
+    velocity: Floats
+    mass: Floats
+    inverse_mass: Floats
+    radius: Floats
+    particle_active: NDArray[np.bool_]
+    particle_a: NDArray[np.int32]
+    particle_b: NDArray[np.int32]
+    rest_length: Floats
+    stiffness: Floats
+    damping: Floats
+    law: NDArray[np.int8]
+    hooke_stiffness: Floats
+    hooke_damping: Floats
+    material: NDArray[np.int32]
+    spring_active: NDArray[np.bool_]
+    impulse: Floats
+
+    def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
+        self.settings = settings or WorldSettings()
+        self.tick = 0
+        self.material_names = tuple(material_names)
+        self.particle_names: list[str] = []
+        self.spring_names: list[str] = []
+        self._particle_slots: dict[str, int] = {}
+        self._spring_slots: dict[str, int] = {}
+        self.hand_particle = -1
+        self.hand_spring = -1
+        for name, kind in (PARTICLE_ARRAYS | SPRING_ARRAYS).items():
+            setattr(self, name, np.zeros((0, 2) if name in VECTOR_ARRAYS else 0, dtype=kind))
+
+    @property
+    def particle_count(self) -> int:
+        """Particle slots in use, active or not, hands included."""
+        return len(self.mass)
+
+    @property
+    def spring_count(self) -> int:
+        """Spring slots in use, active or not, hands included."""
+        return len(self.rest_length)
+
+    def particle_slot(self, name: str) -> int:
+        """Slot of the particle of that name. Raises KeyError."""
+        return self._particle_slots[name]
+
+    def spring_slot(self, name: str) -> int:
+        """Slot of the spring of that name. Raises KeyError."""
+        return self._spring_slots[name]
+
+    def is_hand_particle(self, slot: int) -> bool:
+        """Whether the slot is a hand's cursor."""
+        return 0 <= self.hand_particle <= slot < self.hand_particle + HAND_COUNT
+
+    def is_hand_spring(self, slot: int) -> bool:
+        """Whether the slot is a hand's spring."""
+        return 0 <= self.hand_spring <= slot < self.hand_spring + HAND_COUNT
+
+    def add_particles(
+        self,
+        names: Sequence[str],
+        position: ArrayLike,
+        *,
+        velocity: ArrayLike = (0.0, 0.0),
+        mass: ArrayLike = 1.0,
+        radius: ArrayLike = 0.05,
+        pinned: ArrayLike = False,
+    ) -> int:
+        """Append particles, one per name, and return the first slot.
+
+        position [m] (k, 2); velocity [m/s] (k, 2) or one for all; mass [kg], radius [m] and pinned (k,) or one for all.
+        A pinned particle starts at rest. Raises ValueError for a name that is taken or a mass that is not above 0.
+        """
+        count, first = len(names), self.particle_count
+        masses = np.broadcast_to(np.asarray(mass, dtype=np.float64), count)
+        is_pinned = np.broadcast_to(np.asarray(pinned, dtype=np.bool_), count)
+        if not np.all(masses > 0.0):
+            raise ValueError("every particle has a mass above 0 kg")
+        _register(self._particle_slots, self.particle_names, names)
+        velocities = np.broadcast_to(np.asarray(velocity, dtype=np.float64), (count, 2))
+        self._append(
+            position=np.asarray(position, dtype=np.float64).reshape(count, 2),
+            velocity=np.where(is_pinned[:, None], 0.0, velocities),
+            mass=masses,
+            inverse_mass=np.where(is_pinned, 0.0, 1.0 / masses),
+            radius=np.broadcast_to(np.asarray(radius, dtype=np.float64), count),
+            particle_active=np.ones(count, dtype=np.bool_),
+        )
+        return first
+
+    def add_springs(
+        self,
+        names: Sequence[str],
+        particle_a: ArrayLike,
+        particle_b: ArrayLike,
+        *,
+        rest_length: ArrayLike | None = None,
+        stiffness: ArrayLike = 0.5,
+        damping: ArrayLike = 0.9,
+        law: ArrayLike = LAW_NISSEN,
+        hooke_stiffness: ArrayLike = 0.0,
+        hooke_damping: ArrayLike = 0.0,
+        material: ArrayLike = 0,
+    ) -> int:
+        """Append springs, one per name, and return the first slot.
+
+        particle_a, particle_b: slots (k,); the others (k,) or one for all. rest_length [m]: None or NaN = as placed.
+        Raises ValueError for a name that is taken, a slot that does not exist, or a spring from a particle to itself.
+        """
+        count, first = len(names), self.spring_count
+        a = np.asarray(particle_a, dtype=np.int64).reshape(count)
+        b = np.asarray(particle_b, dtype=np.int64).reshape(count)
+        if count and (min(a.min(), b.min()) < 0 or max(a.max(), b.max()) >= self.particle_count):
+            raise ValueError("a spring names a particle slot that does not exist")
+        if np.any(a == b):
+            raise ValueError("a spring joins two different particles")
+        _register(self._spring_slots, self.spring_names, names)
+        separation = self.position[b] - self.position[a]
+        placed = np.sqrt(separation[:, 0] * separation[:, 0] + separation[:, 1] * separation[:, 1])
+        given = np.broadcast_to(np.asarray(np.nan if rest_length is None else rest_length, dtype=np.float64), count)
+        self._append(
+            particle_a=a,
+            particle_b=b,
+            rest_length=np.where(np.isnan(given), placed, given),
+            stiffness=np.broadcast_to(stiffness, count),
+            damping=np.broadcast_to(damping, count),
+            law=np.broadcast_to(law, count),
+            hooke_stiffness=np.broadcast_to(hooke_stiffness, count),
+            hooke_damping=np.broadcast_to(hooke_damping, count),
+            material=np.broadcast_to(material, count),
+            spring_active=np.ones(count, dtype=np.bool_),
+            impulse=np.zeros((count, 2)),
+        )
+        return first
+
+    def reserve_hands(self) -> None:
+        """Reserve the slots of all hands, inactive; done once, when the world is built."""
+        if self.hand_particle >= 0 or self.particle_count == 0:
+            return
+        names = [f"+hand.{hand}" for hand in range(HAND_COUNT)]
+        self.hand_particle = self.add_particles(names, np.zeros((HAND_COUNT, 2)), pinned=True, radius=0.0)
+        held = np.zeros(HAND_COUNT, dtype=np.int64)
+        cursors = self.hand_particle + np.arange(HAND_COUNT)
+        self.hand_spring = self.add_springs(
+            names, cursors, held, rest_length=0.0, stiffness=HAND_STIFFNESS, damping=HAND_DAMPING, material=-1
+        )
+        self.particle_active[self.hand_particle :] = False
+        self.spring_active[self.hand_spring :] = False
+
+    def pin(self, particle: int) -> None:
+        """Hold a particle where it is."""
+        self.inverse_mass[particle] = 0.0
+        self.velocity[particle] = 0.0
+
+    def unpin(self, particle: int) -> None:
+        """Let a pinned particle move again, with the mass it has."""
+        self.inverse_mass[particle] = 1.0 / self.mass[particle]
+
+    def cut(self, springs: Sequence[int]) -> None:
+        """Take springs out of the world; their slots stay."""
+        for slot in springs:
+            self.spring_active[slot] = False
+            self.impulse[slot] = 0.0
+
+    def hold(self, hand: int, particle: int, target: tuple[float, float]) -> None:
+        """Join a particle to a hand's cursor at target [m] by a spring of rest length 0."""
+        self.reserve_hands()
+        cursor, spring = self.hand_particle + hand, self.hand_spring + hand
+        self.particle_active[cursor] = True
+        self.position[cursor] = target
+        self.velocity[cursor] = 0.0
+        self.particle_b[spring] = particle
+        self.spring_active[spring] = True
+        self.impulse[spring] = 0.0
+
+    def is_held(self, hand: int) -> bool:
+        """Whether a hand holds a particle."""
+        return self.hand_spring >= 0 and bool(self.spring_active[self.hand_spring + hand])
+
+    def move_hand(self, hand: int, target: tuple[float, float]) -> None:
+        """Send a hand's cursor to target [m]: it travels there in the coming tick."""
+        cursor = self.hand_particle + hand
+        self.velocity[cursor] = (np.asarray(target) - self.position[cursor]) * float(self.settings.tick_rate)
+
+    def rest_hands(self) -> None:
+        """Stop every cursor; the end of a tick."""
+        if self.hand_particle >= 0:
+            self.velocity[self.hand_particle : self.hand_particle + HAND_COUNT] = 0.0
+
+    def release(self, hand: int) -> None:
+        """Let go; the hand's slots wait for its next use."""
+        cursor, spring = self.hand_particle + hand, self.hand_spring + hand
+        self.particle_active[cursor] = False
+        self.position[cursor] = 0.0
+        self.velocity[cursor] = 0.0
+        self.particle_b[spring] = 0
+        self.spring_active[spring] = False
+        self.impulse[spring] = 0.0
+
+    def set_coefficients(self, stiffness: float | None, damping: float | None, material: int | None) -> None:
+        """Set Cs, Cd or both, of one material's springs or (None) of all; hands and Hooke springs keep theirs."""
+        chosen = self.material >= 0 if material is None else self.material == material
+        if stiffness is not None:
+            self.stiffness[chosen] = stiffness
+        if damping is not None:
+            self.damping[chosen] = damping
+
+    def forget_names_beyond(self, particle_count: int, spring_count: int) -> None:
+        """Drop the names of slots that a restored state does not have."""
+        for slots, names, count in (
+            (self._particle_slots, self.particle_names, particle_count),
+            (self._spring_slots, self.spring_names, spring_count),
+        ):
+            for name in names[count:]:
+                del slots[name]
+            del names[count:]
+
+    def _append(self, **arrays: ArrayLike) -> None:
+        for name, values in arrays.items():
+            present = getattr(self, name)
+            setattr(self, name, np.ascontiguousarray(np.concatenate([present, np.asarray(values, dtype=present.dtype)])))
+
+
+def _register(slots: dict[str, int], names: list[str], added: Sequence[str]) -> None:
+    fresh = {name: len(names) + index for index, name in enumerate(added)}
+    taken = next((name for name in added if name in slots), None)
+    if taken is not None or len(fresh) != len(added):
+        raise ValueError(f"the name {taken or 'of two new slots'!r} is taken")
+    slots.update(fresh)
+    names.extend(added)
