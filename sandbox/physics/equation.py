@@ -7,13 +7,13 @@ with distance error x [m], velocity error u [m/s], reduced mass m_r [kg], time s
 
 import math
 
-from sandbox.physics.jit import kernel
+from sandbox.physics.jit import scalar_kernel
 
 # Below this separation [m] a spring has no direction of its own; squares of smaller numbers underflow.
 SHORTEST = 1e-150
 
 
-@kernel
+@scalar_kernel
 def reduced_mass(inverse_a, inverse_b):  # type: ignore[no-untyped-def]
     """Reduced mass [kg] of two particles from their inverse masses [1/kg]; 0 where both are pinned."""
     # m_r = 1 / (w_a + w_b)
@@ -23,14 +23,14 @@ def reduced_mass(inverse_a, inverse_b):  # type: ignore[no-untyped-def]
     return 0.0
 
 
-@kernel
+@scalar_kernel
 def spring_impulse(stiffness, damping, distance_error, velocity_error, mass, h):  # type: ignore[no-untyped-def]
     """Impulse [N s] of one spring along its direction (Nissen 2019, impulse-based spring)."""
     # J = -(Cs x / h + Cd u) m_r
     return -(stiffness * distance_error / h + damping * velocity_error) * mass
 
 
-@kernel
+@scalar_kernel
 def direction(dx, dy, du, dv):  # type: ignore[no-untyped-def]
     """Unit vector and length [m] of the separation (dx, dy) between particles of relative velocity (du, dv).
 
@@ -46,7 +46,7 @@ def direction(dx, dy, du, dv):  # type: ignore[no-untyped-def]
     return 1.0, 0.0, 0.0
 
 
-@kernel
+@scalar_kernel
 def half_step(stiffness, damping):  # type: ignore[no-untyped-def]
     """Cs and Cd of half the time step that leave the spring's motion from tick to tick as it was.
 

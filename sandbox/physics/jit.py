@@ -43,3 +43,8 @@ def _compiled(function: Function) -> Function:
 def kernel(function: Function) -> Function:
     """Make `function` a kernel: scalars and C-contiguous arrays in, arrays changed in place, same bits compiled or not."""
     return _compiled(function) if COMPILED else _interpreted(function)
+
+
+def scalar_kernel(function: Function) -> Function:
+    """Make `function` a kernel that takes and gives scalars alone, to be called from other kernels."""
+    return _compiled(function) if COMPILED else function

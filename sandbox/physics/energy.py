@@ -1,0 +1,41 @@
+"""Energy of a world [J]: what the panel and the checks show; no tick depends on it."""
+
+import numpy as np
+
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.step import substep_coefficients, substep_time
+from sandbox.physics.world import LAW_HOOKE, Floats, World
+
+
+def reduced_masses(world: World) -> Floats:
+    """Reduced mass [kg] of every spring (m,); 0 where both ends are pinned."""
+    total = world.inverse_mass[world.particle_a] + world.inverse_mass[world.particle_b]
+    return np.divide(1.0, total, out=np.zeros_like(total), where=total > 0.0)
+
+
+def spring_lengths(world: World) -> Floats:
+    """Present length [m] of every spring (m,)."""
+    separation = world.position[world.particle_b] - world.position[world.particle_a]
+    return np.sqrt(np.sum(separation * separation, axis=1))
+
+
+def kinetic_energy(world: World) -> float:
+    """Sum of m v^2 / 2 over the free particles [J]."""
+    free = world.particle_active & (world.inverse_mass > 0.0)
+    return float(0.5 * np.sum(world.mass[free, None] * world.velocity[free] ** 2))
+
+
+def spring_energy(world: World) -> float:
+    """Sum of k x^2 / 2 over the active springs [J], with the k that the world's solver gives a spring."""
+    h = substep_time(world.settings)
+    stiffness, damping = substep_coefficients(world)
+    nissen = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, reduced_masses(world), h)
+    constant = np.where(world.law == LAW_HOOKE, world.hooke_stiffness, nissen)
+    error = spring_lengths(world) - world.rest_length
+    return float(0.5 * np.sum((constant * error * error)[world.spring_active]))
+
+
+def gravity_energy(world: World) -> float:
+    """Sum of -m g . x over the free particles [J]; zero at the origin's height."""
+    free = world.particle_active & (world.inverse_mass > 0.0)
+    return float(-np.sum(world.mass[free, None] * world.position[free] * np.asarray(world.settings.gravity)))

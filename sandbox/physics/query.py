@@ -1,0 +1,68 @@
+"""Questions about where things are: which particle or spring is near a point, which springs a stroke crosses."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.physics.snapshot import Snapshot
+from sandbox.physics.world import HAND_COUNT, Slots, World
+
+Point = tuple[float, float]
+
+
+def _without_hands(active: NDArray[np.bool_], first_hand: int) -> NDArray[np.bool_]:
+    shown = active.copy()
+    if first_hand >= 0:
+        shown[first_hand : first_hand + HAND_COUNT] = False
+    return shown
+
+
+def shown_particles(state: World | Snapshot) -> NDArray[np.bool_]:
+    """Particles (n,) that a person sees: active and no hand's cursor."""
+    return _without_hands(state.particle_active, state.hand_particle)
+
+
+def shown_springs(state: World | Snapshot) -> NDArray[np.bool_]:
+    """Springs (m,) that a person sees: active and no hand's spring."""
+    return _without_hands(state.spring_active, state.hand_spring)
+
+
+def nearest_particle(state: World | Snapshot, point: Point, within: float) -> int | None:
+    """Slot of the shown particle whose disc is nearest to point [m], at most `within` [m] away; the lowest on a tie."""
+    separation = state.position - np.asarray(point)
+    distance = np.sqrt(np.sum(separation * separation, axis=1)) - state.radius
+    return _nearest(distance, shown_particles(state), within)
+
+
+def nearest_spring(state: World | Snapshot, point: Point, within: float) -> int | None:
+    """Slot of the shown spring nearest to point [m], at most `within` [m] away; the lowest on a tie."""
+    start = state.position[state.particle_a]
+    along = state.position[state.particle_b] - start
+    offset = np.asarray(point) - start
+    squared = np.sum(along * along, axis=1)
+    share = np.divide(np.sum(offset * along, axis=1), squared, out=np.zeros_like(squared), where=squared > 0.0)
+    gap = offset - np.clip(share, 0.0, 1.0)[:, None] * along
+    return _nearest(np.sqrt(np.sum(gap * gap, axis=1)), shown_springs(state), within)
+
+
+def _nearest(distance: NDArray[np.float64], shown: NDArray[np.bool_], within: float) -> int | None:
+    reachable = np.where(shown & np.isfinite(distance), distance, np.inf)
+    if not len(reachable):
+        return None
+    slot = int(np.argmin(reachable))
+    return slot if reachable[slot] <= within else None
+
+
+def springs_crossing(state: World | Snapshot, start: Point, end: Point) -> Slots:
+    """Slots of the shown springs that the segment from start to end [m] crosses or touches, ascending."""
+    p, q = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
+    a, b = state.position[state.particle_a], state.position[state.particle_b]
+    side_a, side_b = _cross(q - p, a - p), _cross(q - p, b - p)
+    side_p, side_q = _cross(b - a, p - a), _cross(b - a, q - a)
+    straddles = (side_a * side_b <= 0.0) & (side_p * side_q <= 0.0)
+    # Collinear segments have all four sides 0: they meet only where their boxes do.
+    boxes = np.all((np.minimum(a, b) <= np.maximum(p, q)) & (np.maximum(a, b) >= np.minimum(p, q)), axis=1)
+    return np.flatnonzero(shown_springs(state) & straddles & boxes)
+
+
+def _cross(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+    return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]

@@ -1,0 +1,27 @@
+"""Solvers: schedules of the one equation, with one signature, by the name that level files use."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from sandbox.physics.solvers import iterative, single_pass
+from sandbox.physics.world import Floats, World
+
+
+@dataclass(frozen=True)
+class Solver:
+    """One schedule of the equation.
+
+    solve(world, stiffness, damping, h): brings world.velocity from after gravity to the end of a step of h [s], with
+    Cs and Cd (m,) of that step. spring_constant(stiffness, damping, reduced_mass [kg], h): k [N/m] of the energy
+    k/2 x^2. proven_limit: whether the limits of `stability` hold for it.
+    """
+
+    solve: Callable[[World, Floats, Floats, float], None]
+    spring_constant: Callable[[Floats, Floats, Floats, float], Floats]
+    proven_limit: bool
+
+
+SOLVERS = {
+    "single_pass": Solver(single_pass.solve, single_pass.spring_constant, proven_limit=True),
+    "iterative": Solver(iterative.solve, single_pass.spring_constant, proven_limit=False),
+}
