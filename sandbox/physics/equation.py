@@ -57,14 +57,6 @@ def half_step(stiffness, damping):  # type: ignore[no-untyped-def]
     return 1.0 + e - math.sqrt(max(0.0, 2.0 - stiffness - damping + 2.0 * e)), 1.0 - e
 
 
-def double_step(stiffness: float, damping: float) -> tuple[float, float]:
-    """Inverse of `half_step`: the coefficients of the whole step from those of its half."""
-    e = 1.0 - damping
-    trace = 2.0 - stiffness - damping
-    whole_damping = 1.0 - e * e
-    return 2.0 - whole_damping - (trace * trace - 2.0 * e), whole_damping
-
-
 def coefficients_from_frequency(frequency: float, damping_ratio: float, h: float) -> tuple[float, float]:
     """Cs and Cd that give one spring the frequency [Hz] and damping ratio at time step h [s], exactly.
 
@@ -126,7 +118,7 @@ def frequency_from_coefficients(stiffness: float, damping: float, h: float) -> t
         return math.inf, math.inf
     # The roots r of r^2 - trace r + product = 0 are exp(h times the poles).
     trace = 2.0 - stiffness - damping
-    fall = -0.5 * math.log(product)
+    fall = -0.5 * math.log(product) + 0.0
     cosine = 0.5 * trace / math.sqrt(product)
     if cosine >= 1.0:
         turn_squared = -(math.acosh(cosine) ** 2)

@@ -1,10 +1,13 @@
-"""The only place that knows numba: compiled with a disk cache, uncached where none can be written, interpreted without it."""
+"""The only place that knows numba.
+
+Kernels are compiled with a disk cache, uncached where none can be written, and interpreted where numba is missing.
+"""
 
 import functools
 import importlib.util
 import os
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -25,23 +28,23 @@ def _interpreted(function: Function) -> Function:
 
     @functools.wraps(function)
     def call(*arguments: Any) -> Any:
-        return function(*[memoryview(item) if isinstance(item, np.ndarray) else item for item in arguments])
+        return function(*[memoryview(cast(Any, item)) if isinstance(item, np.ndarray) else item for item in arguments])
 
-    return call  # type: ignore[return-value]
+    return cast(Function, call)
 
 
 def _compiled(function: Function) -> Function:
     from numba import njit
 
-    # Contract (determinism): never fastmath, never parallel; a zero divisor gives inf as in numpy, but kernels guard it.
+    # Determinism: never fastmath, never parallel. Kernels guard every divisor, so the error model decides nothing.
     try:
-        return njit(cache=True, error_model="numpy")(function)
+        return cast(Function, njit(cache=True, error_model="numpy")(function))
     except RuntimeError:  # no folder can hold the cache
-        return njit(error_model="numpy")(function)
+        return cast(Function, njit(error_model="numpy")(function))
 
 
 def kernel(function: Function) -> Function:
-    """Make `function` a kernel: scalars and C-contiguous arrays in, arrays changed in place, same bits compiled or not."""
+    """Make `function` a kernel: scalars and C-contiguous arrays in, arrays changed in place; same bits compiled or not."""
     return _compiled(function) if COMPILED else _interpreted(function)
 
 

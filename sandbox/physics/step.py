@@ -12,11 +12,14 @@ PHYSICS_VERSION = 1
 
 
 @kernel
-def _halve(stiffness, damping, halvings):  # type: ignore[no-untyped-def]
-    # Cs, Cd of a tick -> of a substep, one exact halving of h at a time.
+def halve(stiffness, damping, substeps):  # type: ignore[no-untyped-def]
+    """Turn Cs and Cd (m,) of a tick into those of a substep, in place; substeps is a power of two."""
+    # One exact halving of h at a time.
     for s in range(stiffness.shape[0]):
-        for _ in range(halvings):
+        parts = 1
+        while parts < substeps:
             stiffness[s], damping[s] = half_step(stiffness[s], damping[s])
+            parts *= 2
 
 
 @kernel
@@ -45,9 +48,7 @@ def substep_time(settings: WorldSettings) -> float:
 def substep_coefficients(world: World) -> tuple[Floats, Floats]:
     """Cs and Cd (m,) of one substep, which leave every spring's motion from tick to tick as its Cs and Cd say."""
     stiffness, damping = world.stiffness.copy(), world.damping.copy()
-    halvings = world.settings.substeps.bit_length() - 1
-    if halvings:
-        _halve(stiffness, damping, halvings)
+    halve(stiffness, damping, world.settings.substeps)
     return stiffness, damping
 
 

@@ -48,7 +48,7 @@ HAND_DAMPING = 0.3
 
 @dataclass(frozen=True)
 class WorldSettings:
-    """What a tick needs besides the arrays: gravity [m/s^2], tick rate [1/s], substeps and the solver's own settings."""
+    """What a tick needs besides arrays: gravity [m/s^2], tick rate [1/s], substeps and the settings of the solver."""
 
     gravity: tuple[float, float] = (0.0, -9.81)
     tick_rate: int = 60
@@ -290,7 +290,7 @@ class World:
     def _append(self, **arrays: ArrayLike) -> None:
         for name, values in arrays.items():
             present = getattr(self, name)
-            setattr(self, name, np.ascontiguousarray(np.concatenate([present, np.asarray(values, dtype=present.dtype)])))
+            setattr(self, name, np.concatenate([present, np.asarray(values, dtype=present.dtype)]))
 
 
 def _register(slots: dict[str, int], names: list[str], added: Sequence[str]) -> None:
