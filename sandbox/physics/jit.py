@@ -23,12 +23,20 @@ def _compiling() -> bool:
 COMPILED = _compiling()
 
 
+def _viewed(item: Any) -> Any:
+    if isinstance(item, np.ndarray):
+        return memoryview(cast(Any, item))
+    if isinstance(item, tuple) and hasattr(item, "_make"):
+        return cast(Any, item)._make(map(_viewed, item))
+    return item
+
+
 def _interpreted(function: Function) -> Function:
     """Run the kernel's own source on memory views, whose items are Python floats: the same IEEE doubles, 3x faster."""
 
     @functools.wraps(function)
     def call(*arguments: Any) -> Any:
-        return function(*[memoryview(cast(Any, item)) if isinstance(item, np.ndarray) else item for item in arguments])
+        return function(*map(_viewed, arguments))
 
     return cast(Function, call)
 
@@ -44,7 +52,8 @@ def _compiled(function: Function) -> Function:
 
 
 def kernel(function: Function) -> Function:
-    """Make `function` a kernel: scalars and contiguous arrays in, arrays changed in place; same bits compiled or not."""
+    """Make `function` a kernel: scalars, contiguous arrays and named tuples of them in, arrays changed in
+    place; same bits compiled or not."""
     return _compiled(function) if COMPILED else _interpreted(function)
 
 

@@ -21,6 +21,8 @@ class Snapshot:
     inverse_mass: Floats
     radius: Floats
     particle_active: NDArray[np.bool_]
+    slow_velocity: Floats
+    energy_bank: Floats
     particle_a: NDArray[np.int32]
     particle_b: NDArray[np.int32]
     rest_length: Floats
@@ -32,6 +34,7 @@ class Snapshot:
     material: NDArray[np.int32]
     spring_active: NDArray[np.bool_]
     impulse: Floats
+    tension: Floats
     settings: WorldSettings
     tick: int
     hand_particle: int

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,8 @@ PARTICLE_ARRAYS = {
     "inverse_mass": np.float64,
     "radius": np.float64,
     "particle_active": np.bool_,
+    "slow_velocity": np.float64,
+    "energy_bank": np.float64,
 }
 SPRING_ARRAYS = {
     "particle_a": np.int32,
@@ -29,10 +32,11 @@ SPRING_ARRAYS = {
     "material": np.int32,
     "spring_active": np.bool_,
     "impulse": np.float64,
+    "tension": np.float64,
 }
 # Every array of a world's state, in the order in which it is hashed and stored: part of the replay contract.
 STATE_ARRAYS = (*PARTICLE_ARRAYS, *SPRING_ARRAYS)
-VECTOR_ARRAYS = frozenset({"position", "velocity", "impulse"})
+VECTOR_ARRAYS = frozenset({"position", "velocity", "slow_velocity", "impulse"})
 
 LAW_NISSEN = 0
 LAW_HOOKE = 1
@@ -44,6 +48,9 @@ HAND_COUNT = 10
 # article's 1/(n+1) stays bounded while it is held; higher values grip harder and use that margin up.
 HAND_STIFFNESS = 0.2
 HAND_DAMPING = 0.3
+
+# An energy bank that the direct solver begins anew at its next step: something outside changed the body.
+BANK_UNOPENED = -1.0
 
 
 @dataclass(frozen=True)
@@ -65,7 +72,9 @@ class World:
     inverse_mass [1/kg] (0 = pinned), radius [m], particle_active (bool); particle_a, particle_b (int32 slots),
     rest_length [m], stiffness, damping (Cs, Cd per tick), law (int8), hooke_stiffness [N/m], hooke_damping [N s/m],
     material (int32 index into material_names, -1 = a hand's), spring_active (bool), impulse [N s] (m, 2) = what the
-    iterative solver keeps for its warm start.
+    iterative solver keeps for its warm start. The direct solver keeps slow_velocity [m/s] (n, 2) = the slow part of the
+    velocity, energy_bank [J] (n,) = what a body's earlier losses still allow it, at its free particle of lowest slot
+    (-1: to be begun anew), tension [N s] (m,) = the impulse by which a spring pulled in the last step.
 
     Slots are append-only: an index stays a particle's or spring's handle for ever; removing clears the active flag.
     Pinned particles have velocity 0, except a hand's cursor while it moves.
@@ -77,6 +86,8 @@ class World:
     inverse_mass: Floats
     radius: Floats
     particle_active: NDArray[np.bool_]
+    slow_velocity: Floats
+    energy_bank: Floats
     particle_a: NDArray[np.int32]
     particle_b: NDArray[np.int32]
     rest_length: Floats
@@ -88,6 +99,7 @@ class World:
     material: NDArray[np.int32]
     spring_active: NDArray[np.bool_]
     impulse: Floats
+    tension: Floats
 
     def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
         self.settings = settings or WorldSettings()
@@ -99,6 +111,8 @@ class World:
         self._spring_slots: dict[str, int] = {}
         self.hand_particle = -1
         self.hand_spring = -1
+        # What a solver derives from topology and pins alone; never state.
+        self.solver_cache: Any = None
         for name, kind in (PARTICLE_ARRAYS | SPRING_ARRAYS).items():
             setattr(self, name, np.zeros((0, 2) if name in VECTOR_ARRAYS else 0, dtype=kind))
 
@@ -153,6 +167,8 @@ class World:
         self._append(
             position=np.asarray(position, dtype=np.float64).reshape(count, 2),
             velocity=np.where(is_pinned[:, None], 0.0, velocities),
+            slow_velocity=np.where(is_pinned[:, None], 0.0, velocities),
+            energy_bank=np.full(count, BANK_UNOPENED),
             mass=masses,
             inverse_mass=np.where(is_pinned, 0.0, 1.0 / masses),
             radius=np.broadcast_to(np.asarray(radius, dtype=np.float64), count),
@@ -202,7 +218,9 @@ class World:
             material=np.broadcast_to(material, count),
             spring_active=np.ones(count, dtype=np.bool_),
             impulse=np.zeros((count, 2)),
+            tension=np.zeros(count),
         )
+        self._disturb(a, b)
         return first
 
     def reserve_hands(self) -> None:
@@ -223,16 +241,22 @@ class World:
         """Hold a particle where it is."""
         self.inverse_mass[particle] = 0.0
         self.velocity[particle] = 0.0
+        self.slow_velocity[particle] = 0.0
+        self._disturb(particle)
 
     def unpin(self, particle: int) -> None:
         """Let a pinned particle move again, with the mass it has."""
         self.inverse_mass[particle] = 1.0 / self.mass[particle]
+        self.slow_velocity[particle] = self.velocity[particle]
+        self._disturb(particle)
 
     def cut(self, springs: Sequence[int]) -> None:
         """Take springs out of the world; their slots stay."""
         for slot in springs:
             self.spring_active[slot] = False
             self.impulse[slot] = 0.0
+            self.tension[slot] = 0.0
+            self._disturb(self.particle_a[slot], self.particle_b[slot])
 
     def hold(self, hand: int, particle: int, target: tuple[float, float]) -> None:
         """Join a particle to a hand's cursor at target [m] by a spring of rest length 0."""
@@ -241,9 +265,12 @@ class World:
         self.particle_active[cursor] = True
         self.position[cursor] = target
         self.velocity[cursor] = 0.0
+        self.slow_velocity[cursor] = 0.0
         self.particle_b[spring] = particle
         self.spring_active[spring] = True
         self.impulse[spring] = 0.0
+        self.tension[spring] = 0.0
+        self._disturb(particle)
 
     def is_held(self, hand: int) -> bool:
         """Whether a hand holds a particle."""
@@ -263,11 +290,14 @@ class World:
         """Let go; the hand's slots wait for its next use."""
         cursor, spring = self.hand_particle + hand, self.hand_spring + hand
         self.particle_active[cursor] = False
+        self._disturb(self.particle_b[spring])
         self.position[cursor] = 0.0
         self.velocity[cursor] = 0.0
+        self.slow_velocity[cursor] = 0.0
         self.particle_b[spring] = 0
         self.spring_active[spring] = False
         self.impulse[spring] = 0.0
+        self.tension[spring] = 0.0
 
     def set_coefficients(self, stiffness: float | None, damping: float | None, material: int | None) -> None:
         """Set Cs, Cd or both, of one material's springs or (None) of all; hands and Hooke springs keep theirs."""
@@ -276,6 +306,7 @@ class World:
             self.stiffness[chosen] = stiffness
         if damping is not None:
             self.damping[chosen] = damping
+        self._disturb(self.particle_a[chosen], self.particle_b[chosen])
 
     def forget_names_beyond(self, particle_count: int, spring_count: int) -> None:
         """Drop the names of slots that a restored state does not have."""
@@ -286,6 +317,10 @@ class World:
             for name in names[count:]:
                 del slots[name]
             del names[count:]
+
+    def _disturb(self, *particles: ArrayLike) -> None:
+        for slots in particles:
+            self.energy_bank[slots] = BANK_UNOPENED
 
     def _append(self, **arrays: ArrayLike) -> None:
         for name, values in arrays.items():

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from sandbox.physics.solvers import iterative, single_pass
+from sandbox.physics.solvers import direct, iterative, single_pass
 from sandbox.physics.world import Floats, World
 
 
@@ -24,4 +24,5 @@ class Solver:
 SOLVERS = {
     "single_pass": Solver(single_pass.solve, single_pass.spring_constant, proven_limit=True),
     "iterative": Solver(iterative.solve, single_pass.spring_constant, proven_limit=False),
+    "direct": Solver(direct.solve, direct.spring_constant, proven_limit=False),
 }

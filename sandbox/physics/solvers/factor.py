@@ -1,0 +1,83 @@
+"""Sparse factorisation of the direct solver: L D L^T of a symmetric positive definite matrix of 2x2 blocks."""
+
+from sandbox.physics.jit import kernel
+
+# A pivot block whose determinant is not above this is left out (its rows do not move); only overflow or NaN lead here.
+SMALLEST_DETERMINANT = 1e-300
+
+
+@kernel
+def factorise(first, last, column_start, row, target_start, target, diagonal, lower, scaled):  # type: ignore[no-untyped-def]
+    """Factor the rows first..last in place.
+
+    In: diagonal (n, 3) = the symmetric blocks (xx, xy, yy), lower (k, 4) = the blocks below them (xx, xy, yx, yy) by
+    column. Out: the INVERSE blocks of D, and the blocks of L. scaled (longest column, 4) is scratch.
+    """
+    for j in range(first, last):
+        xx = diagonal[j, 0]
+        xy = diagonal[j, 1]
+        yy = diagonal[j, 2]
+        determinant = xx * yy - xy * xy
+        inverse = 1.0 / determinant if determinant > SMALLEST_DETERMINANT else 0.0
+        ixx = yy * inverse
+        ixy = -xy * inverse
+        iyy = xx * inverse
+        diagonal[j, 0] = ixx
+        diagonal[j, 1] = ixy
+        diagonal[j, 2] = iyy
+        begin = column_start[j]
+        end = column_start[j + 1]
+        # L_ij = A_ij D_j^-1
+        for at in range(begin, end):
+            k = at - begin
+            scaled[k, 0] = lower[at, 0] * ixx + lower[at, 1] * ixy
+            scaled[k, 1] = lower[at, 0] * ixy + lower[at, 1] * iyy
+            scaled[k, 2] = lower[at, 2] * ixx + lower[at, 3] * ixy
+            scaled[k, 3] = lower[at, 2] * ixy + lower[at, 3] * iyy
+        # A_ik -= L_ij A_kj^T for every pair of rows i >= k of the column
+        found = target_start[j]
+        for at in range(begin, end):
+            k = at - begin
+            a0 = lower[at, 0]
+            a1 = lower[at, 1]
+            a2 = lower[at, 2]
+            a3 = lower[at, 3]
+            i = row[at]
+            diagonal[i, 0] -= scaled[k, 0] * a0 + scaled[k, 1] * a1
+            diagonal[i, 1] -= scaled[k, 0] * a2 + scaled[k, 1] * a3
+            diagonal[i, 2] -= scaled[k, 2] * a2 + scaled[k, 3] * a3
+            for below in range(k + 1, end - begin):
+                block = target[found]
+                found += 1
+                lower[block, 0] -= scaled[below, 0] * a0 + scaled[below, 1] * a1
+                lower[block, 1] -= scaled[below, 0] * a2 + scaled[below, 1] * a3
+                lower[block, 2] -= scaled[below, 2] * a0 + scaled[below, 3] * a1
+                lower[block, 3] -= scaled[below, 2] * a2 + scaled[below, 3] * a3
+        for at in range(begin, end):
+            k = at - begin
+            lower[at, 0] = scaled[k, 0]
+            lower[at, 1] = scaled[k, 1]
+            lower[at, 2] = scaled[k, 2]
+            lower[at, 3] = scaled[k, 3]
+
+
+@kernel
+def back_substitute(first, last, column_start, row, diagonal, lower, vector):  # type: ignore[no-untyped-def]
+    """Solve for the rows first..last of vector (n, 2) in place, with the factor that `factorise` left."""
+    for j in range(first, last):
+        x = vector[j, 0]
+        y = vector[j, 1]
+        for at in range(column_start[j], column_start[j + 1]):
+            i = row[at]
+            vector[i, 0] -= lower[at, 0] * x + lower[at, 1] * y
+            vector[i, 1] -= lower[at, 2] * x + lower[at, 3] * y
+    for back in range(last - first):
+        j = last - 1 - back
+        x = diagonal[j, 0] * vector[j, 0] + diagonal[j, 1] * vector[j, 1]
+        y = diagonal[j, 1] * vector[j, 0] + diagonal[j, 2] * vector[j, 1]
+        for at in range(column_start[j], column_start[j + 1]):
+            i = row[at]
+            x -= lower[at, 0] * vector[i, 0] + lower[at, 2] * vector[i, 1]
+            y -= lower[at, 1] * vector[i, 0] + lower[at, 3] * vector[i, 1]
+        vector[j, 0] = x
+        vector[j, 1] = y

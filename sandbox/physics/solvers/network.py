@@ -1,0 +1,270 @@
+"""One body's springs as one linear system, and the energies that decide whether its solution is taken.
+
+For 0 < Cd < 1 the article's impulse (Nissen 2019) is, for one spring, identical to
+
+    J = -K (u' + beta x / h),   K = m_r Cd / (1 - Cd) [kg],   beta = Cs / Cd
+
+with u' the velocity error AFTER the step, which is the minimum over v' of
+
+    f(v') = 1/2 |v' - v*|^2_M + sum over springs of [K (x' - x)^2 + K beta (x'^2 - (x' - x)^2)] / (2 h^2)
+
+v* = the velocities after gravity, x' = |d + h (v'_b - v'_a)| - L. Here K is `along`, K beta (which needs no division
+by Cd) is `pull`, v* is `target`, v' is `trial`.
+"""
+
+import math
+
+from sandbox.physics.equation import SHORTEST, direction, reduced_mass
+from sandbox.physics.jit import kernel, scalar_kernel
+from sandbox.physics.solvers.factor import back_substitute, factorise
+
+# Cd is capped here, and Cs with it: nearer to 1 the solution stretches less, but is rejected more often and damps more.
+HIGHEST_COEFFICIENT = 1.0 - 1e-6
+# A linear solve is refined once where impulses that cancel are this many times those that are left: a violent step. A
+# higher bound loses the digits of one spring's step at Cd near 1, a lower one costs time on every step.
+CANCELLATION = 30.0
+
+
+@scalar_kernel
+def implicit_masses(stiffness, damping, mass):  # type: ignore[no-untyped-def]
+    """K and K beta [kg] of a spring whose effective mass is `mass` [kg]."""
+    # K = m Cd / (1 - Cd);  K beta = m Cs / (1 - Cd)
+    if damping > HIGHEST_COEFFICIENT:
+        damping = HIGHEST_COEFFICIENT
+        stiffness = min(stiffness, HIGHEST_COEFFICIENT)
+    return mass * damping / (1.0 - damping), mass * stiffness / (1.0 - damping)
+
+
+@kernel
+def load_springs(first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows,
+                 springs):  # type: ignore[no-untyped-def]  # fmt: skip
+    """Bring the springs first..last into their scratch; whether any has Cs > Cd."""
+    bouncy = False
+    for k in range(first, last):
+        s = springs.slot[k]
+        a = springs.row_a[k]
+        b = springs.row_b[k]
+        # A hand's spring pulls at the whole body, so that a heavy rope lifts as readily as a light one.
+        if material[s] == -1:
+            mass = body_mass
+        else:
+            mass = reduced_mass(inverse_mass[rows.particle[a]], inverse_mass[rows.particle[b]])
+        along, pull = implicit_masses(stiffness[s], damping[s], mass)
+        springs.along[k] = along
+        springs.pull[k] = pull
+        if pull > along:
+            bouncy = True
+        dx = rows.position[b, 0] - rows.position[a, 0]
+        dy = rows.position[b, 1] - rows.position[a, 1]
+        length = math.sqrt(dx * dx + dy * dy)
+        springs.length[k] = length
+        springs.error[k] = length - rest_length[s]
+        springs.tension[k] = tension[s]
+    return bouncy
+
+
+@kernel
+def linearise(first, last, rows, springs, h, ahead, behind):  # type: ignore[no-untyped-def]
+    """Directions, transverse masses and impulses of the springs first..last for one linear solve about `trial`.
+
+    Directions are those at x + h (ahead v' - behind s). behind = 0 is Newton's method on f; else the transverse mass
+    comes from the springs' `tension` [N s], and never exceeds K.
+    """
+    for k in range(first, last):
+        a = springs.row_a[k]
+        b = springs.row_b[k]
+        dx = rows.position[b, 0] - rows.position[a, 0]
+        dy = rows.position[b, 1] - rows.position[a, 1]
+        ux = rows.trial[b, 0] - rows.trial[a, 0]
+        uy = rows.trial[b, 1] - rows.trial[a, 1]
+        px = dx + h * (ahead * ux - behind * (rows.slow[b, 0] - rows.slow[a, 0]))
+        py = dy + h * (ahead * uy - behind * (rows.slow[b, 1] - rows.slow[a, 1]))
+        growth = _growth(dx, dy, ux, uy, springs.length[k], h)
+        # A spring foreseen to turn over is taken as it lies: else it pushes where it would have to pull.
+        if behind > 0.0 and (dx * px + dy * py <= 0.0 or dx * (dx + h * ux) + dy * (dy + h * uy) <= 0.0):
+            px = dx
+            py = dy
+            if springs.length[k] > SHORTEST:
+                growth = (dx * ux + dy * uy) / springs.length[k]
+        nx, ny, length = direction(px, py, ux, uy)
+        springs.normal[k, 0] = nx
+        springs.normal[k, 1] = ny
+        along = springs.along[k]
+        # J = -(K (x' - x) / h + K beta x / h)
+        impulse = -(along * growth + springs.pull[k] * springs.error[k] / h)
+        springs.impulse[k] = impulse
+        springs.sideways[k] = 0.0
+        pulled = springs.tension[k]
+        if behind == 0.0:
+            pulled = max(0.0, -impulse)
+        # h T / l, with T the impulse by which the spring pulls
+        across = ahead * h * pulled / length if length > SHORTEST else along
+        if behind > 0.0 and not across < along:
+            across = along
+        springs.across[k] = across
+
+
+@scalar_kernel
+def _growth(dx, dy, ux, uy, length, h):  # type: ignore[no-untyped-def]
+    # (l' - l) / h = (2 d.u + h u.u) / (l' + l), which does not cancel
+    ex = dx + h * ux
+    ey = dy + h * uy
+    total = math.sqrt(ex * ex + ey * ey) + length
+    if total > SHORTEST:
+        return (2.0 * (dx * ux + dy * uy) + h * (ux * ux + uy * uy)) / total
+    return 0.0
+
+
+@kernel
+def assemble(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
+    """A = M + sum [K n n^T + g (I - n n^T)]."""
+    free_count = matrix.diagonal.shape[0]
+    for r in range(first_row, last_row):
+        mass = rows.mass[r]
+        matrix.diagonal[r, 0] = mass
+        matrix.diagonal[r, 1] = 0.0
+        matrix.diagonal[r, 2] = mass
+    for at in range(matrix.column_start[first_row], matrix.column_start[last_row]):
+        matrix.lower[at, 0] = 0.0
+        matrix.lower[at, 1] = 0.0
+        matrix.lower[at, 2] = 0.0
+        matrix.lower[at, 3] = 0.0
+    for k in range(first, last):
+        nx = springs.normal[k, 0]
+        ny = springs.normal[k, 1]
+        across = springs.across[k]
+        more = springs.along[k] - across
+        xx = across + more * nx * nx
+        xy = more * nx * ny
+        yy = across + more * ny * ny
+        a = springs.row_a[k]
+        b = springs.row_b[k]
+        if a < free_count:
+            matrix.diagonal[a, 0] += xx
+            matrix.diagonal[a, 1] += xy
+            matrix.diagonal[a, 2] += yy
+        if b < free_count:
+            matrix.diagonal[b, 0] += xx
+            matrix.diagonal[b, 1] += xy
+            matrix.diagonal[b, 2] += yy
+        at = springs.block[k]
+        if at >= 0:
+            matrix.lower[at, 0] -= xx
+            matrix.lower[at, 1] -= xy
+            matrix.lower[at, 2] -= xy
+            matrix.lower[at, 3] -= yy
+
+
+@kernel
+def load_residual(first_row, last_row, first, last, rows, springs, free_count):  # type: ignore[no-untyped-def]
+    """The right side M (v* - v') + sum of the springs' impulses of one body, into `change`."""
+    for r in range(first_row, last_row):
+        rows.change[r, 0] = rows.mass[r] * (rows.target[r, 0] - rows.trial[r, 0])
+        rows.change[r, 1] = rows.mass[r] * (rows.target[r, 1] - rows.trial[r, 1])
+    for k in range(first, last):
+        nx = springs.normal[k, 0]
+        ny = springs.normal[k, 1]
+        jx = springs.impulse[k] * nx - springs.sideways[k] * ny
+        jy = springs.impulse[k] * ny + springs.sideways[k] * nx
+        a = springs.row_a[k]
+        b = springs.row_b[k]
+        if a < free_count:
+            rows.change[a, 0] -= jx
+            rows.change[a, 1] -= jy
+        if b < free_count:
+            rows.change[b, 0] += jx
+            rows.change[b, 1] += jy
+
+
+@kernel
+def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
+    """Solve A D = right side for the rows of one body; D is left in `change`."""
+    assemble(first_row, last_row, first, last, rows, springs, matrix)
+    load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
+    factorise(
+        first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.diagonal,
+        matrix.lower, matrix.scaled,
+    )  # fmt: skip
+    back_substitute(
+        first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
+    )  # fmt: skip
+
+
+@kernel
+def update_impulses(first, last, rows, springs, free_count):  # type: ignore[no-untyped-def]
+    """J = q - K n.(D_b - D_a) of one body's springs, the like across them; whether so much cancelled that D wants refining."""
+    before = 0.0
+    after = 0.0
+    for k in range(first, last):
+        a = springs.row_a[k]
+        b = springs.row_b[k]
+        ux = 0.0
+        uy = 0.0
+        if b < free_count:
+            ux += rows.change[b, 0]
+            uy += rows.change[b, 1]
+        if a < free_count:
+            ux -= rows.change[a, 0]
+            uy -= rows.change[a, 1]
+        nx = springs.normal[k, 0]
+        ny = springs.normal[k, 1]
+        taken = springs.along[k] * (nx * ux + ny * uy)
+        springs.impulse[k] -= taken
+        springs.sideways[k] -= springs.across[k] * (nx * uy - ny * ux)
+        before += abs(taken)
+        after += abs(springs.impulse[k])
+    return before > CANCELLATION * after
+
+
+@kernel
+def refine(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
+    """Solve for what is left of the right side, with the impulses found so far; it is left in `change`."""
+    load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
+    back_substitute(
+        first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
+    )  # fmt: skip
+
+
+@kernel
+def objective(first_row, last_row, first, last, rows, springs, h):  # type: ignore[no-untyped-def]
+    """f(v') of one body at `trial` [J]."""
+    total = 0.0
+    for r in range(first_row, last_row):
+        ux = rows.trial[r, 0] - rows.target[r, 0]
+        uy = rows.trial[r, 1] - rows.target[r, 1]
+        total += 0.5 * rows.mass[r] * (ux * ux + uy * uy)
+    for k in range(first, last):
+        a = springs.row_a[k]
+        b = springs.row_b[k]
+        dx = rows.position[b, 0] - rows.position[a, 0]
+        dy = rows.position[b, 1] - rows.position[a, 1]
+        ux = rows.trial[b, 0] - rows.trial[a, 0]
+        uy = rows.trial[b, 1] - rows.trial[a, 1]
+        growth = _growth(dx, dy, ux, uy, springs.length[k], h)
+        error = springs.error[k] / h
+        after = error + growth
+        total += 0.5 * (springs.along[k] * growth * growth + springs.pull[k] * (after * after - growth * growth))
+    return total
+
+
+@kernel
+def kinetic(first_row, last_row, mass, velocity):  # type: ignore[no-untyped-def]
+    """1/2 |v|^2_M of one body [J]."""
+    total = 0.0
+    for r in range(first_row, last_row):
+        total += 0.5 * mass[r] * (velocity[r, 0] * velocity[r, 0] + velocity[r, 1] * velocity[r, 1])
+    return total
+
+
+@kernel
+def potential(first, last, position, velocity, springs, rest_length, time, h):  # type: ignore[no-untyped-def]
+    """Energy of one body's springs at position + time velocity [J]: sum of K beta x^2 / (2 h^2)."""
+    total = 0.0
+    for k in range(first, last):
+        a = springs.row_a[k]
+        b = springs.row_b[k]
+        dx = position[b, 0] - position[a, 0] + time * (velocity[b, 0] - velocity[a, 0])
+        dy = position[b, 1] - position[a, 1] + time * (velocity[b, 1] - velocity[a, 1])
+        error = (math.sqrt(dx * dx + dy * dy) - rest_length[springs.slot[k]]) / h
+        total += 0.5 * springs.pull[k] * error * error
+    return total

@@ -1,0 +1,197 @@
+"""Pattern of the direct solver's matrix: which springs join which free particles, in what order they are eliminated.
+
+Symbolic work alone: made anew when topology or pins change, kept on the World meanwhile, no part of its state.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.physics.jit import kernel
+from sandbox.physics.solvers.ordering import label_bodies, minimum_degree, update_targets
+from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, Floats, Slots, World
+
+# First guess of blocks in the factor per particle; too low costs one more pass, too high memory.
+FILL_GUESS = 24
+
+
+class Rows(NamedTuple):
+    """One row for every particle that springs of the matrix touch: free ones in elimination order, then pinned ones."""
+
+    particle: Slots
+    mass: Floats
+    position: Floats
+    start: Floats
+    target: Floats
+    slow: Floats
+    moved: Floats
+    trial: Floats
+    best: Floats
+    change: Floats
+
+
+class Springs(NamedTuple):
+    """The springs of the matrix by body: ends as rows, the block they share (-1: one end is pinned), and scratch."""
+
+    slot: Slots
+    row_a: Slots
+    row_b: Slots
+    block: Slots
+    along: Floats
+    pull: Floats
+    length: Floats
+    error: Floats
+    normal: Floats
+    across: Floats
+    impulse: Floats
+    sideways: Floats
+    tension: Floats
+
+
+class Matrix(NamedTuple):
+    """The matrix by columns: blocks below the diagonal, where their updates land, and the numbers."""
+
+    column_start: Slots
+    row: Slots
+    target_start: Slots
+    target: NDArray[np.int32]
+    diagonal: Floats
+    lower: Floats
+    scaled: Floats
+
+
+class Bodies(NamedTuple):
+    """First row and first spring of each body, and one past the last; the free particle of lowest slot of each."""
+
+    row_start: Slots
+    spring_start: Slots
+    lowest: Slots
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """Everything about a world's matrix that its topology and pins decide, with the scratch arrays of a step."""
+
+    signature: tuple[NDArray[Any], ...]
+    has_hooke: bool
+    hooke: NDArray[np.bool_]
+    bodies: Bodies
+    rows: Rows
+    springs: Springs
+    matrix: Matrix
+
+
+@kernel
+def is_current(inverse_mass, particle_a, particle_b, spring_active, law, free, kind, end_a, end_b):  # type: ignore[no-untyped-def]
+    """Whether topology and pins are still those that a pattern was made for."""
+    if inverse_mass.shape[0] != free.shape[0] or law.shape[0] != kind.shape[0]:
+        return False
+    for p in range(free.shape[0]):
+        if (inverse_mass[p] > 0.0) != free[p]:
+            return False
+    for s in range(kind.shape[0]):
+        if spring_active[s]:
+            if kind[s] != law[s] or end_a[s] != particle_a[s] or end_b[s] != particle_b[s]:
+                return False
+        elif kind[s] >= 0:
+            return False
+    return True
+
+
+def make_pattern(world: World) -> Pattern:
+    """Order a world's free particles for elimination and lay out the matrix of its springs."""
+    free = world.inverse_mass > 0.0
+    kind = np.where(world.spring_active, world.law, -1).astype(np.int64)
+    a, b = world.particle_a.astype(np.int64), world.particle_b.astype(np.int64)
+    chosen = np.flatnonzero((kind == LAW_NISSEN) & (free[a] | free[b]))
+    a_chosen, b_chosen = a[chosen], b[chosen]
+    used = np.zeros(world.particle_count, dtype=np.bool_)
+    used[a_chosen] = used[b_chosen] = True
+    nodes = np.flatnonzero(used & free)
+    anchors = np.flatnonzero(used & ~free)
+    # Rows before the elimination order is known; anchors come after every free particle, in any order.
+    index = np.full(world.particle_count, -1, dtype=np.int64)
+    index[nodes] = np.arange(len(nodes))
+    index[anchors] = len(nodes) + np.arange(len(anchors))
+    end_a, end_b = index[a_chosen], index[b_chosen]
+    links = np.flatnonzero((end_a < len(nodes)) & (end_b < len(nodes)))
+    order, label, columns = _eliminate(len(nodes), end_a[links], end_b[links])
+    rank = np.arange(len(nodes) + len(anchors))
+    rank[order] = np.arange(len(nodes))
+    row_a, row_b = rank[end_a], rank[end_b]
+    body_of_row = label[order]
+    first_rows = np.flatnonzero(np.diff(body_of_row, prepend=-1))
+    spring_body = np.cumsum(np.diff(body_of_row, prepend=-1) != 0)[np.minimum(row_a, row_b)] - 1 if len(nodes) else row_a
+    grouped = np.argsort(spring_body, kind="stable")
+    matrix, blocks = _lay_out(len(nodes), columns, rank, row_a[grouped], row_b[grouped])
+    bodies = Bodies(
+        np.append(first_rows, len(nodes)),
+        np.searchsorted(spring_body[grouped], np.arange(len(first_rows) + 1)),
+        nodes[body_of_row[first_rows]],
+    )
+    hooke = kind == LAW_HOOKE
+    particles = np.concatenate([nodes[order], anchors])
+    return Pattern(
+        signature=(free, kind, a, b),
+        has_hooke=bool(hooke.any()),
+        hooke=hooke,
+        bodies=bodies,
+        rows=_scratch_rows(particles),
+        springs=_scratch_springs(chosen[grouped], row_a[grouped], row_b[grouped], blocks),
+        matrix=matrix,
+    )
+
+
+def _eliminate(count: int, link_a: Slots, link_b: Slots) -> tuple[Slots, Slots, tuple[Slots, Slots]]:
+    """Elimination order of the nodes, bodies one after another; the body of each node; the blocks (column, row)."""
+    label = np.arange(count)
+    label_bodies(link_a, link_b, label)
+    keys = np.unique(np.concatenate([link_a * count + link_b, link_b * count + link_a]))
+    near = keys % count if count else keys
+    degree = np.bincount(keys // count, minlength=count) if count else keys
+    start = np.append(0, np.cumsum(degree))
+    capacity = FILL_GUESS * count + 16
+    while True:
+        order = np.zeros(count, dtype=np.int64)
+        column_start, column = np.zeros(count + 1, dtype=np.int64), np.zeros(capacity, dtype=np.int64)
+        counts, flags = np.zeros((5, count), dtype=np.int64), np.zeros((2, count), dtype=np.bool_)
+        if minimum_degree(
+            start, near.copy(), degree.copy(), np.zeros_like(near), counts[0], order, column_start, column, flags[0],
+            flags[1], counts[1], counts[2], counts[3], counts[4],
+        ):  # fmt: skip
+            break
+        capacity *= 2
+    by_body = np.argsort(label[order], kind="stable")
+    owner = np.repeat(order, np.diff(column_start))
+    return order[by_body], label, (owner, column[: column_start[-1]])
+
+
+def _lay_out(
+    count: int, columns: tuple[Slots, Slots], rank: Slots, row_a: Slots, row_b: Slots
+) -> tuple[Matrix, Slots]:
+    """The matrix, ready for numbers, and the block of each spring (-1: one end is pinned)."""
+    keys = np.sort(rank[columns[0]] * count + rank[columns[1]])
+    row = keys % count if count else keys
+    lengths = np.bincount(keys // count, minlength=count) if count else keys
+    column_start = np.append(0, np.cumsum(lengths))
+    pairs = np.append(0, np.cumsum(lengths * (lengths - 1) // 2))
+    target = np.zeros(pairs[-1], dtype=np.int32)
+    update_targets(column_start, row, target, np.zeros(count, dtype=np.int64))
+    low, high = np.minimum(row_a, row_b), np.maximum(row_a, row_b)
+    blocks = np.where(high < count, np.searchsorted(keys, low * count + high), -1)
+    longest = int(lengths.max()) if count else 0
+    numbers = np.zeros((count, 3)), np.zeros((len(row), 4)), np.zeros((longest, 4))
+    return Matrix(column_start, row, pairs, target, *numbers), blocks
+
+
+def _scratch_rows(particles: Slots) -> Rows:
+    count = len(particles)
+    return Rows(particles, np.zeros(count), *(np.zeros((count, 2)) for _ in range(8)))
+
+
+def _scratch_springs(slots: Slots, row_a: Slots, row_b: Slots, block: Slots) -> Springs:
+    count = len(slots)
+    lines = [np.zeros(count) for _ in range(8)]
+    return Springs(slots, row_a, row_b, block, *lines[:4], np.zeros((count, 2)), *lines[4:])
