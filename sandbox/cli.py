@@ -2,7 +2,6 @@
 
 import argparse
 import json
-import math
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
@@ -138,7 +137,7 @@ def _count(text: str) -> int:
 
 def _size(text: str) -> tuple[int, int]:
     width, _, height = text.lower().partition("x")
-    if not (width.isdigit() and height.isdigit() and 1 <= min(int(width), int(height))):
+    if not (width.isdigit() and height.isdigit() and min(int(width), int(height)) >= 1):
         raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT, as in 1280x720")
     if max(int(width), int(height)) > PIXEL_LIMIT:
         raise argparse.ArgumentTypeError(f"a side of {text} is above {PIXEL_LIMIT} pixels")

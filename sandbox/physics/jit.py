@@ -44,7 +44,7 @@ def _compiled(function: Function) -> Function:
 
 
 def kernel(function: Function) -> Function:
-    """Make `function` a kernel: scalars and contiguous arrays in, arrays changed in place; same bits compiled or not."""
+    """Make `function` a kernel: scalars and contiguous arrays in, arrays changed in place, same bits compiled or not."""
     return _compiled(function) if COMPILED else _interpreted(function)
 
 
