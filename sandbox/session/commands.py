@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, replace
 from functools import cache
 from typing import Annotated, Any
 
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.world import HAND_COUNT, LAW_NISSEN, World
@@ -35,8 +35,14 @@ class CommandError(ValueError):
     """A command that cannot be carried out; its text is one line for a person."""
 
 
+class _Validated:
+    """What commands share: strict validation, also of a command that was made without it."""
+
+    __pydantic_config__ = ConfigDict(strict=True, extra="forbid", revalidate_instances="always")
+
+
 @dataclass(frozen=True)
-class Grab:
+class Grab(_Validated):
     """Hold a particle with hand number `grab` (0..9) at target [m]."""
 
     grab: Hand
@@ -45,7 +51,7 @@ class Grab:
 
 
 @dataclass(frozen=True)
-class MoveGrab:
+class MoveGrab(_Validated):
     """Move a hand that holds something to target [m]."""
 
     grab: Hand
@@ -53,35 +59,35 @@ class MoveGrab:
 
 
 @dataclass(frozen=True)
-class Release:
+class Release(_Validated):
     """Let go of what a hand holds."""
 
     grab: Hand
 
 
 @dataclass(frozen=True)
-class Pin:
+class Pin(_Validated):
     """Hold a particle where it is."""
 
     particle: Slot
 
 
 @dataclass(frozen=True)
-class Unpin:
+class Unpin(_Validated):
     """Let a pinned particle move."""
 
     particle: Slot
 
 
 @dataclass(frozen=True)
-class CutSprings:
+class CutSprings(_Validated):
     """Take springs out of the world."""
 
     springs: tuple[Slot, ...]
 
 
 @dataclass(frozen=True)
-class AddParticle:
+class AddParticle(_Validated):
     """Add a particle at position [m], of mass [kg] and radius [m]; it is named +.0, +.1, ... in order of adding."""
 
     position: Point
@@ -91,7 +97,7 @@ class AddParticle:
 
 
 @dataclass(frozen=True)
-class AddSpring:
+class AddSpring(_Validated):
     """Add a spring between two particles; rest_length [m], None = as placed; it is named +:0, +:1, ..."""
 
     particle_a: Slot
@@ -102,7 +108,7 @@ class AddSpring:
 
 
 @dataclass(frozen=True)
-class SetCoefficients:
+class SetCoefficients(_Validated):
     """Set Cs, Cd or both (None = leave), of one material by index or of all (None)."""
 
     stiffness: Fraction | None = None
@@ -111,14 +117,14 @@ class SetCoefficients:
 
 
 @dataclass(frozen=True)
-class SetGravity:
+class SetGravity(_Validated):
     """Set gravity [m/s^2]."""
 
     gravity: tuple[Acceleration, Acceleration]
 
 
 @dataclass(frozen=True)
-class SetSolver:
+class SetSolver(_Validated):
     """Set the solver or any of its settings (None = leave); substeps is a power of two."""
 
     solver: str | None = None
@@ -128,12 +134,12 @@ class SetSolver:
 
 
 @dataclass(frozen=True)
-class Undo:
+class Undo(_Validated):
     """Take the last gesture back, as if it had never been made; the session carries it out."""
 
 
 @dataclass(frozen=True)
-class Redo:
+class Redo(_Validated):
     """Make the gesture again that was undone last; the session carries it out."""
 
 
@@ -146,7 +152,7 @@ Command = (
 @cache
 def adapter(kind: type) -> TypeAdapter[Any]:
     """The strict validator of one command type."""
-    return TypeAdapter(kind, config={"strict": True, "extra": "forbid"})
+    return TypeAdapter(kind)
 
 
 def plain_fault(error: ValidationError) -> str:
@@ -163,7 +169,7 @@ def apply(world: World, command: Command) -> None:
     if action is None:
         raise CommandError(f"{type(command).__name__} is no command for a world")
     try:
-        adapter(type(command)).validate_python(asdict(command))
+        adapter(type(command)).validate_python(command)
     except ValidationError as error:
         raise CommandError(plain_fault(error)) from None
     action(world, command)
