@@ -4,7 +4,6 @@ A command is a frozen value; `apply` is the one dispatcher. A command that canno
 raises CommandError. Command names are part of the replay format and are never reused.
 """
 
-import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from functools import cache
@@ -12,20 +11,22 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
+from sandbox.level.limits import (
+    COORDINATE_LIMIT,
+    GRAVITY_LIMIT,
+    MASS_RANGE,
+    PARTICLE_LIMIT,
+    SPRING_LIMIT,
+    SUBSTEPS,
+)
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.world import HAND_COUNT, LAW_NISSEN, World
-
-# Limits of what a command may ask for: those of the level format.
-COORDINATE_LIMIT = 1e6  # [m]
-GRAVITY_LIMIT = 1e6  # [m/s^2]
-PARTICLE_LIMIT = 100_000
-SPRING_LIMIT = 400_000
 
 Coordinate = Annotated[float, Field(ge=-COORDINATE_LIMIT, le=COORDINATE_LIMIT, allow_inf_nan=False)]
 Acceleration = Annotated[float, Field(ge=-GRAVITY_LIMIT, le=GRAVITY_LIMIT, allow_inf_nan=False)]
 Fraction = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 Length = Annotated[float, Field(ge=0.0, le=COORDINATE_LIMIT, allow_inf_nan=False)]
-Mass = Annotated[float, Field(ge=1e-9, le=1e9, allow_inf_nan=False)]
+Mass = Annotated[float, Field(ge=MASS_RANGE[0], le=MASS_RANGE[1], allow_inf_nan=False)]
 Point = tuple[Coordinate, Coordinate]
 Hand = Annotated[int, Field(ge=0, lt=HAND_COUNT)]
 Slot = Annotated[int, Field(ge=0)]
@@ -129,7 +130,7 @@ class SetSolver(_Validated):
 
     solver: str | None = None
     iterations: Annotated[int, Field(ge=1, le=1000)] | None = None
-    substeps: Annotated[int, Field(ge=1, le=64)] | None = None
+    substeps: int | None = None
     warm_start: Fraction | None = None
 
 
@@ -274,7 +275,7 @@ def _set_gravity(world: World, command: SetGravity) -> None:
 def _set_solver(world: World, command: SetSolver) -> None:
     if command.solver is not None and command.solver not in SOLVERS:
         raise CommandError(f"there is no solver {command.solver!r}; there are {', '.join(SOLVERS)}")
-    if command.substeps is not None and not math.log2(command.substeps).is_integer():
+    if command.substeps is not None and command.substeps not in SUBSTEPS:
         raise CommandError(f"substeps is a power of two from 1 to 64, not {command.substeps}")
     given = {name: value for name, value in asdict(command).items() if value is not None}
     world.settings = replace(world.settings, **given)

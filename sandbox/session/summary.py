@@ -92,3 +92,10 @@ def _summary(world: World, ticks: int, window: deque[tuple[float, float, int]], 
         hash=state_hash(world),
         milliseconds_per_tick=1e3 * median(times) if times else 0.0,
     )
+
+
+def particle_metric(world: World, particle: str, metric: str) -> float:
+    """x, y [m] or speed [m/s] of a particle by name. Raises KeyError."""
+    slot = world.particle_slot(particle)
+    x, y = world.position[slot].tolist()
+    return {"x": x, "y": y, "speed": float(np.hypot(*world.velocity[slot]))}[metric]
