@@ -1,10 +1,10 @@
 """The only place that knows numba.
 
-Kernels are compiled with a disk cache, uncached where none can be written, and interpreted where numba is missing.
+Kernels are compiled with a disk cache, uncached where none can be written, and interpreted where numba is missing or
+does not work with this Python or numpy.
 """
 
 import functools
-import importlib.util
 import os
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
@@ -14,13 +14,18 @@ import numpy as np
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def _compiling() -> bool:
+def _numba_njit() -> Any:
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
-        return False
-    return importlib.util.find_spec("numba") is not None
+        return None
+    try:
+        from numba import njit
+    except ImportError:  # also what an installed numba raises that is too old for this numpy
+        return None
+    return njit
 
 
-COMPILED = _compiling()
+_njit = _numba_njit()
+COMPILED = _njit is not None
 
 
 def _interpreted(function: Function) -> Function:
@@ -34,17 +39,15 @@ def _interpreted(function: Function) -> Function:
 
 
 def _compiled(function: Function) -> Function:
-    from numba import njit
-
     # Determinism: never fastmath, never parallel. Kernels guard every divisor, so the error model decides nothing.
     try:
-        return cast(Function, njit(cache=True, error_model="numpy")(function))
+        return cast(Function, _njit(cache=True, error_model="numpy")(function))
     except RuntimeError:  # no folder can hold the cache
-        return cast(Function, njit(error_model="numpy")(function))
+        return cast(Function, _njit(error_model="numpy")(function))
 
 
 def kernel(function: Function) -> Function:
-    """Make `function` a kernel: scalars and contiguous arrays in, arrays changed in place, same bits compiled or not."""
+    """Make `function` a kernel: scalars and contiguous arrays in, arrays changed in place, same bits both ways."""
     return _compiled(function) if COMPILED else _interpreted(function)
 
 
