@@ -6,6 +6,7 @@ with distance error x [m], velocity error u [m/s], reduced mass m_r [kg], time s
 """
 
 import math
+from decimal import ROUND_FLOOR, Context
 
 from sandbox.physics.jit import scalar_kernel
 
@@ -53,8 +54,9 @@ def half_step(stiffness, damping):  # type: ignore[no-untyped-def]
     The map keeps 0..1, Cs <= Cd, and (1, 1); it preserves the eigenvalues of one spring's step.
     """
     # e = sqrt(1 - Cd);  Cd' = 1 - e;  Cs' = 1 + e - sqrt(2 - Cs - Cd + 2 e)
+    # written as quotients: the differences lose the digits of small coefficients and can fall below 0.
     e = math.sqrt(max(0.0, 1.0 - damping))
-    return 1.0 + e - math.sqrt(max(0.0, 2.0 - stiffness - damping + 2.0 * e)), 1.0 - e
+    return stiffness / (1.0 + e + math.sqrt(max(0.0, 2.0 - stiffness - damping + 2.0 * e))), damping / (1.0 + e)
 
 
 def coefficients_from_frequency(frequency: float, damping_ratio: float, h: float) -> tuple[float, float]:
@@ -67,10 +69,11 @@ def coefficients_from_frequency(frequency: float, damping_ratio: float, h: float
         raise ValueError("frequency and damping ratio are finite numbers of 0 or more, and the time step is above 0")
     stiffness, damping = _pole_match(frequency, damping_ratio, h)
     if not _reachable(frequency, damping_ratio, h):
-        highest = highest_frequency(damping_ratio, h)
+        # Rounded down: the frequency that is named can be had.
+        highest = float(Context(prec=3, rounding=ROUND_FLOOR).create_decimal(highest_frequency(damping_ratio, h)))
         raise ValueError(
             f"{frequency:g} Hz at damping ratio {damping_ratio:g} needs Cs = {stiffness:.3g}, above 1; "
-            f"the highest frequency here is {highest:.3g} Hz"
+            f"the highest frequency here is {highest:g} Hz"
         )
     return min(max(stiffness, 0.0), 1.0), damping
 

@@ -1,12 +1,14 @@
 """The only place that knows numba.
 
-Kernels are compiled with a disk cache, uncached where none can be written, and interpreted where numba is missing.
+Kernels are compiled with a disk cache, uncached where none can be written, and interpreted where numba is missing or
+does not work with this Python or numpy.
 """
 
 import functools
-import importlib.util
+import hashlib
 import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -14,13 +16,25 @@ import numpy as np
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def _compiling() -> bool:
+def _numba_njit() -> Any:
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
-        return False
-    return importlib.util.find_spec("numba") is not None
+        return None
+    try:
+        from numba import njit
+    except ImportError:  # also what an installed numba raises that is too old for this numpy
+        return None
+    return njit
 
 
-COMPILED = _compiling()
+_njit = _numba_njit()
+COMPILED = _njit is not None
+
+
+@functools.cache
+def _source_digest() -> str:
+    """Digest of every source file that kernels stand in."""
+    sources = sorted(Path(__file__).parent.rglob("*.py"))
+    return hashlib.blake2b(b"".join(source.read_bytes() for source in sources), digest_size=16).hexdigest()
 
 
 def _viewed(item: Any) -> Any:
@@ -42,18 +56,19 @@ def _interpreted(function: Function) -> Function:
 
 
 def _compiled(function: Function) -> Function:
-    from numba import njit
-
     # Determinism: never fastmath, never parallel. Kernels guard every divisor, so the error model decides nothing.
     try:
-        return cast(Function, njit(cache=True, error_model="numpy")(function))
-    except RuntimeError:  # no folder can hold the cache
-        return cast(Function, njit(error_model="numpy")(function))
+        dispatcher = _njit(cache=True, error_model="numpy")(function)
+        # numba checks the kernel's own file alone, and would run old copies of the kernels that it calls.
+        cached = dispatcher._cache._cache_file
+        cached._source_stamp = (*cached._source_stamp, _source_digest())
+        return cast(Function, dispatcher)
+    except (RuntimeError, AttributeError, OSError):  # no folder can hold the cache, or numba has changed
+        return cast(Function, _njit(error_model="numpy")(function))
 
 
 def kernel(function: Function) -> Function:
-    """Make `function` a kernel: scalars, contiguous arrays and named tuples of them in, arrays changed in
-    place; same bits compiled or not."""
+    """Make `function` a kernel: scalars, contiguous arrays and named tuples of arrays in; same bits both ways."""
     return _compiled(function) if COMPILED else _interpreted(function)
 
 

@@ -68,9 +68,10 @@ def _iterate(  # type: ignore[no-untyped-def]
             s = slot[c]
             accumulated[s, 0] += jx
             accumulated[s, 1] += jy
-    for p in range(inverse_mass.shape[0]):
-        velocity[p, 0] += change[p, 0]
-        velocity[p, 1] += change[p, 1]
+    for i in range(inverse_mass.shape[0]):
+        if inverse_mass[i] > 0.0:
+            velocity[i, 0] += change[i, 0]
+            velocity[i, 1] += change[i, 1]
 
 
 def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:

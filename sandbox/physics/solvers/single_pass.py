@@ -40,9 +40,11 @@ def _explicit_pass(  # type: ignore[no-untyped-def]
         impulse[a, 1] -= j * ny
         impulse[b, 0] += j * nx
         impulse[b, 1] += j * ny
+    # The guard keeps pinned particles where they are also when a mistuned Hooke spring pulls with inf: inf * 0 is NaN.
     for p in range(inverse_mass.shape[0]):
-        velocity[p, 0] += impulse[p, 0] * inverse_mass[p]
-        velocity[p, 1] += impulse[p, 1] * inverse_mass[p]
+        if inverse_mass[p] > 0.0:
+            velocity[p, 0] += impulse[p, 0] * inverse_mass[p]
+            velocity[p, 1] += impulse[p, 1] * inverse_mass[p]
 
 
 def apply_explicit(world: World, chosen: NDArray[np.bool_], stiffness: Floats, damping: Floats, h: float) -> None:

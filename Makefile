@@ -1,0 +1,36 @@
+# make play: install into .venv and run the app.    make test: install into .venv and run every test.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+WORKERS ?= 2
+
+.PHONY: play test lint bench clean
+
+play: $(VENV)/installed
+	$(BIN)/sandbox
+
+test: $(VENV)/installed-dev
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
+
+lint: $(VENV)/installed-dev
+	$(BIN)/ruff check sandbox tests
+	$(BIN)/ruff format --check sandbox tests
+	$(BIN)/mypy
+
+bench: $(VENV)/installed-dev
+	for bench in tests/bench/*.py; do echo "## $$bench"; $(BIN)/python "$$bench" || exit 1; done
+
+$(BIN)/python:
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+
+$(VENV)/installed: $(BIN)/python pyproject.toml
+	$(BIN)/python -m pip install --quiet --editable .
+	touch $@
+
+$(VENV)/installed-dev: $(BIN)/python pyproject.toml
+	$(BIN)/python -m pip install --quiet --editable ".[dev]"
+	touch $(VENV)/installed $@
+
+clean:
+	rm -rf $(VENV) dist build .pytest_cache .mypy_cache .ruff_cache

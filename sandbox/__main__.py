@@ -1,0 +1,8 @@
+"""python -m sandbox: the same as the command `sandbox`."""
+
+import sys
+
+from sandbox.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

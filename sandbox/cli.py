@@ -1,0 +1,406 @@
+"""The command line. A sub-command imports what it needs when it runs, so that --help answers at once."""
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sandbox import __version__
+
+if TYPE_CHECKING:
+    from sandbox.level.model import Level
+    from sandbox.physics.world import World
+    from sandbox.session.replay import Replay
+    from sandbox.session.session import Session
+
+EXIT_OK, EXIT_FAILED, EXIT_REFUSED, EXIT_INTERRUPTED = 0, 1, 2, 130
+# Longest run [s] and picture side [pixels] that a person can mean; more is a slip of the finger.
+SECONDS_LIMIT = 1e6
+PIXEL_LIMIT = 16384
+# What `play` does where there is no display [s].
+HEADLESS_SECONDS = 10.0
+
+
+class Refused(Exception):
+    """Something that cannot be done as asked; faults: one line each."""
+
+    def __init__(self, *faults: str) -> None:
+        super().__init__(*faults)
+        self.faults = faults
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code: 0, 1 a check failed or a replay diverged, 2 refused."""
+    options = _parser().parse_args(arguments)
+    try:
+        code: int = options.action(options)
+        sys.stdout.flush()
+        return code
+    except Refused as refusal:
+        return _refuse(refusal.faults)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return EXIT_FAILED
+    except OSError as error:
+        return _refuse([f"{error.filename or 'sandbox'}: {error.strerror or error}"])
+    except KeyboardInterrupt:
+        return EXIT_INTERRUPTED
+
+
+def _refuse(faults: Iterable[str]) -> int:
+    for fault in faults:
+        print(fault, file=sys.stderr)
+    return EXIT_REFUSED
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="sandbox", description="A 2D physics sandbox of damped springs.")
+    parser.add_argument("--version", action="version", version=f"sandbox {__version__}")
+    parser.set_defaults(action=_play, level=None, profile=False, seconds=None, scale=None)
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND")
+
+    def command(name: str, action: Callable[[argparse.Namespace], int], text: str) -> argparse.ArgumentParser:
+        sub = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
+        sub.set_defaults(action=action)
+        return sub
+
+    play = command("play", _play, "open the app: the gallery, a level, or a replay to watch")
+    play.add_argument(
+        "level", nargs="?", metavar="LEVEL", help="a level file, a shipped level's name, or a replay file"
+    )
+    play.add_argument("--profile", action="store_true", help="print where a frame's time goes, at the end")
+    play.add_argument("--seconds", type=_seconds, help="close the app after so many seconds")
+    play.add_argument("--scale", type=_scale, help="size of the widgets, 0.5 to 4; default: the display's own")
+
+    run = command("run", _run, "run a level headless and print what came of it")
+    run.add_argument("level", metavar="LEVEL")
+    length = run.add_mutually_exclusive_group()
+    length.add_argument("--seconds", type=_seconds, help="simulated time; default 10")
+    length.add_argument("--ticks", type=_count, help="the same, in ticks")
+    run.add_argument("--solver", help="instead of the level's solver")
+    run.add_argument("--substeps", type=int, help="instead of the level's substeps: a power of two, 1 to 64")
+    run.add_argument("--json", action="store_true", help="print the summary as one JSON object")
+    run.add_argument("--record", type=Path, metavar="FILE", help="write a replay; .gz compresses")
+    run.add_argument("--commands", type=Path, metavar="FILE.jsonl", help="commands to carry out, as lines of a replay")
+    run.add_argument("--dump", type=Path, metavar="FILE", help="write the last position and velocity of every particle")
+    run.add_argument("--probe", metavar="ID.K,..", help="particles to follow, by name, into the file of -o")
+    run.add_argument("--every", type=_count, default=1, metavar="N", help="follow them every N ticks; default 1")
+    run.add_argument("-o", "--output", type=Path, metavar="FILE.csv", help="where the probe's table goes")
+
+    replay = command("replay", _replay, "run recordings again and compare every bit")
+    replay.add_argument("files", nargs="+", metavar="FILE")
+    replay.add_argument("--json", action="store_true", help="print one JSON object a file")
+    replay.add_argument("--partial", action="store_true", help="verify what there is of a recording that is cut off")
+
+    check = command("check", _check, "validate levels, report their stability, run the checks they carry")
+    check.add_argument("levels", nargs="+", metavar="LEVEL")
+
+    render = command("render", _render, "draw a level or a replay into a PNG picture, off screen")
+    render.add_argument("level", metavar="LEVEL|REPLAY")
+    render.add_argument("--seconds", type=_seconds, default=0.0, help="simulated time before the picture; default 0")
+    render.add_argument("--size", type=_size, default=(1280, 720), metavar="WxH", help="in pixels; default 1280x720")
+    render.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.png")
+
+    layout = command("format", _format, "rewrite a level file in its canonical form")
+    layout.add_argument("file", type=Path, metavar="FILE")
+    edit = command("edit", _edit, "open the level editor (not in this version)")
+    edit.add_argument("level", nargs="?", metavar="LEVEL")
+    command("schema", _schema, "print the JSON Schema of level files")
+    return parser
+
+
+def _number(low: float, high: float, text: str) -> float:
+    value = float(text)
+    if not low <= value <= high:
+        raise argparse.ArgumentTypeError(f"{text} is outside {low:g} to {high:g}")
+    return value
+
+
+def _seconds(text: str) -> float:
+    return _number(0.0, SECONDS_LIMIT, text)
+
+
+def _scale(text: str) -> float:
+    return _number(0.5, 4.0, text)
+
+
+def _count(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text} is not a number from 1 on")
+    return value
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, _, height = text.lower().partition("x")
+    if not (width.isdigit() and height.isdigit() and min(int(width), int(height)) >= 1):
+        raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT, as in 1280x720")
+    if max(int(width), int(height)) > PIXEL_LIMIT:
+        raise argparse.ArgumentTypeError(f"a side of {text} is above {PIXEL_LIMIT} pixels")
+    return int(width), int(height)
+
+
+def _level(name: str) -> "Level":
+    from sandbox.level.files import LevelError, load_level
+
+    try:
+        return load_level(name)
+    except LevelError as error:
+        raise Refused(*error.faults) from None
+
+
+def _recording(name: str, partial: bool = False) -> "Replay":
+    from sandbox.session.reading import read_replay
+    from sandbox.session.replay import ReplayError
+
+    try:
+        return read_replay(name, partial)
+    except ReplayError as error:
+        raise Refused(*error.faults) from None
+
+
+def _is_replay(name: str) -> bool:
+    """Whether a file's first bytes are a recording's, plain or compressed; anything else is taken for a level."""
+    try:
+        with open(name, "rb") as file:
+            start = file.read(64)
+    except OSError:
+        return False
+    return start[:2] == b"\x1f\x8b" or b"spring-sandbox/replay" in start
+
+
+def _progress(total: int, unit: str = "tick") -> Any:
+    """A progress bar on standard error, where a person looks at it."""
+    from tqdm import tqdm
+
+    return tqdm(total=total, unit=unit, leave=False, disable=not sys.stderr.isatty())
+
+
+def _play(options: argparse.Namespace) -> int:
+    replay = _recording(options.level) if options.level and _is_replay(options.level) else None
+    level = _level(options.level) if options.level and replay is None else None
+    from sandbox.app.display import has_display
+
+    if not has_display():
+        return _play_headless(level or (replay.level if replay else _level("rope_bridge_jelly")))
+    from sandbox.app.app import run_app
+
+    return run_app(level, replay=replay, profile=options.profile, seconds=options.seconds, scale=options.scale)
+
+
+def _play_headless(level: "Level") -> int:
+    from sandbox.app.picture import save_picture
+    from sandbox.session.session import Session
+
+    picture = Path("sandbox.png")
+    print(f"no display: playing {level.name!r} headless for {HEADLESS_SECONDS:g} s, the last frame goes to {picture}")
+    session = Session(level)
+    summary = _run_with_bar(session, round(HEADLESS_SECONDS * level.settings.tick_rate))
+    save_picture(session, picture)
+    _print_summary(level.name, summary)
+    return EXIT_OK
+
+
+def _run(options: argparse.Namespace) -> int:
+    level = _with_overrides(_level(options.level), options)
+    rate = level.settings.tick_rate
+    ticks = options.ticks or round((10.0 if options.seconds is None else options.seconds) * rate)
+    from sandbox.session.probe import dump, finite
+
+    session = _scripted_session(level, options.commands)
+    probe = _probe(options, session.world)
+    if options.record:
+        session.record_to(options.record)
+    try:
+        summary = _run_with_bar(session, ticks, probe.take)
+    finally:
+        session.stop_recording()
+    if options.output:
+        _write_text(options.output, probe.table())
+    if options.dump:
+        _write_text(options.dump, json.dumps(dump(session.world), indent=1) + "\n")
+    for message in session.messages:
+        print(message, file=sys.stderr)
+    if options.json:
+        print(json.dumps({"level": level.name, **finite(asdict(summary))}))
+    else:
+        _print_summary(level.name, summary)
+    return EXIT_OK
+
+
+def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
+    from sandbox.level.files import LevelError, level_data, parse_level
+
+    given = {name: getattr(options, name) for name in ("solver", "substeps") if getattr(options, name) is not None}
+    if not given:
+        return level
+    data = level_data(level)
+    data["settings"] = {**data.get("settings", {}), **given}
+    try:
+        return parse_level(json.dumps(data).encode(), "command line")
+    except LevelError as error:
+        raise Refused(*error.faults) from None
+
+
+def _scripted_session(level: "Level", commands: Path | None) -> "Session":
+    from sandbox.session.reading import read_script
+    from sandbox.session.replay import ReplayError
+    from sandbox.session.session import Session
+
+    try:
+        return Session(level, read_script(commands) if commands else ())
+    except ReplayError as error:
+        raise Refused(*error.faults) from None
+
+
+def _run_with_bar(session: "Session", ticks: int, on_tick: "Callable[[World], None] | None" = None) -> Any:
+    from sandbox.physics.step import warm_up
+    from sandbox.session.commands import CommandError
+    from sandbox.session.summary import run
+
+    warm_up()
+    with _progress(ticks) as bar:
+
+        def after(world: "World") -> None:
+            bar.update()
+            if on_tick is not None:
+                on_tick(world)
+
+        try:
+            return run(session, ticks, after)
+        except CommandError as error:
+            raise Refused(f"tick {session.tick}: {error}") from None
+
+
+def _probe(options: argparse.Namespace, world: "World") -> Any:
+    from sandbox.session.probe import Probe
+
+    if bool(options.probe) != bool(options.output):
+        raise Refused("--probe names the particles and -o the file: give both")
+    names = [name.strip() for name in options.probe.split(",")] if options.probe else []
+    try:
+        return Probe(world, names, options.every)
+    except KeyError as error:
+        raise Refused(f"--probe: there is no particle {error.args[0]!r}") from None
+
+
+def _write_text(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8", newline="\n")
+
+
+def _print_summary(name: str, summary: Any) -> None:
+    print(
+        f"{name}: {summary.ticks} ticks ({summary.simulated_seconds:g} s), {summary.particles} particles, "
+        f"{summary.springs} springs, {summary.solver}, {summary.substeps} substeps\n"
+        f"  strain        {summary.max_strain:.3%} at most, {summary.rms_strain:.3%} RMS (last 2 s)\n"
+        f"  energy        {summary.kinetic_energy:.6g} J kinetic, {summary.potential_energy:.6g} J potential\n"
+        f"  fastest       {summary.max_speed:.6g} m/s\n"
+        f"  non-finite    {summary.non_finite} particles, broken {summary.broken_springs} springs\n"
+        f"  a tick took   {summary.milliseconds_per_tick:.4f} ms\n"
+        f"  hash          {summary.hash}"
+    )
+
+
+def _replay(options: argparse.Namespace) -> int:
+    worst = EXIT_OK
+    for name in options.files:
+        code, outcome = _verify(name, options.partial)
+        worst = max(worst, code)
+        if options.json:
+            print(json.dumps(outcome))
+        elif code == EXIT_REFUSED:
+            _refuse(outcome["faults"])
+        else:
+            print(f"{name}: {outcome['text']}")
+    return worst
+
+
+def _verify(name: str, partial: bool) -> tuple[int, dict[str, Any]]:
+    from sandbox.session.probe import finite
+    from sandbox.session.replay import ReplayError, verify
+
+    try:
+        replay = _recording(name, partial)
+        with _progress(replay.ticks) as bar:
+            divergence = verify(replay, progress=lambda done, total: bar.update(done - bar.n))
+    except (Refused, ReplayError) as error:
+        return EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)}
+    if divergence is None:
+        cut = " (cut off: verified as far as it goes)" if replay.end_hash is None else ""
+        text = f"equal, {replay.ticks} ticks{cut}"
+        return EXIT_OK, {"file": name, "result": "equal", "ticks": replay.ticks, "text": text}
+    details = finite({**asdict(divergence), "text": f"diverged at {divergence}"})
+    return EXIT_FAILED, {"file": name, "result": "diverged", **details}
+
+
+def _check(options: argparse.Namespace) -> int:
+    worst = EXIT_OK
+    for name in options.levels:
+        try:
+            worst = max(worst, _check_level(name))
+        except Refused as refusal:
+            worst = max(worst, _refuse(refusal.faults))
+    return worst
+
+
+def _check_level(name: str) -> int:
+    from sandbox.level.build import build_world
+    from sandbox.physics.stability import report
+    from sandbox.session.checking import run_checks
+
+    level = _level(name)
+    world = build_world(level)
+    print(f"{name}: valid: {level.name}")
+    stability = report(world)
+    print(f"  stability  {stability.text}")
+    print(
+        f"             Cs = Cd up to {stability.proven_limit:.3g} proven, {stability.estimated_limit:.3g} estimated, "
+        f"{stability.article_limit:.3g} by the article's 1/(n+1)"
+    )
+    results = run_checks(level)
+    for result in results:
+        print(f"  {'passed' if result.passed else 'FAILED'}     {result.text}")
+    return EXIT_OK if all(result.passed for result in results) else EXIT_FAILED
+
+
+def _render(options: argparse.Namespace) -> int:
+    from sandbox.session.session import Session
+
+    if options.output.suffix.lower() != ".png":
+        raise Refused(f"{options.output}: this version draws PNG pictures; end the name in .png")
+    replay = _recording(options.level) if _is_replay(options.level) else None
+    level = replay.level if replay else _level(options.level)
+    session = Session(level, replay.script if replay else ())
+    ticks = round(options.seconds * level.settings.tick_rate)
+    if replay and ticks > replay.ticks:
+        raise Refused(f"{options.level}: is {replay.ticks / level.settings.tick_rate:g} s long")
+    _run_with_bar(session, ticks)
+    from sandbox.app.picture import save_picture
+
+    save_picture(session, options.output, options.size)
+    return EXIT_OK
+
+
+def _edit(options: argparse.Namespace) -> int:
+    raise Refused("the editor is not part of this version: edit the level's JSON, then try it with `sandbox check`")
+
+
+def _format(options: argparse.Namespace) -> int:
+    from sandbox.level.files import LevelError, read_level, write_level
+
+    try:
+        write_level(read_level(options.file), options.file)
+    except LevelError as error:
+        raise Refused(*error.faults) from None
+    return EXIT_OK
+
+
+def _schema(options: argparse.Namespace) -> int:
+    from sandbox.level.schema import schema
+
+    print(json.dumps(schema(), indent=2))
+    return EXIT_OK

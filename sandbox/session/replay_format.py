@@ -1,0 +1,107 @@
+"""The replay file, version 1: JSON Lines, each line sealed by a chain of hashes over everything before it.
+
+    {"format": "spring-sandbox/replay", "version": 1, "physics_version": ..., "level": {...}, ..., "chain": "..."}
+    {"tick": 12, "gesture": 3, "command": {...}, "chain": "..."}       applied at tick 12, before its step
+    {"tick": 13, "hash": "...", "arrays": {...}, "chain": "..."}       the state after 13 steps, for every tick from 0
+    {"tick": 60, "state": {...}, "settings": {...}, "chain": "..."}    every bit of it, every 60 ticks
+    {"end": true, "tick": 600, "hash": "...", "chain": "..."}
+
+chain = blake2b over the previous line's chain and this line's bytes up to its own chain.
+"""
+
+import base64
+import binascii
+import hashlib
+import json
+import zlib
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from sandbox.level.files import level_data
+from sandbox.level.model import Level
+from sandbox.physics.snapshot import Snapshot, canonical_bytes
+from sandbox.physics.world import PARTICLE_ARRAYS, SPRING_ARRAYS, STATE_ARRAYS, VECTOR_ARRAYS, World, WorldSettings
+
+FORMAT = "spring-sandbox/replay"
+VERSION = 1
+STATE_TICKS = 60
+# The longest line [bytes] and the largest array [bytes] that a reader accepts; ten times what the level limits allow.
+LINE_LIMIT = 256 * 2**20
+ARRAY_LIMIT = 64 * 2**20
+
+_CHAIN_MARK = b', "chain": "'
+_CHAIN_DIGITS = 32
+
+
+def seal(values: dict[str, Any], previous: str) -> tuple[bytes, str]:
+    """A line's bytes, newline included, and its chain."""
+    body = json.dumps(values, allow_nan=False, ensure_ascii=True)[:-1].encode()
+    chain = _chain(body, previous)
+    return body + _CHAIN_MARK + chain.encode() + b'"}\n', chain
+
+
+def unseal(line: bytes, previous: str) -> str | None:
+    """The chain of a line, or None where a byte of it, or of anything before it, has changed."""
+    body, mark, tail = line.rpartition(_CHAIN_MARK)
+    chain = _chain(body, previous)
+    return chain if mark and tail == chain.encode() + b'"}\n' else None
+
+
+def _chain(body: bytes, previous: str) -> str:
+    return hashlib.blake2b(previous.encode() + body, digest_size=_CHAIN_DIGITS // 2).hexdigest()
+
+
+def level_digest(data: dict[str, Any]) -> str:
+    """sha256 of a level's JSON, keys sorted, without white space."""
+    return hashlib.sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+
+
+def header(level: Level, physics_version: int, sandbox_version: str) -> dict[str, Any]:
+    """The first line's values."""
+    data = level_data(level)
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "physics_version": physics_version,
+        "sandbox_version": sandbox_version,
+        "level_sha256": level_digest(data),
+        "level": data,
+    }
+
+
+def encode_state(world: World) -> dict[str, Any]:
+    """Every state array as base64 of zlib of its little-endian bytes, and the settings."""
+    arrays = {
+        name: base64.b64encode(zlib.compress(canonical_bytes(getattr(world, name)), 6)).decode()
+        for name in STATE_ARRAYS
+    }
+    return {"state": arrays, "settings": asdict(world.settings)}
+
+
+def decode_state(tick: int, state: dict[str, str], settings: WorldSettings, world: World) -> Snapshot:
+    """The snapshot of a state line; world: the level's world, for the hands' slots. Raises ValueError, one line."""
+    if set(state) != set(STATE_ARRAYS):
+        raise ValueError(f"state: the arrays are {', '.join(STATE_ARRAYS)}")
+    arrays = {name: _decode_array(name, text) for name, text in state.items()}
+    for group in (PARTICLE_ARRAYS, SPRING_ARRAYS):
+        if len({len(arrays[name]) for name in group}) != 1:
+            raise ValueError(f"state: {', '.join(group)} are not equally long")
+    return Snapshot(
+        **arrays, settings=settings, tick=tick, hand_particle=world.hand_particle, hand_spring=world.hand_spring
+    )
+
+
+def _decode_array(name: str, text: str) -> Any:
+    kind = np.dtype((PARTICLE_ARRAYS | SPRING_ARRAYS)[name])
+    try:
+        inflater = zlib.decompressobj()
+        data = inflater.decompress(base64.b64decode(text, validate=True), ARRAY_LIMIT)
+    except (binascii.Error, zlib.error, ValueError) as error:
+        raise ValueError(f"state.{name}: not base64 of zlib data: {error}") from None
+    width = 2 if name in VECTOR_ARRAYS else 1
+    if not inflater.eof or len(data) % (kind.itemsize * width):
+        raise ValueError(f"state.{name}: cut off, or longer than {ARRAY_LIMIT} bytes")
+    array = np.frombuffer(data, dtype=kind.newbyteorder("<")).astype(kind)
+    return array.reshape(-1, 2) if width == 2 else array

@@ -1,0 +1,306 @@
+"""Session: one run of a level: ticks, commands, the log, undo, time travel. No wall clock."""
+
+from bisect import insort
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sandbox.level.build import build_world
+from sandbox.level.model import Level
+from sandbox.physics.snapshot import Snapshot, restore, take
+from sandbox.physics.step import step
+from sandbox.physics.world import STATE_ARRAYS
+from sandbox.session.commands import Command, CommandError, Grab, Redo, Release, Undo, apply
+from sandbox.session.recording import Recorder
+from sandbox.session.records import ScriptLine, from_record, to_record
+
+KEYFRAME_TICKS = 60
+# Memory for keyframes [bytes]; beyond it every other one goes, and undo re-steps twice as far.
+KEYFRAME_BUDGET = 256 * 2**20
+# Ticks between two calls of `progress` while re-stepping.
+PROGRESS_TICKS = 120
+
+
+@dataclass(frozen=True)
+class LogEntry:
+    """A command that was applied at a tick, before that tick's step."""
+
+    tick: int
+    gesture: int
+    command: Command
+
+
+class Session:
+    """A level being run.
+
+    Commands are applied at tick boundaries: `submit` queues, `advance` applies what is due and steps once. Every
+    command belongs to a gesture (a drag from grab to release, one slider drag), the unit of undo. A script feeds
+    recorded commands at their ticks; a scripted command that cannot be applied raises CommandError, a submitted one
+    leaves a line in `messages`. `start` continues from a snapshot of this level's world instead of its beginning.
+    """
+
+    def __init__(self, level: Level, script: Iterable[ScriptLine] = (), start: Snapshot | None = None) -> None:
+        self.level = level
+        self.world = build_world(level)
+        if start is not None:
+            restore(self.world, start)
+        self.messages: list[str] = []
+        self.progress: Callable[[int, int], None] | None = None
+        self._script = iter(script)
+        self._scripted = next((line for line in self._script if line.tick >= self.tick), None)
+        self._pending: list[tuple[Command, int]] = []
+        self._log: list[LogEntry] = []
+        self._done: list[int] = []
+        self._undone: set[int] = set()
+        self._redoable: list[int] = []
+        self._last_gesture = 0
+        self._last_tick = self.tick
+        self._keyframes = [take(self.world)]
+        self._recorder: Recorder | None = None
+
+    @property
+    def tick(self) -> int:
+        """Ticks since the level's start."""
+        return self.world.tick
+
+    @property
+    def last_tick(self) -> int:
+        """The furthest tick reached; `seek` goes up to here."""
+        return self._last_tick
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is a gesture to take back."""
+        return bool(self._done)
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether there is an undone gesture to make again."""
+        return bool(self._redoable)
+
+    @property
+    def scripted(self) -> bool:
+        """Whether a script still has commands to give."""
+        return self._scripted is not None
+
+    @property
+    def recording(self) -> Path | None:
+        """The file that this run is being recorded to."""
+        return None if self._recorder is None else self._recorder.path
+
+    def snapshot(self) -> Snapshot:
+        """A read-only copy of the present state."""
+        return take(self.world)
+
+    def new_gesture(self) -> int:
+        """A gesture number of one's own, higher than all before."""
+        self._last_gesture += 1
+        return self._last_gesture
+
+    def submit(self, command: Command, gesture: int | None = None) -> None:
+        """Queue a command for this tick boundary; without a gesture number it is a gesture of its own."""
+        self._pending.append((command, self.new_gesture() if gesture is None else gesture))
+
+    def undo(self) -> None:
+        """Queue the undoing of the last gesture."""
+        self.submit(Undo())
+
+    def redo(self) -> None:
+        """Queue the redoing of the gesture undone last."""
+        self.submit(Redo())
+
+    def apply_pending(self) -> None:
+        """Apply what is due at this tick boundary without stepping: the script's commands, then those submitted."""
+        while self._scripted is not None and self._scripted.tick == self.tick == self._last_tick:
+            line, self._scripted = self._scripted, next(self._script, None)
+            try:
+                self._apply(from_record(line.record, self.world), line.gesture)
+            except CommandError as error:
+                raise CommandError(f"line {line.line}: {error}") from None
+        while self._pending:
+            command, gesture = self._pending.pop(0)
+            try:
+                self._apply(command, gesture)
+            except CommandError as error:
+                self.messages.append(str(error))
+            else:
+                self._scripted = None
+
+    def advance(self) -> None:
+        """One tick: apply what is due, then step. In the past that `seek` reached, the logged commands follow again."""
+        self.apply_pending()
+        if self.tick < self._last_tick:
+            self._follow([entry for entry in self._effective_log() if entry.tick == self.tick + 1], self.tick + 1)
+            return
+        self._step()
+        self._last_tick = self.tick
+        if self._recorder is not None:
+            self._record(self._recorder.write_tick, self.world)
+
+    def seek(self, tick: int) -> None:
+        """Go to a tick that was reached before, 0..last_tick; a command submitted there starts a new future from it.
+
+        Raises ValueError out of that range, or while recording.
+        """
+        if not self._keyframes[0].tick <= tick <= self._last_tick:
+            raise ValueError(f"tick {tick} is outside {self._keyframes[0].tick}..{self._last_tick}")
+        if self._recorder is not None:
+            raise ValueError("stop the recording before going back in time")
+        self._rewind(tick, tick)
+
+    def record_to(self, path: Path) -> None:
+        """Record this run to a file, from the level's start: what was played until now is played again into it.
+
+        Overwrites the file. Raises OSError where it cannot be written, ValueError for a run that began in the middle.
+        """
+        if self._keyframes[0].tick > 0:
+            raise ValueError("only a run from the level's start can be recorded")
+        self.stop_recording()
+        self._drop_future()
+        twin = Session(self.level)
+        recorder = Recorder(path, self.level, twin.world)
+        twin._recorder = recorder
+        for entry in self._log:
+            self._catch_up(twin, entry.tick)
+            twin._apply(entry.command, entry.gesture)
+        self._catch_up(twin, self.tick)
+        self._recorder = twin._recorder
+        self.messages.extend(twin.messages)
+
+    def _catch_up(self, twin: "Session", tick: int) -> None:
+        while twin.tick < tick:
+            twin.advance()
+            self._report_progress(twin.tick, self.tick)
+
+    def stop_recording(self) -> Path | None:
+        """Write the recording's last line, if there is one being made, and return its path."""
+        recorder, self._recorder = self._recorder, None
+        if recorder is None:
+            return None
+        try:
+            recorder.finish(self.world)
+        except OSError as error:
+            self.messages.append(f"{recorder.path}: the end of the recording could not be written: {error.strerror}")
+        return recorder.path
+
+    def _record(self, write: Callable[..., None], *what: Any) -> None:
+        try:
+            write(*what)
+        except OSError as error:
+            path, self._recorder = self.recording, None
+            self.messages.append(f"{path}: recording stopped at tick {self.tick}: {error.strerror}")
+
+    def _apply(self, command: Command, gesture: int) -> None:
+        """Apply a command now, log it and record it. Raises CommandError and changes nothing where it cannot be."""
+        if gesture in self._undone:
+            return
+        tick = self.tick
+        if isinstance(command, Undo):
+            self._undo()
+        elif isinstance(command, Redo):
+            self._redo()
+        else:
+            apply(self.world, command)
+            self._drop_future()
+            if gesture not in self._done:
+                insort(self._done, gesture)
+                self._redoable.clear()
+        self._last_gesture = max(self._last_gesture, gesture)
+        self._log.append(LogEntry(tick, gesture, command))
+        if self._recorder is not None:
+            self._record(self._recorder.write_command, tick, gesture, to_record(command, self.world))
+
+    # Undo and time travel: restore the nearest earlier keyframe and step again with the commands that still count.
+
+    def _undo(self) -> None:
+        if self._keyframes[0].tick > 0:
+            raise CommandError(f"undo reaches back before tick {self._keyframes[0].tick}, where this run began")
+        past = [entry.gesture for entry in self._effective_log() if entry.tick <= self.tick]
+        if not past:
+            raise CommandError("nothing to undo")
+        self._drop_future()
+        gesture = max(past)
+        self._let_go(gesture)
+        self._done.remove(gesture)
+        self._undone.add(gesture)
+        self._redoable.append(gesture)
+        self._step_again_from(gesture)
+
+    def _redo(self) -> None:
+        if not self._redoable:
+            raise CommandError("nothing to redo")
+        gesture = self._redoable.pop()
+        self._undone.remove(gesture)
+        insort(self._done, gesture)
+        self._step_again_from(gesture)
+
+    def _let_go(self, gesture: int) -> None:
+        """End a drag that is still going on, so that doing it again cannot leave a hand holding."""
+        grabs = {
+            entry.command.grab: entry.gesture for entry in self._effective_log() if isinstance(entry.command, Grab)
+        }
+        for hand, owner in grabs.items():
+            if owner == gesture and self.world.is_held(hand):
+                self._log.append(LogEntry(self.tick, gesture, Release(hand)))
+
+    def _step_again_from(self, gesture: int) -> None:
+        first = next(entry.tick for entry in self._log if entry.gesture == gesture)
+        while self._keyframes[-1].tick > first:
+            self._keyframes.pop()
+        self._rewind(first, self.tick)
+
+    def _rewind(self, back_to: int, tick: int) -> None:
+        """Restore the last keyframe at or before a tick and follow the log to another."""
+        keyframe = next(kept for kept in reversed(self._keyframes) if kept.tick <= back_to)
+        restore(self.world, keyframe)
+        self._follow([entry for entry in self._effective_log() if keyframe.tick <= entry.tick <= tick], tick)
+
+    def _follow(self, log: list[LogEntry], tick: int) -> None:
+        start, done = self.tick, 0
+        while True:
+            while done < len(log) and log[done].tick == self.tick:
+                # What needed an undone gesture has no effect any more.
+                with suppress(CommandError):
+                    apply(self.world, log[done].command)
+                done += 1
+            if self.tick >= tick:
+                return
+            self._step()
+            self._report_progress(self.tick - start, tick - start)
+
+    def _effective_log(self) -> list[LogEntry]:
+        """The log as history now stands: without undone gestures, and without Undo and Redo themselves."""
+        return [
+            entry
+            for entry in self._log
+            if entry.gesture not in self._undone and not isinstance(entry.command, (Undo, Redo))
+        ]
+
+    def _drop_future(self) -> None:
+        """Make the present tick the end of history, after `seek` went back."""
+        if self.tick == self._last_tick:
+            return
+        self._log = [entry for entry in self._effective_log() if entry.tick <= self.tick]
+        self._done = sorted({entry.gesture for entry in self._log})
+        self._undone.clear()
+        self._redoable.clear()
+        self._keyframes = [keyframe for keyframe in self._keyframes if keyframe.tick <= self.tick]
+        self._last_tick = self.tick
+        self._scripted = None
+
+    def _step(self) -> None:
+        step(self.world)
+        if self.tick % KEYFRAME_TICKS == 0 and self._keyframes[-1].tick < self.tick:
+            self._keep_keyframe()
+
+    def _keep_keyframe(self) -> None:
+        self._keyframes.append(take(self.world))
+        size = sum(getattr(self._keyframes[-1], name).nbytes for name in STATE_ARRAYS)
+        if size * len(self._keyframes) > KEYFRAME_BUDGET and len(self._keyframes) > 2:
+            del self._keyframes[1::2]
+
+    def _report_progress(self, done: int, total: int) -> None:
+        if self.progress is not None and done % PROGRESS_TICKS == 0:
+            self.progress(done, total)

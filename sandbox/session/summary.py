@@ -1,0 +1,101 @@
+"""Summary: what a headless run measures, for `sandbox run --json` and for the checks that a level carries."""
+
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from statistics import median
+
+import numpy as np
+
+from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
+from sandbox.physics.query import shown_particles, shown_springs
+from sandbox.physics.snapshot import state_hash
+from sandbox.physics.strain import load_bearing, strain
+from sandbox.physics.world import World
+from sandbox.session.session import Session
+
+# Strain is measured over this last part of a run [s].
+STRAIN_WINDOW = 2.0
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Figures of a run. Strain: |l - L| / L at every tick's end of the last 2 s; all else at the end of the run.
+
+    Energies [J], gravity's zero at y = 0; max_speed [m/s] of any particle; non_finite: particles without a finite
+    position and velocity; milliseconds_per_tick: median wall time of the step alone.
+    """
+
+    ticks: int
+    simulated_seconds: float
+    particles: int
+    springs: int
+    solver: str
+    substeps: int
+    max_strain: float
+    rms_strain: float
+    kinetic_energy: float
+    potential_energy: float
+    max_speed: float
+    non_finite: int
+    broken_springs: int
+    hash: str
+    milliseconds_per_tick: float
+
+
+def run(session: Session, ticks: int, on_tick: Callable[[World], None] | None = None) -> Summary:
+    """Advance a session by a number of ticks and measure; on_tick: called with the world after every step."""
+    world = session.world
+    window = deque[tuple[float, float, int]](maxlen=max(1, round(STRAIN_WINDOW * world.settings.tick_rate)))
+    times: list[float] = []
+    with np.errstate(over="ignore", invalid="ignore"):
+        for _ in range(ticks):
+            session.apply_pending()
+            start = time.perf_counter()
+            session.advance()
+            times.append(time.perf_counter() - start)
+            window.append(_strain_sample(world))
+            if on_tick is not None:
+                on_tick(world)
+        session.apply_pending()
+        return _summary(world, ticks, window, times)
+
+
+def _strain_sample(world: World) -> tuple[float, float, int]:
+    """Largest |strain|, sum of squares and count of the springs that bear load."""
+    size = np.abs(strain(world)[load_bearing(world)])
+    return (float(size.max()), float(np.sum(size * size)), len(size)) if len(size) else (0.0, 0.0, 0)
+
+
+def _summary(world: World, ticks: int, window: deque[tuple[float, float, int]], times: list[float]) -> Summary:
+    shown = shown_particles(world)
+    speed = np.sqrt(np.sum(world.velocity[shown] ** 2, axis=1))
+    finite = np.isfinite(speed) & np.isfinite(world.position[shown]).all(axis=1)
+    samples = sum(count for _, _, count in window)
+    active = int(np.count_nonzero(shown_springs(world)))
+    real = sum(not world.is_hand_spring(slot) for slot in range(world.spring_count))
+    return Summary(
+        ticks=ticks,
+        simulated_seconds=ticks / world.settings.tick_rate,
+        particles=int(np.count_nonzero(shown)),
+        springs=active,
+        solver=world.settings.solver,
+        substeps=world.settings.substeps,
+        max_strain=float(np.max([largest for largest, _, _ in window], initial=0.0)),
+        rms_strain=float(np.sqrt(sum(squares for _, squares, _ in window) / samples)) if samples else 0.0,
+        kinetic_energy=kinetic_energy(world),
+        potential_energy=spring_energy(world) + gravity_energy(world),
+        max_speed=float(speed.max()) if len(speed) else 0.0,
+        non_finite=int(np.count_nonzero(~finite)),
+        broken_springs=real - active,
+        hash=state_hash(world),
+        milliseconds_per_tick=1e3 * median(times) if times else 0.0,
+    )
+
+
+def particle_metric(world: World, particle: str, metric: str) -> float:
+    """x, y [m] or speed [m/s] of a particle by name. Raises KeyError."""
+    slot = world.particle_slot(particle)
+    x, y = world.position[slot].tolist()
+    return {"x": x, "y": y, "speed": float(np.hypot(*world.velocity[slot]))}[metric]

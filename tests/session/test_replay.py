@@ -1,0 +1,239 @@
+import json
+import random
+from bisect import bisect_right
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sandbox.physics.world import STATE_ARRAYS
+from sandbox.session.commands import AddParticle, CutSprings, Pin
+from sandbox.session.reading import read_replay
+from sandbox.session.replay import Divergence, ReplayError, verify
+from sandbox.session.session import Session
+from tests.session.levels import rope_level
+from tests.session.play import play
+
+TICKS = 300
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory) -> Path:
+    """A recording of a played session."""
+    path = tmp_path_factory.mktemp("replays") / "played.replay.jsonl"
+    session = Session(rope_level())
+    session.record_to(path)
+    play(session, TICKS)
+    session.stop_recording()
+    assert session.messages == []
+    return path
+
+
+def test_a_recording_verifies(recorded):
+    replay = read_replay(recorded)
+    assert replay.ticks == TICKS
+    assert len({line.record["type"] for line in replay.script}) >= 9
+    assert verify(replay) is None
+
+
+def test_a_recording_begun_late_is_the_same_file(recorded, tmp_path):
+    session = Session(rope_level())
+    late = tmp_path / "late.replay.jsonl"
+    play(session, TICKS)
+    session.record_to(late)
+    session.stop_recording()
+    assert late.read_bytes() == recorded.read_bytes()
+
+
+def test_a_compressed_recording_is_the_same_run(recorded, tmp_path):
+    session = Session(rope_level())
+    compressed = tmp_path / "run.replay.gz"
+    session.record_to(compressed)
+    play(session, TICKS)
+    session.stop_recording()
+    assert compressed.stat().st_size < recorded.stat().st_size / 3
+    assert read_replay(compressed).hashes == read_replay(recorded).hashes
+    assert verify(read_replay(compressed)) is None
+
+
+def test_a_recording_verifies_from_a_state_in_the_middle(recorded):
+    replay = read_replay(recorded)
+    starts = [tick for tick in replay.states if tick > 0]
+    assert starts == [60, 120, 180, 240, 300]
+    reached = {start: _outcome(replay, start) for start in starts}
+    assert reached[300] is None
+    # The script undoes two gestures at about tick 190; before that a middle start is refused, never wrong.
+    assert all(outcome is None or "undo reaches back before tick" in outcome for outcome in reached.values())
+
+
+def _outcome(replay, start: int) -> str | None:
+    try:
+        divergence = verify(replay, start=start)
+    except ReplayError as error:
+        return str(error)
+    assert divergence is None
+    return None
+
+
+@pytest.mark.parametrize("array", [name for name in STATE_ARRAYS if name not in ("particle_a", "particle_b", "law")])
+def test_a_fault_of_one_unit_in_the_last_place_is_named(recorded, array):
+    replay = read_replay(recorded)
+    tick, slot = 137, 7
+
+    def disturb(world):
+        if world.tick != tick:
+            return
+        values = getattr(world, array)
+        place = (slot, 1) if values.ndim == 2 else slot
+        if values.dtype.kind == "f":
+            values[place] = np.nextafter(values[place], np.inf)
+        else:
+            values[place] = not values[place]
+
+    divergence = verify(replay, on_tick=disturb)
+    assert isinstance(divergence, Divergence)
+    vector = array in ("position", "velocity", "impulse")
+    assert (divergence.tick, divergence.array) == (tick, array)
+    assert divergence.index == ((slot, 1) if vector else slot)
+    assert divergence.expected != divergence.actual
+    assert f"tick {tick}: {array}[7" in str(divergence)
+
+
+def test_a_build_that_steps_differently_is_told_from_an_injected_fault(recorded, monkeypatch):
+    replay = read_replay(recorded)
+    monkeypatch.setattr("sandbox.session.session.step", _slightly_wrong_step)
+    divergence = verify(replay)
+    assert divergence.tick == 201
+    assert "this build steps differently" in divergence.note
+    assert "tick 240" in divergence.note
+    assert divergence.expected != divergence.actual
+
+
+def _slightly_wrong_step(world):
+    from sandbox.physics.step import step
+
+    step(world)
+    if world.tick > 200:
+        world.velocity[9, 0] += 1e-9
+
+
+def test_any_changed_byte_is_refused_with_its_line(recorded, tmp_path):
+    data = recorded.read_bytes()
+    starts = [0, *(place + 1 for place, byte in enumerate(data) if byte == 10)]
+    generator = random.Random(7)
+    changed = tmp_path / "changed.jsonl"
+    for _ in range(400):
+        place = generator.randrange(len(data))
+        flipped = data[place] ^ (1 << generator.randrange(8))
+        changed.write_bytes(data[:place] + bytes([flipped]) + data[place + 1 :])
+        with pytest.raises(ReplayError) as refusal:
+            read_replay(changed)
+        assert len(refusal.value.faults) == 1
+        assert f"changed.jsonl: line {bisect_right(starts, place)}:" in refusal.value.faults[0]
+
+
+def test_a_changed_byte_in_a_compressed_recording_is_refused(tmp_path):
+    path = tmp_path / "run.gz"
+    session = Session(rope_level())
+    session.record_to(path)
+    play(session, 70)
+    session.stop_recording()
+    data = path.read_bytes()
+    generator = random.Random(8)
+    for place in [*range(10), *(generator.randrange(10, len(data)) for _ in range(100))]:
+        path.write_bytes(data[:place] + bytes([data[place] ^ 0x40]) + data[place + 1 :])
+        with pytest.raises(ReplayError):
+            read_replay(path)
+
+
+@pytest.mark.parametrize("suffix", ["jsonl", "gz"])
+def test_a_recording_cut_off_by_a_crash_verifies_as_far_as_it_goes(tmp_path, suffix):
+    session = Session(rope_level())
+    path = tmp_path / f"run.{suffix}"
+    session.record_to(path)
+    play(session, 200)
+    crashed = tmp_path / f"crashed.{suffix}"
+    data = path.read_bytes()
+    crashed.write_bytes(data if suffix == "gz" else data[:-100])
+    with pytest.raises(ReplayError, match=r"cut off after tick \d+; --partial"):
+        read_replay(crashed)
+    partial = read_replay(crashed, partial=True)
+    assert partial.ticks >= (180 if suffix == "gz" else 199)
+    assert partial.end_hash is None
+    assert verify(partial) is None
+
+
+def test_commands_after_the_last_step_are_part_of_the_recording(tmp_path):
+    session = Session(rope_level())
+    session.record_to(tmp_path / "run.jsonl")
+    session.advance()
+    session.submit(CutSprings((3,)))
+    session.apply_pending()
+    session.stop_recording()
+    assert verify(read_replay(tmp_path / "run.jsonl")) is None
+
+
+def test_a_recorded_command_that_names_nothing_is_refused(recorded, tmp_path, monkeypatch):
+    session = Session(rope_level())
+    session.record_to(tmp_path / "run.jsonl")
+    session.submit(Pin(4))
+    session.advance()
+    monkeypatch.setattr(
+        "sandbox.session.session.to_record", lambda command, world: {"type": "pin", "particle": "rope.99"}
+    )
+    session.submit(Pin(5))
+    session.advance()
+    session.stop_recording()
+    with pytest.raises(ReplayError, match=r"run\.jsonl: line \d+: there is no particle 'rope\.99'"):
+        verify(read_replay(tmp_path / "run.jsonl"))
+
+
+def test_a_full_disk_stops_the_recording_and_not_the_run(tmp_path, monkeypatch):
+    session = Session(rope_level())
+    session.record_to(tmp_path / "run.jsonl")
+    session.advance()
+
+    def full(world):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(session._recorder, "write_tick", full)
+    session.advance()
+    session.advance()
+    assert session.recording is None
+    assert session.tick == 3
+    assert len(session.messages) == 1
+    assert "No space left on device" in session.messages[0]
+
+
+def test_a_folder_that_is_not_there_is_said_when_recording_starts(tmp_path):
+    session = Session(rope_level())
+    with pytest.raises(OSError, match="No such file"):
+        session.record_to(tmp_path / "nowhere" / "run.jsonl")
+    assert session.recording is None
+
+
+def test_seeking_while_recording_is_refused(tmp_path):
+    session = Session(rope_level())
+    session.record_to(tmp_path / "run.jsonl")
+    session.advance()
+    with pytest.raises(ValueError, match="stop the recording"):
+        session.seek(0)
+
+
+def test_a_recording_taken_over_after_seeking_back_verifies(tmp_path):
+    session = Session(rope_level())
+    play(session, 150)
+    session.seek(90)
+    session.submit(AddParticle((1.0, 2.0)))
+    session.advance()
+    session.record_to(tmp_path / "run.jsonl")
+    play(session, 200)
+    session.stop_recording()
+    assert verify(read_replay(tmp_path / "run.jsonl")) is None
+
+
+def test_the_header_holds_the_level_and_its_digest(recorded):
+    head = json.loads(recorded.read_text().splitlines()[0])
+    assert head["format"] == "spring-sandbox/replay"
+    assert (head["version"], head["physics_version"]) == (1, 1)
+    assert head["level"]["name"] == "Test rope"

@@ -1,0 +1,260 @@
+import pytest
+
+from sandbox.physics.snapshot import state_hash
+from sandbox.session.commands import (
+    AddParticle,
+    AddSpring,
+    CutSprings,
+    Grab,
+    MoveGrab,
+    Pin,
+    Release,
+    SetCoefficients,
+    SetGravity,
+    SetSolver,
+    Unpin,
+)
+from sandbox.session.session import Session
+from tests.session.levels import rope_level
+from tests.session.play import play
+
+
+@pytest.fixture
+def session() -> Session:
+    return Session(rope_level())
+
+
+def _advance(session: Session, ticks: int) -> None:
+    for _ in range(ticks):
+        session.advance()
+
+
+def _drag(session: Session, particle: int, ticks: int = 20) -> None:
+    gesture = session.new_gesture()
+    session.submit(Grab(0, particle, (3.0, 1.0)), gesture)
+    for tick in range(ticks):
+        session.submit(MoveGrab(0, (3.0, 1.0 + 0.05 * tick)), gesture)
+        session.advance()
+    session.submit(Release(0), gesture)
+
+
+def test_a_held_particle_follows_the_hand_and_falls_when_released(session):
+    gesture = session.new_gesture()
+    session.submit(Grab(0, 11, (4.0, 2.0)), gesture)
+    _advance(session, 240)
+    assert session.world.position[11] == pytest.approx((4.0, 2.0), abs=0.4)
+    session.submit(Release(0), gesture)
+    _advance(session, 60)
+    assert session.world.position[11, 1] < 0.0
+
+
+def test_several_particles_are_held_at_once(session):
+    for hand, (particle, x) in enumerate(((4, 1.0), (8, 3.0), (11, 5.0))):
+        session.submit(Grab(hand, particle, (x, 1.0)))
+    _advance(session, 300)
+    for particle, x in ((4, 1.0), (8, 3.0), (11, 5.0)):
+        assert session.world.position[particle] == pytest.approx((x, 1.0), abs=0.5)
+
+
+def test_commands_take_effect_while_paused(session):
+    session.submit(CutSprings((3,)))
+    session.apply_pending()
+    assert session.tick == 0
+    assert not session.world.spring_active[3]
+
+
+def test_undo_of_a_drag_gives_the_run_without_it(session):
+    untouched = Session(rope_level())
+    _advance(session, 70)
+    _drag(session, 6)
+    _advance(session, 15)
+    session.undo()
+    session.apply_pending()
+    _advance(untouched, session.tick)
+    assert state_hash(session.world) == state_hash(untouched.world)
+
+
+def test_redo_brings_back_the_run_with_the_gesture(session):
+    twin = Session(rope_level())
+    for run in (session, twin):
+        _advance(run, 30)
+        _drag(run, 6)
+        run.submit(SetCoefficients(stiffness=0.1))
+        _advance(run, 50)
+    for _ in range(2):
+        session.undo()
+    for _ in range(2):
+        session.redo()
+    session.apply_pending()
+    assert state_hash(session.world) == state_hash(twin.world)
+    assert session.can_undo and not session.can_redo
+
+
+def test_a_new_gesture_ends_the_chance_to_redo(session):
+    session.submit(Pin(3))
+    session.advance()
+    session.undo()
+    session.submit(Pin(4))
+    session.apply_pending()
+    assert not session.can_redo
+    session.redo()
+    session.apply_pending()
+    assert session.messages == ["nothing to redo"]
+    assert session.world.inverse_mass[3] > 0.0
+
+
+def test_undo_with_nothing_to_undo_says_so(session):
+    session.undo()
+    session.advance()
+    assert session.messages == ["nothing to undo"]
+
+
+def test_undo_during_a_drag_ends_it_and_redo_leaves_no_hand_behind(session):
+    gesture = session.new_gesture()
+    session.submit(Grab(0, 6, (3.0, 1.0)), gesture)
+    _advance(session, 10)
+    session.undo()
+    session.submit(MoveGrab(0, (9.0, 9.0)), gesture)
+    session.apply_pending()
+    assert not session.world.is_held(0)
+    session.redo()
+    session.apply_pending()
+    assert not session.world.is_held(0)
+    assert session.messages == []
+
+
+def test_undo_takes_back_what_was_added_and_its_name_can_be_used_again(session):
+    session.submit(AddParticle((1.0, 1.0), mass=2.0))
+    session.advance()
+    added = session.world.particle_slot("+.0")
+    session.submit(AddSpring(3, added))
+    session.advance()
+    assert session.world.spring_names[-1] == "+:0"
+    session.undo()
+    session.undo()
+    session.apply_pending()
+    assert "+.0" not in session.world.particle_names
+    session.submit(AddParticle((2.0, 1.0)))
+    session.advance()
+    assert session.world.particle_slot("+.0") == added
+
+
+def test_every_kind_of_command_can_be_undone(session):
+    start = None
+    for command in (
+        Pin(3), Unpin(0), CutSprings((2, 5)), SetCoefficients(0.2, 0.3, 1), SetGravity((1.0, 0.0)),
+        SetSolver("single_pass", 5, 4, 0.1), AddParticle((0.0, 1.0)), AddSpring(1, 5, rest_length=2.0),
+    ):  # fmt: skip
+        session.apply_pending()
+        start = state_hash(session.world)
+        session.submit(command)
+        session.apply_pending()
+        assert state_hash(session.world) != start, command
+        session.undo()
+        session.apply_pending()
+        assert state_hash(session.world) == start, command
+    assert session.messages == []
+
+
+def test_seek_goes_back_and_forth_through_the_same_states(session):
+    hashes = {0: state_hash(session.world)}
+    _drag(session, 6, 90)
+    _advance(session, 100)
+    last = session.tick
+    fresh = Session(rope_level())
+    play(fresh, 400)
+    for tick in (130, 17, last, 60, 0):
+        session.seek(tick)
+        hashes.setdefault(tick, state_hash(session.world))
+        assert state_hash(session.world) == hashes[tick]
+        assert session.tick == tick
+    _advance(session, 17)
+    assert state_hash(session.world) == hashes[17]
+    _advance(session, last - 17)
+    assert state_hash(session.world) == hashes[last]
+    assert session.last_tick == last
+
+
+def test_seek_refuses_ticks_that_were_never_reached(session):
+    _advance(session, 5)
+    for tick in (-1, 6):
+        with pytest.raises(ValueError, match=r"outside 0\.\.5"):
+            session.seek(tick)
+
+
+def test_a_command_in_the_past_starts_a_new_future(session):
+    _drag(session, 6, 30)
+    _advance(session, 60)
+    session.seek(10)
+    session.submit(Pin(4))
+    session.advance()
+    assert session.last_tick == 11
+    assert session.can_undo
+    session.undo()
+    session.apply_pending()
+    assert session.world.inverse_mass[4] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        (Grab(0, 99, (0.0, 0.0)), "there is no particle 99"),
+        (Grab(0, 0, (0.0, 0.0)), "rope.0 is pinned: unpin it to drag it"),
+        (Grab(10, 3, (0.0, 0.0)), "grab: must be less than 10"),
+        (Grab(0, 3, (float("nan"), 0.0)), "target.0: must be a finite number"),
+        (Grab(0, 3, (2e6, 0.0)), "target.0: must be less than or equal to 1000000"),
+        (Grab(0, "rope.3", (0.0, 0.0)), "particle: must be a valid integer"),
+        (MoveGrab(0, (0.0, 0.0)), "hand 0 holds nothing"),
+        (Release(1), "hand 1 holds nothing"),
+        (Pin(0), "rope.0 is pinned already"),
+        (Unpin(3), "rope.3 is not pinned"),
+        (CutSprings((0, 500)), "there is no spring 500 to cut"),
+        (AddSpring(3, 3), "a spring joins two different particles, not rope.3 to itself"),
+        (SetCoefficients(1.5), "stiffness: must be less than or equal to 1"),
+        (SetCoefficients(0.5, None, 9), "there is no material 9"),
+        (SetSolver("magic"), "there is no solver 'magic'"),
+        (SetSolver(substeps=3), "substeps is a power of two from 1 to 64, not 3"),
+        (SetGravity((float("inf"), 0.0)), "gravity.0: must be a finite number"),
+    ],
+)
+def test_a_command_that_cannot_be_carried_out_is_dropped_with_one_line(session, command, message):
+    before = state_hash(session.world)
+    session.submit(command)
+    session.apply_pending()
+    assert len(session.messages) == 1
+    assert message in session.messages[0]
+    assert "\n" not in session.messages[0]
+    assert state_hash(session.world) == before
+    assert not session.can_undo
+
+
+def test_hands_cannot_be_grabbed_pinned_or_cut(session):
+    world = session.world
+    session.submit(Grab(0, 6, (3.0, 1.0)))
+    session.submit(Grab(1, world.hand_particle, (3.0, 1.0)))
+    session.submit(Pin(world.hand_particle))
+    session.submit(CutSprings((world.hand_spring,)))
+    session.apply_pending()
+    assert len(session.messages) == 3
+
+
+def test_keyframes_are_thinned_within_their_budget_and_undo_still_works(session, monkeypatch):
+    monkeypatch.setattr("sandbox.session.session.KEYFRAME_BUDGET", 40_000)
+    session.submit(Pin(3))
+    _advance(session, 1500)
+    assert len(session._keyframes) < 15
+    session.undo()
+    session.apply_pending()
+    plain = Session(rope_level())
+    _advance(plain, 1500)
+    assert state_hash(session.world) == state_hash(plain.world)
+
+
+def test_long_re_stepping_reports_its_progress(session):
+    seen = []
+    session.submit(Pin(3))
+    _advance(session, 500)
+    session.progress = lambda done, total: seen.append((done, total))
+    session.undo()
+    session.apply_pending()
+    assert seen and all(0 < done <= total == 500 for done, total in seen)

@@ -1,0 +1,226 @@
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from sandbox.cli import main
+from sandbox.level.files import shipped_folder
+
+ROPE = {
+    "format": "spring-sandbox/level", "version": 1, "name": "Short rope", "settings": {"solver": "iterative"},
+    "bodies": [{"type": "rope", "id": "rope", "start": [0, 0], "end": [1, 0], "segments": 4, "pin": ["start"]}],
+    "checks": [{"name": "stays up", "metric": "y", "particle": "rope.4", "after": 1.0, "at_least": -1.5}],
+}  # fmt: skip
+
+
+@pytest.fixture
+def rope(tmp_path) -> str:
+    path = tmp_path / "rope.json"
+    path.write_text(json.dumps(ROPE))
+    return str(path)
+
+
+def _lines(capsys) -> tuple[list[str], list[str]]:
+    captured = capsys.readouterr()
+    return captured.out.splitlines(), captured.err.splitlines()
+
+
+def test_run_prints_every_figure_as_json(rope, capsys):
+    assert main(["run", rope, "--seconds", "2", "--json"]) == 0
+    figures = json.loads(capsys.readouterr().out)
+    assert list(figures) == [
+        "level", "ticks", "simulated_seconds", "particles", "springs", "solver", "substeps", "max_strain", "rms_strain",
+        "kinetic_energy", "potential_energy", "max_speed", "non_finite", "broken_springs", "hash",
+        "milliseconds_per_tick",
+    ]  # fmt: skip
+    assert (figures["ticks"], figures["particles"], figures["springs"]) == (120, 5, 4)
+    assert figures["max_strain"] >= figures["rms_strain"] > 0.0
+
+
+def test_run_gives_the_same_hash_every_time_and_another_for_other_settings(rope, capsys):
+    hashes = []
+    for extra in ([], [], ["--substeps", "2"], ["--solver", "single_pass"]):
+        assert main(["run", rope, "--ticks", "50", "--json", *extra]) == 0
+        hashes.append(json.loads(capsys.readouterr().out)["hash"])
+    assert hashes[0] == hashes[1]
+    assert len(set(hashes)) == 3
+
+
+def test_a_scripted_run_is_recorded_and_verifies(rope, tmp_path, capsys):
+    moves, replay = tmp_path / "moves.jsonl", tmp_path / "run.replay.jsonl"
+    moves.write_text(
+        '{"tick": 5, "gesture": 1, "command": {"type": "grab", "grab": 0, "particle": "rope.4", "target": [1, 1]}}\n'
+        '{"tick": 30, "gesture": 1, "command": {"type": "release", "grab": 0}}\n'
+        '{"tick": 40, "command": {"type": "cut_springs", "springs": ["rope:2"]}}\n'
+    )
+    assert main(["run", rope, "--ticks", "60", "--commands", str(moves), "--record", str(replay), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["broken_springs"] == 1
+    assert main(["replay", str(replay)]) == 0
+    assert _lines(capsys)[0] == [f"{replay}: equal, 60 ticks"]
+
+
+def test_a_script_that_names_nothing_is_refused_with_its_line(rope, tmp_path, capsys):
+    moves = tmp_path / "moves.jsonl"
+    moves.write_text('{"tick": 5, "command": {"type": "pin", "particle": "rope.99"}}\n')
+    assert main(["run", rope, "--ticks", "60", "--commands", str(moves)]) == 2
+    out, err = _lines(capsys)
+    assert out == []
+    assert err == ["tick 5: line 1: there is no particle 'rope.99'"]
+
+
+def test_probe_and_dump_write_what_happened(rope, tmp_path, capsys):
+    table, last = tmp_path / "out.csv", tmp_path / "last.json"
+    arguments = ["--probe", "rope.4, rope.0", "--every", "10", "-o", str(table), "--dump", str(last)]
+    assert main(["run", rope, "--ticks", "30", *arguments]) == 0
+    rows = [line.split(",") for line in table.read_text().splitlines()]
+    assert rows[0] == ["tick", "seconds", *(f"rope.{k}.{c}" for k in (4, 0) for c in ("x", "y", "vx", "vy"))]
+    assert [row[0] for row in rows[1:]] == ["0", "10", "20", "30"]
+    dumped = json.loads(last.read_text())
+    assert dumped["tick"] == 30
+    assert set(dumped["particles"]) == {f"rope.{k}" for k in range(5)}
+    assert [repr(value) for value in dumped["particles"]["rope.4"]["position"]] == rows[-1][2:4]
+
+
+def test_replay_tells_equal_refused_and_diverged_apart(rope, tmp_path, capsys, monkeypatch):
+    replay = tmp_path / "run.jsonl"
+    main(["run", rope, "--ticks", "70", "--record", str(replay)])
+    capsys.readouterr()
+    broken = tmp_path / "broken.jsonl"
+    broken.write_bytes(replay.read_bytes().replace(b'"tick": 33', b'"tick": 34', 1))
+    assert main(["replay", str(replay), str(broken)]) == 2
+    out, err = _lines(capsys)
+    assert (len(out), len(err)) == (1, 1)
+    assert "broken.jsonl: line " in err[0]
+    monkeypatch.setattr("sandbox.session.session.step", _wrong_step)
+    assert main(["replay", str(replay), "--json"]) == 1
+    outcome = json.loads(capsys.readouterr().out)
+    assert (outcome["result"], outcome["tick"], outcome["array"], outcome["index"]) == (
+        "diverged",
+        41,
+        "position",
+        [2, 0],
+    )
+
+
+def _wrong_step(world):
+    from sandbox.physics.step import step
+
+    step(world)
+    if world.tick == 41:
+        world.position[2, 0] += 1e-12
+
+
+def test_a_cut_off_replay_is_refused_unless_partial_is_asked_for(rope, tmp_path, capsys):
+    replay = tmp_path / "run.jsonl"
+    main(["run", rope, "--ticks", "20", "--record", str(replay)])
+    replay.write_bytes(b"".join(replay.read_bytes().splitlines(keepends=True)[:-3]))
+    capsys.readouterr()
+    assert main(["replay", str(replay)]) == 2
+    assert "cut off after tick 18; --partial verifies what is there" in _lines(capsys)[1][0]
+    assert main(["replay", "--partial", str(replay)]) == 0
+
+
+def test_check_passes_fails_and_refuses(rope, tmp_path, capsys):
+    failing, refused = tmp_path / "failing.json", tmp_path / "refused.json"
+    failing.write_text(json.dumps({**ROPE, "checks": [{**ROPE["checks"][0], "at_least": 5.0}]}))
+    refused.write_text(json.dumps({**ROPE, "settings": {"tick_rate": 0, "iterations": 0}}))
+    assert main(["check", rope]) == 0
+    assert any("stays up: holds" in line for line in _lines(capsys)[0])
+    assert main(["check", rope, str(failing)]) == 1
+    capsys.readouterr()
+    assert main(["check", rope, str(failing), str(refused)]) == 2
+    err = _lines(capsys)[1]
+    assert len(err) == 2
+    assert all(line.startswith(f"{refused}: settings.") for line in err)
+
+
+def test_format_is_idempotent_and_schema_is_a_schema(rope, capsys):
+    assert main(["format", rope]) == 0
+    once = Path(rope).read_bytes()
+    assert main(["format", rope]) == 0
+    assert Path(rope).read_bytes() == once
+    assert main(["schema"]) == 0
+    assert "properties" in json.loads(capsys.readouterr().out)
+
+
+def test_render_draws_a_picture_of_the_size_asked_for(rope, tmp_path):
+    picture = tmp_path / "out.png"
+    assert main(["render", rope, "--seconds", "0.5", "--size", "320x200", "-o", str(picture)]) == 0
+    data = picture.read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    assert (int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")) == (320, 200)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["run", "nowhere.json"], ["run", "."], ["check", "nowhere.json"], ["replay", "nowhere.jsonl"], ["replay", "."],
+        ["format", "nowhere.json"], ["run", "rope", "--solver", "magic"], ["run", "rope", "--substeps", "3"],
+        ["run", "rope", "--probe", "rope.1"], ["run", "rope", "--probe", "x.1", "-o", "x.csv"],
+        ["run", "rope", "--ticks", "1", "--dump", "/nowhere/x"], ["run", "rope", "--commands", "/nowhere/x"],
+        ["run", "rope", "--record", "/nowhere/x"], ["render", "rope", "-o", "x.gif"], ["edit"],
+        ["render", "nowhere.json", "-o", "x.png"],
+    ],
+)  # fmt: skip
+def test_refusals_are_single_lines_and_exit_2(arguments, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 2
+    out, err = _lines(capsys)
+    assert len(err) == 1, err
+    assert out == []
+
+
+@pytest.mark.parametrize("arguments", [["fly"],
+                                       ["run"], ["run", "rope", "--seconds", "-1"], ["run", "rope", "--ticks", "0"],
+                                       ["run", "rope", "--seconds", "nan"], ["run", "rope", "--size"],
+                                       ["render", "rope", "--size", "0x9", "-o", "x.png"]])  # fmt: skip
+def test_a_wrong_command_line_exits_2_with_its_usage(arguments, capsys):
+    with pytest.raises(SystemExit) as leaving:
+        main(arguments)
+    assert leaving.value.code == 2
+    assert "Traceback" not in capsys.readouterr().err
+
+
+def test_twenty_bad_files_through_the_command_line(tmp_path):
+    folder = tmp_path
+    good = json.dumps(ROPE)
+    texts = [
+        "", "nonsense", "[]", "{}", "null", good[:-5], "\0\0", '{"format": "spring-sandbox/level"}',
+        good.replace('"segments": 4', '"segments": true'), good.replace('"segments": 4', '"segments": 1000000000000'),
+        good.replace('"segments": 4', '"segments": -1'), good.replace("[1, 0]", "[NaN, 0]"),
+        good.replace("[1, 0]", "[1e999, 0]"), good.replace('"version": 1', '"version": 2'),
+        good.replace('"type": "rope"', '"type": "robe"'), good.replace('"id": "rope"', '"id": ""'),
+        "[" * 5000 + "]" * 5000, good.replace('"name"', '"name": "a", "name"', 1),
+        good.replace('"settings": {', '"settings": {"solver": "magic", "x": '), "{" * 100,
+    ]  # fmt: skip
+    paths = []
+    for number, text in enumerate(texts):
+        paths.append(folder / f"bad{number}.json")
+        paths[-1].write_text(text)
+    assert len(paths) == 20
+    command = [sys.executable, "-m", "sandbox", "check", *map(str, paths)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert run.returncode == 2
+    assert run.stdout == ""
+    for path in paths:
+        assert any(line.startswith(str(path)) for line in run.stderr.splitlines()), path
+    assert "Traceback" not in run.stderr
+
+
+def test_without_a_display_play_runs_headless_and_draws_a_picture(tmp_path):
+    environment = {
+        key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
+    }
+    command = [sys.executable, "-m", "sandbox", "play", str(shipped_folder("levels") / "rope.json")]
+    path = str(Path(__file__).resolve().parents[1])
+    run = subprocess.run(
+        command, cwd=tmp_path, env={**environment, "PYTHONPATH": path}, capture_output=True, text=True, check=False
+    )
+    if sys.platform != "linux":
+        pytest.skip("a desktop system always has a display")
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.splitlines()[0].startswith("no display: playing")
+    assert (tmp_path / "sandbox.png").stat().st_size > 1000

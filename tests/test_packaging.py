@@ -1,0 +1,41 @@
+import os
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def test_an_installed_wheel_finds_its_levels_and_assets_from_another_folder(tmp_path):
+    build = [
+        sys.executable,
+        "-m",
+        "pip",
+        "wheel",
+        "--no-deps",
+        "--no-build-isolation",
+        "-q",
+        "-w",
+        str(tmp_path),
+        str(ROOT),
+    ]
+    subprocess.run(build, check=True, capture_output=True, text=True)
+    (wheel,) = tmp_path.glob("spring_sandbox-*.whl")
+    installed, elsewhere = tmp_path / "installed", tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(installed)
+    program = (
+        "import sandbox; from sandbox.level.files import load_level, shipped_folder, shipped_levels\n"
+        "assert load_level('rope').name and shipped_levels()\n"
+        "print(sandbox.__file__, len(shipped_levels()), len(list(shipped_folder('assets').iterdir())))"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(installed)}
+    command = [sys.executable, "-P", "-c", program]
+    run = subprocess.run(command, cwd=elsewhere, env=environment, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    file, levels, assets = run.stdout.split()
+    assert Path(file).is_relative_to(installed)
+    assert int(levels) == len(list((ROOT / "levels").glob("*.json")))
+    assert int(assets) == len(list((ROOT / "assets").iterdir()))
