@@ -57,9 +57,10 @@ def take(world: World) -> Snapshot:
 
 def restore(world: World, snapshot: Snapshot) -> None:
     """Bring a world back to a snapshot of itself, slots added since then included."""
+    # Before the arrays: another solver begins some of them anew.
+    world.settings = snapshot.settings
     for name in STATE_ARRAYS:
         setattr(world, name, getattr(snapshot, name).copy())
-    world.settings = snapshot.settings
     world.tick = snapshot.tick
     world.hand_particle = snapshot.hand_particle
     world.hand_spring = snapshot.hand_spring

@@ -102,7 +102,7 @@ class World:
     tension: Floats
 
     def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
-        self.settings = settings or WorldSettings()
+        self._settings = settings or WorldSettings()
         self.tick = 0
         self.material_names = tuple(material_names)
         self.particle_names: list[str] = []
@@ -115,6 +115,20 @@ class World:
         self.solver_cache: Any = None
         for name, kind in (PARTICLE_ARRAYS | SPRING_ARRAYS).items():
             setattr(self, name, np.zeros((0, 2) if name in VECTOR_ARRAYS else 0, dtype=kind))
+
+    @property
+    def settings(self) -> WorldSettings:
+        """Settings of a tick, replaced as a whole; another solver begins anew what solvers keep from step to step."""
+        return self._settings
+
+    @settings.setter
+    def settings(self, settings: WorldSettings) -> None:
+        if settings.solver != self._settings.solver:
+            self.slow_velocity[:] = self.velocity
+            self.energy_bank[:] = BANK_UNOPENED
+            self.impulse[:] = 0.0
+            self.tension[:] = 0.0
+        self._settings = settings
 
     @property
     def particle_count(self) -> int:
@@ -318,7 +332,7 @@ class World:
                 del slots[name]
             del names[count:]
 
-    def _disturb(self, *particles: ArrayLike) -> None:
+    def _disturb(self, *particles: NDArray[np.integer] | int) -> None:
         for slots in particles:
             self.energy_bank[slots] = BANK_UNOPENED
 

@@ -1,9 +1,16 @@
 """Sparse factorisation of the direct solver: L D L^T of a symmetric positive definite matrix of 2x2 blocks."""
 
-from sandbox.physics.jit import kernel
+from sandbox.physics.jit import kernel, scalar_kernel
 
-# A pivot block whose determinant is not above this is left out (its rows do not move); only overflow or NaN lead here.
-SMALLEST_DETERMINANT = 1e-300
+# A pivot that is not above this share of the diagonal it came from is left out (its row does not move): only rounding,
+# overflow or NaN bring one there.
+SMALLEST_PIVOT = 1e-15
+
+
+@scalar_kernel
+def _inverse_pivot(pivot, original):  # type: ignore[no-untyped-def]
+    # Written so that NaN and infinities give 0.
+    return 1.0 / pivot if pivot > SMALLEST_PIVOT * original else 0.0
 
 
 @kernel
@@ -11,30 +18,30 @@ def factorise(first, last, column_start, row, target_start, target, diagonal, lo
     """Factor the rows first..last in place.
 
     In: diagonal (n, 3) = the symmetric blocks (xx, xy, yy), lower (k, 4) = the blocks below them (xx, xy, yx, yy) by
-    column. Out: the INVERSE blocks of D, and the blocks of L. scaled (longest column, 4) is scratch.
+    column. Out: diagonal = 1 / d_x, l, 1 / d_y of each row's own two scalars, lower = the blocks of L. Scalars are
+    eliminated one by one: with inverted 2x2 blocks the error would grow with the square of stiffness over mass.
+    scaled (longest column, 4) is scratch.
     """
     for j in range(first, last):
         xx = diagonal[j, 0]
-        xy = diagonal[j, 1]
         yy = diagonal[j, 2]
-        determinant = xx * yy - xy * xy
-        inverse = 1.0 / determinant if determinant > SMALLEST_DETERMINANT else 0.0
-        ixx = yy * inverse
-        ixy = -xy * inverse
-        iyy = xx * inverse
-        diagonal[j, 0] = ixx
-        diagonal[j, 1] = ixy
-        diagonal[j, 2] = iyy
+        inverse_x = _inverse_pivot(xx, xx)
+        slant = diagonal[j, 1] * inverse_x
+        inverse_y = _inverse_pivot(yy - slant * diagonal[j, 1], yy)
+        diagonal[j, 0] = inverse_x
+        diagonal[j, 1] = slant
+        diagonal[j, 2] = inverse_y
         begin = column_start[j]
         end = column_start[j + 1]
-        # L_ij = A_ij D_j^-1
         for at in range(begin, end):
             k = at - begin
-            scaled[k, 0] = lower[at, 0] * ixx + lower[at, 1] * ixy
-            scaled[k, 1] = lower[at, 0] * ixy + lower[at, 1] * iyy
-            scaled[k, 2] = lower[at, 2] * ixx + lower[at, 3] * ixy
-            scaled[k, 3] = lower[at, 2] * ixy + lower[at, 3] * iyy
-        # A_ik -= L_ij A_kj^T for every pair of rows i >= k of the column
+            lower[at, 1] -= slant * lower[at, 0]
+            lower[at, 3] -= slant * lower[at, 2]
+            scaled[k, 0] = lower[at, 0] * inverse_x
+            scaled[k, 1] = lower[at, 1] * inverse_y
+            scaled[k, 2] = lower[at, 2] * inverse_x
+            scaled[k, 3] = lower[at, 3] * inverse_y
+        # A_ik -= L_ij D_j L_kj^T for every pair of rows i >= k of the column
         found = target_start[j]
         for at in range(begin, end):
             k = at - begin
@@ -66,18 +73,19 @@ def back_substitute(first, last, column_start, row, diagonal, lower, vector):  #
     """Solve for the rows first..last of vector (n, 2) in place, with the factor that `factorise` left."""
     for j in range(first, last):
         x = vector[j, 0]
-        y = vector[j, 1]
+        y = vector[j, 1] - diagonal[j, 1] * x
+        vector[j, 1] = y
         for at in range(column_start[j], column_start[j + 1]):
             i = row[at]
             vector[i, 0] -= lower[at, 0] * x + lower[at, 1] * y
             vector[i, 1] -= lower[at, 2] * x + lower[at, 3] * y
     for back in range(last - first):
         j = last - 1 - back
-        x = diagonal[j, 0] * vector[j, 0] + diagonal[j, 1] * vector[j, 1]
-        y = diagonal[j, 1] * vector[j, 0] + diagonal[j, 2] * vector[j, 1]
+        x = diagonal[j, 0] * vector[j, 0]
+        y = diagonal[j, 2] * vector[j, 1]
         for at in range(column_start[j], column_start[j + 1]):
             i = row[at]
             x -= lower[at, 0] * vector[i, 0] + lower[at, 2] * vector[i, 1]
             y -= lower[at, 1] * vector[i, 0] + lower[at, 3] * vector[i, 1]
-        vector[j, 0] = x
+        vector[j, 0] = x - diagonal[j, 1] * y
         vector[j, 1] = y

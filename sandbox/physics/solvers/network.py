@@ -36,8 +36,9 @@ def implicit_masses(stiffness, damping, mass):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def load_springs(first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows,
-                 springs):  # type: ignore[no-untyped-def]  # fmt: skip
+def load_springs(  # type: ignore[no-untyped-def]
+    first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,
+):  # fmt: skip
     """Bring the springs first..last into their scratch; whether any has Cs > Cd."""
     bouncy = False
     for k in range(first, last):
@@ -192,7 +193,7 @@ def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # ty
 
 @kernel
 def update_impulses(first, last, rows, springs, free_count):  # type: ignore[no-untyped-def]
-    """J = q - K n.(D_b - D_a) of one body's springs, the like across them; whether so much cancelled that D wants refining."""
+    """J = q - K n.(D_b - D_a) of one body's springs, and the like across them; whether D wants refining."""
     before = 0.0
     after = 0.0
     for k in range(first, last):

@@ -64,8 +64,10 @@ def _sift_down(heap, place, degree, at, size):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _gather(step, pivot, start, near, near_count, element, element_count, column_start, column, eliminated, absorbed,
-            mark, stamp):  # type: ignore[no-untyped-def]  # fmt: skip
+def _gather(  # type: ignore[no-untyped-def]
+    step, pivot, start, near, near_count, element, element_count, column_start, column, eliminated, absorbed, mark,
+    stamp,
+):  # fmt: skip
     # The nodes that eliminating the pivot joins to one another: its neighbours and those of the elements it takes in.
     top = column_start[step]
     mark[pivot] = stamp
@@ -110,8 +112,9 @@ def _prune(step, node, start, near, near_count, element, element_count, absorbed
 
 
 @kernel
-def _count_neighbours(node, start, near, near_count, element, element_count, column_start, column, eliminated, mark,
-                      stamp):  # type: ignore[no-untyped-def]  # fmt: skip
+def _count_neighbours(  # type: ignore[no-untyped-def]
+    node, start, near, near_count, element, element_count, column_start, column, eliminated, mark, stamp,
+):  # fmt: skip
     mark[node] = stamp
     count = 0
     for at in range(start[node], start[node] + near_count[node]):

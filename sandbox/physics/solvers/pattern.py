@@ -123,7 +123,9 @@ def make_pattern(world: World) -> Pattern:
     row_a, row_b = rank[end_a], rank[end_b]
     body_of_row = label[order]
     first_rows = np.flatnonzero(np.diff(body_of_row, prepend=-1))
-    spring_body = np.cumsum(np.diff(body_of_row, prepend=-1) != 0)[np.minimum(row_a, row_b)] - 1 if len(nodes) else row_a
+    spring_body = (
+        np.cumsum(np.diff(body_of_row, prepend=-1) != 0)[np.minimum(row_a, row_b)] - 1 if len(nodes) else row_a
+    )
     grouped = np.argsort(spring_body, kind="stable")
     matrix, blocks = _lay_out(len(nodes), columns, rank, row_a[grouped], row_b[grouped])
     bodies = Bodies(
@@ -168,9 +170,7 @@ def _eliminate(count: int, link_a: Slots, link_b: Slots) -> tuple[Slots, Slots, 
     return order[by_body], label, (owner, column[: column_start[-1]])
 
 
-def _lay_out(
-    count: int, columns: tuple[Slots, Slots], rank: Slots, row_a: Slots, row_b: Slots
-) -> tuple[Matrix, Slots]:
+def _lay_out(count: int, columns: tuple[Slots, Slots], rank: Slots, row_a: Slots, row_b: Slots) -> tuple[Matrix, Slots]:
     """The matrix, ready for numbers, and the block of each spring (-1: one end is pinned)."""
     keys = np.sort(rank[columns[0]] * count + rank[columns[1]])
     row = keys % count if count else keys
@@ -193,5 +193,5 @@ def _scratch_rows(particles: Slots) -> Rows:
 
 def _scratch_springs(slots: Slots, row_a: Slots, row_b: Slots, block: Slots) -> Springs:
     count = len(slots)
-    lines = [np.zeros(count) for _ in range(8)]
-    return Springs(slots, row_a, row_b, block, *lines[:4], np.zeros((count, 2)), *lines[4:])
+    numbers = {name: np.zeros(count) for name in Springs._fields[4:]}
+    return Springs(slots, row_a, row_b, block, **(numbers | {"normal": np.zeros((count, 2))}))
