@@ -7,6 +7,7 @@ does not work with this Python or numpy.
 import functools
 import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numpy as np
