@@ -62,7 +62,9 @@ def girder(cells=20, **options) -> World:
 SCENES = {"rope": rope, "grid": grid, "grid with diagonals": grid_with_diagonals, "girder": girder}
 
 
-def random_graph(generator: np.random.Generator, *, particles=12, springs=24, pinned=0, decades=6.0, **options) -> World:
+def random_graph(
+    generator: np.random.Generator, *, particles=12, springs=24, pinned=0, decades=6.0, **options
+) -> World:
     """Particles anywhere, springs between any two, masses from 10^-decades to 10^decades kg."""
     points = generator.uniform(-5.0, 5.0, (particles, 2))
     pairs = np.array(list(itertools.combinations(range(particles), 2)))

@@ -172,7 +172,9 @@ def test_the_frequency_of_every_pair_of_coefficients_is_a_number_of_0_or_more():
     assert frequency_from_coefficients(0.0, 0.0, 1.0 / 60.0) == (0.0, 0.0)
 
 
-@pytest.mark.parametrize("asked", [(-1.0, 0.5, 0.1), (1.0, -0.5, 0.1), (1.0, 0.5, 0.0), (math.nan, 0.5, 0.1), (math.inf, 1.0, 0.1)])
+@pytest.mark.parametrize(
+    "asked", [(-1.0, 0.5, 0.1), (1.0, -0.5, 0.1), (1.0, 0.5, 0.0), (math.nan, 0.5, 0.1), (math.inf, 1.0, 0.1)]
+)
 def test_frequencies_and_ratios_that_mean_nothing_are_refused(asked):
     with pytest.raises(ValueError, match="finite numbers of 0 or more"):
         coefficients_from_frequency(*asked)
