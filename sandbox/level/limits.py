@@ -5,6 +5,9 @@ FILE_LIMIT = 8 * 1024 * 1024  # [bytes]
 DEPTH_LIMIT = 32  # lists and objects inside each other
 CONTAINER_LIMIT = 1_000_000  # lists and objects in one file; a full mesh has 600,000
 TEXT_LIMIT = 256  # [characters] of any string
+TAG_LIMIT = 100
+MATERIAL_LIMIT = 1_000
+CHECK_LIMIT = 1_000
 FAULT_LIMIT = 50  # lines that one refusal prints
 
 # After expansion; memory and time of a tick grow with them.

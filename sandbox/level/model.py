@@ -6,7 +6,16 @@ from pydantic import Discriminator, Field, Tag, field_validator
 
 from sandbox.level.bodies import AnyBody
 from sandbox.level.checks import CheckDef
-from sandbox.level.limits import DEFAULT_MATERIAL, DEFAULT_SOLVER, KNOWN_SOLVERS, SUBSTEPS, VERSION
+from sandbox.level.limits import (
+    CHECK_LIMIT,
+    DEFAULT_MATERIAL,
+    DEFAULT_SOLVER,
+    KNOWN_SOLVERS,
+    MATERIAL_LIMIT,
+    SUBSTEPS,
+    TAG_LIMIT,
+    VERSION,
+)
 from sandbox.level.quantities import (
     Coefficient,
     Coordinate,
@@ -130,18 +139,20 @@ class Level(Description):
     description: Text = Field(default="", description="What it shows and what to try.")
     author: Line = Field(default="", description="Who made it.")
     licence: Line = Field(default="", description='Licence, by its SPDX name: "CC0-1.0".')
-    tags: tuple[Line, ...] = Field(default=(), description="Words to find it by.")
+    tags: tuple[Line, ...] = Field(default=(), max_length=TAG_LIMIT, description="Words to find it by.")
     settings: Settings = Field(default=Settings(), description="How time passes.")
     view: tuple[Coordinate, Coordinate, Coordinate, Coordinate] | None = Field(
         default=None,
         description="What the camera shows at first: left, bottom, right, top; null = everything. No walls.",
         json_schema_extra=unit("m"),
     )
-    materials: dict[Name, Material] = Field(default={}, description="Materials by name.")
+    materials: dict[Name, Material] = Field(default={}, max_length=MATERIAL_LIMIT, description="Materials by name.")
     bodies: tuple[AnyBody, ...] = Field(default=(), description="Bodies, in the order of their particles and springs.")
     particles: tuple[ParticleDef, ...] = Field(default=(), description="Loose particles, after those of the bodies.")
     springs: tuple[SpringDef, ...] = Field(default=(), description="Loose springs, after those of the bodies.")
-    checks: tuple[CheckDef, ...] = Field(default=(), description="What must hold when the level runs by itself.")
+    checks: tuple[CheckDef, ...] = Field(
+        default=(), max_length=CHECK_LIMIT, description="What must hold of the level's run."
+    )
     extras: Extras = Field(default={})
 
     @field_validator("version")

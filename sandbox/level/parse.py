@@ -4,6 +4,8 @@ Order: size, depth by a scan of the bytes, duplicate keys, sizes of lists, the m
 and counts. Each stage trusts what the one before has refused.
 """
 
+import contextlib
+import gc
 import itertools
 import json
 import re
@@ -14,11 +16,14 @@ from pydantic import ValidationError
 
 from sandbox.level.faults import Fault, LevelError, json_path, shown
 from sandbox.level.limits import (
+    CHECK_LIMIT,
     FAULT_LIMIT,
     FILE_LIMIT,
     FORMAT,
+    MATERIAL_LIMIT,
     PARTICLE_LIMIT,
     SPRING_LIMIT,
+    TAG_LIMIT,
 )
 from sandbox.level.model import Level
 from sandbox.level.scan import scan
@@ -28,20 +33,42 @@ from sandbox.level.wording import place, worded
 # Beyond this many errors the library takes seconds to list them all, so they are looked for piece by piece.
 _FLOOD = 2_000
 _PIECE = 500
+_LARGE = 1024 * 1024  # [bytes]
 
 _MESH_LISTS = ("particles", "masses", "velocities", "pinned")
 _MESH_LIMITS = {"springs": SPRING_LIMIT} | dict.fromkeys(_MESH_LISTS, PARTICLE_LIMIT)
-_LEVEL_LIMITS = {"bodies": PARTICLE_LIMIT, "particles": PARTICLE_LIMIT, "springs": SPRING_LIMIT}
+_LEVEL_LIMITS = {
+    "bodies": PARTICLE_LIMIT,
+    "particles": PARTICLE_LIMIT,
+    "springs": SPRING_LIMIT,
+    "tags": TAG_LIMIT,
+    "checks": CHECK_LIMIT,
+    "materials": MATERIAL_LIMIT,
+}
 
 
 def parse_level(data: bytes, source: str) -> Level:
     """Read a level from the bytes of a file; source names it in messages. Raises LevelError with all faults."""
     try:
-        level = _parse(data, source)
+        with _no_collection(len(data)):
+            level = _parse(data, source)
+            check_level(level, source)
     except (MemoryError, RecursionError):
         raise LevelError(source, [("", "is too large or too deep to be read")]) from None
-    check_level(level, source)
     return level
+
+
+@contextlib.contextmanager
+def _no_collection(size: int) -> Iterator[None]:
+    """Pause the collector of cycles, which takes most of the time of reading [bytes] many small objects at once."""
+    paused = size > _LARGE and gc.isenabled()
+    if paused:
+        gc.disable()
+    try:
+        yield
+    finally:
+        if paused:
+            gc.enable()
 
 
 def _parse(data: bytes, source: str) -> Level:
@@ -133,7 +160,7 @@ def _too_long(raw: dict[str, Any]) -> Iterator[Fault]:
 def _long_lists(path: tuple[Any, ...], holder: dict[str, Any], limits: dict[str, int]) -> Iterator[Fault]:
     for key, limit in limits.items():
         value = holder.get(key)
-        if isinstance(value, list) and len(value) > limit:
+        if isinstance(value, list | dict) and len(value) > limit:
             yield json_path([*path, key]), f"has {len(value):,} items; at most {limit:,} are allowed"
 
 

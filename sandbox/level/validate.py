@@ -40,38 +40,43 @@ def _chain(first: Fault, rest: Iterator[Fault]) -> Iterator[Fault]:
 
 
 def _counts(level: Level) -> tuple[list[int], list[Fault]]:
-    """Particles of each body, and the faults of a level that is too large; stops at the first that goes beyond."""
+    """Particles of each body, and the fault of a level that is too large; stops at the body that goes beyond."""
     counts: list[int] = []
     particles, springs, corners, work = len(level.particles), len(level.springs), 0, 0
     for index, body in enumerate(level.bodies):
         if isinstance(body, JellyDef) and isinstance(body.shape, PolygonShape):
+            sides = len(body.shape.polygon)
             _, _, columns, rows = grid_bounds(body.shape.polygon, body.spacing)
-            corners += len(body.shape.polygon)
-            work += rows * (columns + len(body.shape.polygon))
-            path = f"bodies.{index}.shape.polygon"
-            if corners > CORNER_LIMIT:
-                return counts, [(path, f"brings the corners of all polygons above {CORNER_LIMIT:,}; use fewer")]
-            if work > POLYGON_WORK_LIMIT:
-                return counts, [
-                    (path, "spans too many points of its grid; make `spacing` larger or the polygon smaller")
-                ]
-        body_particles, body_springs = count(body)
-        particles += body_particles
-        springs += body_springs
-        for number, noun, limit in ((particles, "particles", PARTICLE_LIMIT), (springs, "springs", SPRING_LIMIT)):
-            if number > limit:
-                return counts, [
-                    (f"bodies.{index}", f"brings the level above {limit:,} {noun}; make it coarser or smaller")
-                ]
+            corners, work = corners + sides, work + rows * (columns + sides)
+        fault = _beyond_polygon(corners, work)
+        if fault is None:
+            body_particles, body_springs = count(body)
+            particles, springs = particles + body_particles, springs + body_springs
+            fault = _beyond_count(particles, springs)
+        if fault is not None:
+            return counts, [(json_path(["bodies", index, *_SIZE[body.type]]), fault)]
         counts.append(body_particles)
-    return counts, list(_too_many_loose(particles, springs))
+    fault = _beyond_count(particles, springs)
+    return counts, [] if fault is None else [("", fault)]
 
 
-def _too_many_loose(particles: int, springs: int) -> Iterator[Fault]:
-    if particles > PARTICLE_LIMIT:
-        yield "particles", f"bring the level above {PARTICLE_LIMIT:,} particles; use fewer"
-    if springs > SPRING_LIMIT:
-        yield "springs", f"bring the level above {SPRING_LIMIT:,} springs; use fewer"
+# Where a body says how large it is.
+_SIZE = {"rope": ["segments"], "bridge": ["segments"], "jelly": ["spacing"], "mesh": []}
+
+
+def _beyond_polygon(corners: int, work: int) -> str | None:
+    if corners > CORNER_LIMIT:
+        return f"brings the corners of all polygons above {CORNER_LIMIT:,}; use fewer"
+    if work > POLYGON_WORK_LIMIT:
+        return "is too fine for so large a polygon; make it larger"
+    return None
+
+
+def _beyond_count(particles: int, springs: int) -> str | None:
+    for number, noun, limit in ((particles, "particles", PARTICLE_LIMIT), (springs, "springs", SPRING_LIMIT)):
+        if number > limit:
+            return f"brings the level above {limit:,} {noun}; make it smaller or coarser"
+    return None
 
 
 def _all_faults(level: Level, counts: list[int]) -> Iterator[Fault]:
