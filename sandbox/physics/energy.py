@@ -6,6 +6,9 @@ from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import substep_coefficients, substep_time
 from sandbox.physics.world import LAW_HOOKE, Floats, World
 
+# The energy of what blew up is inf or NaN, and no fault.
+_unbounded = np.errstate(over="ignore", invalid="ignore")
+
 
 def reduced_masses(world: World) -> Floats:
     """Reduced mass [kg] of every spring (m,); 0 where both ends are pinned."""
@@ -13,18 +16,21 @@ def reduced_masses(world: World) -> Floats:
     return np.divide(1.0, total, out=np.zeros_like(total), where=total > 0.0)
 
 
+@_unbounded
 def spring_lengths(world: World) -> Floats:
     """Present length [m] of every spring (m,)."""
     separation = world.position[world.particle_b] - world.position[world.particle_a]
     return np.sqrt(np.sum(separation * separation, axis=1))
 
 
+@_unbounded
 def kinetic_energy(world: World) -> float:
     """Sum of m v^2 / 2 over the free particles [J]."""
     free = world.particle_active & (world.inverse_mass > 0.0)
     return float(0.5 * np.sum(world.mass[free, None] * world.velocity[free] ** 2))
 
 
+@_unbounded
 def spring_energy(world: World) -> float:
     """Sum of k x^2 / 2 over the active springs [J], with the k that the world's solver gives a spring."""
     h = substep_time(world.settings)
@@ -35,6 +41,7 @@ def spring_energy(world: World) -> float:
     return float(0.5 * np.sum((constant * error * error)[world.spring_active]))
 
 
+@_unbounded
 def gravity_energy(world: World) -> float:
     """Sum of -m g . x over the free particles [J]; zero at the origin's height."""
     free = world.particle_active & (world.inverse_mass > 0.0)

@@ -16,9 +16,29 @@ import numpy as np
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
+def _separate_cache_by_source() -> None:
+    """Give the kernels of this very source a cache folder of their own, next to it where that can be written.
+
+    numba looks for changes only in the file of the kernel itself: after a change in one that it calls it would go on
+    using the old machine code.
+    """
+    room = Path(__file__).parent
+    digest = hashlib.blake2b(digest_size=8)
+    for file in sorted(room.rglob("*.py")):
+        digest.update(file.read_bytes())
+    folder = room / "__pycache__" / f"kernels-{digest.hexdigest()}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return
+    if os.access(folder, os.W_OK):
+        os.environ.setdefault("NUMBA_CACHE_DIR", str(folder))
+
+
 def _numba_njit() -> Any:
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return None
+    _separate_cache_by_source()
     try:
         from numba import njit
     except ImportError:  # also what an installed numba raises that is too old for this numpy

@@ -8,6 +8,9 @@ from sandbox.physics.world import HAND_COUNT, Slots, World
 
 Point = tuple[float, float]
 
+# A mistuned Hooke spring blows up for the user to see: what overflows is far from everything, and no fault.
+_far_away = np.errstate(over="ignore", invalid="ignore")
+
 
 def _without_hands(active: NDArray[np.bool_], first_hand: int) -> NDArray[np.bool_]:
     shown = active.copy()
@@ -26,6 +29,7 @@ def shown_springs(state: World | Snapshot) -> NDArray[np.bool_]:
     return _without_hands(state.spring_active, state.hand_spring)
 
 
+@_far_away
 def nearest_particle(state: World | Snapshot, point: Point, within: float) -> int | None:
     """Slot of the shown particle whose disc is nearest to point [m], at most `within` [m] away; the lowest on a tie."""
     separation = state.position - np.asarray(point)
@@ -33,6 +37,7 @@ def nearest_particle(state: World | Snapshot, point: Point, within: float) -> in
     return _nearest(distance, shown_particles(state), within)
 
 
+@_far_away
 def nearest_spring(state: World | Snapshot, point: Point, within: float) -> int | None:
     """Slot of the shown spring nearest to point [m], at most `within` [m] away; the lowest on a tie."""
     start = state.position[state.particle_a]
@@ -52,6 +57,7 @@ def _nearest(distance: NDArray[np.float64], shown: NDArray[np.bool_], within: fl
     return slot if reachable[slot] <= within else None
 
 
+@_far_away
 def springs_crossing(state: World | Snapshot, start: Point, end: Point) -> Slots:
     """Slots of the shown springs that the segment from start to end [m] crosses or touches, ascending."""
     p, q = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)

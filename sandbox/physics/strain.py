@@ -7,6 +7,7 @@ from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import Floats, World
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def strain(state: World | Snapshot) -> Floats:
     """Signed strain (l - L) / L of every spring (m,): above 0 stretched; 0 where inactive or of rest length 0."""
     separation = state.position[state.particle_b] - state.position[state.particle_a]

@@ -156,24 +156,26 @@ def _locate(replay: Replay, tick: int, array: str, world: World) -> Divergence:
     """Find index and values by stepping again, undisturbed, from the last stored state that was verified."""
     if array == "settings":
         return Divergence(tick, array, None, replay.hashes[tick].whole, state_hash(world))
-    clean = _clean_session(replay, tick)
+    clean = _clean_session(replay, verified=tick - 1, tick=tick)
     if hash_by_array(clean.world)[array] == replay.hashes[tick].arrays[array]:
         return _first_difference(tick, array, getattr(clean.world, array), world)
     later = min((stored for stored in replay.states if stored >= tick), default=None)
     if later is None:
         note = "this build steps differently, and no later state is stored to show the values"
         return Divergence(tick, array, None, "unknown", "unknown", note=note)
-    while clean.tick < later:
-        _advance(replay, clean)
+    clean = _clean_session(replay, verified=tick - 1, tick=later)
     recorded = replay.state(later, clean.world)
     found = _first_difference(tick, array, getattr(recorded, array), clean.world)
     note = f"this build steps differently; the values are those of the next stored state, tick {later}"
     return Divergence(tick, array, found.index, found.expected, found.actual, found.name, note)
 
 
-def _clean_session(replay: Replay, tick: int) -> Session:
-    """A fresh session at a tick; from the level where the run cannot be picked up in the middle (undo reaches back)."""
-    for start in (max((stored for stored in replay.states if stored < tick), default=0), 0):
+def _clean_session(replay: Replay, verified: int, tick: int) -> Session:
+    """A fresh session at a tick, begun from the last state stored up to the verified tick.
+
+    It begins from the level where an undo reaches back behind that state.
+    """
+    for start in (max((stored for stored in replay.states if stored <= verified), default=0), 0):
         try:
             session = _session(replay, start)
             while session.tick < tick:

@@ -1,0 +1,115 @@
+"""Level files: read with limits first, write in one step that cannot leave half a file, find what is shipped."""
+
+import contextlib
+import os
+import secrets
+import stat
+from pathlib import Path
+
+from sandbox.level.canonical import level_data, level_text
+from sandbox.level.faults import LevelError, suggestion
+from sandbox.level.limits import FILE_LIMIT
+from sandbox.level.model import Level
+from sandbox.level.parse import parse_level
+from sandbox.level.validate import check_level
+
+__all__ = [
+    "LevelError",
+    "level_data",
+    "load_level",
+    "parse_level",
+    "read_level",
+    "shipped_folder",
+    "shipped_levels",
+    "write_level",
+]
+
+_PACKAGE = Path(__file__).resolve().parent.parent
+
+
+def read_level(path: str | os.PathLike[str]) -> Level:
+    """Read a level file. Raises LevelError with one line per fault, also where the file itself cannot be read."""
+    source = os.fspath(path)
+    return parse_level(_read(source), source)
+
+
+def load_level(name: str | os.PathLike[str]) -> Level:
+    """Read a level file, or the shipped level of that bare name (`rope`). Raises LevelError."""
+    text = os.fspath(name)
+    if "\0" not in text and not os.path.lexists(text) and Path(text).name == text:
+        shipped = {path.stem: path for path in shipped_levels()}
+        found = shipped.get(text) or shipped.get(text.removesuffix(".json"))
+        if found is None:
+            hint = suggestion(text, shipped) or "; shipped are " + ", ".join(shipped)
+            raise LevelError(text, [("", "there is no such file and no shipped level of that name" + hint)])
+        return read_level(found)
+    return read_level(text)
+
+
+def write_level(level: Level, path: str | os.PathLike[str]) -> None:
+    """Write a level in canonical form, whole or not at all. Raises LevelError where it could not be read back."""
+    source = os.fspath(path)
+    check_level(level, source)
+    data = level_text(level).encode()
+    if len(data) > FILE_LIMIT:
+        raise LevelError(source, [("", f"would be larger than {FILE_LIMIT // 1024 // 1024} MiB; make it smaller")])
+    try:
+        _replace(Path(os.path.realpath(source)), data)
+    except (OSError, ValueError) as error:
+        raise LevelError(source, [("", f"cannot be written: {_reason(error)}")]) from None
+
+
+def shipped_folder(kind: str) -> Path:
+    """Folder of the shipped "levels" or "assets": the checkout's own where there is one, else the wheel's."""
+    checkout = _PACKAGE.parent
+    if (checkout / "pyproject.toml").is_file() and (checkout / kind).is_dir():
+        return checkout / kind
+    return _PACKAGE / "_shipped" / kind
+
+
+def shipped_levels() -> list[Path]:
+    """Files of the shipped levels, in order of their names."""
+    return sorted(shipped_folder("levels").glob("*.json"))
+
+
+def _read(source: str) -> bytes:
+    try:
+        if not stat.S_ISREG(os.stat(source).st_mode):
+            kind = "a folder" if os.path.isdir(source) else "no regular file"
+            raise LevelError(source, [("", f"is {kind}; name a level file")])
+        with open(source, "rb") as file:
+            return file.read(FILE_LIMIT + 1)
+    except FileNotFoundError:
+        raise LevelError(source, [("", "there is no such file")]) from None
+    except LevelError:
+        raise
+    except (OSError, ValueError) as error:
+        raise LevelError(source, [("", f"cannot be read: {_reason(error)}")]) from None
+
+
+def _reason(error: OSError | ValueError) -> str:
+    text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return text[:1].lower() + text[1:]
+
+
+def _replace(path: Path, data: bytes) -> None:
+    temporary = path.with_name(f".{secrets.token_hex(8)}.tmp")
+    try:
+        with open(temporary, "xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        if path.exists():
+            os.chmod(temporary, stat.S_IMODE(path.stat().st_mode))
+        os.replace(temporary, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(temporary)
+        raise
+    # Only where a folder can be opened does its entry need, and allow, to be flushed too.
+    with contextlib.suppress(OSError):
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)

@@ -1,0 +1,38 @@
+"""Limits of the level format: each stands here once, with its unit; a file beyond one is refused, never clamped."""
+
+# Reading a hostile file costs time and memory in proportion to these.
+FILE_LIMIT = 8 * 1024 * 1024  # [bytes]
+DEPTH_LIMIT = 32  # lists and objects inside each other
+CONTAINER_LIMIT = 1_000_000  # lists and objects in one file; a full mesh has 600,000
+TEXT_LIMIT = 256  # [characters] of any string
+TAG_LIMIT = 100
+MATERIAL_LIMIT = 1_000
+CHECK_LIMIT = 1_000
+FAULT_LIMIT = 50  # lines that one refusal prints
+
+# After expansion; memory and time of a tick grow with them.
+PARTICLE_LIMIT = 100_000
+SPRING_LIMIT = 400_000
+# Work of filling polygons in one level: corners in all, and per polygon grid rows x (columns + corners).
+CORNER_LIMIT = 4_096
+POLYGON_WORK_LIMIT = 4_000_000
+
+# Beyond these, doubles lose the digits that a spring's length needs.
+COORDINATE_LIMIT = 1e6  # [m]
+SPEED_LIMIT = 1e9  # [m/s]
+GRAVITY_LIMIT = 1e6  # [m/s^2]
+MASS_RANGE = (1e-9, 1e9)  # [kg]
+SPACING_RANGE = (1e-6, 1e6)  # [m]
+ANGLE_LIMIT = 1e6  # [rad]
+HOOKE_LIMIT = 1e15  # [N/m], [N s/m]
+SECONDS_LIMIT = 3_600.0  # [s] of run that an acceptance check may ask for
+
+FORMAT = "spring-sandbox/level"
+VERSION = 1
+# The solver of a level that names none; written into every file all the same, so that a file keeps its meaning.
+DEFAULT_SOLVER = "iterative"
+# Every solver that the format knows; those that this version has are physics.solvers.SOLVERS.
+KNOWN_SOLVERS = ("single_pass", "iterative", "direct")
+SUBSTEPS = (1, 2, 4, 8, 16, 32, 64)  # powers of two, which the exact map of coefficients needs
+DEFAULT_MATERIAL = "default"
+BODY_RADIUS = 0.05  # [m] of the drawn disc of a body's particles

@@ -1,0 +1,163 @@
+"""Level: what a level file says, frozen, with no behaviour."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag, field_validator
+
+from sandbox.level.bodies import AnyBody
+from sandbox.level.checks import CheckDef
+from sandbox.level.limits import (
+    CHECK_LIMIT,
+    DEFAULT_MATERIAL,
+    DEFAULT_SOLVER,
+    KNOWN_SOLVERS,
+    MATERIAL_LIMIT,
+    SUBSTEPS,
+    TAG_LIMIT,
+    VERSION,
+)
+from sandbox.level.quantities import (
+    Coefficient,
+    Coordinate,
+    Description,
+    Extras,
+    Gravity,
+    HookeDamping,
+    HookeStiffness,
+    Id,
+    Length,
+    Line,
+    Mass,
+    Name,
+    Point,
+    Text,
+    Velocity,
+    unit,
+)
+from sandbox.physics.solvers import SOLVERS
+
+
+class Settings(Description):
+    """How time passes: gravity, tick rate and the solver with its settings."""
+
+    gravity: Gravity = Field(default=(0.0, -9.81), description="Acceleration of every free particle.")
+    tick_rate: int = Field(default=60, ge=1, le=10_000, description="Ticks in a second.", json_schema_extra=unit("1/s"))
+    substeps: int = Field(
+        default=1,
+        description="Parts that a tick is cut into; coefficients are converted, so springs keep their motion.",
+        json_schema_extra={"enum": list(SUBSTEPS)},
+    )
+    solver: str = Field(
+        default=DEFAULT_SOLVER,
+        description="How the springs of a network are solved together.",
+        json_schema_extra={"enum": [*sorted(SOLVERS)]},
+    )
+    iterations: int = Field(default=10, ge=1, le=1_000, description="Rounds of the iterative solver in each substep.")
+    warm_start: float = Field(
+        default=0.5,
+        ge=0.0,
+        le=1.0,
+        description="Part of the last step's pulling impulses that the iterative solver reuses.",
+    )
+
+    @field_validator("substeps")
+    @classmethod
+    def _power_of_two(cls, substeps: int) -> int:
+        if substeps in SUBSTEPS:
+            return substeps
+        raise ValueError("substeps are a power of two: " + ", ".join(map(str, SUBSTEPS)))
+
+    @field_validator("solver")
+    @classmethod
+    def _exists(cls, solver: str) -> str:
+        if solver in SOLVERS:
+            return solver
+        choice = "use one of " + ", ".join(sorted(SOLVERS))
+        if solver in KNOWN_SOLVERS:
+            raise ValueError(f'the solver "{solver}" is not part of this version; {choice}')
+        raise ValueError(f"there is no such solver; {choice}")
+
+
+class NissenMaterial(Description):
+    """The impulse-based spring (Nissen 2019): Cs and Cd per tick, the same behaviour for every mass."""
+
+    stiffness: Coefficient = Field(
+        default=0.5, description="Cs: part of its distance error that a spring corrects in a tick."
+    )
+    damping: Coefficient = Field(
+        default=0.9, description="Cd: part of its velocity error that a spring removes in a tick."
+    )
+
+
+class HookeMaterial(Description):
+    """The classic spring, F = -k x - c u, for comparison: it explodes where k or c is too large for mass and step."""
+
+    law: Literal["hooke"] = Field(description='"hooke"; without `law` a material is the impulse-based spring.')
+    k: HookeStiffness = Field(default=500.0, description="Spring constant.")
+    c: HookeDamping = Field(default=2.0, description="Damping constant.")
+
+
+def _law_of(value: Any) -> str:
+    if isinstance(value, dict):
+        return "hooke" if "law" in value else "nissen"
+    return "hooke" if hasattr(value, "law") else "nissen"
+
+
+Material = Annotated[
+    Annotated[NissenMaterial, Tag("nissen")] | Annotated[HookeMaterial, Tag("hooke")], Discriminator(_law_of)
+]
+
+
+class ParticleDef(Description):
+    """A loose particle, which belongs to no body."""
+
+    id: Id = Field(description="Name of the particle.")
+    position: Point = Field(default=(0.0, 0.0), description="Place.")
+    velocity: Velocity = Field(default=(0.0, 0.0), description="Start velocity; a pinned particle starts at rest.")
+    mass: Mass = Field(default=1.0, description="Mass.")
+    radius: Length = Field(default=0.05, description="Radius of the drawn disc.")
+    pinned: bool = Field(default=False, description="Whether it is held where it is.")
+    extras: Extras = Field(default={})
+
+
+class SpringDef(Description):
+    """A loose spring between two particles of the level; the k-th of the list is named `:k`."""
+
+    a: Name = Field(description="One end: `id`, `id.k`, `id.start` or `id.end`.")
+    b: Name = Field(description="The other end.")
+    rest_length: Length | None = Field(default=None, description="Rest length; null = as placed.")
+    material: Name = Field(default=DEFAULT_MATERIAL, description="Name of its material.")
+    extras: Extras = Field(default={})
+
+
+class Level(Description):
+    """A level: who made it, how time passes, and what is in it."""
+
+    format: Literal["spring-sandbox/level"] = Field(description="Says that this is a level.")
+    version: int = Field(description="Version of the format.", json_schema_extra={"const": VERSION})
+    name: Name = Field(description="Title, as the gallery shows it.")
+    description: Text = Field(default="", description="What it shows and what to try.")
+    author: Line = Field(default="", description="Who made it.")
+    licence: Line = Field(default="", description='Licence, by its SPDX name: "CC0-1.0".')
+    tags: tuple[Line, ...] = Field(default=(), max_length=TAG_LIMIT, description="Words to find it by.")
+    settings: Settings = Field(default=Settings(), description="How time passes.")
+    view: tuple[Coordinate, Coordinate, Coordinate, Coordinate] | None = Field(
+        default=None,
+        description="What the camera shows at first: left, bottom, right, top; null = everything. No walls.",
+        json_schema_extra=unit("m"),
+    )
+    materials: dict[Name, Material] = Field(default={}, max_length=MATERIAL_LIMIT, description="Materials by name.")
+    bodies: tuple[AnyBody, ...] = Field(default=(), description="Bodies, in the order of their particles and springs.")
+    particles: tuple[ParticleDef, ...] = Field(default=(), description="Loose particles, after those of the bodies.")
+    springs: tuple[SpringDef, ...] = Field(default=(), description="Loose springs, after those of the bodies.")
+    checks: tuple[CheckDef, ...] = Field(
+        default=(), max_length=CHECK_LIMIT, description="What must hold of the level's run."
+    )
+    extras: Extras = Field(default={})
+
+    @field_validator("version")
+    @classmethod
+    def _known(cls, version: int) -> int:
+        if version == VERSION:
+            return version
+        raise ValueError(f"this program reads version {VERSION} of the format")

@@ -1,0 +1,104 @@
+"""Polygons of jelly: whether one is simple, and which points of a square grid it holds."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+Corners = Sequence[tuple[float, float]]
+
+# Grid points this close to the border, in units of the spacing, count as on it: beyond rounding, below what is seen.
+BORDER = 1e-9
+
+
+def grid_bounds(corners: Corners, spacing: float) -> tuple[int, int, int, int]:
+    """Left, bottom, columns, rows of the whole multiples of spacing [m] that lie in a polygon's bounding box."""
+    left, bottom = (math.ceil(min(c[axis] for c in corners) / spacing - BORDER) for axis in (0, 1))
+    right, top = (math.floor(max(c[axis] for c in corners) / spacing + BORDER) for axis in (0, 1))
+    return left, bottom, max(0, right - left + 1), max(0, top - bottom + 1)
+
+
+def polygon_grid(corners: Corners, spacing: float) -> tuple[int, int, NDArray[np.bool_]]:
+    """Left, bottom, and which points of the grid (rows, columns) lie inside a simple polygon or on its border.
+
+    The grid's points are the whole multiples of spacing [m]. A row is inside between each two crossings of the border
+    in order; besides, each side marks the points that lie on it.
+    """
+    left, bottom, columns, rows = grid_bounds(corners, spacing)
+    if not rows or not columns:
+        return left, bottom, np.zeros((rows, columns), dtype=np.bool_)
+    start = np.array(corners, dtype=np.float64) / spacing - np.array([left, bottom], dtype=np.float64)
+    end = np.roll(start, -1, axis=0)
+    edges = np.zeros((rows, columns + 1), dtype=np.int64)
+    crossed_rows, crossed_at = [], []
+    for (ax, ay), (bx, by) in zip(start.tolist(), end.tolist(), strict=True):
+        if ay > by:
+            ax, ay, bx, by = bx, by, ax, ay
+        first, last = max(0, math.ceil(ay - BORDER)), min(rows - 1, math.floor(by + BORDER))
+        if first > last:
+            continue
+        row = np.arange(first, last + 1)
+        if by - ay <= BORDER:
+            _mark(edges, row, min(ax, bx), max(ax, bx))
+            continue
+        x = ax + (bx - ax) * (np.clip(row, ay, by) - ay) / (by - ay)
+        _mark(edges, row, x, x)
+        crossing = (row >= ay) & (row < by)
+        crossed_rows.append(row[crossing])
+        crossed_at.append(x[crossing])
+    if crossed_rows:
+        row, x = np.concatenate(crossed_rows), np.concatenate(crossed_at)
+        order = np.lexsort((x, row))
+        row, x = row[order], x[order]
+        _mark(edges, row[0::2], x[0::2], x[1::2])
+    return left, bottom, np.cumsum(edges[:, :-1], axis=1) > 0
+
+
+def _mark(edges: NDArray[np.int64], row: NDArray[np.int64], start: object, end: object) -> None:
+    columns = edges.shape[1] - 1
+    first = np.broadcast_to(np.clip(np.ceil(np.asarray(start) - BORDER), 0, columns), row.shape).astype(np.int64)
+    beyond = np.broadcast_to(np.clip(np.floor(np.asarray(end) + BORDER) + 1, 0, columns), row.shape).astype(np.int64)
+    holds = beyond > first
+    np.add.at(edges, (row[holds], first[holds]), 1)
+    np.add.at(edges, (row[holds], beyond[holds]), -1)
+
+
+def is_simple(corners: Corners) -> bool:
+    """Whether no two corners coincide and no two sides touch, but neighbours in their common corner."""
+    a = np.array(corners, dtype=np.float64)
+    b = np.roll(a, -1, axis=0)
+    count = len(a)
+    for side in range(count):
+        others = np.arange(side + 1, count)
+        adjacent_after = others == side + 1
+        adjacent_before = (others == count - 1) & (side == 0)
+        far = others[~(adjacent_after | adjacent_before)]
+        if np.any(_touch(a[side], b[side], a[far], b[far])):
+            return False
+        after = (side + 1) % count
+        if _folds_back(a[side], b[side], b[after]):
+            return False
+    return True
+
+
+def _side_of(p: NDArray[np.float64], q: NDArray[np.float64], r: NDArray[np.float64]) -> NDArray[np.float64]:
+    pq, pr = q - p, r - p
+    return np.sign(pq[..., 0] * pr[..., 1] - pq[..., 1] * pr[..., 0])
+
+
+def _touch(
+    a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64], d: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Whether the segment a b (2,) has a point in common with each of the segments c d (k, 2)."""
+    boxes_meet = np.all((np.minimum(a, b) <= np.maximum(c, d)) & (np.minimum(c, d) <= np.maximum(a, b)), axis=-1)
+    across = _side_of(a, b, c) * _side_of(a, b, d) <= 0
+    back = _side_of(c, d, a) * _side_of(c, d, b) <= 0
+    return np.asarray(boxes_meet & across & back)
+
+
+def _folds_back(p: NDArray[np.float64], q: NDArray[np.float64], r: NDArray[np.float64]) -> bool:
+    if np.array_equal(p, q):
+        return True
+    along = (q - p) * (r - q)
+    return bool(_side_of(p, q, r) == 0 and along[0] + along[1] < 0)

@@ -1,0 +1,157 @@
+"""Where the particles of a body stand and which of them springs join, in generation order.
+
+Every function gives positions [m] (n, 2) and pairs of indices (m, 2). Counts come first and cost nothing: `count`
+tells how many particles and springs a body expands to before anything of that size is allocated.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.level.bodies import AnyBody, BoxShape, BridgeDef, CircleShape, JellyDef, MeshDef, RopeDef
+from sandbox.level.limits import PARTICLE_LIMIT
+from sandbox.level.polygon import polygon_grid
+
+Points = NDArray[np.float64]
+Pairs = NDArray[np.int64]
+
+# Grid points this close to a border, in units of the spacing, count as on it: beyond rounding, below what is seen.
+BORDER = 1e-9
+# Sine and cosine are rounded to this many decimals, so that different libraries of mathematics build the same bits.
+TRIGONOMETRY_DECIMALS = 12
+
+
+def count(body: AnyBody) -> tuple[int, int]:
+    """Particles and springs that a body expands to; a jelly beyond the particle limit may be counted short of it."""
+    if isinstance(body, RopeDef):
+        return body.segments + 1, body.segments
+    if isinstance(body, BridgeDef):
+        return 2 * (body.segments + 1), 5 * body.segments + 1
+    if isinstance(body, MeshDef):
+        return len(body.particles), len(body.springs)
+    if isinstance(body.shape, BoxShape):
+        columns, rows = box_grid(body)
+        across, up = columns - 1, rows - 1
+        return columns * rows, across * rows + columns * up + 2 * across * up
+    if isinstance(body.shape, CircleShape) and _reach(body.shape, body.spacing) ** 2 > PARTICLE_LIMIT:
+        return 2 * PARTICLE_LIMIT, 0
+    return count_cells(jelly_cells(body))
+
+
+def expand(body: AnyBody) -> tuple[Points, Pairs]:
+    """Positions [m] (n, 2) and pairs (m, 2) of a body, in generation order."""
+    if isinstance(body, RopeDef):
+        return _row(body.start, body.end, body.segments), _chain(body.segments)
+    if isinstance(body, BridgeDef):
+        return _bridge(body)
+    if isinstance(body, MeshDef):
+        pairs = np.array(body.springs, dtype=np.int64).reshape(-1, 2)
+        return np.array(body.particles, dtype=np.float64).reshape(-1, 2), pairs
+    return _jelly(body)
+
+
+def box_grid(body: JellyDef) -> tuple[int, int]:
+    """Columns and rows of a box of jelly."""
+    assert isinstance(body.shape, BoxShape)
+    width, height = body.shape.box
+    return round(width / body.spacing) + 1, round(height / body.spacing) + 1
+
+
+def turn(angle: float) -> tuple[float, float]:
+    """Cosine and sine of an angle [rad], rounded."""
+    return round(math.cos(angle), TRIGONOMETRY_DECIMALS), round(math.sin(angle), TRIGONOMETRY_DECIMALS)
+
+
+def _row(start: tuple[float, float], end: tuple[float, float], segments: int) -> Points:
+    steps = np.arange(segments + 1, dtype=np.float64)
+    x = start[0] + (end[0] - start[0]) * steps / segments
+    y = start[1] + (end[1] - start[1]) * steps / segments
+    row = np.stack([x, y], axis=1)
+    row[-1] = end
+    return row
+
+
+def _chain(segments: int) -> Pairs:
+    first = np.arange(segments, dtype=np.int64)
+    return np.stack([first, first + 1], axis=1)
+
+
+def _bridge(body: BridgeDef) -> tuple[Points, Pairs]:
+    nodes = body.segments + 1
+    top = _row(body.start, body.end, body.segments)
+    bottom = top - np.array([0.0, body.height])
+    chords = _chain(body.segments)
+    post = np.arange(nodes, dtype=np.int64)
+    posts = np.stack([post, post + nodes], axis=1)
+    cell = np.arange(body.segments, dtype=np.int64)
+    falling = np.stack([cell, cell + nodes + 1], axis=1)
+    rising = np.stack([cell + nodes, cell + 1], axis=1)
+    diagonals = np.stack([falling, rising], axis=1).reshape(-1, 2)
+    return np.concatenate([top, bottom]), np.concatenate([chords, chords + nodes, posts, diagonals])
+
+
+def _reach(shape: CircleShape, spacing: float) -> int:
+    return math.floor(shape.circle / spacing + BORDER)
+
+
+def jelly_cells(body: JellyDef) -> NDArray[np.bool_]:
+    """Which points of the grid over a circle or polygon belong to the jelly (rows, columns), from the bottom left."""
+    if isinstance(body.shape, CircleShape):
+        reach = _reach(body.shape, body.spacing)
+        steps = np.arange(-reach, reach + 1, dtype=np.float64)
+        ratio = body.shape.circle / body.spacing + BORDER
+        return steps[:, None] * steps[:, None] + steps[None, :] * steps[None, :] <= ratio * ratio
+    assert not isinstance(body.shape, BoxShape)
+    return polygon_grid(body.shape.polygon, body.spacing)[2]
+
+
+def count_cells(cells: NDArray[np.bool_]) -> tuple[int, int]:
+    """Particles and springs of a jelly on the points of a grid (rows, columns) that are set."""
+    return int(np.count_nonzero(cells)), len(_neighbours(_numbers(cells)))
+
+
+def _numbers(cells: NDArray[np.bool_]) -> Pairs:
+    numbers = np.full(cells.shape, -1, dtype=np.int64)
+    numbers[cells] = np.arange(np.count_nonzero(cells))
+    return numbers
+
+
+def _neighbours(numbers: Pairs) -> Pairs:
+    """Pairs of a grid of indices (rows, columns), -1 = none: all right, all up, then per cell both diagonals."""
+    right = np.stack([numbers[:, :-1], numbers[:, 1:]], axis=-1).reshape(-1, 2)
+    up = np.stack([numbers[:-1], numbers[1:]], axis=-1).reshape(-1, 2)
+    rising = np.stack([numbers[:-1, :-1], numbers[1:, 1:]], axis=-1)
+    falling = np.stack([numbers[:-1, 1:], numbers[1:, :-1]], axis=-1)
+    diagonals = np.stack([rising, falling], axis=-2).reshape(-1, 2)
+    pairs = np.concatenate([right, up, diagonals])
+    return pairs[(pairs[:, 0] >= 0) & (pairs[:, 1] >= 0)]
+
+
+def _stretched(size: float, points: int) -> Points:
+    if points == 1:
+        return np.zeros(1)
+    return size * np.arange(points, dtype=np.float64) / (points - 1) - size / 2.0
+
+
+def _jelly(body: JellyDef) -> tuple[Points, Pairs]:
+    if isinstance(body.shape, BoxShape):
+        columns, rows = box_grid(body)
+        across, up = _stretched(body.shape.box[0], columns), _stretched(body.shape.box[1], rows)
+        cells = np.ones((rows, columns), dtype=np.bool_)
+    else:
+        left, bottom = 0, 0
+        if isinstance(body.shape, CircleShape):
+            cells = jelly_cells(body)
+            left = bottom = -_reach(body.shape, body.spacing)
+        else:
+            left, bottom, cells = polygon_grid(body.shape.polygon, body.spacing)
+        across = (left + np.arange(cells.shape[1], dtype=np.float64)) * body.spacing
+        up = (bottom + np.arange(cells.shape[0], dtype=np.float64)) * body.spacing
+    row, column = np.nonzero(cells)
+    return _placed(across[column], up[row], body), _neighbours(_numbers(cells))
+
+
+def _placed(x: Points, y: Points, body: JellyDef) -> Points:
+    cosine, sine = turn(body.angle)
+    return np.stack([body.position[0] + (x * cosine - y * sine), body.position[1] + (x * sine + y * cosine)], axis=1)

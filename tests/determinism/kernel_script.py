@@ -1,0 +1,118 @@
+"""Steps one world with everything in it and prints its hash at each tick; run in processes of their own.
+
+python kernel_script.py SOLVER SUBSTEPS TICKS [--without-numba | --broken-numba | --without-cache]
+"""
+
+import sys
+import warnings
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+
+MODES = ("--without-numba", "--broken-numba", "--without-cache")
+
+
+class Refusal:
+    """A finder that lets numba be found nowhere."""
+
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] == "numba":
+            raise ModuleNotFoundError("No module named 'numba'", name="numba")
+
+
+def prepare(mode: str) -> None:
+    """Bring about what the mode names, before physics is imported."""
+    if mode == "--without-numba":
+        sys.meta_path.insert(0, Refusal())
+    elif mode == "--broken-numba":
+        sys.modules["numba"] = None  # importing it raises ImportError, as a numba too old for this numpy does
+    elif mode == "--without-cache":
+        import numba
+
+        original = numba.njit
+
+        def njit_without_cache(*arguments, cache=False, **options):
+            if not cache:
+                return original(*arguments, **options)
+
+            def refuse(function):
+                raise RuntimeError(f"cannot cache function {function.__name__!r}: no locator available")
+
+            return refuse
+
+        numba.njit = njit_without_cache
+
+
+def busy_world(solver: str, substeps: int):
+    """A mesh with diagonals of unequal masses, Hooke springs, pins, a coincident pair and a free particle."""
+    from sandbox.physics.world import LAW_HOOKE, World, WorldSettings
+
+    settings = WorldSettings((0.3, -9.81), substeps=substeps, solver=solver, iterations=6, warm_start=0.5)
+    world = World(settings)
+    side = 6
+    points = [(0.5 * x, 0.45 * y) for y in range(side) for x in range(side)]
+    masses = [0.1 + 0.37 * k * k for k in range(side * side)]
+    pinned = [k in (side * (side - 1), side * side - 1) for k in range(side * side)]
+    world.add_particles([f"net.{k}" for k in range(side * side)], points, mass=masses, pinned=pinned)
+    pairs = []
+    for k in range(side * side):
+        right, up = k % side < side - 1, k // side < side - 1
+        pairs += [(k, k + 1)] * right + [(k, k + side)] * up
+        pairs += [(k, k + side + 1), (k + 1, k + side)] * (right and up)
+    names = [f"net:{k}" for k in range(len(pairs))]
+    first, second = zip(*pairs, strict=True)
+    world.add_springs(names, first, second, stiffness=0.09, damping=0.13)
+    world.law[5:9] = LAW_HOOKE
+    world.hooke_stiffness[5:9], world.hooke_damping[5:9] = 40.0, 0.3
+    pair = world.add_particles(["a", "b", "free"], [(4, 4), (4, 4), (5, 5)], velocity=[(0, 0), (0.1, -0.2), (1, 2)])
+    world.add_springs([":0", ":1"], [pair, pair], [pair + 1, pair + 1], rest_length=[0.3, 0.0], stiffness=0.2)
+    world.reserve_hands()
+    return world
+
+
+def hashes(solver: str, substeps: int, ticks: int):
+    """Hash of the state after each tick of a script of hands, pins, cuts and sliders."""
+    from sandbox.physics.snapshot import state_hash
+    from sandbox.physics.step import step
+
+    world = busy_world(solver, substeps)
+    for tick in range(ticks):
+        if tick % 10 == 2:
+            world.hold(tick // 10 % 3, 7 + tick % 20, (1.0, 1.5))
+        if tick % 10 > 2:
+            world.move_hand(tick // 10 % 3, (1.0 + 0.07 * (tick % 10), 1.5 - 0.031 * tick))
+        if tick % 10 == 9:
+            world.release(tick // 10 % 3)
+        if tick == 13:
+            world.pin(15)
+        if tick == 31:
+            world.unpin(15)
+            world.cut([20, 21])
+        if tick == 24:
+            world.set_coefficients(0.11, 0.05, None)
+        step(world)
+        yield state_hash(world)
+
+
+def blow_up(solver: str, ticks: int):
+    """Hash after each tick of a mistuned Hooke spring on its way to inf and NaN."""
+    from sandbox.physics.snapshot import state_hash
+    from sandbox.physics.step import step
+
+    world = busy_world(solver, 1)
+    world.hooke_stiffness[5:9] = 1e9
+    for _ in range(ticks):
+        step(world)
+        yield state_hash(world)
+
+
+if __name__ == "__main__":
+    warnings.simplefilter("error")
+    chosen, substeps, ticks, *mode = sys.argv[1:]
+    for one in mode:
+        prepare(one)
+    from sandbox.physics.jit import COMPILED
+
+    print("compiled" if COMPILED else "interpreted")
+    print("\n".join(hashes(chosen, int(substeps), int(ticks))))
+    print("\n".join(blow_up(chosen, 2 * int(ticks))))

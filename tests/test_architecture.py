@@ -1,0 +1,154 @@
+"""The map of the house, kept true: imports point downward, heavy libraries stay in their rooms, files stay short."""
+
+import ast
+import functools
+import subprocess
+import sys
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = ROOT / "sandbox"
+ROOMS = ("physics", "level", "session", "tools", "editor", "app", "cli", "__main__")
+LIBRARIES = {
+    "physics": {"numpy", "numba"},
+    "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},
+    "session": {"numpy", "pydantic", "filelock"},
+    "tools": {"numpy"},
+    "editor": {"numpy", "pydantic"},
+    "cli": {"tqdm"},
+    "__main__": set(),
+}
+LONGEST_FILE = 400
+LONGEST_FUNCTION = 60
+
+
+@functools.cache
+def sources():
+    """Syntax tree of every module of the package, by its dotted name."""
+    trees = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        parts = path.relative_to(ROOT).with_suffix("").parts
+        name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+        trees[name] = ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
+    return trees
+
+
+def imported(name):
+    """Dotted names that a module imports, anywhere in it; what it names of our own are modules, not their contents."""
+    found = set()
+    for node in ast.walk(sources()[name]):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{name}: imports are absolute"
+            for alias in node.names:
+                full = f"{node.module}.{alias.name}"
+                found.add(full if full in sources() else str(node.module))
+    return found
+
+
+def room(name):
+    """The room of one of our modules; None for the package itself, which holds the version and loads nothing."""
+    return name.split(".")[1] if "." in name else None
+
+
+def own_imports():
+    """Pairs of our modules, importer and imported, without those of the package itself."""
+    for name in sources():
+        for other in imported(name):
+            if room(name) and other in sources() and room(other):
+                yield name, other
+
+
+def test_the_package_is_found_and_every_module_is_in_a_known_room():
+    assert len(sources()) > 15
+    assert {room(name) for name in sources()} - {None} <= set(ROOMS)
+
+
+def test_imports_point_downward():
+    upward = [
+        f"{name} imports {other}" for name, other in own_imports() if ROOMS.index(room(other)) > ROOMS.index(room(name))
+    ]
+    assert upward == []
+
+
+def test_of_the_package_itself_only_the_version_is_imported():
+    for name in sources():
+        for node in ast.walk(sources()[name]):
+            if isinstance(node, ast.ImportFrom) and node.module == "sandbox":
+                assert {alias.name for alias in node.names} <= {"__version__", *ROOMS}, name
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    graph = {name: {other for importer, other in own_imports() if importer == name} for name in sources()}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as circle:
+        pytest.fail(" imports ".join(reversed(circle.args[1])))
+
+
+def test_only_app_imports_pygame_and_only_jit_imports_numba():
+    for name in sources():
+        libraries = {other.partition(".")[0] for other in imported(name)}
+        if room(name) != "app":
+            assert not libraries & {"pygame", "pygame_gui"}, name
+        if name != "sandbox.physics.jit":
+            assert "numba" not in libraries, name
+
+
+def test_each_room_imports_the_libraries_that_it_may():
+    for name in sources():
+        libraries = {other.partition(".")[0] for other in imported(name)} - sys.stdlib_module_names - {"sandbox"}
+        if room(name) in LIBRARIES:
+            assert libraries <= LIBRARIES[room(name)], name
+
+
+def loaded_after(statement):
+    """Top-level names of the modules that a fresh process has loaded after a statement."""
+    script = f"import sys\n{statement}\nprint(*sorted(sys.modules), file=sys.stderr)"
+    ended = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert ended.returncode == 0, ended.stderr
+    return set(ended.stderr.split())
+
+
+def test_physics_level_and_session_load_no_pygame():
+    rooms = [name for name in sources() if room(name) in ("physics", "level", "session", "tools", "editor")]
+    loaded = loaded_after(f"import {', '.join(rooms)}")
+    assert "sandbox.physics.step" in loaded
+    assert not loaded & {"pygame", "pygame_gui"}
+
+
+def test_importing_the_package_loads_none_of_its_rooms_until_a_name_is_used():
+    assert not {name for name in loaded_after("import sandbox") if name.startswith("sandbox.")}
+    assert "sandbox.physics.world" in loaded_after("import sandbox; sandbox.World")
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["--version"]])
+def test_help_loads_neither_pygame_nor_numba_nor_numpy(arguments):
+    loaded = loaded_after(
+        "import runpy\n"
+        f"sys.argv = ['sandbox', *{arguments!r}]\n"
+        "try:\n    runpy.run_module('sandbox', run_name='__main__')\n"
+        "except SystemExit as end:\n    assert not end.code, end.code"
+    )
+    assert "sandbox.cli" in loaded
+    assert not loaded & {"pygame", "pygame_gui", "numba", "numpy", "pydantic"}
+
+
+def test_no_file_is_longer_than_400_lines():
+    lengths = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in PACKAGE.rglob("*.py")}
+    assert {str(path.relative_to(ROOT)): length for path, length in lengths.items() if length > LONGEST_FILE} == {}
+
+
+def test_no_function_is_longer_than_60_lines():
+    long = {
+        f"{name}.{node.name}": node.end_lineno - node.lineno + 1
+        for name, tree in sources().items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        and node.end_lineno - node.lineno + 1 > LONGEST_FUNCTION
+    }
+    assert long == {}
