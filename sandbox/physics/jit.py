@@ -50,13 +50,6 @@ _njit = _numba_njit()
 COMPILED = _njit is not None
 
 
-@functools.cache
-def _source_digest() -> str:
-    """Digest of every source file that kernels stand in."""
-    sources = sorted(Path(__file__).parent.rglob("*.py"))
-    return hashlib.blake2b(b"".join(source.read_bytes() for source in sources), digest_size=16).hexdigest()
-
-
 def _viewed(item: Any) -> Any:
     if isinstance(item, np.ndarray):
         return memoryview(cast(Any, item))
@@ -78,12 +71,8 @@ def _interpreted(function: Function) -> Function:
 def _compiled(function: Function) -> Function:
     # Determinism: never fastmath, never parallel. Kernels guard every divisor, so the error model decides nothing.
     try:
-        dispatcher = _njit(cache=True, error_model="numpy")(function)
-        # numba checks the kernel's own file alone, and would run old copies of the kernels that it calls.
-        cached = dispatcher._cache._cache_file
-        cached._source_stamp = (*cached._source_stamp, _source_digest())
-        return cast(Function, dispatcher)
-    except (RuntimeError, AttributeError, OSError):  # no folder can hold the cache, or numba has changed
+        return cast(Function, _njit(cache=True, error_model="numpy")(function))
+    except RuntimeError:  # no folder can hold the cache
         return cast(Function, _njit(error_model="numpy")(function))
 
 

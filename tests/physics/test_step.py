@@ -52,10 +52,11 @@ def test_coincident_particles_come_apart_to_their_rest_length(solver, velocity, 
     world.rest_length[:] = rest_length
     world.velocity[1] = velocity
     run(world, 3)
-    assert lengths(world)[0] == pytest.approx(rest_length, abs=1e-12)
+    # The direct solver caps Cs and Cd at 1 - 1e-6: what is left after three steps is 3e-12.
+    assert lengths(world)[0] == pytest.approx(rest_length, abs=1e-11)
     along = world.position[1] - world.position[0]
-    assert along == pytest.approx([0.0, rest_length] if velocity[1] else [rest_length, 0.0], abs=1e-12)
-    assert world.position.mean(axis=0) == pytest.approx([2.0, 2.0 + 1.5 * velocity[1] / 60.0], abs=1e-12)
+    assert along == pytest.approx([0.0, rest_length] if velocity[1] else [rest_length, 0.0], abs=1e-11)
+    assert world.position.mean(axis=0) == pytest.approx([2.0, 2.0 + 1.5 * velocity[1] / 60.0], abs=1e-11)
 
 
 @both_solvers

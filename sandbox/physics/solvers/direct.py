@@ -180,9 +180,9 @@ def _energy(first_row, last_row, first, last, rows, springs, rest_length, h):  #
 
 
 @kernel
-def _open_bank(
+def _open_bank(  # type: ignore[no-untyped-def]
     first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, kinetic_after, moved, rest_length, h
-):  # type: ignore[no-untyped-def]
+):
     # The body's bank before the step. It is begun anew where a particle says so (-1): after any change from outside.
     begun = True
     for r in range(first_row, last_row):
