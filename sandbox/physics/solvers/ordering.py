@@ -65,116 +65,123 @@ def _sift_down(heap, place, degree, at, size):  # type: ignore[no-untyped-def]
 
 @kernel
 def _gather(  # type: ignore[no-untyped-def]
-    step, pivot, start, near, near_count, element, element_count, column_start, column, eliminated, absorbed, mark,
-    stamp,
-):  # fmt: skip
+    step, pivot, start, near, near_count, element, element_count, column_start, column, absorbed, mark
+):
     # The nodes that eliminating the pivot joins to one another: its neighbours and those of the elements it takes in.
+    # An element whose member is eliminated is taken in by it, so the others hold no eliminated node.
     top = column_start[step]
-    mark[pivot] = stamp
+    mark[pivot] = step
     for at in range(start[pivot], start[pivot] + near_count[pivot]):
         node = near[at]
-        if mark[node] != stamp:
-            if top == column.shape[0]:
-                return -1
-            mark[node] = stamp
-            column[top] = node
-            top += 1
+        if top == column.shape[0]:
+            return -1
+        mark[node] = step
+        column[top] = node
+        top += 1
     for at in range(start[pivot], start[pivot] + element_count[pivot]):
         older = element[at]
         absorbed[older] = True
         for member in range(column_start[older], column_start[older + 1]):
             node = column[member]
-            if not eliminated[node] and mark[node] != stamp:
+            if mark[node] != step:
                 if top == column.shape[0]:
                     return -1
-                mark[node] = stamp
+                mark[node] = step
                 column[top] = node
                 top += 1
     return top
 
 
 @kernel
-def _prune(step, node, start, near, near_count, element, element_count, absorbed, mark, stamp):  # type: ignore[no-untyped-def]
-    # What the new element covers leaves the node's lists; the element joins them.
-    kept = start[node]
-    for at in range(start[node], start[node] + near_count[node]):
-        if mark[near[at]] != stamp:
-            near[kept] = near[at]
-            kept += 1
-    near_count[node] = kept - start[node]
-    kept = start[node]
-    for at in range(start[node], start[node] + element_count[node]):
-        if not absorbed[element[at]]:
-            element[kept] = element[at]
-            kept += 1
-    element[kept] = step
-    element_count[node] = kept + 1 - start[node]
+def _prune(  # type: ignore[no-untyped-def]
+    step, start, near, near_count, element, element_count, column_start, column, absorbed, mark, outside, counted
+):
+    # What the new element covers leaves its members' lists; how many members each of their older elements has outside.
+    for at in range(column_start[step], column_start[step + 1]):
+        node = column[at]
+        kept = start[node]
+        for place in range(start[node], start[node] + near_count[node]):
+            if mark[near[place]] != step:
+                near[kept] = near[place]
+                kept += 1
+        near_count[node] = kept - start[node]
+        kept = start[node]
+        for place in range(start[node], start[node] + element_count[node]):
+            older = element[place]
+            if not absorbed[older]:
+                element[kept] = older
+                kept += 1
+                if counted[older] != step:
+                    counted[older] = step
+                    outside[older] = column_start[older + 1] - column_start[older]
+                outside[older] -= 1
+        element[kept] = step
+        element_count[node] = kept + 1 - start[node]
 
 
 @kernel
-def _count_neighbours(  # type: ignore[no-untyped-def]
-    node, start, near, near_count, element, element_count, column_start, column, eliminated, mark, stamp,
-):  # fmt: skip
-    mark[node] = stamp
-    count = 0
-    for at in range(start[node], start[node] + near_count[node]):
-        if mark[near[at]] != stamp:
-            mark[near[at]] = stamp
-            count += 1
-    for at in range(start[node], start[node] + element_count[node]):
-        for member in range(column_start[element[at]], column_start[element[at] + 1]):
-            other = column[member]
-            if mark[other] != stamp and not eliminated[other]:
-                mark[other] = stamp
-                count += 1
-    return count
+def _bound_degrees(  # type: ignore[no-untyped-def]
+    step, left, start, near_count, element, element_count, column_start, column, outside, heap, place, degree
+):
+    # Neighbours outside every element, in the new element, and in each older one beyond it: at least the degree, which
+    # cannot exceed what was left before nor the nodes left. An older element inside the new one says nothing more.
+    members = column_start[step + 1] - column_start[step] - 1
+    for at in range(column_start[step], column_start[step + 1]):
+        node = column[at]
+        bound = near_count[node] + members
+        kept = start[node]
+        for other in range(start[node], start[node] + element_count[node]):
+            older = element[other]
+            if older == step or outside[older] > 0:
+                element[kept] = older
+                kept += 1
+                if older != step:
+                    bound += outside[older]
+        element_count[node] = kept - start[node]
+        before = degree[node]
+        degree[node] = min(bound, before + members, left - 1)
+        if degree[node] < before:
+            _sift_up(heap, place, degree, place[node])
+        elif degree[node] > before:
+            _sift_down(heap, place, degree, place[node], left)
 
 
 @kernel
 def minimum_degree(  # type: ignore[no-untyped-def]
-    start, near, near_count, element, element_count, order, column_start, column, eliminated, absorbed, mark, heap,
-    place, degree,
+    start, near, near_count, element, element_count, order, column_start, column, absorbed, mark, outside, counted,
+    heap, place, degree,
 ):  # fmt: skip
-    """Order the nodes by minimum degree, ties by lowest index; False where `column` is too short.
+    """Order the nodes by approximate minimum degree, ties by lowest index; False where `column` is too short.
 
     start (n+1), near: neighbours in compressed rows, changed on the way. order (n,): nodes as they are eliminated.
-    column_start (n+1), column: for each of them, the nodes still present that it is joined to by then (George, Liu
-    1989, quotient graph).
+    column_start (n+1), column: for each of them, the nodes still present that it is joined to by then. mark and
+    counted hold -1. Source: Amestoy, Davis, Duff 1996, without their merging of like nodes.
     """
-    count = order.shape[0]
-    stamp = 0
-    for node in range(count):
-        stamp += 1
-        degree[node] = _count_neighbours(
-            node, start, near, near_count, element, element_count, column_start, column, eliminated, mark, stamp
-        )
+    size = order.shape[0]
+    for node in range(size):
+        degree[node] = near_count[node]
         heap[node] = node
         _sift_up(heap, place, degree, node)
-    size = count
-    for step in range(count):
+    for step in range(order.shape[0]):
         pivot = heap[0]
         size -= 1
         heap[0] = heap[size]
         if size > 0:
             _sift_down(heap, place, degree, 0, size)
         order[step] = pivot
-        eliminated[pivot] = True
-        stamp += 1
-        top = _gather(step, pivot, start, near, near_count, element, element_count, column_start, column, eliminated,
-                      absorbed, mark, stamp)  # fmt: skip
+        top = _gather(
+            step, pivot, start, near, near_count, element, element_count, column_start, column, absorbed, mark
+        )
         if top < 0:
             return False
         column_start[step + 1] = top
-        for at in range(column_start[step], top):
-            _prune(step, column[at], start, near, near_count, element, element_count, absorbed, mark, stamp)
-        for at in range(column_start[step], top):
-            node = column[at]
-            stamp += 1
-            degree[node] = _count_neighbours(
-                node, start, near, near_count, element, element_count, column_start, column, eliminated, mark, stamp
-            )
-            _sift_up(heap, place, degree, place[node])
-            _sift_down(heap, place, degree, place[node], size)
+        _prune(
+            step, start, near, near_count, element, element_count, column_start, column, absorbed, mark, outside,
+            counted,
+        )  # fmt: skip
+        _bound_degrees(
+            step, size, start, near_count, element, element_count, column_start, column, outside, heap, place, degree
+        )  # fmt: skip
     return True
 
 

@@ -158,10 +158,10 @@ def _eliminate(count: int, link_a: Slots, link_b: Slots) -> tuple[Slots, Slots, 
     while True:
         order = np.zeros(count, dtype=np.int64)
         column_start, column = np.zeros(count + 1, dtype=np.int64), np.zeros(capacity, dtype=np.int64)
-        counts, flags = np.zeros((5, count), dtype=np.int64), np.zeros((2, count), dtype=np.bool_)
+        counts, marks = np.zeros((5, count), dtype=np.int64), np.full((2, count), -1, dtype=np.int64)
         if minimum_degree(
-            start, near.copy(), degree.copy(), np.zeros_like(near), counts[0], order, column_start, column, flags[0],
-            flags[1], counts[1], counts[2], counts[3], counts[4],
+            start, near.copy(), degree.copy(), np.zeros_like(near), counts[0], order, column_start, column,
+            np.zeros(count, dtype=np.bool_), marks[0], counts[1], marks[1], counts[2], counts[3], counts[4],
         ):  # fmt: skip
             break
         capacity *= 2
