@@ -68,17 +68,22 @@ def _interpreted(function: Function) -> Function:
     return cast(Function, call)
 
 
-def _compiled(function: Function) -> Function:
+def _compiled(function: Function, **options: bool) -> Function:
     # Determinism: never fastmath, never parallel. Kernels guard every divisor, so the error model decides nothing.
     try:
-        return cast(Function, _njit(cache=True, error_model="numpy")(function))
+        return cast(Function, _njit(cache=True, error_model="numpy", **options)(function))
     except RuntimeError:  # no folder can hold the cache
-        return cast(Function, _njit(error_model="numpy")(function))
+        return cast(Function, _njit(error_model="numpy", **options)(function))
 
 
 def kernel(function: Function) -> Function:
     """Make `function` a kernel: scalars, contiguous arrays and named tuples of arrays in; same bits both ways."""
     return _compiled(function) if COMPILED else _interpreted(function)
+
+
+def inner_kernel(function: Function) -> Function:
+    """Make `function` a part of kernels, which alone may call it: compiled sooner, with no entry for Python."""
+    return _compiled(function, no_cpython_wrapper=True, no_cfunc_wrapper=True) if COMPILED else function
 
 
 def scalar_kernel(function: Function) -> Function:

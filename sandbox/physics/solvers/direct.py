@@ -7,7 +7,7 @@ the body's energy stays within what it had plus what its bank holds of earlier l
 
 import numpy as np
 
-from sandbox.physics.jit import kernel
+from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.solvers.network import (
     HIGHEST_COEFFICIENT,
     kinetic,
@@ -43,7 +43,7 @@ NEWTON_TOLERANCE = 1e-6
 LAST_HALVINGS = 60
 
 
-@kernel
+@inner_kernel
 def _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, free_count, rows):  # type: ignore[no-untyped-def]
     for r in range(rows.particle.shape[0]):
         p = rows.particle[r]
@@ -65,21 +65,21 @@ def _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h,
             rows.best[r, axis] = rows.target[r, axis]
 
 
-@kernel
+@inner_kernel
 def _copy(first, last, source, destination):  # type: ignore[no-untyped-def]
     for r in range(first, last):
         destination[r, 0] = source[r, 0]
         destination[r, 1] = source[r, 1]
 
 
-@kernel
+@inner_kernel
 def _scale(first, last, factor, vector):  # type: ignore[no-untyped-def]
     for r in range(first, last):
         vector[r, 0] *= factor
         vector[r, 1] *= factor
 
 
-@kernel
+@inner_kernel
 def _take_candidate(first_row, last_row, first, last, rows, springs, matrix, h):  # type: ignore[no-untyped-def]
     # v' = v + D;  J = q - K n.(D_b - D_a);  T = max(0, -J) for what follows.
     linearise(first, last, rows, springs, h, AHEAD, AHEAD)
@@ -95,7 +95,7 @@ def _take_candidate(first_row, last_row, first, last, rows, springs, matrix, h):
         springs.tension[k] = max(0.0, -springs.impulse[k])
 
 
-@kernel
+@inner_kernel
 def _start_minimisation(first_row, last_row, first, last, rows, springs, h):  # type: ignore[no-untyped-def]
     # From the best of the candidate, v* and all at rest; f there.
     _copy(first_row, last_row, rows.trial, rows.best)
@@ -113,7 +113,7 @@ def _start_minimisation(first_row, last_row, first, last, rows, springs, h):  # 
     return value
 
 
-@kernel
+@inner_kernel
 def _minimise(first_row, last_row, first, last, rows, springs, matrix, h):  # type: ignore[no-untyped-def]
     # Newton's method on f with A = M + sum [K n' n'^T + h^2 max(0, t) / l' (I - n' n'^T)].
     value = _start_minimisation(first_row, last_row, first, last, rows, springs, h)
@@ -142,7 +142,7 @@ def _minimise(first_row, last_row, first, last, rows, springs, matrix, h):  # ty
     _keep_tension(first, last, rows, springs, h)
 
 
-@kernel
+@inner_kernel
 def _slope(first_row, last_row, first, last, rows, springs):  # type: ignore[no-untyped-def]
     # -(right side) . D = the derivative of f along D
     free_count = last_row
@@ -164,14 +164,14 @@ def _slope(first_row, last_row, first, last, rows, springs):  # type: ignore[no-
     return total
 
 
-@kernel
+@inner_kernel
 def _keep_tension(first, last, rows, springs, h):  # type: ignore[no-untyped-def]
     linearise(first, last, rows, springs, h, 1.0, 0.0)
     for k in range(first, last):
         springs.tension[k] = max(0.0, -springs.impulse[k])
 
 
-@kernel
+@inner_kernel
 def _energy(first_row, last_row, first, last, rows, springs, rest_length, h):  # type: ignore[no-untyped-def]
     # H = KE(v') + PE(x + h v')
     return kinetic(first_row, last_row, rows.mass, rows.trial) + potential(
@@ -179,7 +179,7 @@ def _energy(first_row, last_row, first, last, rows, springs, rest_length, h):  #
     )
 
 
-@kernel
+@inner_kernel
 def _open_bank(  # type: ignore[no-untyped-def]
     first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, kinetic_after, moved, rest_length, h
 ):
@@ -199,7 +199,7 @@ def _open_bank(  # type: ignore[no-untyped-def]
     return max(0.0, held + BOUNCY_BANK_SHARE * (kinetic_after - before + moved - present))
 
 
-@kernel
+@inner_kernel
 def _step_body(first_row, last_row, first, last, rows, springs, matrix, rest_length, lowest, bank, bouncy, h):  # type: ignore[no-untyped-def]
     kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
     moved = potential(first, last, rows.moved, rows.moved, springs, rest_length, 0.0, h)
@@ -226,7 +226,7 @@ def _step_body(first_row, last_row, first, last, rows, springs, matrix, rest_len
     bank[lowest] = saved if saved > 0.0 else 0.0
 
 
-@kernel
+@inner_kernel
 def _brake(first_row, last_row, first, last, rows, springs, rest_length, allowed, h):  # type: ignore[no-untyped-def]
     # Halve the free velocities until the energy test holds; at rest it always does.
     after = 0.0

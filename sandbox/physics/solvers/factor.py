@@ -1,19 +1,19 @@
 """Sparse factorisation of the direct solver: L D L^T of a symmetric positive definite matrix of 2x2 blocks."""
 
-from sandbox.physics.jit import kernel, scalar_kernel
+from sandbox.physics.jit import inner_kernel
 
 # A pivot that is not above this share of the diagonal it came from is left out (its row does not move): only rounding,
 # overflow or NaN bring one there.
 SMALLEST_PIVOT = 1e-15
 
 
-@scalar_kernel
+@inner_kernel
 def _inverse_pivot(pivot, original):  # type: ignore[no-untyped-def]
     # Written so that NaN and infinities give 0.
     return 1.0 / pivot if pivot > SMALLEST_PIVOT * original else 0.0
 
 
-@kernel
+@inner_kernel
 def factorise(first, last, column_start, row, target_start, target, diagonal, lower, scaled):  # type: ignore[no-untyped-def]
     """Factor the rows first..last in place.
 
@@ -68,7 +68,7 @@ def factorise(first, last, column_start, row, target_start, target, diagonal, lo
             lower[at, 3] = scaled[k, 3]
 
 
-@kernel
+@inner_kernel
 def back_substitute(first, last, column_start, row, diagonal, lower, vector):  # type: ignore[no-untyped-def]
     """Solve for the rows first..last of vector (n, 2) in place, with the factor that `factorise` left."""
     for j in range(first, last):

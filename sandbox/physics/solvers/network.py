@@ -15,14 +15,14 @@ by Cd) is `pull`, v* is `target`, v' is `trial`.
 import math
 
 from sandbox.physics.equation import SHORTEST, direction, reduced_mass
-from sandbox.physics.jit import kernel, scalar_kernel
+from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.factor import back_substitute, factorise
 
 # Cd is capped here, and Cs with it: nearer to 1 the solution stretches less, but is rejected more often and damps more.
 HIGHEST_COEFFICIENT = 1.0 - 1e-6
 # A linear solve is refined once where impulses that cancel are this many times those that are left: a violent step. A
 # higher bound loses the digits of one spring's step at Cd near 1, a lower one costs time on every step.
-CANCELLATION = 30.0
+CANCELLATION = 300.0
 
 
 @scalar_kernel
@@ -35,7 +35,7 @@ def implicit_masses(stiffness, damping, mass):  # type: ignore[no-untyped-def]
     return mass * damping / (1.0 - damping), mass * stiffness / (1.0 - damping)
 
 
-@kernel
+@inner_kernel
 def load_springs(  # type: ignore[no-untyped-def]
     first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,
 ):  # fmt: skip
@@ -64,7 +64,7 @@ def load_springs(  # type: ignore[no-untyped-def]
     return bouncy
 
 
-@kernel
+@inner_kernel
 def linearise(first, last, rows, springs, h, ahead, behind):  # type: ignore[no-untyped-def]
     """Directions, transverse masses and impulses of the springs first..last for one linear solve about `trial`.
 
@@ -105,7 +105,7 @@ def linearise(first, last, rows, springs, h, ahead, behind):  # type: ignore[no-
         springs.across[k] = across
 
 
-@scalar_kernel
+@inner_kernel
 def _growth(dx, dy, ux, uy, length, h):  # type: ignore[no-untyped-def]
     # (l' - l) / h = (2 d.u + h u.u) / (l' + l), which does not cancel
     ex = dx + h * ux
@@ -116,7 +116,7 @@ def _growth(dx, dy, ux, uy, length, h):  # type: ignore[no-untyped-def]
     return 0.0
 
 
-@kernel
+@inner_kernel
 def assemble(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
     """A = M + sum [K n n^T + g (I - n n^T)]."""
     free_count = matrix.diagonal.shape[0]
@@ -156,7 +156,7 @@ def assemble(first_row, last_row, first, last, rows, springs, matrix):  # type: 
             matrix.lower[at, 3] -= yy
 
 
-@kernel
+@inner_kernel
 def load_residual(first_row, last_row, first, last, rows, springs, free_count):  # type: ignore[no-untyped-def]
     """The right side M (v* - v') + sum of the springs' impulses of one body, into `change`."""
     for r in range(first_row, last_row):
@@ -177,7 +177,7 @@ def load_residual(first_row, last_row, first, last, rows, springs, free_count): 
             rows.change[b, 1] += jy
 
 
-@kernel
+@inner_kernel
 def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
     """Solve A D = right side for the rows of one body; D is left in `change`."""
     assemble(first_row, last_row, first, last, rows, springs, matrix)
@@ -191,7 +191,7 @@ def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # ty
     )  # fmt: skip
 
 
-@kernel
+@inner_kernel
 def update_impulses(first, last, rows, springs, free_count):  # type: ignore[no-untyped-def]
     """J = q - K n.(D_b - D_a) of one body's springs, and the like across them; whether D wants refining."""
     before = 0.0
@@ -217,7 +217,7 @@ def update_impulses(first, last, rows, springs, free_count):  # type: ignore[no-
     return before > CANCELLATION * after
 
 
-@kernel
+@inner_kernel
 def refine(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
     """Solve for what is left of the right side, with the impulses found so far; it is left in `change`."""
     load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
@@ -226,7 +226,7 @@ def refine(first_row, last_row, first, last, rows, springs, matrix):  # type: ig
     )  # fmt: skip
 
 
-@kernel
+@inner_kernel
 def objective(first_row, last_row, first, last, rows, springs, h):  # type: ignore[no-untyped-def]
     """f(v') of one body at `trial` [J]."""
     total = 0.0
@@ -248,7 +248,7 @@ def objective(first_row, last_row, first, last, rows, springs, h):  # type: igno
     return total
 
 
-@kernel
+@inner_kernel
 def kinetic(first_row, last_row, mass, velocity):  # type: ignore[no-untyped-def]
     """1/2 |v|^2_M of one body [J]."""
     total = 0.0
@@ -257,7 +257,7 @@ def kinetic(first_row, last_row, mass, velocity):  # type: ignore[no-untyped-def
     return total
 
 
-@kernel
+@inner_kernel
 def potential(first, last, position, velocity, springs, rest_length, time, h):  # type: ignore[no-untyped-def]
     """Energy of one body's springs at position + time velocity [J]: sum of K beta x^2 / (2 h^2)."""
     total = 0.0

@@ -4,7 +4,7 @@ Everything here is integer work, a pure function of which particles the springs 
 library's choice enters, because the order decides the last bits of a tick.
 """
 
-from sandbox.physics.jit import kernel
+from sandbox.physics.jit import inner_kernel, kernel
 
 
 @kernel
@@ -28,7 +28,7 @@ def label_bodies(link_a, link_b, label):  # type: ignore[no-untyped-def]
         label[node] = label[label[node]]
 
 
-@kernel
+@inner_kernel
 def _sift_up(heap, place, degree, at):  # type: ignore[no-untyped-def]
     node = heap[at]
     while at > 0:
@@ -43,7 +43,7 @@ def _sift_up(heap, place, degree, at):  # type: ignore[no-untyped-def]
     place[node] = at
 
 
-@kernel
+@inner_kernel
 def _sift_down(heap, place, degree, at, size):  # type: ignore[no-untyped-def]
     node = heap[at]
     while 2 * at + 1 < size:
@@ -63,7 +63,7 @@ def _sift_down(heap, place, degree, at, size):  # type: ignore[no-untyped-def]
     place[node] = at
 
 
-@kernel
+@inner_kernel
 def _gather(  # type: ignore[no-untyped-def]
     step, pivot, start, near, near_count, element, element_count, column_start, column, absorbed, mark
 ):
@@ -92,7 +92,7 @@ def _gather(  # type: ignore[no-untyped-def]
     return top
 
 
-@kernel
+@inner_kernel
 def _prune(  # type: ignore[no-untyped-def]
     step, start, near, near_count, element, element_count, column_start, column, absorbed, mark, outside, counted
 ):
@@ -119,7 +119,7 @@ def _prune(  # type: ignore[no-untyped-def]
         element_count[node] = kept + 1 - start[node]
 
 
-@kernel
+@inner_kernel
 def _bound_degrees(  # type: ignore[no-untyped-def]
     step, left, start, near_count, element, element_count, column_start, column, outside, heap, place, degree
 ):
