@@ -350,7 +350,7 @@ def _check_level(name: str) -> int:
     )
     results = run_checks(level)
     for result in results:
-        print(f"  {'passed' if result.passed else 'FAILED'}     {result.text}")
+        print(f"  check      {result.text}")
     return EXIT_OK if all(result.passed for result in results) else EXIT_FAILED
 
 

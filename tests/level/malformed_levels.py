@@ -224,7 +224,7 @@ OUTSIDE = [
 ]
 
 
-def malformed_levels() -> Iterator[tuple[str, bytes]]:
+def malformed() -> Iterator[tuple[str, bytes]]:
     """Name and bytes of every malformed level."""
     for place, value in [
         *((place, value) for place in NUMBERS for value in NO_NUMBERS),
