@@ -4,6 +4,7 @@ Order: size, depth by a scan of the bytes, duplicate keys, sizes of lists, the m
 and counts. Each stage trusts what the one before has refused.
 """
 
+import collections
 import contextlib
 import gc
 import itertools
@@ -99,8 +100,8 @@ def _load(data: bytes, source: str) -> Any:
     def collect(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         result = dict(pairs)
         if len(result) != len(pairs) and len(repeated) <= FAULT_LIMIT:
-            seen: set[str] = set()
-            repeated.extend((result, key) for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
+            counts = collections.Counter(key for key, _ in pairs)
+            repeated.extend((result, key) for key, number in counts.items() if number > 1)
         return result
 
     try:
