@@ -30,7 +30,7 @@ from sandbox.session.replay import Replay
 
 FRAME_RATE = 60
 # How often the status figures and the window title change [s].
-FIGURES_EVERY = 0.25
+FIGURES_EVERY = 0.5
 
 
 class App:

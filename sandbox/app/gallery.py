@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sandbox.app.files import FileActions
 
 # Sizes in layout units.
-CARD_WIDTH = 276.0
+CARD_WIDTH = 250.0
 PICTURE_RATIO = 9 / 16
 TEXT_HEIGHT = 74.0
 GAP = 20.0

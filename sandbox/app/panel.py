@@ -157,7 +157,7 @@ class Panel:
             slider.show(float(np.median(values)), limit, is_mixed, True)
             field.show("mixed" if is_mixed else f"{values[0]:.6g}")
         self._show_reading(stiffness, damping)
-        self._show_note(limits.reason[0].upper() + limits.reason[1:])
+        self._show_note(_limit_note(limits))
 
     def _show_reading(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
         if stiffness.min() != stiffness.max() or damping.min() != damping.max():
@@ -294,8 +294,15 @@ class Panel:
         return True
 
 
+def _limit_note(limits: CoefficientLimits) -> str:
+    reason = limits.reason[0].upper() + limits.reason[1:]
+    if limits.stiffness is None or limits.damping is None:
+        return f"{reason}."
+    return f"Stable up to Cs {limits.stiffness:.3g}, Cd {limits.damping:.3g}. {reason}."
+
+
 def _reading(value: float) -> str:
-    return "∞" if math.isinf(value) else f"{value:.4g}"
+    return "infinite" if math.isinf(value) else f"{value:.4g}"
 
 
 def _typed_or_none(text: str) -> float | None:

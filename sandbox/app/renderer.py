@@ -21,6 +21,7 @@ from sandbox.app.colours import (
 from sandbox.app.lines import Canvas
 from sandbox.app.playback import interpolated
 from sandbox.app.profile import Profile
+from sandbox.level.limits import BODY_RADIUS
 from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.snapshot import Snapshot
 
@@ -31,6 +32,8 @@ PIN_RADIUS = 5.0
 GRID_STEP = 64.0
 # A dense mesh seen from afar would be a solid block with full-width springs: they go down to this width.
 THINNEST_SPRING = 0.9
+# Spring width and smallest radius as a part of the usual distance between particles.
+DENSITY = 0.14
 
 
 @dataclass
@@ -49,6 +52,7 @@ class Renderer:
         self.scale = scale
         self.compiled = True
         self.non_finite = 0
+        self._spacing = 10.0
 
     def draw(
         self,
@@ -106,9 +110,8 @@ class Renderer:
         canvas.lines(np.ascontiguousarray(ends), strain_colours(strain), self._spring_width(camera, rest))
 
     def _spring_width(self, camera: Camera, rest: NDArray[np.float64]) -> float:
-        typical = float(np.median(rest)) * camera.zoom if len(rest) else 0.0
-        full = SPRING_WIDTH * self.scale
-        return float(np.clip(typical * 0.16, THINNEST_SPRING * self.scale, full))
+        self._spacing = float(np.median(rest)) * camera.zoom if len(rest) else SPRING_WIDTH * self.scale / DENSITY
+        return float(np.clip(self._spacing * DENSITY, THINNEST_SPRING * self.scale, SPRING_WIDTH * self.scale))
 
     def _draw_particles(
         self, canvas: Canvas, camera: Camera, current: Snapshot, pixels: NDArray[np.float64]
@@ -118,9 +121,13 @@ class Renderer:
         self.non_finite = int(np.count_nonzero(shown & ~finite))
         visible = np.flatnonzero(shown & finite)
         pinned = current.inverse_mass[visible] == 0.0
-        radii = np.maximum(current.radius[visible] * camera.zoom, SMALLEST_RADIUS * self.scale)
+        smallest = np.clip(self._spacing * DENSITY, THINNEST_SPRING * self.scale, SMALLEST_RADIUS * self.scale)
+        radii = current.radius[visible] * camera.zoom
+        # Particles of the usual radius shrink with the mesh that they belong to, or a cloth is a field of dots.
+        usual = current.radius[visible] <= BODY_RADIUS
+        radii = np.maximum(np.where(usual, np.minimum(radii, np.maximum(self._spacing * 0.2, smallest)), radii), smallest)
         centres = np.ascontiguousarray(pixels[visible])
-        rim = max(1.0, 1.5 * self.scale)
+        rim = min(1.4 * self.scale, self._spacing * 0.08)
         canvas.discs(centres, radii + rim, np.full(len(visible), packed(BACKGROUND)))
         canvas.discs(centres, radii, np.where(pinned, packed(PINNED), packed(PARTICLE)))
         self._draw_pins(canvas, centres[pinned], radii[pinned])

@@ -16,6 +16,8 @@ KEY_STEP, FINE_KEY_STEP = 0.02, 0.004
 # Painted this many times larger and scaled down: smooth edges.
 OVERSAMPLING = 3
 MARGIN = 9.0
+# Colour of the decades on the scale.
+DECADE = (72, 82, 100)
 
 
 def fraction_of(value: float) -> float:
@@ -120,7 +122,7 @@ class LogSlider(Painted):
         accent = ACCENT if self.enabled else LINE
         for decade in range(6):
             x = margin + decade / 5 * length
-            pygame.draw.line(surface, LINE, (x, middle + 5 * scale), (x, middle + 9 * scale), max(1, round(1.2 * scale)))
+            pygame.draw.line(surface, DECADE, (x, middle + 7 * scale), (x, middle + 10 * scale), max(1, round(1.3 * scale)))
         bar(0.0, 1.0, LINE)
         limited = self.limit is not None and self.limit < 1.0
         limit = fraction_of(self.limit) if self.limit is not None else 1.0

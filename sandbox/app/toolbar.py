@@ -76,8 +76,8 @@ class Toolbar:
         if state == before:
             return
         for name, button in self.tools.items():
-            (button.select if name == state.tool else button.unselect)()
             set_icon(button, self._icon(name, ACCENT if name == state.tool else TEXT))
+            (button.select if name == state.tool else button.unselect)()
         set_icon(self.pause, self._icon("play" if state.paused else "pause", ACCENT if state.paused else TEXT))
         set_icon(self.record, self._icon("stop" if state.recording else "record", DANGER))
         self.slow.set_text("1x" if state.speed == 1.0 else f"1/{round(1 / state.speed)}x")
