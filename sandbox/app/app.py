@@ -19,6 +19,7 @@ from sandbox.app.loop import SPEEDS
 from sandbox.app.panel import PANEL_WIDTH, Panel
 from sandbox.app.playback import Playback
 from sandbox.app.profile import Profile
+from sandbox.app.progress import Progress
 from sandbox.app.stage import Stage
 from sandbox.app.status import STATUS_HEIGHT, StatusLine, draw_spinner, status_parts
 from sandbox.app.toolbar import BAR_HEIGHT, BarState, Toolbar
@@ -47,6 +48,7 @@ class App:
         self.gallery: Gallery | None = None
         self.input = Input(self)
         self.files = FileActions(self)
+        self._progress = Progress(self)
         self.actions = self._actions()
         self._figures = (0.0, 0.0)
         self._counted = [0.0, 0, 0, 0.0]
@@ -109,7 +111,12 @@ class App:
         self.close_gallery()
         self.files.leave_recording()
         self.stage = Stage(playback, self.viewport, self.scale)
+        self.follow(playback)
         self.rebuild()
+
+    def follow(self, playback: Playback) -> None:
+        """Show how far a run is that has to be played again, for an undo or a recording, where that takes long."""
+        playback.session.progress = self._progress.show
 
     def open_gallery(self, section: str = "levels") -> None:
         """Choose a level or a recording."""
@@ -176,6 +183,7 @@ class App:
     def _reset(self, stage: Stage) -> None:
         self.files.leave_recording()
         stage.replace_playback(stage.playback.reset())
+        self.follow(stage.playback)
         if self.panel is not None:
             self.panel.playback = stage.playback
 
@@ -244,7 +252,8 @@ class App:
             self.stage.draw(surface, self.profile)
         with self.profile.part("ui"):
             if self.stage is not None:
-                self.status.draw(surface, self._status_parts(self.stage), self.ui.units[0], 16.0)
+                left = None if self.ui.has_sheet else 16.0
+                self.status.draw(surface, self._status_parts(self.stage), self.ui.units[0], left)
             self.ui.draw(surface)
             if self.stage is None or self.ui.has_sheet:
                 self.status.draw_notices(surface, 16.0)

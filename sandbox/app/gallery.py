@@ -116,6 +116,7 @@ class Gallery:
         self.cards: list[Card] = []
         self._unpainted: list[tuple[Card, Level]] = []
         self._scroll = 0.0
+        self._columns = 1
         self.sheet = ui.open_sheet(close if files.app.stage is not None else lambda: None, "@cover")
         width, height = ui.units
         ui.label(ui.rect(MARGIN, 26, 400, 40), "Spring Sandbox", self.sheet, "@display")
@@ -134,7 +135,7 @@ class Gallery:
     def _add_levels(self) -> None:
         ui = self._ui
         width = ui.units[0] - 2 * MARGIN
-        columns = max(1, int((width + GAP) // (CARD_WIDTH + GAP)))
+        columns = self._columns = max(1, int((width + GAP) // (CARD_WIDTH + GAP)))
         card_width = (width - GAP * (columns - 1)) / columns
         card_height = card_width * PICTURE_RATIO + TEXT_HEIGHT
         for index, path in enumerate(shipped_levels()):
@@ -196,6 +197,19 @@ class Gallery:
         twice = draw_picture(level, snapshot, (size[0] * 2, size[1] * 2))
         card.picture = pygame.transform.smoothscale(twice, size)
         card.repaint()
+
+    def press_key(self, key: int) -> bool:
+        """Go from card to card with the arrow keys."""
+        step = {pygame.K_LEFT: -1, pygame.K_RIGHT: 1, pygame.K_UP: -self._columns, pygame.K_DOWN: self._columns}
+        if key not in step or not self.cards or self._ui.typing:
+            return False
+        focus = self._ui.focus
+        here = self.cards.index(focus) if isinstance(focus, Card) and focus in self.cards else None
+        target = 0 if here is None else here + step[key]
+        if 0 <= target < len(self.cards):
+            self._ui.focus_on(self.cards[target])
+            self._show(self.cards[target])
+        return True
 
     def scroll(self, notches: float) -> None:
         """Move the cards by notches of the wheel."""

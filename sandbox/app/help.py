@@ -1,13 +1,18 @@
 """Help: the page of all shortcuts."""
 
+from typing import Any
+
+import pygame
+
+from sandbox.app.colours import ACCENT, MUTED, TEXT
 from sandbox.app.shortcuts import GROUPS, SHORTCUTS
-from sandbox.app.widgets import Ui
+from sandbox.app.widgets import Painted, Ui
 
 # Sizes in layout units.
-COLUMN_WIDTH = 452.0
-KEYS_WIDTH = 128.0
+COLUMN_WIDTH = 480.0
+KEYS_WIDTH = 148.0
 ROW = 22.0
-HEADING = 32.0
+HEADING = 34.0
 TOP = 62.0
 MARGIN = 28.0
 # Groups by column, in windows that are wide enough for two.
@@ -17,12 +22,9 @@ COLUMNS = (("Tools", "View"), ("Time", "Files", "Keyboard"))
 def show_help(ui: Ui) -> None:
     """Cover the window by the list of all shortcuts, until it is closed."""
     width, height = ui.units
-    two = width >= 2 * COLUMN_WIDTH
-    columns = COLUMNS if two else (GROUPS,)
-    tallest = max(_height(groups) for groups in columns)
-    box_width = min(len(columns) * COLUMN_WIDTH + MARGIN, width - 16)
-    box_height = min(TOP + tallest + MARGIN, height - 16)
-    squeeze = min(1.0, (box_height - TOP - 12) / tallest)
+    columns = COLUMNS if width >= 2 * COLUMN_WIDTH + 20 else (GROUPS,)
+    box_width = min(len(columns) * COLUMN_WIDTH, width - 16)
+    box_height = min(TOP + max(_height(groups) for groups in columns) + MARGIN, height - 16)
 
     def close() -> None:
         ui.close_sheet(sheet)
@@ -32,8 +34,7 @@ def show_help(ui: Ui) -> None:
     box = ui.panel(place, sheet, "@dialog")
     ui.label(ui.rect(MARGIN, 18, 300, 28), "Shortcuts", box, "@title")
     button = ui.button(ui.rect(box_width - MARGIN - 90, 16, 90, 32), "Close", close, box)
-    for index, groups in enumerate(columns):
-        _column(ui, box, MARGIN + index * (box_width - MARGIN) / len(columns), groups, squeeze)
+    ShortcutTable(ui, ui.rect(MARGIN, TOP, box_width - 2 * MARGIN, box_height - TOP - 12), columns, box).repaint()
     ui.focus_on(button)
 
 
@@ -41,13 +42,32 @@ def _height(groups: tuple[str, ...]) -> float:
     return sum(HEADING + ROW * sum(entry.group == group for entry in SHORTCUTS) for group in groups)
 
 
-def _column(ui: Ui, box: object, left: float, groups: tuple[str, ...], squeeze: float) -> None:
-    y = TOP
-    for group in groups:
-        ui.label(ui.rect(left, y + 8 * squeeze, 200, 18), group.upper(), box, "@heading")
-        y += HEADING * squeeze
-        for entry in (entry for entry in SHORTCUTS if entry.group == group):
-            keys = " or ".join(entry.keys[:2])
-            ui.label(ui.rect(left, y, KEYS_WIDTH, ROW * squeeze), keys, box, "@key")
-            ui.label(ui.rect(left + KEYS_WIDTH + 14, y, 310, ROW * squeeze), entry.label, box, "@muted")
-            y += ROW * squeeze
+class ShortcutTable(Painted):
+    """All shortcuts in columns; rows move closer together where the window is low."""
+
+    def __init__(self, ui: Ui, rect: pygame.Rect, columns: tuple[tuple[str, ...], ...], container: Any) -> None:
+        super().__init__(ui, rect, container)
+        self.columns = columns
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface:
+        """The whole table."""
+        surface = pygame.Surface(size, pygame.SRCALPHA)
+        tallest = max(_height(groups) for groups in self.columns)
+        row = min(1.0, size[1] / self.ui.px(tallest))
+        for index, groups in enumerate(self.columns):
+            self._paint_column(surface, index * size[0] // len(self.columns), groups, row)
+        return surface
+
+    def _paint_column(self, surface: pygame.Surface, left: int, groups: tuple[str, ...], squeeze: float) -> None:
+        ui, y = self.ui, 0.0
+        size = 12.5 * max(squeeze, 0.7)
+        for group in groups:
+            heading = ui.font(11 * max(squeeze, 0.7), True).render(group.upper(), True, MUTED)
+            surface.blit(heading, (left, ui.px(y + (HEADING - 22) * squeeze)))
+            y += HEADING * squeeze
+            for entry in (entry for entry in SHORTCUTS if entry.group == group):
+                keys = ui.font(size, True).render(" or ".join(entry.keys[:2]), True, ACCENT)
+                surface.blit(keys, (left, ui.px(y)))
+                label = ui.font(size).render(entry.label, True, TEXT)
+                surface.blit(label, (left + ui.px(KEYS_WIDTH), ui.px(y)))
+                y += ROW * squeeze

@@ -57,6 +57,8 @@ class Input:
             self._key(event)
         elif event.type == pygame.KEYUP and event.key == pygame.K_SPACE:
             self._space_up()
+        elif event.type == pygame.MOUSEWHEEL and self.app.gallery is not None:
+            self.app.gallery.scroll(event.precise_y or event.y)
         elif self.app.stage is None or self.app.ui.has_sheet:
             return
         elif event.type == pygame.MOUSEBUTTONDOWN:
@@ -73,6 +75,8 @@ class Input:
     def _key(self, event: pygame.event.Event) -> None:
         app = self.app
         if app.ui.typing:
+            return
+        if app.gallery is not None and app.gallery.press_key(event.key):
             return
         if event.key in ARROWS and app.stage is not None and not app.ui.has_sheet:
             app.stage.move_cursor(*ARROWS[event.key], event.mod)

@@ -31,6 +31,12 @@ class Playback:
         self.messages: list[str] = []
         self.current = self.previous = self.session.snapshot()
         self._equal = True
+        self._submitted = False
+
+    @property
+    def has_pending(self) -> bool:
+        """Whether commands wait that `apply_pending` has not applied yet."""
+        return self._submitted
 
     @property
     def watching(self) -> bool:
@@ -47,6 +53,7 @@ class Playback:
         """Queue a command of the person's; while a replay is watched, the person takes over from it."""
         if self.watching:
             self.take_over()
+        self._submitted = True
         self.session.submit(command, gesture)
 
     def respond(self, response: Response) -> None:
@@ -81,12 +88,12 @@ class Playback:
 
     def apply_pending(self) -> None:
         """Apply what was submitted, also while paused, and show it at once."""
-        pending = bool(self.session._pending)
+        submitted, self._submitted = self._submitted, False
         try:
             self.session.apply_pending()
         except CommandError as error:
             self._end_watching(f"the recording holds a command that cannot be carried out: {error}")
-        if pending:
+        if submitted:
             self.current = self.session.snapshot()
             if len(self.previous.mass) != len(self.current.mass) or self.clock.paused:
                 self.previous = self.current

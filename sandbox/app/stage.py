@@ -86,7 +86,7 @@ class Stage:
     def point(self, kind: Literal["down", "move", "up"], pixel: Pixel, modifiers: int, button: int = 1) -> None:
         """Hand a pointer event to the tool."""
         self._tool_pressed = kind == "down" or (self._tool_pressed and kind == "move")
-        if self.playback.session._pending:
+        if self.playback.has_pending:
             self.playback.apply_pending()
         event = PointerEvent(
             kind,

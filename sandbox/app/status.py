@@ -50,8 +50,10 @@ class StatusLine:
             if notice.left <= 0.0:
                 self.notices.remove(notice)
 
-    def draw(self, surface: pygame.Surface, parts: list[tuple[str, Colour]], right: float, notices_left: float) -> None:
-        """Draw parts of text (text, colour) from the left, the legend up to `right`; in layout units."""
+    def draw(
+        self, surface: pygame.Surface, parts: list[tuple[str, Colour]], right: float, notices_left: float | None
+    ) -> None:
+        """Draw parts of text from the left, the legend up to `right`, notices from a left edge; in layout units."""
         ui = self.ui
         height = ui.px(STATUS_HEIGHT)
         top = surface.get_height() - height
@@ -65,7 +67,8 @@ class StatusLine:
             surface.blit(picture, (x, top + (height - picture.get_height()) // 2))
             x += picture.get_width() + ui.px(18)
         self._draw_legend(surface, ui.px(right), top, height)
-        self._draw_notices_above(surface, top, notices_left)
+        if notices_left is not None:
+            self._draw_notices_above(surface, top, notices_left)
 
     def draw_notices(self, surface: pygame.Surface, left: float) -> None:
         """Draw the notices alone, over a page that covers the line."""
@@ -127,13 +130,18 @@ class StatusLine:
         return self._texts[key]
 
 
-def draw_spinner(surface: pygame.Surface, ui: Ui, seconds: float, text: str, detail: str) -> None:
-    """A card in the middle of the window with a turning ring, while something takes its time."""
-    width, height = ui.px(380), ui.px(96)
-    card = pygame.Rect(0, 0, width, height)
+def _card(surface: pygame.Surface, ui: Ui, text: str) -> pygame.Rect:
+    card = pygame.Rect(0, 0, ui.px(380), ui.px(96))
     card.center = (surface.get_width() // 2, surface.get_height() // 2)
     pygame.draw.rect(surface, NOTICE_COLOUR, card, border_radius=ui.px(12))
     pygame.draw.rect(surface, LINE, card, 1, border_radius=ui.px(12))
+    surface.blit(ui.font(15, True).render(text, True, TEXT), (card.left + ui.px(84), card.top + ui.px(24)))
+    return card
+
+
+def draw_spinner(surface: pygame.Surface, ui: Ui, seconds: float, text: str, detail: str) -> None:
+    """A card in the middle of the window with a turning ring, while something takes its time."""
+    card = _card(surface, ui, text)
     middle = pygame.Vector2(card.left + ui.px(46), card.centery)
     for dot in range(10):
         turn = math.tau * dot / 10
@@ -141,8 +149,16 @@ def draw_spinner(surface: pygame.Surface, ui: Ui, seconds: float, text: str, det
         colour = [round(a + (z - a) * age) for a, z in zip(LINE, ACCENT, strict=True)]
         at = middle + pygame.Vector2(math.cos(turn), math.sin(turn)) * ui.px(16)
         pygame.draw.aacircle(surface, colour, at, ui.px(3))
-    surface.blit(ui.font(15, True).render(text, True, TEXT), (card.left + ui.px(84), card.top + ui.px(24)))
     surface.blit(ui.font(12).render(detail, True, MUTED), (card.left + ui.px(84), card.top + ui.px(50)))
+
+
+def draw_bar(surface: pygame.Surface, ui: Ui, share: float, text: str) -> None:
+    """A card in the middle of the window with a bar that is filled to a share (0..1)."""
+    card = _card(surface, ui, text)
+    bar = pygame.Rect(card.left + ui.px(84), card.top + ui.px(58), card.width - ui.px(108), ui.px(6))
+    pygame.draw.rect(surface, LINE, bar, border_radius=ui.px(3))
+    bar.width = round(bar.width * min(max(share, 0.0), 1.0))
+    pygame.draw.rect(surface, ACCENT, bar, border_radius=ui.px(3))
 
 
 def status_parts(

@@ -321,6 +321,11 @@ class Ui:
         return False
 
     def _escape(self, typed_into: Field | None) -> bool:
+        open_menus = [menu for menu in self._choosers if menu.current_state is menu.menu_states["expanded"]]
+        for menu in open_menus:
+            menu._close_dropdown_if_open()
+        if open_menus:
+            return True
         if typed_into is not None:
             typed_into.revert()
         if typed_into is not None or self._focus is not None:
