@@ -2,14 +2,14 @@
 
 import threading
 import time
+from collections import deque
 from collections.abc import Callable
-
-from sandbox.app.display import SCALE_RANGE, Display
 
 import pygame
 
 from sandbox.app.colours import ACCENT, BACKGROUND, DANGER, MUTED, TEXT, WARNING, Colour
 from sandbox.app.dialogs import show_lines
+from sandbox.app.display import SCALE_RANGE, Display
 from sandbox.app.files import FileActions
 from sandbox.app.gallery import Gallery
 from sandbox.app.help import show_help
@@ -21,7 +21,7 @@ from sandbox.app.playback import Playback
 from sandbox.app.profile import Profile
 from sandbox.app.progress import Progress
 from sandbox.app.stage import Stage
-from sandbox.app.status import STATUS_HEIGHT, StatusLine, draw_spinner, status_parts
+from sandbox.app.status import NOTICES, STATUS_HEIGHT, Notice, StatusLine, draw_spinner, status_parts
 from sandbox.app.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.widgets import Ui
 from sandbox.level.model import Level
@@ -41,6 +41,7 @@ class App:
         self.display = display
         self.scale = display.scale
         self.profile = Profile()
+        self._notices: deque[Notice] = deque(maxlen=NOTICES)
         self.running = True
         self.ready = False
         self.show_panel = True
@@ -67,9 +68,7 @@ class App:
 
     def _build_ui(self) -> None:
         self.ui = Ui(self.display.size, self.scale, self.display.pixel_ratio)
-        notices = self.status.notices if hasattr(self, "status") else ()
-        self.status = StatusLine(self.ui)
-        self.status.notices.extend(notices)
+        self.status = StatusLine(self.ui, self._notices)
         self.toolbar = Toolbar(self.ui, self.act)
         self.panel: Panel | None = None
         if self.stage is not None:
@@ -339,5 +338,3 @@ def run_app(
     if profile:
         print(app.profile.table(time.perf_counter() - started))
     return 0
-
-

@@ -1,7 +1,10 @@
 """Dialogs: lines that a person has to see, and a question with a typed answer."""
 
 from collections.abc import Callable
+from typing import Any
 
+from sandbox.app.colours import TEXT
+from sandbox.app.painted import TextBlock
 from sandbox.app.widgets import Ui
 
 # Sizes in layout units.
@@ -13,7 +16,7 @@ MOST_LINES = 14
 LINE_CHARACTERS = 74
 
 
-def _box(ui: Ui, height: float, close: Callable[[], None]) -> tuple[object, object, float]:
+def _box(ui: Ui, height: float, close: Callable[[], None]) -> tuple[Any, Any, float]:
     """A modal box in the middle: the sheet, the box and its width in layout units."""
     width, tall = ui.units
     box_width = min(WIDTH, width - 40)
@@ -34,8 +37,10 @@ def show_lines(ui: Ui, title: str, lines: list[str]) -> None:
     sheet, box, width = _box(ui, height, close)
     ui.label(ui.rect(MARGIN, MARGIN - 6, width - 2 * MARGIN, 28), title, box, "@title")
     place = ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN, height - MARGIN * 2 - 84)
-    ui.text(place, "\n".join(shown), box, "@lines")
-    button = ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Close", close, box, style="@primary")
+    TextBlock(ui, place, "\n".join(shown), box, 13.0, TEXT)
+    button = ui.button(
+        ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Close", close, box, style="@primary"
+    )
     ui.focus_on(button)
 
 

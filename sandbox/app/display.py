@@ -49,6 +49,7 @@ class Display:
         self.window = pygame.Window("Spring Sandbox", size, resizable=True, allow_high_dpi=True)
         self.window.minimum_size = SMALLEST_WINDOW
         self.surface = self.window.get_surface()
+        self._shown_size = self.size
         self.fullscreen = False
         # A window in points of two pixels says so itself.
         ratio = self.pixel_ratio[1]
@@ -68,8 +69,8 @@ class Display:
 
     def refresh(self) -> bool:
         """Take up a new window size; True where it changed."""
-        before = self.size
         self.surface = self.window.get_surface()
+        before, self._shown_size = self._shown_size, self.size
         return self.size != before
 
     def toggle_fullscreen(self) -> None:

@@ -2,15 +2,17 @@
 
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pygame
 
 from sandbox.app.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT
+from sandbox.app.painted import Painted, wrapped
 from sandbox.app.picture import draw_picture, run_ahead
 from sandbox.app.recordings import saved_recordings
-from sandbox.app.widgets import ENTER_KEYS, Painted, Ui
+from sandbox.app.widgets import ENTER_KEYS, Ui
 from sandbox.level.files import LevelError, read_level, shipped_levels
 from sandbox.level.model import Level
 
@@ -35,7 +37,9 @@ PICTURE_PARTICLES = 3000
 class Card(Painted):
     """One thing to open: a picture where there is one, a name, a line of text."""
 
-    def __init__(self, ui: Ui, rect: pygame.Rect, name: str, text: str, action: Callable[[], None], container: Any) -> None:
+    def __init__(
+        self, ui: Ui, rect: pygame.Rect, name: str, text: str, action: Callable[[], object], container: Any
+    ) -> None:
         super().__init__(ui, rect, container)
         self.name, self.text, self.action = name, text, action
         self.picture: pygame.Surface | None = None
@@ -55,9 +59,10 @@ class Card(Painted):
         rim = ACCENT if self.hovered else LINE
         pygame.draw.rect(card, rim, card.get_rect(), max(1, ui.px(1.4)), border_radius=ui.px(10))
         y = picture_height + ui.px(9)
-        card.blit(ui.font(14, True).render(self.name, True, TEXT), (ui.px(14), y))
+        name = wrapped(self.name, ui.font(14, True), width - ui.px(28), 1)[0]
+        card.blit(ui.font(14, True).render(name, True, TEXT), (ui.px(14), y))
         y += ui.px(22)
-        for line in self._lines(width - ui.px(28)):
+        for line in wrapped(self.text, ui.font(11.5), width - ui.px(28), 2 if self.has_picture else 1):
             card.blit(ui.font(11.5).render(line, True, DANGER if self.broken else MUTED), (ui.px(14), y))
             y += ui.px(16)
         return card
@@ -71,19 +76,6 @@ class Card(Painted):
             card.blit(self.picture, inset)
         pygame.draw.line(card, LINE, (1, height), (width - 2, height))
 
-    def _lines(self, widest: int) -> list[str]:
-        font = self.ui.font(11.5)
-        lines: list[str] = []
-        for word in self.text.split():
-            if lines and font.size(f"{lines[-1]} {word}")[0] <= widest:
-                lines[-1] += f" {word}"
-            elif len(lines) == (2 if self.has_picture else 1):
-                lines[-1] += "…"
-                break
-            else:
-                lines.append(word)
-        return lines
-
     def on_hovered(self) -> None:
         """Show that a click opens this."""
         self.repaint()
@@ -94,10 +86,10 @@ class Card(Painted):
 
     def process_event(self, event: pygame.event.Event) -> bool:
         """Open on a click."""
-        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
-            if self.hover_point(*self.ui.manager.calculate_scaled_mouse_position(event.pos)):
-                self.action()
-                return True
+        pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
+        if pressed and self.hover_point(*self.ui.manager.calculate_scaled_mouse_position(event.pos)):
+            self.action()
+            return True
         return False
 
     def press_key(self, event: pygame.event.Event) -> bool:
@@ -167,14 +159,14 @@ class Gallery:
             rect = ui.rect(6, 6 + index * (ROW_HEIGHT + 10), width, ROW_HEIGHT)
             card = Card(
                 ui, rect, path.name, f"{when}, {stat.st_size / 1024:,.0f} KiB",
-                lambda path=path: self._files.open_replay(path), self.area,
+                partial(self._files.open_replay, path), self.area,
             )  # fmt: skip
             card.has_picture = False
             card.repaint()
             self.cards.append(card)
 
     def _add_card(self, rect: pygame.Rect, name: str, text: str, action: Callable[[], object]) -> Card:
-        card = Card(self._ui, rect, name, text, lambda: (action(), None)[1], self.area)
+        card = Card(self._ui, rect, name, text, action, self.area)
         card.repaint()
         self.cards.append(card)
         return card

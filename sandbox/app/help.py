@@ -5,12 +5,13 @@ from typing import Any
 import pygame
 
 from sandbox.app.colours import ACCENT, MUTED, TEXT
-from sandbox.app.shortcuts import GROUPS, SHORTCUTS
-from sandbox.app.widgets import Painted, Ui
+from sandbox.app.painted import Painted
+from sandbox.app.shortcuts import GROUPS, SHORTCUTS, Shortcut
+from sandbox.app.widgets import Ui
 
 # Sizes in layout units.
 COLUMN_WIDTH = 480.0
-KEYS_WIDTH = 148.0
+NARROWEST_COLUMN = 420.0
 ROW = 22.0
 HEADING = 34.0
 TOP = 62.0
@@ -22,7 +23,7 @@ COLUMNS = (("Tools", "View"), ("Time", "Files", "Keyboard"))
 def show_help(ui: Ui) -> None:
     """Cover the window by the list of all shortcuts, until it is closed."""
     width, height = ui.units
-    columns = COLUMNS if width >= 2 * COLUMN_WIDTH + 20 else (GROUPS,)
+    columns = COLUMNS if width >= 2 * NARROWEST_COLUMN + 20 else (GROUPS,)
     box_width = min(len(columns) * COLUMN_WIDTH, width - 16)
     box_height = min(TOP + max(_height(groups) for groups in columns) + MARGIN, height - 16)
 
@@ -40,6 +41,10 @@ def show_help(ui: Ui) -> None:
 
 def _height(groups: tuple[str, ...]) -> float:
     return sum(HEADING + ROW * sum(entry.group == group for entry in SHORTCUTS) for group in groups)
+
+
+def _keys(entry: Shortcut) -> str:
+    return " or ".join(entry.keys[:2])
 
 
 class ShortcutTable(Painted):
@@ -61,13 +66,15 @@ class ShortcutTable(Painted):
     def _paint_column(self, surface: pygame.Surface, left: int, groups: tuple[str, ...], squeeze: float) -> None:
         ui, y = self.ui, 0.0
         size = 12.5 * max(squeeze, 0.7)
+        shown = [entry for entry in SHORTCUTS if entry.group in groups]
+        widest = max(ui.font(size, True).size(_keys(entry))[0] for entry in shown)
         for group in groups:
             heading = ui.font(11 * max(squeeze, 0.7), True).render(group.upper(), True, MUTED)
             surface.blit(heading, (left, ui.px(y + (HEADING - 22) * squeeze)))
             y += HEADING * squeeze
             for entry in (entry for entry in SHORTCUTS if entry.group == group):
-                keys = ui.font(size, True).render(" or ".join(entry.keys[:2]), True, ACCENT)
+                keys = ui.font(size, True).render(_keys(entry), True, ACCENT)
                 surface.blit(keys, (left, ui.px(y)))
                 label = ui.font(size).render(entry.label, True, TEXT)
-                surface.blit(label, (left + ui.px(KEYS_WIDTH), ui.px(y)))
+                surface.blit(label, (left + widest + ui.px(18), ui.px(y)))
                 y += ROW * squeeze

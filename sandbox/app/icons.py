@@ -1,6 +1,7 @@
 """Icons, drawn by program: sharp at every scale."""
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import pygame
 
@@ -18,7 +19,7 @@ class _Pen:
 
     def line(self, *points: tuple[float, float], width: float = 2.0) -> None:
         placed = [(x * self.k, y * self.k) for x, y in points]
-        for start, end in zip(placed, placed[1:], strict=False):
+        for start, end in pairwise(placed):
             pygame.draw.line(self.surface, self.colour, start, end, round(width * self.k))
         for point in placed:
             pygame.draw.circle(self.surface, self.colour, point, width * self.k / 2)

@@ -27,8 +27,8 @@ def _draw_lines(pixels, ends, colours, half_width, left, top, right, bottom):  #
         along_a, along_b = (ay, by) if steep else (ax, bx)
         low, high = (top, bottom) if steep else (left, right)
         across_low, across_high = (left, right) if steep else (top, bottom)
-        first = max(low, int(math.floor(min(along_a, along_b) - reach)))
-        last = min(high - 1, int(math.ceil(max(along_a, along_b) + reach)))
+        first = max(low, math.floor(min(along_a, along_b) - reach))
+        last = min(high - 1, math.ceil(max(along_a, along_b) + reach))
         main = max(abs(ux), abs(uy))
         slope = (dx / dy if steep else dy / dx) if length > 1e-9 else 0.0
         across_a = ax if steep else ay
@@ -39,8 +39,8 @@ def _draw_lines(pixels, ends, colours, half_width, left, top, right, bottom):  #
             # Beyond an end the nearest point is that end itself, so the middle must not run on.
             inside = min(max(i + 0.5, min(along_a, along_b)), max(along_a, along_b))
             middle = across_a + (inside - along_a) * slope
-            start = max(across_low, int(math.floor(middle - spread)))
-            stop = min(across_high - 1, int(math.ceil(middle + spread)))
+            start = max(across_low, math.floor(middle - spread))
+            stop = min(across_high - 1, math.ceil(middle + spread))
             for j in range(start, stop + 1):
                 px, py = (j + 0.5, i + 0.5) if steep else (i + 0.5, j + 0.5)
                 rx, ry = px - ax, py - ay
@@ -74,8 +74,8 @@ def _draw_discs(pixels, centres, radii, colours, left, top, right, bottom):  # t
             continue
         colour = colours[p]
         red, green, blue = (colour >> 16) & 255, (colour >> 8) & 255, colour & 255
-        first, last = max(left, int(math.floor(x0 - radius - 1.0))), min(right - 1, int(math.ceil(x0 + radius + 1.0)))
-        start, stop = max(top, int(math.floor(y0 - radius - 1.0))), min(bottom - 1, int(math.ceil(y0 + radius + 1.0)))
+        first, last = max(left, math.floor(x0 - radius - 1.0)), min(right - 1, math.ceil(x0 + radius + 1.0))
+        start, stop = max(top, math.floor(y0 - radius - 1.0)), min(bottom - 1, math.ceil(y0 + radius + 1.0))
         for x in range(first, last + 1):
             dx = x + 0.5 - x0
             for y in range(start, stop + 1):
@@ -129,7 +129,9 @@ class Canvas:
         seen = (np.abs(centres) < FARTHEST).all(axis=1)
         sprites: dict[tuple[int, int], pygame.Surface] = {}
         blits = []
-        for (x, y), radius, colour in zip(centres[seen].tolist(), radii[seen].tolist(), colours[seen].tolist(), strict=True):
+        for (x, y), radius, colour in zip(
+            centres[seen].tolist(), radii[seen].tolist(), colours[seen].tolist(), strict=True
+        ):
             key = (max(1, round(radius)), colour)
             sprite = sprites.get(key) or sprites.setdefault(key, _disc_sprite(*key))
             blits.append((sprite, (round(x) - key[0] - 1, round(y) - key[0] - 1)))

@@ -4,7 +4,9 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+import pygame
 
+from sandbox.app.painted import TextBlock
 from sandbox.app.playback import Playback
 from sandbox.app.sliders import LogSlider
 from sandbox.app.widgets import Field, Ui
@@ -21,6 +23,8 @@ MARGIN = 18.0
 INSIDE = PANEL_WIDTH - 2 * MARGIN
 ROW = 28.0
 ENTRY_WIDTH = 82.0
+# Height that everything takes; in a lower window rows and gaps shrink by the same part.
+FULL_HEIGHT = 578.0
 ALL_MATERIALS = "All springs"
 DASH = "–"
 SOLVER_LABELS = {"single_pass": "Single pass", "iterative": "Iterative", "direct": "Direct"}
@@ -35,7 +39,8 @@ class Panel:
         self._gesture: int | None = None
         self._limits: CoefficientLimits | None = None
         self._limits_of: tuple[object, ...] = ()
-        self._y = 14.0
+        self._y = 0.0
+        self._tight = min(1.0, height / FULL_HEIGHT)
         self.back = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
         self._build_springs()
         self._build_world()
@@ -43,36 +48,38 @@ class Panel:
 
     # Building.
 
+    def _row(self, height: float, gap: float = 0.0, x: float = MARGIN, width: float = INSIDE) -> pygame.Rect:
+        """The next row, and the gap after it."""
+        place = self._place(x, 0.0, width, height)
+        self._y += (height + gap) * self._tight
+        return place
+
+    def _place(self, x: float, below: float, width: float, height: float) -> pygame.Rect:
+        return self._ui.rect(x, 14 + self._y + below * self._tight, width, height * self._tight)
+
     def _heading(self, text: str) -> None:
-        self._ui.label(self._ui.rect(MARGIN, self._y, INSIDE, 18), text.upper(), self.back, "@heading")
-        self._y += 24
+        self._ui.label(self._row(18, 6), text.upper(), self.back, "@heading")
 
     def _named_field(self, text: str, commit: Callable[[str], bool]) -> Field:
         """A label at the left and a line to type into at the right, on a row of their own."""
-        self._ui.label(self._ui.rect(MARGIN, self._y, INSIDE - ENTRY_WIDTH - 8, ROW), text, self.back)
-        place = self._ui.rect(MARGIN + INSIDE - ENTRY_WIDTH, self._y, ENTRY_WIDTH, ROW)
-        field = self._ui.field(place, "", commit, self.back, 24)
-        self._y += ROW + 4
-        return field
+        self._ui.label(self._place(MARGIN, 0, INSIDE - ENTRY_WIDTH - 8, ROW), text, self.back)
+        return self._ui.field(self._row(ROW, 4, MARGIN + INSIDE - ENTRY_WIDTH, ENTRY_WIDTH), "", commit, self.back, 24)
 
     def _pair(self, first: str, second: str, commits: tuple[Callable[[str], bool], ...]) -> tuple[Field, Field]:
         """Two labelled lines to type into, side by side."""
         half, fields = (INSIDE - 12) / 2, []
         for index, (text, commit) in enumerate(zip((first, second), commits, strict=True)):
             x = MARGIN + index * (half + 12)
-            self._ui.label(self._ui.rect(x, self._y, half, 18), text, self.back, "@muted")
-            fields.append(self._ui.field(self._ui.rect(x, self._y + 19, half, ROW), "", commit, self.back, 24))
-        self._y += 19 + ROW + 6
+            self._ui.label(self._place(x, 0, half, 18), text, self.back, "@muted")
+            fields.append(self._ui.field(self._place(x, 19, half, ROW), "", commit, self.back, 24))
+        self._row(19 + ROW, 6)
         return fields[0], fields[1]
 
     def _build_springs(self) -> None:
         ui = self._ui
         self._heading("Springs")
         names = [ALL_MATERIALS, *self._material_names()]
-        place = ui.rect(MARGIN, self._y, INSIDE, 30)
-        self.menu = ui.menu(place, names, ALL_MATERIALS, self._choose_material, self.back)
-        self._menu_place = place
-        self._y += 40
+        self.menu = ui.menu(self._row(30, 10), names, ALL_MATERIALS, self._choose_material, self.back)
         self.stiffness_field = self._named_field("Cs  stiffness", lambda text: self._type_coefficient(text, True))
         self.stiffness = self._slider(lambda value: self._slide(value, True))
         self.damping_field = self._named_field("Cd  damping", lambda text: self._type_coefficient(text, False))
@@ -80,32 +87,26 @@ class Panel:
         self.frequency, self.ratio = self._pair(
             "Frequency [Hz]", "Damping ratio", (self._type_frequency, self._type_ratio)
         )
-        self.note = ui.text(ui.rect(MARGIN, self._y, INSIDE, 36), "", self.back)
-        self._y += 44
+        self.note = TextBlock(ui, self._row(45, 8), "", self.back)
 
     def _slider(self, changed: Callable[[float], None]) -> LogSlider:
-        place = self._ui.rect(MARGIN - 8, self._y - 3, INSIDE + 16, 28)
-        self._y += 30
-        return LogSlider(self._ui, place, changed, self._end_gesture, self.back)
+        return LogSlider(self._ui, self._row(28, 2, MARGIN - 8, INSIDE + 16), changed, self._end_gesture, self.back)
 
     def _build_world(self) -> None:
         ui = self._ui
         self._heading("World")
         self.gravity_x, self.gravity_y = self._pair(
-            "Gravity x [m/s²]", "Gravity y [m/s²]", (lambda t: self._type_gravity(t, 0), lambda t: self._type_gravity(t, 1))
+            "Gravity x [m/s²]",
+            "Gravity y [m/s²]",
+            (lambda text: self._type_gravity(text, 0), lambda text: self._type_gravity(text, 1)),
         )
-        self._y += 6
+        self._row(4)
         self._heading("Solver")
         options = [(name, SOLVER_LABELS.get(name, name), "") for name in SOLVERS]
-        place = ui.rect(MARGIN, self._y, INSIDE, ROW)
-        self.solver = ui.choice(place, options, lambda name: self._submit(SetSolver(solver=name)), self.back)
-        self._y += ROW + 8
-        ui.label(ui.rect(MARGIN, self._y, INSIDE, 18), "Substeps", self.back, "@muted")
-        self._y += 20
+        self.solver = ui.choice(self._row(ROW, 8), options, self._choose_solver, self.back)
+        ui.label(self._row(18, 2), "Substeps", self.back, "@muted")
         counts = [(str(count), str(count), "") for count in SUBSTEPS]
-        place = ui.rect(MARGIN, self._y, INSIDE, ROW - 2)
-        self.substeps = ui.choice(place, counts, lambda n: self._submit(SetSolver(substeps=int(n))), self.back)
-        self._y += ROW + 6
+        self.substeps = ui.choice(self._row(ROW - 2, 6), counts, self._choose_substeps, self.back)
         self.iterations, self.warm_start = self._pair(
             "Iterations", "Warm start (0 to 1)", (self._type_iterations, self._type_warm_start)
         )
@@ -142,11 +143,11 @@ class Panel:
         assert limits is not None
         if not len(chosen):
             for slider, field in ((self.stiffness, self.stiffness_field), (self.damping, self.damping_field)):
-                slider.show(slider.value, None, False, False)
+                slider.show_value(slider.value, None, False, False)
                 field.show(DASH)
             self.frequency.show(DASH)
             self.ratio.show(DASH)
-            self._show_note(self._no_spring_note())
+            self.note.show_text(self._no_spring_note())
             return
         stiffness, damping = world.stiffness[chosen], world.damping[chosen]
         for values, slider, field, limit in (
@@ -154,10 +155,10 @@ class Panel:
             (damping, self.damping, self.damping_field, limits.damping),
         ):
             is_mixed = bool(values.min() != values.max())
-            slider.show(float(np.median(values)), limit, is_mixed, True)
+            slider.show_value(float(np.median(values)), limit, is_mixed, True)
             field.show("mixed" if is_mixed else f"{values[0]:.6g}")
         self._show_reading(stiffness, damping)
-        self._show_note(_limit_note(limits))
+        self.note.show_text(_limit_note(limits))
 
     def _show_reading(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
         if stiffness.min() != stiffness.max() or damping.min() != damping.max():
@@ -177,11 +178,6 @@ class Panel:
         k, c = world.hooke_stiffness[first], world.hooke_damping[first]
         return f"Classic Hooke springs, k = {k:g} N/m, c = {c:g} N s/m: Cs and Cd do not apply."
 
-    def _show_note(self, text: str) -> None:
-        if getattr(self, "_noted", None) != text:
-            self._noted = text
-            self.note.set_text(text)
-
     # Changing.
 
     def _tick_time(self) -> float:
@@ -193,6 +189,12 @@ class Panel:
     def _choose_material(self, name: str) -> None:
         self.material = None if name == ALL_MATERIALS else self._material_names().index(name)
         self._rebuild_menu(name)
+
+    def _choose_solver(self, name: str) -> None:
+        self._submit(SetSolver(solver=name))
+
+    def _choose_substeps(self, count: str) -> None:
+        self._submit(SetSolver(substeps=int(count)))
 
     def _rebuild_menu(self, name: str) -> None:
         if self.menu.selected_option[0] != name:

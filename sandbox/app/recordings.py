@@ -49,7 +49,9 @@ def chosen_path(folder: Path, typed: str) -> Path:
     if not name:
         raise ValueError("Type a name.")
     if len(name) > NAME_LIMIT or re.search(r'[\\/:*?"<>|\x00-\x1f]', name) or name.startswith("."):
-        raise ValueError('A name has no / \\ : * ? " < > | in it, does not begin with a dot and is not longer than 120.')
+        raise ValueError(
+            'A name has no / \\ : * ? " < > | in it, does not begin with a dot and is not longer than 120.'
+        )
     path = folder / f"{name}{SUFFIX}"
     if path.exists():
         raise ValueError(f"{path.name} exists already. Choose another name.")

@@ -113,9 +113,7 @@ class Renderer:
         self._spacing = float(np.median(rest)) * camera.zoom if len(rest) else SPRING_WIDTH * self.scale / DENSITY
         return float(np.clip(self._spacing * DENSITY, THINNEST_SPRING * self.scale, SPRING_WIDTH * self.scale))
 
-    def _draw_particles(
-        self, canvas: Canvas, camera: Camera, current: Snapshot, pixels: NDArray[np.float64]
-    ) -> None:
+    def _draw_particles(self, canvas: Canvas, camera: Camera, current: Snapshot, pixels: NDArray[np.float64]) -> None:
         shown = shown_particles(current)
         finite = np.isfinite(pixels).all(axis=1)
         self.non_finite = int(np.count_nonzero(shown & ~finite))
@@ -125,7 +123,9 @@ class Renderer:
         radii = current.radius[visible] * camera.zoom
         # Particles of the usual radius shrink with the mesh that they belong to, or a cloth is a field of dots.
         usual = current.radius[visible] <= BODY_RADIUS
-        radii = np.maximum(np.where(usual, np.minimum(radii, np.maximum(self._spacing * 0.2, smallest)), radii), smallest)
+        radii = np.maximum(
+            np.where(usual, np.minimum(radii, np.maximum(self._spacing * 0.2, smallest)), radii), smallest
+        )
         centres = np.ascontiguousarray(pixels[visible])
         rim = min(1.4 * self.scale, self._spacing * 0.08)
         canvas.discs(centres, radii + rim, np.full(len(visible), packed(BACKGROUND)))
@@ -137,9 +137,7 @@ class Renderer:
         for extra, colour in ((0.0, PINNED), (-1.8 * self.scale, BACKGROUND), (-3.4 * self.scale, PINNED)):
             canvas.discs(centres, np.maximum(size + extra, 0.5), np.full(len(centres), packed(colour)))
 
-    def _draw_hands(
-        self, canvas: Canvas, current: Snapshot, pixels: NDArray[np.float64], overlay: Overlay
-    ) -> None:
+    def _draw_hands(self, canvas: Canvas, current: Snapshot, pixels: NDArray[np.float64], overlay: Overlay) -> None:
         """A line from every held particle to the cursor that pulls it."""
         if current.hand_spring < 0:
             return
@@ -150,14 +148,16 @@ class Renderer:
         canvas.lines(ends, np.full(len(active), packed(ACCENT)), 1.4 * self.scale)
         for radius, colour in ((8.0, ACCENT), (6.4, BACKGROUND), (4.2, ACCENT)):
             count = len(active)
-            canvas.discs(np.ascontiguousarray(pixels[b]), np.full(count, radius * self.scale), np.full(count, packed(colour)))
+            canvas.discs(
+                np.ascontiguousarray(pixels[b]), np.full(count, radius * self.scale), np.full(count, packed(colour))
+            )
 
-    def _draw_overlay(
-        self, canvas: Canvas, camera: Camera, pixels: NDArray[np.float64], overlay: Overlay
-    ) -> None:
+    def _draw_overlay(self, canvas: Canvas, camera: Camera, pixels: NDArray[np.float64], overlay: Overlay) -> None:
         surface, scale = canvas.surface, self.scale
         if overlay.hovered is not None and np.isfinite(pixels[overlay.hovered]).all():
-            pygame.draw.aacircle(surface, ACCENT, pixels[overlay.hovered].tolist(), round(9 * scale), max(1, round(1.5 * scale)))
+            pygame.draw.aacircle(
+                surface, ACCENT, pixels[overlay.hovered].tolist(), round(9 * scale), max(1, round(1.5 * scale))
+            )
         if len(overlay.trail) > 1:
             points = camera.project(np.array(overlay.trail))
             ends = np.concatenate([points[:-1], points[1:]], axis=1)
@@ -168,5 +168,7 @@ class Renderer:
     def _draw_cursor(self, canvas: Canvas, at: tuple[float, float]) -> None:
         x, y = at
         near, far = 5 * self.scale, 14 * self.scale
-        ends = np.array([[x - far, y, x - near, y], [x + near, y, x + far, y], [x, y - far, x, y - near], [x, y + near, x, y + far]])
+        ends = np.array(
+            [[x - far, y, x - near, y], [x + near, y, x + far, y], [x, y - far, x, y - near], [x, y + near, x, y + far]]
+        )
         canvas.lines(ends, np.full(4, packed(ACCENT)), 2.0 * self.scale)

@@ -77,7 +77,7 @@ def _table() -> dict[tuple[int, bool, bool], str]:
 
 
 def action_of(key: int, modifiers: int) -> str | None:
-    """The action that a key press starts; Cmd counts as Ctrl, and Shift is ignored where the key needs it to be typed."""
+    """The action that a key press starts; Cmd counts as Ctrl, and Shift does not count where a key is typed with it."""
     if modifiers & pygame.KMOD_ALT:
         return None
     ctrl = bool(modifiers & (pygame.KMOD_CTRL | pygame.KMOD_META))

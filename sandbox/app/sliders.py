@@ -7,7 +7,8 @@ from typing import Any
 import pygame
 
 from sandbox.app.colours import ACCENT, LINE, MUTED, TEXT, WARNING, mixed
-from sandbox.app.widgets import Painted, Ui
+from sandbox.app.painted import Painted
+from sandbox.app.widgets import Ui
 
 # Exponents of the smallest and largest value on the scale.
 LOWEST, HIGHEST = -5.0, 0.0
@@ -54,7 +55,7 @@ class LogSlider(Painted):
         ui.add(self)
         self.repaint()
 
-    def show(self, value: float, limit: float | None, is_mixed: bool, enabled: bool) -> None:
+    def show_value(self, value: float, limit: float | None, is_mixed: bool, enabled: bool) -> None:
         """Show a value, its limit (None = none is proven) and whether the springs differ."""
         fresh = (value, limit, is_mixed, enabled)
         if fresh != (self.value, self.limit, self.mixed, self.enabled):
@@ -122,7 +123,9 @@ class LogSlider(Painted):
         accent = ACCENT if self.enabled else LINE
         for decade in range(6):
             x = margin + decade / 5 * length
-            pygame.draw.line(surface, DECADE, (x, middle + 7 * scale), (x, middle + 10 * scale), max(1, round(1.3 * scale)))
+            pygame.draw.line(
+                surface, DECADE, (x, middle + 7 * scale), (x, middle + 10 * scale), max(1, round(1.3 * scale))
+            )
         bar(0.0, 1.0, LINE)
         limited = self.limit is not None and self.limit < 1.0
         limit = fraction_of(self.limit) if self.limit is not None else 1.0

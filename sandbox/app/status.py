@@ -8,6 +8,7 @@ import numpy as np
 import pygame
 
 from sandbox.app.colours import ACCENT, DANGER, LINE, MUTED, SURFACE, TEXT, WARNING, Colour, strain_colours
+from sandbox.app.painted import wrapped
 from sandbox.app.widgets import Ui
 
 # Sizes in layout units.
@@ -29,9 +30,9 @@ class Notice:
 class StatusLine:
     """The line at the bottom, and the notices above it."""
 
-    def __init__(self, ui: Ui) -> None:
+    def __init__(self, ui: Ui, notices: deque[Notice]) -> None:
         self.ui = ui
-        self.notices: deque[Notice] = deque(maxlen=NOTICES)
+        self.notices = notices
         self._legend: pygame.Surface | None = None
         self._texts: dict[tuple[str, Colour], pygame.Surface] = {}
 
@@ -95,7 +96,7 @@ class StatusLine:
         ui = self.ui
         y = bottom - ui.px(12)
         for notice in reversed(self.notices):
-            lines = [self._text(line, TEXT) for line in self._wrapped(notice.text)]
+            lines = [self._text(line, TEXT) for line in wrapped(notice.text, ui.font(13), ui.px(520), 6)]
             height = sum(line.get_height() for line in lines) + ui.px(16)
             width = max(line.get_width() for line in lines) + ui.px(30)
             y -= height
@@ -111,16 +112,6 @@ class StatusLine:
             surface.blit(card, (ui.px(left), y))
             y -= ui.px(8)
 
-    def _wrapped(self, text: str) -> list[str]:
-        font, widest = self.ui.font(13), self.ui.px(520)
-        lines: list[str] = []
-        for word in text.split():
-            if lines and font.size(f"{lines[-1]} {word}")[0] <= widest:
-                lines[-1] += f" {word}"
-            else:
-                lines.append(word)
-        return lines or [""]
-
     def _text(self, text: str, colour: Colour) -> pygame.Surface:
         key = (text, colour)
         if key not in self._texts:
@@ -130,18 +121,18 @@ class StatusLine:
         return self._texts[key]
 
 
-def _card(surface: pygame.Surface, ui: Ui, text: str) -> pygame.Rect:
+def _card(surface: pygame.Surface, ui: Ui, text: str, inset: float) -> pygame.Rect:
     card = pygame.Rect(0, 0, ui.px(380), ui.px(96))
     card.center = (surface.get_width() // 2, surface.get_height() // 2)
     pygame.draw.rect(surface, NOTICE_COLOUR, card, border_radius=ui.px(12))
     pygame.draw.rect(surface, LINE, card, 1, border_radius=ui.px(12))
-    surface.blit(ui.font(15, True).render(text, True, TEXT), (card.left + ui.px(84), card.top + ui.px(24)))
+    surface.blit(ui.font(15, True).render(text, True, TEXT), (card.left + ui.px(inset), card.top + ui.px(24)))
     return card
 
 
 def draw_spinner(surface: pygame.Surface, ui: Ui, seconds: float, text: str, detail: str) -> None:
     """A card in the middle of the window with a turning ring, while something takes its time."""
-    card = _card(surface, ui, text)
+    card = _card(surface, ui, text, 84)
     middle = pygame.Vector2(card.left + ui.px(46), card.centery)
     for dot in range(10):
         turn = math.tau * dot / 10
@@ -154,8 +145,8 @@ def draw_spinner(surface: pygame.Surface, ui: Ui, seconds: float, text: str, det
 
 def draw_bar(surface: pygame.Surface, ui: Ui, share: float, text: str) -> None:
     """A card in the middle of the window with a bar that is filled to a share (0..1)."""
-    card = _card(surface, ui, text)
-    bar = pygame.Rect(card.left + ui.px(84), card.top + ui.px(58), card.width - ui.px(108), ui.px(6))
+    card = _card(surface, ui, text, 28)
+    bar = pygame.Rect(card.left + ui.px(28), card.top + ui.px(58), card.width - ui.px(56), ui.px(6))
     pygame.draw.rect(surface, LINE, bar, border_radius=ui.px(3))
     bar.width = round(bar.width * min(max(share, 0.0), 1.0))
     pygame.draw.rect(surface, ACCENT, bar, border_radius=ui.px(3))

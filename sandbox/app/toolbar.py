@@ -6,7 +6,6 @@ from typing import Any
 
 import pygame
 
-
 from sandbox.app.colours import ACCENT, DANGER, TEXT, Colour
 from sandbox.app.icons import icon
 from sandbox.app.shortcuts import SHORTCUTS, keys_of

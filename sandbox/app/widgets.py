@@ -1,52 +1,27 @@
-"""Ui: the widgets of the app. The only module that knows pygame_gui; others get callbacks, not events."""
+"""Ui: the widgets of the app. It and painted.py alone know pygame_gui; others get callbacks, not events."""
 
-import copy
 import html
-import io
-import json
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from importlib.resources import files
+from functools import partial
 from typing import Any
 
 import pygame
 import pygame_gui
 from pygame_gui.core import ObjectID, UIContainer, UIElement
-from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITextBox, UITextEntryLine
+from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITextEntryLine
 
 from sandbox.app.colours import ACCENT
-from sandbox.level.files import shipped_folder
+from sandbox.app.painted import Painted
+from sandbox.app.theme import plain_font, scaled_theme
 
-# Theme entries that are pixels at scale 1.
-_SCALED = {
-    "size", "shape_corner_radius", "border_width", "text_horiz_alignment_padding", "open_button_width",
-    "list_item_height", "rect_width",
-}  # fmt: skip
+# It warns of every label that is a pixel lower than its font: only people who lay out can do something about that.
+warnings.filterwarnings("ignore", message="Label Rect is too small", module="pygame_gui")
+
 # Layers between the page and a modal sheet, and between one sheet and the next.
 SHEET_HEIGHT = 40
 ENTER_KEYS = (pygame.K_RETURN, pygame.K_KP_ENTER)
-
-
-class Painted(UIElement):  # type: ignore[misc]
-    """A widget that paints itself; subclasses give `paint`, and what mouse and keys do."""
-
-    def __init__(self, ui: "Ui", rect: pygame.Rect, container: Any = None) -> None:
-        super().__init__(
-            rect, ui.manager, container or ui.root, starting_height=1, layer_thickness=1, element_id=["painted"]
-        )
-        self.ui = ui
-
-    def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """The picture of the widget as it is now, with straight alpha."""
-        raise NotImplementedError
-
-    def repaint(self) -> None:
-        """Show the widget as it is now."""
-        self._set_image(self.paint(self.rect.size).premul_alpha())
-
-    def press_key(self, event: pygame.event.Event) -> bool:
-        """React to a key while focused; True where the key is used."""
-        return False
 
 
 @dataclass
@@ -103,11 +78,11 @@ class Ui:
     def __init__(self, size: tuple[int, int], scale: float, pixel_ratio: tuple[float, float] = (1.0, 1.0)) -> None:
         self.size = size
         self.scale = scale
-        self.manager = pygame_gui.UIManager(size, _theme(scale), enable_live_theme_updates=False)
+        self.manager = pygame_gui.UIManager(size, scaled_theme(scale), enable_live_theme_updates=False)
         self.manager.mouse_pos_scale_factor = list(pixel_ratio)
         self.root = self.manager.get_root_container()
         self._actions: dict[UIElement, Callable[[], None]] = {}
-        self._choosers: dict[UIElement, Callable[[str], None]] = {}
+        self._choosers: dict[UIDropDownMenu, Callable[[str], None]] = {}
         self._fields: dict[UIElement, Field] = {}
         self._sheets: list[tuple[UIPanel, list[UIElement], Callable[[], None]]] = []
         self._page: list[UIElement] = []
@@ -128,9 +103,7 @@ class Ui:
 
     def panel(self, rect: pygame.Rect, container: Any = None, style: str = "") -> UIPanel:
         """A background that holds other widgets."""
-        return UIPanel(
-            rect, 1, self.manager, container=container, margins=_NO_MARGINS, object_id=_style(style)
-        )
+        return UIPanel(rect, 1, self.manager, container=container, margins=_NO_MARGINS, object_id=_style(style))
 
     def area(self, rect: pygame.Rect, container: Any = None) -> UIContainer:
         """A part of the window that clips what it holds."""
@@ -139,10 +112,6 @@ class Ui:
     def label(self, rect: pygame.Rect, text: str, container: Any = None, style: str = "") -> UILabel:
         """One line of text."""
         return UILabel(rect, text, self.manager, container=container, object_id=_style(style))
-
-    def text(self, rect: pygame.Rect, text: str, container: Any = None, style: str = "@notes") -> UITextBox:
-        """Text that wraps."""
-        return UITextBox(_escaped(text), rect, self.manager, container=container, object_id=_style(style))
 
     def button(
         self,
@@ -178,9 +147,7 @@ class Ui:
         for index, (value, text, tip) in enumerate(options):
             left, right = round(index * (width + gap)), round(index * (width + gap) + width)
             place = pygame.Rect(rect.left + left, rect.top, right - left, rect.height)
-            buttons[value] = self.button(
-                place, text, lambda value=value: choose(value), container, style="@segment", tip=tip
-            )
+            buttons[value] = self.button(place, text, partial(choose, value), container, style="@segment", tip=tip)
         return Choice(buttons)
 
     def field(
@@ -196,13 +163,13 @@ class Ui:
     def menu(
         self,
         rect: pygame.Rect,
-        options: list[str],
+        options: Sequence[str],
         chosen: str,
         choose: Callable[[str], None],
         container: Any = None,
     ) -> UIDropDownMenu:
         """A menu that opens to a list."""
-        menu = UIDropDownMenu(options, chosen, rect, self.manager, container=container)
+        menu = UIDropDownMenu(list(options), chosen, rect, self.manager, container=container)
         self._choosers[menu] = choose
         self._add_focusable(menu)
         return menu
@@ -244,7 +211,8 @@ class Ui:
         for _, widgets, _ in [entry for entry in self._sheets if entry[0] is sheet]:
             for widget in widgets:
                 self._actions.pop(widget, None)
-                self._choosers.pop(widget, None)
+                if isinstance(widget, UIDropDownMenu):
+                    self._choosers.pop(widget, None)
                 self._fields.pop(widget, None)
         self._sheets = [entry for entry in self._sheets if entry[0] is not sheet]
         self._set_focus(None)
@@ -261,14 +229,6 @@ class Ui:
     def focus(self) -> UIElement | None:
         """The widget that the keyboard works on."""
         return self._focus
-
-    def is_over_widget(self, pixel: tuple[float, float]) -> bool:
-        """Whether a widget lies under a pixel."""
-        group = self.manager.get_sprite_group()
-        return any(
-            element.visible and element is not self.root and element.hover_point(*pixel) and _is_solid(element)
-            for element in group.sprites()
-        )
 
     def process(self, event: pygame.event.Event) -> bool:
         """Let the widgets have an event; True where they use it."""
@@ -356,10 +316,10 @@ class Ui:
 
     def _set_focus(self, widget: UIElement | None) -> None:
         self._focus = widget
-        is_entry = isinstance(widget, UITextEntryLine)
-        self.manager.set_focus_set(widget.get_focus_set() if is_entry and widget is not None else None)
-        if is_entry and widget is not None:
-            widget.select_range = [0, len(widget.get_text())]
+        entry = widget if isinstance(widget, UITextEntryLine) else None
+        self.manager.set_focus_set(entry.get_focus_set() if entry is not None else None)
+        if entry is not None:
+            entry.select_range = [0, len(entry.get_text())]
         self._finish_left_fields()
 
     def blur(self) -> None:
@@ -379,19 +339,10 @@ class Ui:
 
     def font(self, size: float, bold: bool = False) -> pygame.font.Font:
         """The widgets' font in a size of layout units, for what is painted."""
-        return _font(self.px(size), bold)
+        return plain_font(self.px(size), bold)
 
 
 _NO_MARGINS = {"left": 0, "right": 0, "top": 0, "bottom": 0}
-_FONTS: dict[tuple[int, bool], pygame.font.Font] = {}
-
-
-def _font(size: int, bold: bool) -> pygame.font.Font:
-    if (size, bold) not in _FONTS:
-        name = "NotoSans-Bold.ttf" if bold else "NotoSans-Regular.ttf"
-        data = files("pygame_gui").joinpath("data", name).read_bytes()
-        _FONTS[size, bold] = pygame.font.Font(io.BytesIO(data), size)
-    return _FONTS[size, bold]
 
 
 def set_icon(button: UIButton, icon: pygame.Surface) -> None:
@@ -404,27 +355,9 @@ def set_icon(button: UIButton, icon: pygame.Surface) -> None:
     button.rebuild()
 
 
-def _is_solid(element: UIElement) -> bool:
-    return not isinstance(element, UIContainer)
-
-
 def _style(style: str) -> ObjectID | None:
     return ObjectID(class_id=style) if style else None
 
 
 def _escaped(text: str) -> str:
     return html.escape(text, quote=False).replace("\n", "<br>")
-
-
-def _theme(scale: float) -> dict[str, Any]:
-    """The theme of assets/theme.json with its sizes in pixels."""
-    theme = json.loads((shipped_folder("assets") / "theme.json").read_text(encoding="utf-8"))
-    scaled: dict[str, Any] = copy.deepcopy(theme)
-    for block in scaled.values():
-        for name, entries in block.items():
-            for key, value in entries.items():
-                if name in ("font", "misc") and key in _SCALED:
-                    entries[key] = str(max(int(value != "0"), round(int(value) * scale)))
-                if key == "padding":
-                    entries[key] = ",".join(str(round(int(part) * scale)) for part in value.split(","))
-    return scaled
