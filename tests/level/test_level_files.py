@@ -101,12 +101,7 @@ def test_text_outside_ascii_is_written_as_it_is():
 
 
 def test_no_line_of_a_long_list_grows_beyond_the_page():
-    mesh = {
-        "type": "mesh",
-        "id": "m",
-        "particles": [[k, 0.125] for k in range(100)],
-        "springs": [[0, k] for k in range(1, 99)],
-    }
+    mesh = {"type": "mesh", "id": "m", "particles": [[k, 0.125] for k in range(100)], "pinned": list(range(100))}
     text = level_text(parse_level(encoded({**GOOD, "bodies": [mesh], "springs": []}), "x"))
     assert max(map(len, text.splitlines())) <= 100
 
@@ -185,7 +180,10 @@ def test_a_file_here_wins_over_a_shipped_level_of_its_name(tmp_path, monkeypatch
     monkeypatch.chdir(tmp_path)
     write_level(good(), "rope.json")
     assert load_level("rope.json") == good()
+    (tmp_path / "rope").mkdir()
     assert load_level("rope").name == "Rope"
+    (tmp_path / "none").mkdir()
+    assert refusal(load_level, "none") == "none: is a folder; name a level file"
 
 
 def test_a_name_that_is_nowhere_is_answered_with_what_is_shipped(tmp_path, monkeypatch):
@@ -212,6 +210,7 @@ masses = st.floats(1e-9, 1e9)
 coefficients = st.floats(0, 1)
 texts = st.text(st.characters(exclude_categories=("Cs", "Cc")), max_size=20)
 ids = st.text(st.characters(exclude_categories=("Cs", "Cc"), exclude_characters="+.:,"), min_size=1, max_size=8)
+finite = st.floats(allow_nan=False, allow_infinity=False)
 extras = st.dictionaries(
     texts,
     st.recursive(
@@ -231,50 +230,36 @@ def some(required, **optional):
     return st.fixed_dictionaries(required, optional=optional)
 
 
+def bodies(name, material):
+    """Any body of that name and material."""
+    common = {"velocity": points, "extras": extras, "material": st.just(material)}
+    pin = st.lists(st.sampled_from(["start", "end"]), max_size=2)
+    near = st.tuples(st.floats(-99, 99), st.floats(-99, 99)).map(list)
+    size = st.floats(0.01, 3)
+    shapes = (
+        some({"box": st.tuples(size, size).map(list)})
+        | some({"circle": size})
+        | some({"polygon": st.just([[0.0, 0.0], [2.5, 0.0], [0.0, 2.5]])})
+    )
+    ends = {"id": st.just(name), "start": near, "end": near, "segments": st.integers(1, 50)}
+    jelly = {"id": st.just(name), "shape": shapes, "spacing": st.floats(0.1, 2)}
+    mesh = {"id": st.just(name), "particles": st.lists(points, min_size=2, max_size=2), "springs": st.just([[0, 1]])}
+    return st.one_of(
+        some({"type": st.just("rope"), **ends}, end_mass=masses, rest_length=st.floats(0, 10), pin=pin, **common),
+        some({"type": st.just("bridge"), **ends}, height=size, particle_mass=masses, pin=pin, **common),
+        some({"type": st.just("jelly"), **jelly}, angle=st.floats(-10, 10), position=near, **common),
+        some({"type": st.just("mesh"), **mesh}, masses=st.lists(masses, min_size=2, max_size=2), **common),
+    )
+
+
 @st.composite
 def levels(draw):
     names = draw(st.lists(ids, min_size=3, max_size=8, unique=True))
-    materials = draw(
-        st.dictionaries(
-            ids,
-            some({}, stiffness=coefficients, damping=coefficients)
-            | some({"law": st.just("hooke")}, k=st.floats(0, 1e15), c=st.floats(0, 1e15)),
-            max_size=3,
-        )
-    )
-    common = {"velocity": points, "extras": extras, "material": st.sampled_from(["default", *materials])}
-    pins = st.lists(st.sampled_from(["start", "end"]), max_size=2)
-    bodies = []
-    for name in names[3:]:
-        line = {"id": st.just(name), "start": points, "end": points, "segments": st.integers(1, 50)}
-        bodies.append(
-            draw(
-                some(
-                    {"type": st.just("rope"), **line}, end_mass=masses, rest_length=st.floats(0, 10), pin=pins, **common
-                )
-                | some(
-                    {"type": st.just("jelly"), "id": st.just(name), "spacing": st.floats(0.1, 10)}
-                    | {"shape": some({"box": st.tuples(st.floats(0.01, 3), st.floats(0.01, 3)).map(list)})},
-                    angle=st.floats(-10, 10),
-                    position=st.tuples(st.floats(-99, 99), st.floats(-99, 99)).map(list),
-                    **common,
-                )
-                | some(
-                    {
-                        "type": st.just("mesh"),
-                        "id": st.just(name),
-                        "particles": st.lists(points, min_size=2, max_size=2),
-                    },
-                    masses=st.lists(masses, min_size=2, max_size=2),
-                    pinned=st.lists(st.integers(0, 1), max_size=2),
-                    springs=st.just([[0, 1]]),
-                    **common,
-                )
-            )
-        )
-    particle = {"position": points, "mass": masses, "radius": st.floats(0, 10), "pinned": st.booleans()}
-    particles = [draw(some({"id": st.just(name)}, extras=extras, velocity=points, **particle)) for name in names[:3]]
-    springs = [{"a": names[0], "b": names[1]}, {"a": names[2], "b": names[0], "rest_length": draw(st.floats(0, 1e6))}]
+    material = some({}, stiffness=coefficients, damping=coefficients)
+    classic = some({"law": st.just("hooke")}, k=st.floats(0, 1e15), c=st.floats(0, 1e15))
+    materials = draw(st.dictionaries(ids, material | classic, max_size=3))
+    chosen = st.sampled_from(["default", *materials])
+    optional = {"position": points, "velocity": points, "mass": masses, "radius": st.floats(0, 10), "extras": extras}
     settings = some(
         {},
         gravity=points,
@@ -284,8 +269,15 @@ def levels(draw):
         warm_start=coefficients,
     )
     head = {"format": st.just("spring-sandbox/level"), "version": st.just(1), "name": ids, "settings": settings}
-    rest = {"materials": materials, "bodies": bodies, "particles": particles, "springs": springs}
-    return draw(some(head, description=texts, tags=st.lists(texts, max_size=3), extras=extras)) | rest
+    return draw(some(head, description=texts, tags=st.lists(texts, max_size=3), extras=extras)) | {
+        "materials": materials,
+        "bodies": [draw(bodies(name, draw(chosen))) for name in names[3:]],
+        "particles": [draw(some({"id": st.just(name)}, pinned=st.booleans(), **optional)) for name in names[:3]],
+        "springs": [
+            {"a": names[0], "b": names[1], "material": draw(chosen)},
+            {"a": names[2], "b": names[0], "rest_length": draw(st.floats(0, 1e6))},
+        ],
+    }
 
 
 @given(levels())
