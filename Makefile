@@ -10,7 +10,7 @@ play: $(VENV)/installed
 	$(BIN)/sandbox
 
 test: $(VENV)/installed-dev
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
+	$(BIN)/python -m pytest -n $(WORKERS)
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check sandbox tests

@@ -201,7 +201,7 @@ def _play_headless(level: "Level") -> int:
     session = Session(level)
     summary = _run_with_bar(session, round(HEADLESS_SECONDS * level.settings.tick_rate))
     save_picture(session, picture)
-    _print_summary(level.name, summary)
+    print(summary.text(level.name))
     return EXIT_OK
 
 
@@ -228,7 +228,7 @@ def _run(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps({"level": level.name, **finite(asdict(summary))}))
     else:
-        _print_summary(level.name, summary)
+        print(summary.text(level.name))
     return EXIT_OK
 
 
@@ -292,19 +292,6 @@ def _write_text(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8", newline="\n")
 
 
-def _print_summary(name: str, summary: Any) -> None:
-    print(
-        f"{name}: {summary.ticks} ticks ({summary.simulated_seconds:g} s), {summary.particles} particles, "
-        f"{summary.springs} springs, {summary.solver}, {summary.substeps} substeps\n"
-        f"  strain        {summary.max_strain:.3%} at most, {summary.rms_strain:.3%} RMS (last 2 s)\n"
-        f"  energy        {summary.kinetic_energy:.6g} J kinetic, {summary.potential_energy:.6g} J potential\n"
-        f"  fastest       {summary.max_speed:.6g} m/s\n"
-        f"  non-finite    {summary.non_finite} particles, broken {summary.broken_springs} springs\n"
-        f"  a tick took   {summary.milliseconds_per_tick:.4f} ms\n"
-        f"  hash          {summary.hash}"
-    )
-
-
 def _replay(options: argparse.Namespace) -> int:
     worst = EXIT_OK
     for name in options.files:
@@ -363,7 +350,7 @@ def _check_level(name: str) -> int:
     )
     results = run_checks(level)
     for result in results:
-        print(f"  {'passed' if result.passed else 'FAILED'}     {result.text}")
+        print(f"  check      {result.text}")
     return EXIT_OK if all(result.passed for result in results) else EXIT_FAILED
 
 

@@ -27,7 +27,10 @@ def build_world(level: Level) -> World:
     world = World(WorldSettings(**dict(level.settings)), list(materials))
     bodies = [(body, *expand(body)) for body in level.bodies]
     _add_particles(world, level, bodies)
-    _add_springs(world, level, bodies, materials)
+    layout = Layout(level, [len(points) for _, points, _ in bodies])
+    for name, slot in layout.end_names():
+        world.name_particle(slot, name)
+    _add_springs(world, layout, level, bodies, materials)
     world.reserve_hands()
     return world
 
@@ -78,8 +81,9 @@ def _pinned(body: AnyBody, count: int) -> NDArray[np.bool_]:
     return pinned
 
 
-def _add_springs(world: World, level: Level, bodies: list[Expanded], materials: dict[str, Material]) -> None:
-    layout = Layout(level, [len(points) for _, points, _ in bodies])
+def _add_springs(
+    world: World, layout: Layout, level: Level, bodies: list[Expanded], materials: dict[str, Material]
+) -> None:
     index = {name: number for number, name in enumerate(materials)}
     loose = level.springs
     names = [f"{body.id}:{number}" for body, _, pairs in bodies for number in range(len(pairs))]

@@ -36,14 +36,14 @@ def read_level(path: str | os.PathLike[str]) -> Level:
 def load_level(name: str | os.PathLike[str]) -> Level:
     """Read a level file, or the shipped level of that bare name (`rope`). Raises LevelError."""
     text = os.fspath(name)
-    if "\0" not in text and not os.path.lexists(text) and Path(text).name == text:
-        shipped = {path.stem: path for path in shipped_levels()}
-        found = shipped.get(text) or shipped.get(text.removesuffix(".json"))
-        if found is None:
-            hint = suggestion(text, shipped) or "; shipped are " + ", ".join(shipped)
-            raise LevelError(text, [("", "there is no such file and no shipped level of that name" + hint)])
-        return read_level(found)
-    return read_level(text)
+    if "\0" in text or Path(text).name != text or os.path.isfile(text):
+        return read_level(text)
+    shipped = {path.stem: path for path in shipped_levels()}
+    found = shipped.get(text) or shipped.get(text.removesuffix(".json"))
+    if found is not None or os.path.lexists(text):
+        return read_level(found or text)
+    hint = suggestion(text, shipped) or "; shipped are " + ", ".join(shipped)
+    raise LevelError(text, [("", "there is no such file and no shipped level of that name" + hint)])
 
 
 def write_level(level: Level, path: str | os.PathLike[str]) -> None:

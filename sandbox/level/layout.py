@@ -1,7 +1,7 @@
 """Layout: which slots the bodies, loose particles and loose springs of a level get, and who has which name."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from sandbox.level.bodies import AnyBody, BridgeDef, RopeDef
@@ -44,6 +44,12 @@ class Layout:
             self.repeated.append((path, name))
         else:
             self.owners[name] = owner
+
+    def end_names(self) -> Iterator[tuple[str, int]]:
+        """The names `id.start` and `id.end` of the bodies that have ends, with their slots."""
+        for name, owner in self.owners.items():
+            for end, index in (owner.ends or {}).items():
+                yield f"{name}.{end}", owner.first + index
 
     def slot(self, reference: str) -> int:
         """Slot of the particle that `id`, `id.k`, `id.start` or `id.end` refers to. Raises LookupError."""

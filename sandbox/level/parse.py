@@ -4,6 +4,7 @@ Order: size, depth by a scan of the bytes, duplicate keys, sizes of lists, the m
 and counts. Each stage trusts what the one before has refused.
 """
 
+import collections
 import contextlib
 import gc
 import itertools
@@ -83,6 +84,11 @@ def _parse(data: bytes, source: str) -> Level:
     too_long = list(itertools.islice(_too_long(raw), FAULT_LIMIT + 1))
     if too_long:
         raise LevelError(source, too_long)
+    if len(data) > _LARGE:
+        # A flood of faults shows in the first piece already; reading all of it would take a second.
+        first = _piece(raw, 0)
+        if len(first) > FAULT_LIMIT:
+            raise LevelError(source, first)
     try:
         return Level.model_validate_json(data)
     except ValidationError as error:
@@ -99,8 +105,8 @@ def _load(data: bytes, source: str) -> Any:
     def collect(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         result = dict(pairs)
         if len(result) != len(pairs) and len(repeated) <= FAULT_LIMIT:
-            seen: set[str] = set()
-            repeated.extend((result, key) for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
+            counts = collections.Counter(key for key, _ in pairs)
+            repeated.extend((result, key) for key, number in counts.items() if number > 1)
         return result
 
     try:
@@ -150,11 +156,13 @@ def _repeated_keys(raw: Any, repeated: list[tuple[dict[str, Any], str]]) -> Iter
 
 
 def _too_long(raw: dict[str, Any]) -> Iterator[Fault]:
-    yield from _long_lists((), raw, _LEVEL_LIMITS)
+    whole = list(_long_lists((), raw, _LEVEL_LIMITS))
+    yield from whole
     bodies = raw.get("bodies")
-    for index, body in enumerate(bodies if isinstance(bodies, list) else ()):
-        if isinstance(body, dict):
-            yield from _long_lists(("bodies", index), body, _MESH_LIMITS)
+    if not whole and isinstance(bodies, list):
+        for index, body in enumerate(bodies):
+            if isinstance(body, dict) and body.get("type") == "mesh":
+                yield from _long_lists(("bodies", index), body, _MESH_LIMITS)
 
 
 def _long_lists(path: tuple[Any, ...], holder: dict[str, Any], limits: dict[str, int]) -> Iterator[Fault]:
@@ -190,15 +198,21 @@ def _piecewise(raw: dict[str, Any]) -> Iterator[Fault]:
     """Faults of a level that has thousands, found in a piece of every list at a time."""
     longest = max((len(value) for value in raw.values() if isinstance(value, list)), default=0)
     for start in range(0, max(1, longest), _PIECE):
-        piece = {
-            key: _cut(value[start : start + _PIECE] if isinstance(value, list) else value)
-            for key, value in itertools.chain(_known(raw), itertools.islice(_unknown(raw), _PIECE))
-        }
-        try:
-            Level.model_validate_json(json.dumps(piece))
-        except ValidationError as error:
-            errors = [_moved(item, start) for item in error.errors(include_url=False)]
-            yield from worded([item for item in errors if item is not None and _is_real(item, raw, start)])
+        yield from _piece(raw, start)
+
+
+def _piece(raw: dict[str, Any], start: int) -> list[Fault]:
+    """Faults of the items from start on of every list of the level, and of the level's other parts where start is 0."""
+    piece = {
+        key: _cut(value[start : start + _PIECE] if isinstance(value, list) else value)
+        for key, value in itertools.chain(_known(raw), itertools.islice(_unknown(raw), _PIECE))
+    }
+    try:
+        Level.model_validate_json(json.dumps(piece))
+    except ValidationError as error:
+        errors = [_moved(item, start) for item in error.errors(include_url=False)]
+        return list(worded([item for item in errors if item is not None and _is_real(item, raw)]))
+    return []
 
 
 def _known(raw: dict[str, Any]) -> Iterator[tuple[str, Any]]:
@@ -224,7 +238,7 @@ def _moved(error: Any, start: int) -> dict[str, Any] | None:
     return dict(error) if start == 0 else None
 
 
-def _is_real(error: dict[str, Any], raw: Any, start: int) -> bool:
+def _is_real(error: dict[str, Any], raw: Any) -> bool:
     """Whether an error of a piece is one of the whole: a key that seems missing may only have been cut off."""
     if error["type"] != "missing":
         return True

@@ -39,11 +39,10 @@ def polygon_grid(corners: Corners, spacing: float) -> tuple[int, int, NDArray[np
         if first > last:
             continue
         row = np.arange(first, last + 1)
-        if by - ay <= BORDER:
-            _mark(edges, row, min(ax, bx), max(ax, bx))
-            continue
-        x = ax + (bx - ax) * (np.clip(row, ay, by) - ay) / (by - ay)
-        _mark(edges, row, x, x)
+        x = ax + (bx - ax) * (np.clip(row, ay, by) - ay) / (by - ay) if by > ay else np.full(len(row), ax)
+        level = by - ay <= BORDER
+        _mark(edges, row, min(ax, bx) if level else x, max(ax, bx) if level else x)
+        # Half-open, so that a corner between two sides counts once and every row is crossed an even number of times.
         crossing = (row >= ay) & (row < by)
         crossed_rows.append(row[crossing])
         crossed_at.append(x[crossing])

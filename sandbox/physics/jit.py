@@ -16,8 +16,8 @@ import numpy as np
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def _separate_cache_by_source() -> None:
-    """Give the kernels of this very source a cache folder of their own, next to it where that can be written.
+def _cache_folder() -> str:
+    """A folder for the kernels of this very source, next to it; empty, numba's own choice, where none can be written.
 
     numba looks for changes only in the file of the kernel itself: after a change in one that it calls it would go on
     using the old machine code.
@@ -30,24 +30,23 @@ def _separate_cache_by_source() -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:
-        return
-    if os.access(folder, os.W_OK):
-        os.environ.setdefault("NUMBA_CACHE_DIR", str(folder))
+        return ""
+    return str(folder) if os.access(folder, os.W_OK) else ""
 
 
-def _numba_njit() -> Any:
+def _import_numba() -> Any:
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return None
-    _separate_cache_by_source()
     try:
-        from numba import njit
+        import numba
     except ImportError:  # also what an installed numba raises that is too old for this numpy
         return None
-    return njit
+    return numba
 
 
-_njit = _numba_njit()
-COMPILED = _njit is not None
+_numba = _import_numba()
+COMPILED = _numba is not None
+_CACHE_FOLDER = _cache_folder() if COMPILED else ""
 
 
 def _viewed(item: Any) -> Any:
@@ -70,10 +69,15 @@ def _interpreted(function: Function) -> Function:
 
 def _compiled(function: Function, **options: bool) -> Function:
     # Determinism: never fastmath, never parallel. Kernels guard every divisor, so the error model decides nothing.
+    # The folder is set for this one function: the kernels of others in the same process stay where they are.
+    chosen = _numba.config.CACHE_DIR
+    _numba.config.CACHE_DIR = chosen or _CACHE_FOLDER
     try:
-        return cast(Function, _njit(cache=True, error_model="numpy", **options)(function))
+        return cast(Function, _numba.njit(cache=True, error_model="numpy", **options)(function))
     except RuntimeError:  # no folder can hold the cache
-        return cast(Function, _njit(error_model="numpy", **options)(function))
+        return cast(Function, _numba.njit(error_model="numpy", **options)(function))
+    finally:
+        _numba.config.CACHE_DIR = chosen
 
 
 def kernel(function: Function) -> Function:

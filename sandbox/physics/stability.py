@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.energy import reduced_masses
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.step import halve, substep_coefficients, substep_time
+from sandbox.physics.step import halve, substep_time
 from sandbox.physics.world import LAW_HOOKE, Floats, World
 
 # (Cs + 2 Cd) times an eigenvalue stays below this, or the mode grows; from the linear theory, not a setting.
@@ -33,7 +33,8 @@ class StabilityReport:
     """What can be said of a world's stability under its solver; coefficients per tick.
 
     n_eff and article_limit (1/(n+1)), proven_limit and estimated_limit are for Cs = Cd, of the tightest spring;
-    within_limit: whether every spring's own Cs and Cd are proven stable, None where the solver has no proven limit.
+    within_limit: whether every spring's own Cs and Cd are proven stable, None where the solver has no proven limit,
+    True where it bounds the energy whatever they are.
     """
 
     solver: str
@@ -100,42 +101,40 @@ def largest_eigenvalue(world: World) -> float:
     return eigenvalue
 
 
-def _effective_coefficients(world: World) -> tuple[Floats, Floats]:
-    """Cs and Cd of a substep (m,), those that a Hooke spring amounts to included."""
-    stiffness, damping = substep_coefficients(world)
-    hooke = (world.law == LAW_HOOKE) & _working(world)
-    h, mass = substep_time(world.settings), reduced_masses(world)[hooke]
-    stiffness[hooke] = world.hooke_stiffness[hooke] * h * h / mass
-    damping[hooke] = world.hooke_damping[hooke] * h / mass
-    return stiffness, damping
+def _demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
+    """Cs + 2 Cd of a substep (m,) from Cs and Cd per tick; a Hooke spring's are those that it amounts to."""
+    stiffness, damping = stiffness.copy(), damping.copy()
+    halve(stiffness, damping, world.settings.substeps)
+    working, mass = _working(world), reduced_masses(world)
+    hooke = (world.law == LAW_HOOKE) & working
+    h = substep_time(world.settings)
+    stiffness[hooke] = world.hooke_stiffness[hooke] * h * h / mass[hooke]
+    damping[hooke] = world.hooke_damping[hooke] * h / mass[hooke]
+    return np.where(working, stiffness + 2.0 * damping, 0.0)
+
+
+def _summed_loads(world: World, demands: Floats) -> Floats:
+    """m_r (w_a S_a + w_b S_b) of every spring (m,), S = what the springs on an end demand together."""
+    a, b = world.particle_a, world.particle_b
+    at = np.bincount(a, demands, world.particle_count) + np.bincount(b, demands, world.particle_count)
+    return np.where(
+        _working(world), reduced_masses(world) * (world.inverse_mass[a] * at[a] + world.inverse_mass[b] * at[b]), 0.0
+    )
 
 
 def _loads(world: World) -> Floats:
     """What must stay below BOUND for every spring (m,): of the two proven bounds the one that allows more here."""
-    stiffness, damping = _effective_coefficients(world)
-    working = _working(world)
-    each = np.where(working, stiffness + 2.0 * damping, 0.0)
-    at = np.bincount(world.particle_a, each, world.particle_count)
-    at += np.bincount(world.particle_b, each, world.particle_count)
-    a, b = world.particle_a, world.particle_b
-    summed = reduced_masses(world) * (world.inverse_mass[a] * at[a] + world.inverse_mass[b] * at[b])
-    summed = np.where(working, summed, 0.0)
-    counted = each * effective_count(world)
+    demands = _demands(world, world.stiffness, world.damping)
+    summed, counted = _summed_loads(world, demands), demands * effective_count(world)
     return summed if summed.max() < counted.max() else counted
 
 
-def _largest_coefficient(world: World, bound: Floats, pair: Callable[[float], tuple[Floats, Floats]]) -> float:
-    """Largest c in 0..1 whose Cs and Cd per tick, pair(c), have Cs + 2 Cd < bound (k,) at the substep, by bisection."""
-
-    def inside(c: float) -> bool:
-        stiffness, damping = pair(c)
-        halve(stiffness, damping, world.settings.substeps)
-        return bool(np.all(stiffness + 2.0 * damping < bound))
-
+def _largest(inside: Callable[[float], bool]) -> float:
+    """Largest number in 0..1 that is inside, by bisection; 0 where none is."""
     if inside(1.0):
         return 1.0
     low, high = 0.0, 1.0
-    for _ in range(50):
+    for _ in range(30):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if inside(middle) else (low, middle)
     return low
@@ -143,9 +142,25 @@ def _largest_coefficient(world: World, bound: Floats, pair: Callable[[float], tu
 
 def _equal_limit(world: World, effective: float) -> float:
     """Largest Cs = Cd per tick that stays inside (Cs + 2 Cd) n_eff < 4, for an n_eff or an eigenvalue."""
-    if effective <= 0.0:
-        return 1.0
-    return _largest_coefficient(world, np.array([BOUND / effective]), lambda c: (np.array([c]), np.array([c])))
+
+    def inside(c: float) -> bool:
+        stiffness, damping = np.array([c]), np.array([c])
+        halve(stiffness, damping, world.settings.substeps)
+        return bool((stiffness[0] + 2.0 * damping[0]) * effective < BOUND)
+
+    return _largest(inside)
+
+
+def _energy_bound(world: World) -> str:
+    """What the test of a step's energy proves, and of which kind the springs are."""
+    stiffness, damping = world.stiffness, world.damping
+    bouncy = np.flatnonzero(_working(world) & (world.law != LAW_HOOKE) & (stiffness > damping))
+    if len(bouncy):
+        return (
+            f"proven: energy never exceeds four times the start and the work done, whatever Cs and Cd "
+            f"(Cs is above Cd at {world.spring_names[bouncy[0]]})"
+        )
+    return "proven: energy never exceeds the start and the work done, because Cs <= Cd on every spring"
 
 
 def report(world: World) -> StabilityReport:
@@ -164,6 +179,8 @@ def report(world: World) -> StabilityReport:
         text = (
             f"{verdict}: the springs' Cs + 2 Cd add up to {load[worst]:.3g} at {name}, and stay stable below {BOUND:g}"
         )
+    elif SOLVERS[solver].bounded:
+        within, text = True, _energy_bound(world)
     else:
         within = None
         text = f"the {solver} solver has no proven limit; the single pass would be stable for Cs = Cd up to "
@@ -183,22 +200,32 @@ def report(world: World) -> StabilityReport:
 def coefficient_limits(world: World, material: int | None = None) -> CoefficientLimits:
     """Marks for the Cs and Cd sliders of a material's springs (None = all).
 
-    Each is the largest value per tick that is proven stable while the other stays as it is; 1 = the whole slider.
-    The proof is for springs that are all within their limits: it cannot answer for another material that is not.
+    Each is the largest value per tick that is proven stable while all else stays as it is, 0 where none is; 1 = the
+    whole slider. Other materials are taken to be within limits of their own: a mark cannot answer for one that is not.
     """
     solver = world.settings.solver
+    if SOLVERS[solver].bounded:
+        return CoefficientLimits(1.0, 1.0, _energy_bound(world))
     if not SOLVERS[solver].proven_limit:
         return CoefficientLimits(None, None, f"no proven limit for the {solver} solver")
-    chosen = (world.material >= 0) if material is None else (world.material == material)
     counts = effective_count(world)
+    chosen = (world.material >= 0) if material is None else (world.material == material)
     chosen &= (counts > 0.0) & (world.law != LAW_HOOKE)
     if not chosen.any():
         return CoefficientLimits(1.0, 1.0, "no spring of this material does anything")
+    # A hand is as hard as it is: where it holds one of these springs' ends, what they may add to it is less.
+    ends = np.union1d(world.particle_a[chosen], world.particle_b[chosen])
+    judged = chosen | (_working(world) & (world.material < 0) & np.isin(world.particle_b, ends))
+
+    def limit(name: str) -> float:
+        def inside(c: float) -> bool:
+            pair = {"stiffness": world.stiffness.copy(), "damping": world.damping.copy()}
+            pair[name][chosen] = c
+            return bool(np.all(_summed_loads(world, _demands(world, **pair))[judged] < BOUND))
+
+        return _largest(inside)
+
     tightest = int(np.flatnonzero(chosen)[np.argmax(counts[chosen])])
-    reason = f"proven: (Cs + 2 Cd) n_eff < {BOUND:g}, n_eff {counts[tightest]:.3g} at {world.spring_names[tightest]}"
-    bound, stiffness, damping = BOUND / counts[chosen], world.stiffness[chosen], world.damping[chosen]
-    return CoefficientLimits(
-        _largest_coefficient(world, bound, lambda c: (np.full(len(bound), c), damping.copy())),
-        _largest_coefficient(world, bound, lambda c: (stiffness.copy(), np.full(len(bound), c))),
-        reason,
-    )
+    at = f"n_eff {counts[tightest]:.3g} at {world.spring_names[tightest]}"
+    reason = f"proven: Cs + 2 Cd of joined springs add up to less than {BOUND:g}, {at}"
+    return CoefficientLimits(limit("stiffness"), limit("damping"), reason)

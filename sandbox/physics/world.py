@@ -144,6 +144,12 @@ class World:
         """Slot of the particle of that name. Raises KeyError."""
         return self._particle_slots[name]
 
+    def name_particle(self, slot: int, name: str) -> None:
+        """Give a particle a second name to be found by. Raises ValueError where that is taken."""
+        if name in self._particle_slots:
+            raise ValueError(f"the name {name!r} is taken")
+        self._particle_slots[name] = slot
+
     def spring_slot(self, name: str) -> int:
         """Slot of the spring of that name. Raises KeyError."""
         return self._spring_slots[name]

@@ -43,6 +43,19 @@ class Summary:
     hash: str
     milliseconds_per_tick: float
 
+    def text(self, name: str) -> str:
+        """The figures of the level of that name, for a person."""
+        return (
+            f"{name}: {self.ticks} ticks ({self.simulated_seconds:g} s), {self.particles} particles, "
+            f"{self.springs} springs, {self.solver}, {self.substeps} substeps\n"
+            f"  strain        {self.max_strain:.3%} at most, {self.rms_strain:.3%} RMS (last 2 s)\n"
+            f"  energy        {self.kinetic_energy:.6g} J kinetic, {self.potential_energy:.6g} J potential\n"
+            f"  fastest       {self.max_speed:.6g} m/s\n"
+            f"  non-finite    {self.non_finite} particles, broken {self.broken_springs} springs\n"
+            f"  a tick took   {self.milliseconds_per_tick:.4f} ms\n"
+            f"  hash          {self.hash}"
+        )
+
 
 def run(session: Session, ticks: int, on_tick: Callable[[World], None] | None = None) -> Summary:
     """Advance a session by a number of ticks and measure; on_tick: called with the world after every step."""

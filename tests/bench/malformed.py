@@ -9,7 +9,7 @@ from sandbox.level.files import LevelError, parse_level
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "level"))
 
-from malformed import malformed_levels
+from malformed_levels import malformed
 
 SHOWN = 15
 
@@ -26,7 +26,7 @@ def refuse(data: bytes) -> str:
 def main() -> None:
     """Refuse every malformed level twice: once for time, once for memory, whose tracing slows it down."""
     rows = []
-    for name, data in malformed_levels():
+    for name, data in malformed():
         start = time.perf_counter()
         line = refuse(data)
         seconds = time.perf_counter() - start

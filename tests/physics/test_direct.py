@@ -10,6 +10,7 @@ import pytest
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.stability import coefficient_limits, report
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE, World, WorldSettings
 from tests.bench import energy_gate, scenes
@@ -303,3 +304,13 @@ def test_the_slow_velocity_begins_anew_with_the_solver(solver):
     world.settings = WorldSettings(solver=solver)
     assert np.array_equal(world.slow_velocity, world.velocity)
     assert (world.energy_bank < 0.0).all()
+
+
+def test_the_stability_report_says_what_the_energy_test_proves():
+    world = scenes.rope(5).world(stiffness=0.9, damping=0.9)
+    assert report(world).within_limit is True
+    assert coefficient_limits(world).stiffness == coefficient_limits(world).damping == 1.0
+    assert "never exceeds the start" in report(world).text
+    world.set_coefficients(0.9, 0.1, None)
+    assert "four times the start" in report(world).text
+    assert "p:0" in coefficient_limits(world).reason

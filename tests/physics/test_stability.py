@@ -181,7 +181,7 @@ def test_the_marks_on_the_sliders_are_the_edge_of_what_is_proven(substeps):
             if limit < 1.0:
                 world.set_coefficients(**{**arguments, name: min(1.0, 1.001 * limit)})
                 assert not report(world).within_limit
-        assert limits.reason.startswith("proven: (Cs + 2 Cd) n_eff < 4, n_eff ")
+        assert limits.reason.startswith("proven: Cs + 2 Cd of joined springs add up to less than 4, n_eff ")
 
 
 def test_the_marks_are_for_the_chosen_material():
@@ -199,17 +199,35 @@ def test_the_marks_are_for_the_chosen_material():
     assert coefficient_limits(world, None).stiffness == coefficient_limits(world, 1).stiffness
 
 
+def test_the_marks_leave_room_for_what_harder_springs_and_hands_take_at_the_same_particle():
+    world = grid_with_diagonals(stiffness=0.05, damping=0.05)
+    free_hand = coefficient_limits(world).damping
+    world.reserve_hands()
+    world.hold(0, 27, (3.0, 3.0))
+    held = coefficient_limits(world).damping
+    # Eight springs and a hand at one particle: 8 (Cs + 2 Cd) + 0.8 < 4.
+    assert held == pytest.approx((3.2 / 8.0 - 0.05) / 2.0) and held < free_hand
+    world.set_coefficients(None, 0.999 * held, None)
+    assert report(world).within_limit
+    world.release(0)
+    world.add_springs(["tie"], [27], [0], stiffness=0.5, damping=0.9, material=1)
+    assert coefficient_limits(world, 0).damping < held
+
+
 def test_no_stiffness_is_proven_where_the_damping_alone_is_too_much():
     world = grid_with_diagonals(stiffness=0.1, damping=1.0)
     assert coefficient_limits(world).stiffness == pytest.approx(0.0, abs=1e-12)
 
 
-def test_a_mistuned_hooke_spring_is_reported_past_the_limit():
-    world = network([(0, 0), (1, 0)], [(0, 1)], pinned=[0])
+@pytest.mark.parametrize(
+    ("name", "limit"), [("hooke_stiffness", 4.0 * 3.0 * 60.0**2), ("hooke_damping", 2.0 * 3.0 * 60.0)]
+)
+def test_a_mistuned_hooke_spring_is_reported_past_the_limit(name, limit):
+    world = network([(0, 0), (1, 0)], [(0, 1)], masses=3.0, pinned=[0])
     world.law[:] = LAW_HOOKE
-    world.hooke_stiffness[:] = 3.9 * 60.0**2
+    getattr(world, name)[:] = 0.99 * limit
     assert report(world).within_limit
-    world.hooke_stiffness[:] = 4.1 * 60.0**2
+    getattr(world, name)[:] = 1.01 * limit
     assert not report(world).within_limit
     assert coefficient_limits(world).reason == "no spring of this material does anything"
 

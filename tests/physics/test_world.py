@@ -141,6 +141,16 @@ def test_a_released_hand_pulls_no_more_and_its_slots_serve_again():
     assert not world.is_held(2)
 
 
+def test_a_released_hand_leaves_no_sum_for_a_warm_start():
+    world = held_rope(solver="iterative")
+    world.hold(2, 4, (9.0, 9.0))
+    run(world, 2)
+    spring = world.hand_spring + 2
+    assert world.impulse[spring].any()
+    world.release(2)
+    assert not world.impulse[spring].any()
+
+
 def test_ten_hands_hold_at_once():
     world = grid_with_diagonals(stiffness=1.0 / 9.0, damping=1.0 / 9.0)
     world.reserve_hands()

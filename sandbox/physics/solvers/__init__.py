@@ -13,16 +13,18 @@ class Solver:
 
     solve(world, stiffness, damping, h): brings world.velocity from after gravity to the end of a step of h [s], with
     Cs and Cd (m,) of that step. spring_constant(stiffness, damping, reduced_mass [kg], h): k [N/m] of the energy
-    k/2 x^2. proven_limit: whether the limits of `stability` hold for it.
+    k/2 x^2. proven_limit: whether the limits of `stability` hold for it. bounded: whether it needs none, because it
+    tests the energy of every step.
     """
 
     solve: Callable[[World, Floats, Floats, float], None]
     spring_constant: Callable[[Floats, Floats, Floats, float], Floats]
     proven_limit: bool
+    bounded: bool
 
 
 SOLVERS = {
-    "single_pass": Solver(single_pass.solve, single_pass.spring_constant, proven_limit=True),
-    "iterative": Solver(iterative.solve, single_pass.spring_constant, proven_limit=False),
-    "direct": Solver(direct.solve, direct.spring_constant, proven_limit=False),
+    "single_pass": Solver(single_pass.solve, single_pass.spring_constant, proven_limit=True, bounded=False),
+    "iterative": Solver(iterative.solve, single_pass.spring_constant, proven_limit=False, bounded=False),
+    "direct": Solver(direct.solve, direct.spring_constant, proven_limit=False, bounded=True),
 }

@@ -122,6 +122,8 @@ def _minimise(first_row, last_row, first, last, rows, springs, matrix, h):  # ty
         _copy(first_row, last_row, rows.trial, rows.best)
         solve_linear(first_row, last_row, first, last, rows, springs, matrix)
         slope = _slope(first_row, last_row, first, last, rows, springs)
+        if not slope < 0.0:
+            break
         length = 1.0
         better = False
         for _halving in range(NEWTON_HALVINGS):

@@ -1,0 +1,83 @@
+"""Camera: world metres, y up, to pixels, y down, and back."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Point = tuple[float, float]
+Box = tuple[float, float, float, float]
+
+# Pixels per metre. Below: a level of the largest extent is a dot. Above: float positions run out of digits.
+ZOOM_RANGE = (1e-4, 1e6)
+# Part of the view left free around what `fit` shows.
+FIT_MARGIN = 0.08
+# Smallest extent [m] that `fit` shows, for levels of a single point.
+SMALLEST_EXTENT = 0.5
+
+
+@dataclass
+class Camera:
+    """centre [m] is shown at the middle of the viewport (left, top, width, height) [pixels]; zoom [pixels/m]."""
+
+    centre: Point = (0.0, 0.0)
+    zoom: float = 50.0
+    viewport: tuple[int, int, int, int] = (0, 0, 1280, 720)
+
+    @property
+    def origin(self) -> Point:
+        """Pixel position of the world's (0, 0)."""
+        left, top, width, height = self.viewport
+        x, y = self.centre
+        return left + width / 2 - x * self.zoom, top + height / 2 + y * self.zoom
+
+    def to_pixels(self, point: Point) -> Point:
+        """A point [m] in pixels."""
+        x, y = self.origin
+        return x + point[0] * self.zoom, y - point[1] * self.zoom
+
+    def to_world(self, pixel: Point) -> Point:
+        """A pixel position in metres."""
+        x, y = self.origin
+        return (pixel[0] - x) / self.zoom, (y - pixel[1]) / self.zoom
+
+    def project(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points [m] (n, 2) in pixels (n, 2)."""
+        return points * (self.zoom, -self.zoom) + self.origin
+
+    def zoom_about(self, pixel: Point, factor: float) -> None:
+        """Zoom by a factor, keeping the point under a pixel where it is."""
+        held = self.to_world(pixel)
+        self.zoom = min(max(self.zoom * factor, ZOOM_RANGE[0]), ZOOM_RANGE[1])
+        now = self.to_world(pixel)
+        self.centre = (self.centre[0] + held[0] - now[0], self.centre[1] + held[1] - now[1])
+
+    def pan(self, dx: float, dy: float) -> None:
+        """Move the picture by pixels."""
+        self.centre = (self.centre[0] - dx / self.zoom, self.centre[1] + dy / self.zoom)
+
+    def fit(self, box: Box) -> None:
+        """Show a box (left, bottom, right, top) [m] as large as it goes."""
+        left, bottom, right, top = box
+        width, height = max(right - left, SMALLEST_EXTENT), max(top - bottom, SMALLEST_EXTENT)
+        free = 1.0 - 2.0 * FIT_MARGIN
+        zoom = min(self.viewport[2] * free / width, self.viewport[3] * free / height)
+        self.zoom = min(max(zoom, ZOOM_RANGE[0]), ZOOM_RANGE[1])
+        self.centre = ((left + right) / 2, (bottom + top) / 2)
+
+
+def bounds(points: NDArray[np.float64]) -> Box:
+    """The box around the finite ones of the points [m] (n, 2); a small box around the origin where there are none."""
+    finite = points[np.isfinite(points).all(axis=1)]
+    if not len(finite):
+        return -1.0, -1.0, 1.0, 1.0
+    (left, bottom), (right, top) = finite.min(axis=0).tolist(), finite.max(axis=0).tolist()
+    return left, bottom, right, top
+
+
+def grid_spacing(zoom: float, wanted: float) -> float:
+    """Distance [m] between grid lines, 1, 2 or 5 times a power of ten, at least `wanted` pixels apart."""
+    metres = wanted / zoom
+    power = 10.0 ** math.floor(math.log10(metres))
+    return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= metres * (1.0 - 1e-9))

@@ -1,0 +1,50 @@
+"""Colours and sizes of everything that is drawn over the world; the widgets' are in assets/theme.json."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Colour = tuple[int, int, int]
+
+BACKGROUND: Colour = (17, 20, 26)
+GRID: Colour = (24, 28, 36)
+GRID_AXIS: Colour = (38, 44, 56)
+SURFACE: Colour = (24, 28, 36)
+LINE: Colour = (42, 49, 62)
+TEXT: Colour = (226, 231, 239)
+MUTED: Colour = (139, 149, 166)
+ACCENT: Colour = (94, 208, 178)
+WARNING: Colour = (255, 180, 84)
+DANGER: Colour = (255, 107, 107)
+PARTICLE: Colour = (226, 231, 239)
+PINNED: Colour = (94, 208, 178)
+
+# Springs by signed strain: compressed, at rest, stretched, torn at.
+COMPRESSED: Colour = (77, 155, 255)
+RELAXED: Colour = (150, 161, 180)
+STRETCHED: Colour = (255, 170, 70)
+OVERSTRETCHED: Colour = (255, 82, 82)
+# Strain at which half of the way from the neutral colour is gone. Smaller: stiff bodies show their load, jellies
+# are all one extreme.
+HALF_STRAIN = 0.04
+
+_STOPS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
+_RAMP = np.array([(40, 110, 255), COMPRESSED, RELAXED, STRETCHED, OVERSTRETCHED], dtype=np.float64)
+
+
+def strain_colours(strain: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Colours (m,) as 0xRRGGBB of signed strains (m,): blue = compressed, grey = at rest, warm = stretched."""
+    finite = np.nan_to_num(strain, nan=0.0, posinf=1e9, neginf=-1e9)
+    place = finite / (np.abs(finite) + HALF_STRAIN)
+    channels = [np.interp(place, _STOPS, _RAMP[:, k]).astype(np.int64) for k in range(3)]
+    return (channels[0] << 16) | (channels[1] << 8) | channels[2]
+
+
+def packed(colour: Colour) -> int:
+    """A colour as 0xRRGGBB."""
+    return (colour[0] << 16) | (colour[1] << 8) | colour[2]
+
+
+def mixed(first: Colour, second: Colour, share: float) -> Colour:
+    """The colour that has `share` (0..1) of the second in it."""
+    r, g, b = (round(a + (z - a) * share) for a, z in zip(first, second, strict=True))
+    return r, g, b

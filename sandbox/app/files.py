@@ -1,0 +1,156 @@
+"""FileActions: opening levels and replays, recording, saving."""
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sandbox.app.dialogs import ask
+from sandbox.app.playback import Playback
+from sandbox.app.recordings import SUFFIX, chosen_path, free_path, plain_name, recordings_folder
+from sandbox.level.files import LevelError, load_level, read_level
+from sandbox.session.reading import read_replay
+from sandbox.session.replay import ReplayError
+
+if TYPE_CHECKING:
+    from sandbox.app.app import App
+
+
+class FileActions:
+    """What the app does with files; faults are shown as lines, and the app goes on with what it had."""
+
+    def __init__(self, app: "App") -> None:
+        self.app = app
+
+    # Opening.
+
+    def open_path(self, path: str | Path) -> bool:
+        """Open a level or a replay, whichever the file is; True where it could be."""
+        try:
+            with open(path, "rb") as file:
+                start = file.read(64)
+        except OSError as error:
+            self._refuse(path, [f"{path}: cannot be read: {error.strerror or error}"])
+            return False
+        is_replay = start[:2] == b"\x1f\x8b" or b"spring-sandbox/replay" in start
+        return self.open_replay(path) if is_replay else self.open_level(path)
+
+    def open_level(self, path: str | Path) -> bool:
+        """Open a level file and play it."""
+        try:
+            playback = Playback(read_level(Path(path)))
+        except LevelError as error:
+            self._refuse(path, error.faults)
+            return False
+        self.app.start(playback)
+        return True
+
+    def open_replay(self, path: str | Path) -> bool:
+        """Open a replay and watch it; one that is cut off as far as it goes."""
+        try:
+            try:
+                replay = read_replay(path)
+            except ReplayError:
+                replay = read_replay(path, partial=True)
+            playback = Playback(replay.level, replay)
+        except ReplayError as error:
+            self._refuse(path, error.faults)
+            return False
+        self.app.start(playback)
+        self.app.say(f"Watching {Path(path).name}. Touch anything to take over.")
+        return True
+
+    def ask_to_open(self) -> None:
+        """Ask for the path of a level or replay, or a shipped level's name."""
+        hint = "A path, or the name of a shipped level. Files can be dropped on the window too."
+        ask(self.app.ui, "Open a level or a replay", hint, "", "Open", self._open_typed)
+
+    def _open_typed(self, typed: str) -> str | None:
+        path = Path(typed).expanduser()
+        if path.is_file():
+            self.open_path(path)
+            return None
+        try:
+            level = load_level(typed)
+        except LevelError as error:
+            return error.faults[0]
+        self.app.start(Playback(level))
+        return None
+
+    def _refuse(self, path: str | Path, faults: list[str]) -> None:
+        self.app.show_faults(f"{Path(path).name} cannot be opened", faults)
+
+    # Recording.
+
+    def toggle_recording(self) -> None:
+        """Start recording the run, its beginning included, or stop and ask for a name."""
+        stage = self.app.stage
+        if stage is None:
+            return
+        session = stage.playback.session
+        if session.recording is not None:
+            self._stop_and_name()
+            return
+        path = self._record_now()
+        if path is not None:
+            self.app.say(f"Recording to {path}, from the beginning of the run.")
+
+    def save_run(self) -> None:
+        """Save the run so far as a replay, under a name that is asked for."""
+        stage = self.app.stage
+        if stage is None:
+            return
+        if stage.playback.session.recording is None and self._record_now() is None:
+            return
+        self._stop_and_name()
+
+    def _record_now(self) -> Path | None:
+        assert self.app.stage is not None
+        playback = self.app.stage.playback
+        try:
+            path = free_path(recordings_folder(), plain_name(playback.level.name))
+            playback.session.record_to(path)
+        except (OSError, ValueError) as error:
+            self.app.say(f"Recording cannot start: {error}.")
+            return None
+        return path
+
+    def _stop_and_name(self) -> None:
+        assert self.app.stage is not None
+        path = self.app.stage.playback.session.stop_recording()
+        if path is None:
+            return
+        self.app.say(f"Saved as {path}")
+        suggestion = path.name.removesuffix(SUFFIX)
+        ask(
+            self.app.ui,
+            "Name the replay",
+            f"In {path.parent}",
+            suggestion,
+            "Save",
+            lambda typed: self._rename(path, typed),
+        )
+
+    def _rename(self, path: Path, typed: str) -> str | None:
+        if typed.removesuffix(SUFFIX) == path.name.removesuffix(SUFFIX):
+            return None
+        try:
+            wanted = chosen_path(path.parent, typed)
+            # A link appears only where nothing is yet: no other program's file is lost in between.
+            try:
+                os.link(path, wanted)
+                path.unlink()
+            except (NotImplementedError, PermissionError):
+                path.rename(wanted)
+        except ValueError as error:
+            return str(error)
+        except OSError as error:
+            return f"It stays {path.name}: {error.strerror or error}."
+        self.app.say(f"Saved as {wanted}")
+        return None
+
+    def leave_recording(self) -> None:
+        """End a recording that is being made; its file is complete."""
+        stage = self.app.stage
+        path = stage.playback.session.stop_recording() if stage is not None else None
+        if path is not None:
+            self.app.say(f"Saved as {path}")

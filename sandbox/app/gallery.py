@@ -1,0 +1,225 @@
+"""Gallery: levels as cards with rendered pictures, and saved recordings as a list."""
+
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pygame
+
+from sandbox.app.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT
+from sandbox.app.painted import Painted, wrapped
+from sandbox.app.picture import draw_picture, run_ahead
+from sandbox.app.recordings import saved_recordings
+from sandbox.app.widgets import ENTER_KEYS, Ui
+from sandbox.level.files import LevelError, read_level, shipped_levels
+from sandbox.level.model import Level
+
+if TYPE_CHECKING:
+    from sandbox.app.files import FileActions
+
+# Sizes in layout units.
+CARD_WIDTH = 250.0
+PICTURE_RATIO = 9 / 16
+TEXT_HEIGHT = 74.0
+GAP = 20.0
+TOP = 92.0
+MARGIN = 36.0
+ROW_HEIGHT = 52.0
+WHEEL_STEP = 70.0
+# The pictures show the level after this time [s], or it would hang in mid-air where it was built.
+PICTURE_SECONDS = 0.8
+# Levels of more particles than this are drawn as they are built: the gallery stays quick.
+PICTURE_PARTICLES = 3000
+
+
+class Card(Painted):
+    """One thing to open: a picture where there is one, a name, a line of text."""
+
+    def __init__(
+        self, ui: Ui, rect: pygame.Rect, name: str, text: str, action: Callable[[], object], container: Any
+    ) -> None:
+        super().__init__(ui, rect, container)
+        self.name, self.text, self.action = name, text, action
+        self.picture: pygame.Surface | None = None
+        self.has_picture = True
+        self.broken = False
+        self.home = rect.copy()
+        ui.add(self)
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface:
+        """The card as it is now."""
+        ui, (width, height) = self.ui, size
+        card = pygame.Surface(size, pygame.SRCALPHA)
+        pygame.draw.rect(card, SURFACE, card.get_rect(), border_radius=ui.px(10))
+        picture_height = height - ui.px(TEXT_HEIGHT) if self.has_picture else 0
+        if self.has_picture:
+            self._paint_picture(card, width, picture_height)
+        rim = ACCENT if self.hovered else LINE
+        pygame.draw.rect(card, rim, card.get_rect(), max(1, ui.px(1.4)), border_radius=ui.px(10))
+        y = picture_height + ui.px(9)
+        name = wrapped(self.name, ui.font(14, True), width - ui.px(28), 1)[0]
+        card.blit(ui.font(14, True).render(name, True, TEXT), (ui.px(14), y))
+        y += ui.px(22)
+        for line in wrapped(self.text, ui.font(11.5), width - ui.px(28), 2 if self.has_picture else 1):
+            card.blit(ui.font(11.5).render(line, True, DANGER if self.broken else MUTED), (ui.px(14), y))
+            y += ui.px(16)
+        return card
+
+    def _paint_picture(self, card: pygame.Surface, width: int, height: int) -> None:
+        ui = self.ui
+        frame = pygame.Rect(1, 1, width - 2, height)
+        pygame.draw.rect(card, BACKGROUND, frame, border_top_left_radius=ui.px(10), border_top_right_radius=ui.px(10))
+        if self.picture is not None:
+            inset = self.picture.get_rect(center=frame.center)
+            card.blit(self.picture, inset)
+        pygame.draw.line(card, LINE, (1, height), (width - 2, height))
+
+    def on_hovered(self) -> None:
+        """Show that a click opens this."""
+        self.repaint()
+
+    def on_unhovered(self) -> None:
+        """Back to how it was."""
+        self.repaint()
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Open on a click."""
+        pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
+        if pressed and self.hover_point(*self.ui.manager.calculate_scaled_mouse_position(event.pos)):
+            self.action()
+            return True
+        return False
+
+    def press_key(self, event: pygame.event.Event) -> bool:
+        """Open on Enter or Space."""
+        if event.key in (*ENTER_KEYS, pygame.K_SPACE):
+            self.action()
+            return True
+        return False
+
+
+class Gallery:
+    """The page of levels or recordings."""
+
+    def __init__(self, ui: Ui, files: "FileActions", section: str, close: Callable[[], None]) -> None:
+        self._ui, self._files = ui, files
+        self.cards: list[Card] = []
+        self._unpainted: list[tuple[Card, Level]] = []
+        self._scroll = 0.0
+        self._columns = 1
+        self.sheet = ui.open_sheet(close if files.app.stage is not None else lambda: None, "@cover")
+        width, height = ui.units
+        ui.label(ui.rect(MARGIN, 26, 400, 40), "Spring Sandbox", self.sheet, "@display")
+        options = [("levels", "Levels", ""), ("recordings", "Replays", "")]
+        tabs = ui.choice(ui.rect(width - MARGIN - 300, 32, 190, 32), options, self._files.app.open_gallery, self.sheet)
+        tabs.show(section)
+        ui.button(ui.rect(width - MARGIN - 100, 32, 100, 32), "Open file", files.ask_to_open, self.sheet)
+        place = ui.rect(MARGIN - 6, TOP, width - 2 * MARGIN + 12, height - TOP)
+        self.area = ui.area(place, self.sheet)
+        (self._add_levels if section == "levels" else self._add_recordings)()
+
+    def close(self) -> None:
+        """Take the page away."""
+        self._ui.close_sheet(self.sheet)
+
+    def _add_levels(self) -> None:
+        ui = self._ui
+        width = ui.units[0] - 2 * MARGIN
+        columns = self._columns = max(1, int((width + GAP) // (CARD_WIDTH + GAP)))
+        card_width = (width - GAP * (columns - 1)) / columns
+        card_height = card_width * PICTURE_RATIO + TEXT_HEIGHT
+        for index, path in enumerate(shipped_levels()):
+            x = 6 + index % columns * (card_width + GAP)
+            y = 6 + index // columns * (card_height + GAP)
+            self._add_level(ui.rect(x, y, card_width, card_height), path)
+
+    def _add_level(self, rect: pygame.Rect, path: Path) -> None:
+        try:
+            level = read_level(path)
+        except LevelError as error:
+            card = self._add_card(rect, path.stem, error.faults[0], lambda: self._files.open_level(path))
+            card.broken = True
+            card.repaint()
+            return
+        card = self._add_card(rect, level.name, level.description, lambda: self._files.open_level(path))
+        self._unpainted.append((card, level))
+
+    def _add_recordings(self) -> None:
+        ui = self._ui
+        width = min(ui.units[0] - 2 * MARGIN, 760.0)
+        found = saved_recordings()
+        if not found:
+            text = "No replays yet. Record a run with Ctrl+R, or save what you did with Ctrl+S."
+            ui.label(ui.rect(6, 6, width, 30), text, self.area, "@muted")
+        for index, path in enumerate(found):
+            stat = path.stat()
+            when = time.strftime("%d %B %Y, %H:%M", time.localtime(stat.st_mtime))
+            rect = ui.rect(6, 6 + index * (ROW_HEIGHT + 10), width, ROW_HEIGHT)
+            card = Card(
+                ui, rect, path.name, f"{when}, {stat.st_size / 1024:,.0f} KiB",
+                partial(self._files.open_replay, path), self.area,
+            )  # fmt: skip
+            card.has_picture = False
+            card.repaint()
+            self.cards.append(card)
+
+    def _add_card(self, rect: pygame.Rect, name: str, text: str, action: Callable[[], object]) -> Card:
+        card = Card(self._ui, rect, name, text, action, self.area)
+        card.repaint()
+        self.cards.append(card)
+        return card
+
+    def update(self, ready: bool) -> None:
+        """Draw one more picture, once the kernels are ready, and keep the focused card in sight."""
+        if ready and self._unpainted:
+            self._paint_picture(*self._unpainted.pop(0))
+        focus = self._ui.focus
+        if isinstance(focus, Card) and focus in self.cards:
+            self._show(focus)
+
+    def _paint_picture(self, card: Card, level: Level) -> None:
+        ui = self._ui
+        size = (card.rect.width - 2, card.rect.height - ui.px(TEXT_HEIGHT) - 1)
+        seconds = PICTURE_SECONDS
+        snapshot = run_ahead(level, 0.0)
+        if len(snapshot.mass) <= PICTURE_PARTICLES:
+            snapshot = run_ahead(level, seconds)
+        twice = draw_picture(level, snapshot, (size[0] * 2, size[1] * 2))
+        card.picture = pygame.transform.smoothscale(twice, size)
+        card.repaint()
+
+    def press_key(self, key: int) -> bool:
+        """Go from card to card with the arrow keys."""
+        step = {pygame.K_LEFT: -1, pygame.K_RIGHT: 1, pygame.K_UP: -self._columns, pygame.K_DOWN: self._columns}
+        if key not in step or not self.cards or self._ui.typing:
+            return False
+        focus = self._ui.focus
+        here = self.cards.index(focus) if isinstance(focus, Card) and focus in self.cards else None
+        target = 0 if here is None else here + step[key]
+        if 0 <= target < len(self.cards):
+            self._ui.focus_on(self.cards[target])
+            self._show(self.cards[target])
+        return True
+
+    def scroll(self, notches: float) -> None:
+        """Move the cards by notches of the wheel."""
+        self._scroll_to(self._scroll - notches * self._ui.px(WHEEL_STEP))
+
+    def _show(self, card: Card) -> None:
+        gap = self._ui.px(GAP)
+        top, bottom = card.home.top - gap, card.home.bottom + gap
+        if top < self._scroll:
+            self._scroll_to(top)
+        elif bottom > self._scroll + self.area.rect.height:
+            self._scroll_to(bottom - self.area.rect.height)
+
+    def _scroll_to(self, offset: float) -> None:
+        lowest = max((card.home.bottom for card in self.cards), default=0) + self._ui.px(MARGIN)
+        offset = min(max(offset, 0.0), max(0.0, lowest - self.area.rect.height))
+        if offset == self._scroll:
+            return
+        self._scroll = offset
+        for card in self.cards:
+            card.set_relative_position((card.home.left, card.home.top - round(offset)))

@@ -1,0 +1,128 @@
+"""Input: pygame's events to widgets first, then to the world; pygame's events end here."""
+
+from typing import TYPE_CHECKING
+
+import pygame
+
+from sandbox.app.shortcuts import action_of
+
+if TYPE_CHECKING:
+    from sandbox.app.app import App
+
+# A press of Space shorter than this [s], without a drag, is the pause key; longer ones are a hand for panning.
+TAP_SECONDS = 0.35
+ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, 1), pygame.K_DOWN: (0, -1)}
+
+Pixel = tuple[float, float]
+
+
+class Input:
+    """Decides who gets an event."""
+
+    def __init__(self, app: "App") -> None:
+        self.app = app
+        self._panning = False
+        self._pressed = False
+        self._space_down: int | None = None
+        self._space_used = False
+
+    def process(self, events: list[pygame.event.Event]) -> None:
+        """Hand out the events of a frame."""
+        for event in events:
+            if event.type == pygame.QUIT or event.type == pygame.WINDOWCLOSE:
+                self.app.quit()
+            elif event.type == pygame.DROPFILE:
+                self.app.files.open_path(event.file)
+            elif self._follows_world(event) or not self.app.ui.process(event):
+                self._to_world(event)
+
+    def pointer_over_world(self) -> Pixel | None:
+        """Where the mouse is, while it is over the world and no widget."""
+        pixel = self._pixel(pygame.mouse.get_pos())
+        stage = self.app.stage
+        if stage is None or self.app.ui.has_sheet or not pygame.mouse.get_focused() or not stage.contains(pixel):
+            return None
+        return pixel
+
+    def _pixel(self, position: tuple[int, int]) -> Pixel:
+        ratio = self.app.display.pixel_ratio
+        return position[0] * ratio[0], position[1] * ratio[1]
+
+    def _follows_world(self, event: pygame.event.Event) -> bool:
+        """Whether a drag that began over the world goes on: then no widget gets in its way."""
+        return event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONUP) and (self._pressed or self._panning)
+
+    def _to_world(self, event: pygame.event.Event) -> None:
+        if event.type == pygame.KEYDOWN:
+            self._key(event)
+        elif event.type == pygame.KEYUP and event.key == pygame.K_SPACE:
+            self._space_up()
+        elif event.type == pygame.MOUSEWHEEL and self.app.gallery is not None:
+            self.app.gallery.scroll(event.precise_y or event.y)
+        elif self.app.stage is None or self.app.ui.has_sheet:
+            return
+        elif event.type == pygame.MOUSEBUTTONDOWN:
+            self._button_down(event)
+        elif event.type == pygame.MOUSEMOTION:
+            self._motion(event)
+        elif event.type == pygame.MOUSEBUTTONUP:
+            self._button_up(event)
+        elif event.type == pygame.MOUSEWHEEL:
+            pixel = self.pointer_over_world()
+            if pixel is not None:
+                self.app.stage.wheel(pixel, event.precise_y or event.y)
+
+    def _key(self, event: pygame.event.Event) -> None:
+        app = self.app
+        if app.ui.typing:
+            return
+        if app.gallery is not None and app.gallery.press_key(event.key):
+            return
+        if event.key in ARROWS and app.stage is not None and not app.ui.has_sheet:
+            app.stage.move_cursor(*ARROWS[event.key], event.mod)
+            return
+        if event.key == pygame.K_SPACE and not app.ui.has_sheet:
+            if self._space_down is None:
+                self._space_down, self._space_used = pygame.time.get_ticks(), False
+            return
+        action = action_of(event.key, event.mod)
+        if action is not None and (not app.ui.has_sheet or action in ("quit", "fullscreen", "larger", "smaller")):
+            app.act(action)
+
+    def _space_up(self) -> None:
+        pressed, self._space_down = self._space_down, None
+        if pressed is None or self._space_used or self.app.ui.has_sheet:
+            return
+        if pygame.time.get_ticks() - pressed <= 1000 * TAP_SECONDS:
+            self.app.act("pause")
+
+    def _button_down(self, event: pygame.event.Event) -> None:
+        stage, pixel = self.app.stage, self._pixel(event.pos)
+        if stage is None or not stage.contains(pixel):
+            return
+        self.app.ui.blur()
+        if event.button == 2 or (event.button == 1 and self._space_down is not None):
+            self._panning, self._space_used = True, True
+        elif event.button == 1:
+            self._pressed = True
+            stage.cursor = None
+            stage.point("down", pixel, pygame.key.get_mods())
+
+    def _motion(self, event: pygame.event.Event) -> None:
+        stage, ratio = self.app.stage, self.app.display.pixel_ratio
+        if stage is None:
+            return
+        if self._panning:
+            stage.camera.pan(event.rel[0] * ratio[0], event.rel[1] * ratio[1])
+        elif self._pressed:
+            stage.point("move", self._pixel(event.pos), pygame.key.get_mods())
+
+    def _button_up(self, event: pygame.event.Event) -> None:
+        stage = self.app.stage
+        if stage is None:
+            return
+        if self._panning and event.button in (1, 2):
+            self._panning = False
+        elif self._pressed and event.button == 1:
+            self._pressed = False
+            stage.point("up", self._pixel(event.pos), pygame.key.get_mods())

@@ -1,0 +1,158 @@
+"""Anti-aliased lines and discs drawn into a surface's pixels by kernels; by pygame where numba is missing."""
+
+import math
+
+import numpy as np
+import pygame
+from numpy.typing import NDArray
+
+from sandbox.physics.jit import COMPILED, kernel
+
+# Coordinates beyond this [pixels] are not drawn: float rounding would bend the line, and no screen is that large.
+FARTHEST = 1e7
+
+
+@kernel
+def _draw_lines(pixels, ends, colours, half_width, left, top, right, bottom):  # type: ignore[no-untyped-def]
+    # Coverage of a pixel centre at distance d from the segment: clamp(half_width + 1/2 - d, 0, 1).
+    reach = half_width + 1.0
+    for s in range(ends.shape[0]):
+        ax, ay, bx, by = ends[s, 0], ends[s, 1], ends[s, 2], ends[s, 3]
+        if not (abs(ax) < FARTHEST and abs(ay) < FARTHEST and abs(bx) < FARTHEST and abs(by) < FARTHEST):
+            continue
+        dx, dy = bx - ax, by - ay
+        length = math.sqrt(dx * dx + dy * dy)
+        ux, uy = (dx / length, dy / length) if length > 1e-9 else (1.0, 0.0)
+        steep = abs(dy) > abs(dx)
+        along_a, along_b = (ay, by) if steep else (ax, bx)
+        low, high = (top, bottom) if steep else (left, right)
+        across_low, across_high = (left, right) if steep else (top, bottom)
+        first = max(low, math.floor(min(along_a, along_b) - reach))
+        last = min(high - 1, math.ceil(max(along_a, along_b) + reach))
+        main = max(abs(ux), abs(uy))
+        slope = (dx / dy if steep else dy / dx) if length > 1e-9 else 0.0
+        across_a = ax if steep else ay
+        spread = reach / main
+        colour = colours[s]
+        red, green, blue = (colour >> 16) & 255, (colour >> 8) & 255, colour & 255
+        for i in range(first, last + 1):
+            # Beyond an end the nearest point is that end itself, so the middle must not run on.
+            inside = min(max(i + 0.5, min(along_a, along_b)), max(along_a, along_b))
+            middle = across_a + (inside - along_a) * slope
+            start = max(across_low, math.floor(middle - spread))
+            stop = min(across_high - 1, math.ceil(middle + spread))
+            for j in range(start, stop + 1):
+                px, py = (j + 0.5, i + 0.5) if steep else (i + 0.5, j + 0.5)
+                rx, ry = px - ax, py - ay
+                t = rx * ux + ry * uy
+                if t < 0.0:
+                    distance = math.sqrt(rx * rx + ry * ry)
+                elif t > length:
+                    qx, qy = px - bx, py - by
+                    distance = math.sqrt(qx * qx + qy * qy)
+                else:
+                    distance = abs(rx * uy - ry * ux)
+                cover = half_width + 0.5 - distance
+                if cover <= 0.0:
+                    continue
+                share = int(min(cover, 1.0) * 256.0)
+                x, y = (j, i) if steep else (i, j)
+                under = int(pixels[x, y])
+                r, g, b = (under >> 16) & 255, (under >> 8) & 255, under & 255
+                r += ((red - r) * share) >> 8
+                g += ((green - g) * share) >> 8
+                b += ((blue - b) * share) >> 8
+                pixels[x, y] = 0xFF000000 | (r << 16) | (g << 8) | b
+
+
+@kernel
+def _draw_discs(pixels, centres, radii, colours, left, top, right, bottom):  # type: ignore[no-untyped-def]
+    # Coverage of a pixel centre at distance d from the middle: clamp(radius + 1/2 - d, 0, 1).
+    for p in range(centres.shape[0]):
+        x0, y0, radius = centres[p, 0], centres[p, 1], radii[p]
+        if not (abs(x0) < FARTHEST and abs(y0) < FARTHEST):
+            continue
+        colour = colours[p]
+        red, green, blue = (colour >> 16) & 255, (colour >> 8) & 255, colour & 255
+        first, last = max(left, math.floor(x0 - radius - 1.0)), min(right - 1, math.ceil(x0 + radius + 1.0))
+        start, stop = max(top, math.floor(y0 - radius - 1.0)), min(bottom - 1, math.ceil(y0 + radius + 1.0))
+        for x in range(first, last + 1):
+            dx = x + 0.5 - x0
+            for y in range(start, stop + 1):
+                dy = y + 0.5 - y0
+                cover = radius + 0.5 - math.sqrt(dx * dx + dy * dy)
+                if cover <= 0.0:
+                    continue
+                share = int(min(cover, 1.0) * 256.0)
+                under = int(pixels[x, y])
+                r, g, b = (under >> 16) & 255, (under >> 8) & 255, under & 255
+                r += ((red - r) * share) >> 8
+                g += ((green - g) * share) >> 8
+                b += ((blue - b) * share) >> 8
+                pixels[x, y] = 0xFF000000 | (r << 16) | (g << 8) | b
+
+
+def _has_plain_pixels(surface: pygame.Surface) -> bool:
+    return surface.get_bitsize() == 32 and surface.get_shifts()[:3] == (16, 8, 0)
+
+
+class Canvas:
+    """Draws many lines and discs on a surface; compiled: whether kernels do it, once they are ready."""
+
+    def __init__(self, surface: pygame.Surface, compiled: bool = COMPILED) -> None:
+        self.surface = surface
+        self.compiled = compiled and COMPILED and _has_plain_pixels(surface)
+
+    def lines(self, ends: NDArray[np.float64], colours: NDArray[np.int64], width: float) -> None:
+        """Draw segments (m, 4) = x1, y1, x2, y2 [pixels] in colours (m,) 0xRRGGBB, width [pixels]."""
+        if not len(ends):
+            return
+        if self.compiled:
+            clip = self.surface.get_clip()
+            pixels = pygame.surfarray.pixels2d(self.surface)
+            _draw_lines(pixels, ends, colours, width / 2, clip.left, clip.top, clip.right, clip.bottom)
+            return
+        # draw.aaline clips, but only after ends of any size have become 32 bit integers.
+        seen = (np.abs(ends) < FARTHEST).all(axis=1)
+        for (x1, y1, x2, y2), colour in zip(ends[seen].tolist(), colours[seen].tolist(), strict=True):
+            pygame.draw.aaline(self.surface, _rgb(colour), (x1, y1), (x2, y2), max(1, round(width)))
+
+    def discs(self, centres: NDArray[np.float64], radii: NDArray[np.float64], colours: NDArray[np.int64]) -> None:
+        """Draw filled circles of centres (n, 2) and radii (n,) [pixels] in colours (n,) 0xRRGGBB."""
+        if not len(centres):
+            return
+        if self.compiled:
+            clip = self.surface.get_clip()
+            pixels = pygame.surfarray.pixels2d(self.surface)
+            _draw_discs(pixels, centres, radii, colours, clip.left, clip.top, clip.right, clip.bottom)
+            return
+        seen = (np.abs(centres) < FARTHEST).all(axis=1)
+        sprites: dict[tuple[int, int], pygame.Surface] = {}
+        blits = []
+        for (x, y), radius, colour in zip(
+            centres[seen].tolist(), radii[seen].tolist(), colours[seen].tolist(), strict=True
+        ):
+            key = (max(1, round(radius)), colour)
+            sprite = sprites.get(key) or sprites.setdefault(key, _disc_sprite(*key))
+            blits.append((sprite, (round(x) - key[0] - 1, round(y) - key[0] - 1)))
+        self.surface.fblits(blits, pygame.BLEND_PREMULTIPLIED)
+
+
+def _disc_sprite(radius: int, colour: int) -> pygame.Surface:
+    size = 2 * radius + 3
+    sprite = pygame.Surface((size, size), pygame.SRCALPHA)
+    pygame.draw.aacircle(sprite, _rgb(colour), (radius + 1, radius + 1), radius)
+    return sprite.premul_alpha()
+
+
+def _rgb(colour: int) -> tuple[int, int, int]:
+    return (colour >> 16) & 255, (colour >> 8) & 255, colour & 255
+
+
+def warm_up_lines() -> None:
+    """Compile the drawing kernels, or load them from the cache."""
+    if not COMPILED:
+        return
+    canvas = Canvas(pygame.Surface((8, 8), 0, 32))
+    canvas.lines(np.array([[1.0, 1.0, 6.0, 5.0]]), np.array([0xFFFFFF]), 2.0)
+    canvas.discs(np.array([[3.0, 3.0]]), np.array([2.0]), np.array([0xFFFFFF]))

@@ -1,0 +1,50 @@
+"""Pictures of levels and runs, drawn off screen."""
+
+import os
+from pathlib import Path
+
+os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+
+import numpy as np
+import pygame
+
+from sandbox.app.camera import Box, Camera, bounds
+from sandbox.app.renderer import Renderer
+from sandbox.level.model import Level
+from sandbox.physics.query import shown_particles
+from sandbox.physics.snapshot import Snapshot
+from sandbox.session.session import Session
+
+
+def view_of(level: Level, snapshot: Snapshot) -> Box:
+    """What the camera shows at first: the level's view, or else all of its particles."""
+    return level.view or bounds(snapshot.position[shown_particles(snapshot)])
+
+
+def draw_picture(level: Level, snapshot: Snapshot, size: tuple[int, int], compiled: bool = True) -> pygame.Surface:
+    """A picture of a state of a level; size [pixels]."""
+    surface = pygame.Surface(size, 0, 32)
+    camera = Camera(viewport=(0, 0, *size))
+    camera.fit(view_of(level, snapshot))
+    renderer = Renderer(scale=max(0.6, min(size[0] / 1280, size[1] / 720)))
+    renderer.compiled = compiled
+    renderer.draw(surface, camera, snapshot, snapshot, 1.0)
+    return surface
+
+
+def save_picture(session: Session, path: Path, size: tuple[int, int] = (1280, 720)) -> None:
+    """Draw the present state of a session into a PNG file; needs no display. Raises OSError."""
+    surface = draw_picture(session.level, session.snapshot(), size)
+    try:
+        pygame.image.save(surface, str(path))
+    except pygame.error as error:
+        raise OSError(0, str(error), str(path)) from None
+
+
+def run_ahead(level: Level, seconds: float) -> Snapshot:
+    """The state of a level after so many seconds by itself."""
+    session = Session(level)
+    with np.errstate(over="ignore", invalid="ignore"):
+        for _ in range(round(seconds * level.settings.tick_rate)):
+            session.advance()
+    return session.snapshot()

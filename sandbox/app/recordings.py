@@ -1,0 +1,58 @@
+"""Recordings: the folder that they are kept in, and names that overwrite nothing."""
+
+import re
+from pathlib import Path
+
+import platformdirs
+
+SUFFIX = ".replay.jsonl"
+# Most recordings that the list shows, newest first.
+LISTED = 60
+# Longest name [characters] that every file system takes with the suffix.
+NAME_LIMIT = 120
+
+
+def recordings_folder() -> Path:
+    """The folder of the person's recordings, made where it is missing. Raises OSError."""
+    folder = Path(platformdirs.user_documents_dir()) / "Spring Sandbox"
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+def saved_recordings() -> list[Path]:
+    """Recordings in the folder, newest first."""
+    try:
+        found = [*recordings_folder().glob(f"*{SUFFIX}"), *recordings_folder().glob(f"*{SUFFIX}.gz")]
+        return sorted(found, key=lambda path: path.stat().st_mtime, reverse=True)[:LISTED]
+    except OSError:
+        return []
+
+
+def plain_name(text: str) -> str:
+    """A file name made of a level's name."""
+    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:60] or "run"
+
+
+def free_path(folder: Path, name: str) -> Path:
+    """A path in the folder that nothing has: name, then name-2, name-3, ..."""
+    count = 1
+    while True:
+        path = folder / f"{name if count == 1 else f'{name}-{count}'}{SUFFIX}"
+        if not path.exists():
+            return path
+        count += 1
+
+
+def chosen_path(folder: Path, typed: str) -> Path:
+    """The path for a name that was typed. Raises ValueError with one line where it cannot be used."""
+    name = typed.removesuffix(SUFFIX).strip()
+    if not name:
+        raise ValueError("Type a name.")
+    if len(name) > NAME_LIMIT or re.search(r'[\\/:*?"<>|\x00-\x1f]', name) or name.startswith("."):
+        raise ValueError(
+            'A name has no / \\ : * ? " < > | in it, does not begin with a dot and is not longer than 120.'
+        )
+    path = folder / f"{name}{SUFFIX}"
+    if path.exists():
+        raise ValueError(f"{path.name} exists already. Choose another name.")
+    return path

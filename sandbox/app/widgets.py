@@ -1,0 +1,363 @@
+"""Ui: the widgets of the app. It and painted.py alone know pygame_gui; others get callbacks, not events."""
+
+import html
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import pygame
+import pygame_gui
+from pygame_gui.core import ObjectID, UIContainer, UIElement
+from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITextEntryLine
+
+from sandbox.app.colours import ACCENT
+from sandbox.app.painted import Painted
+from sandbox.app.theme import plain_font, scaled_theme
+
+# It warns of every label that is a pixel lower than its font: only people who lay out can do something about that.
+warnings.filterwarnings("ignore", message="Label Rect is too small", module="pygame_gui")
+
+# Layers between the page and a modal sheet, and between one sheet and the next.
+SHEET_HEIGHT = 40
+ENTER_KEYS = (pygame.K_RETURN, pygame.K_KP_ENTER)
+
+
+@dataclass
+class Field:
+    """A line to type into; commit gets the text and says whether it is taken, else the old text comes back."""
+
+    entry: UITextEntryLine
+    commit: Callable[[str], bool]
+    text: str
+    focused: bool = False
+    enter: Callable[[str], object] | None = None
+
+    def show(self, text: str) -> None:
+        """Show a value, unless the person is typing one."""
+        if text != self.text and not self.entry.is_focused:
+            self.text = text
+            self.entry.set_text(text)
+
+    def finish(self) -> None:
+        """Take what was typed, or bring the old text back; Enter goes to `enter` instead where there is one."""
+        typed = self.entry.get_text()
+        if typed == self.text:
+            return
+        before = self.text
+        self.text = typed
+        if not self.commit(typed):
+            self.text = before
+            self.entry.set_text(before)
+
+    def revert(self) -> None:
+        """Forget what was typed."""
+        self.entry.set_text(self.text)
+
+
+@dataclass
+class Choice:
+    """A row of buttons of which one is chosen."""
+
+    buttons: dict[str, UIButton]
+    chosen: str = ""
+
+    def show(self, chosen: str) -> None:
+        """Mark the chosen one."""
+        if chosen == self.chosen:
+            return
+        self.chosen = chosen
+        for value, button in self.buttons.items():
+            (button.select if value == chosen else button.unselect)()
+
+
+class Ui:
+    """Widgets on a window of size [pixels]; positions and sizes given to it are layout units of `scale` pixels."""
+
+    def __init__(self, size: tuple[int, int], scale: float, pixel_ratio: tuple[float, float] = (1.0, 1.0)) -> None:
+        self.size = size
+        self.scale = scale
+        self.manager = pygame_gui.UIManager(size, scaled_theme(scale), enable_live_theme_updates=False)
+        self.manager.mouse_pos_scale_factor = list(pixel_ratio)
+        self.root = self.manager.get_root_container()
+        self._actions: dict[UIElement, Callable[[], None]] = {}
+        self._choosers: dict[UIDropDownMenu, Callable[[str], None]] = {}
+        self._fields: dict[UIElement, Field] = {}
+        self._sheets: list[tuple[UIPanel, list[UIElement], Callable[[], None]]] = []
+        self._page: list[UIElement] = []
+        self._focus: UIElement | None = None
+
+    def px(self, units: float) -> int:
+        """Layout units in pixels."""
+        return round(units * self.scale)
+
+    def rect(self, x: float, y: float, width: float, height: float) -> pygame.Rect:
+        """A rectangle of layout units in pixels."""
+        return pygame.Rect(self.px(x), self.px(y), self.px(width), self.px(height))
+
+    @property
+    def units(self) -> tuple[float, float]:
+        """Size of the window in layout units."""
+        return self.size[0] / self.scale, self.size[1] / self.scale
+
+    def panel(self, rect: pygame.Rect, container: Any = None, style: str = "") -> UIPanel:
+        """A background that holds other widgets."""
+        return UIPanel(rect, 1, self.manager, container=container, margins=_NO_MARGINS, object_id=_style(style))
+
+    def area(self, rect: pygame.Rect, container: Any = None) -> UIContainer:
+        """A part of the window that clips what it holds."""
+        return UIContainer(rect, self.manager, container=container)
+
+    def label(self, rect: pygame.Rect, text: str, container: Any = None, style: str = "") -> UILabel:
+        """One line of text."""
+        return UILabel(rect, text, self.manager, container=container, object_id=_style(style))
+
+    def button(
+        self,
+        rect: pygame.Rect,
+        text: str,
+        action: Callable[[], None],
+        container: Any = None,
+        *,
+        style: str = "",
+        icon: pygame.Surface | None = None,
+        tip: str = "",
+    ) -> UIButton:
+        """A button with text or an icon."""
+        button = UIButton(
+            rect, text, self.manager, container=container, object_id=_style(style), tool_tip_text=_escaped(tip) or None
+        )
+        if icon is not None:
+            set_icon(button, icon)
+        self._actions[button] = action
+        self._add_focusable(button)
+        return button
+
+    def choice(
+        self,
+        rect: pygame.Rect,
+        options: Sequence[tuple[str, str, str]],
+        choose: Callable[[str], None],
+        container: Any = None,
+    ) -> Choice:
+        """A row of buttons, one per (value, text, tip), that share the rectangle."""
+        buttons, count, gap = {}, len(options), self.px(3)
+        width = (rect.width - gap * (count - 1)) / count
+        for index, (value, text, tip) in enumerate(options):
+            left, right = round(index * (width + gap)), round(index * (width + gap) + width)
+            place = pygame.Rect(rect.left + left, rect.top, right - left, rect.height)
+            buttons[value] = self.button(place, text, partial(choose, value), container, style="@segment", tip=tip)
+        return Choice(buttons)
+
+    def field(
+        self, rect: pygame.Rect, text: str, commit: Callable[[str], bool], container: Any = None, limit: int = 200
+    ) -> Field:
+        """A line to type into."""
+        entry = UITextEntryLine(rect, self.manager, container=container, initial_text=text)
+        entry.set_text_length_limit(limit)
+        self._fields[entry] = Field(entry, commit, text)
+        self._add_focusable(entry)
+        return self._fields[entry]
+
+    def menu(
+        self,
+        rect: pygame.Rect,
+        options: Sequence[str],
+        chosen: str,
+        choose: Callable[[str], None],
+        container: Any = None,
+    ) -> UIDropDownMenu:
+        """A menu that opens to a list."""
+        menu = UIDropDownMenu(list(options), chosen, rect, self.manager, container=container)
+        self._choosers[menu] = choose
+        self._add_focusable(menu)
+        return menu
+
+    def replace_menu(self, menu: UIDropDownMenu, chosen: str) -> None:
+        """Show another chosen option on a menu, which then keeps its place among the widgets."""
+        menu.selected_option = (chosen, chosen)
+        menu.rebuild()
+
+    def add(self, widget: Painted) -> None:
+        """Let a painted widget be reached by Tab."""
+        self._add_focusable(widget)
+
+    def _add_focusable(self, widget: UIElement) -> None:
+        (self._sheets[-1][1] if self._sheets else self._page).append(widget)
+
+    # Sheets: modal pages on top of all else.
+
+    @property
+    def has_sheet(self) -> bool:
+        """Whether a modal page is open."""
+        return bool(self._sheets)
+
+    def open_sheet(self, close: Callable[[], None], style: str = "@shade") -> UIPanel:
+        """Cover the window by a modal page; close is called when Escape asks for it."""
+        sheet = UIPanel(
+            pygame.Rect((0, 0), self.size),
+            SHEET_HEIGHT * (len(self._sheets) + 1),
+            self.manager,
+            margins=_NO_MARGINS,
+            object_id=_style(style),
+        )
+        self._sheets.append((sheet, [], close))
+        self._set_focus(None)
+        return sheet
+
+    def close_sheet(self, sheet: UIPanel) -> None:
+        """Take a modal page away."""
+        for _, widgets, _ in [entry for entry in self._sheets if entry[0] is sheet]:
+            for widget in widgets:
+                self._actions.pop(widget, None)
+                if isinstance(widget, UIDropDownMenu):
+                    self._choosers.pop(widget, None)
+                self._fields.pop(widget, None)
+        self._sheets = [entry for entry in self._sheets if entry[0] is not sheet]
+        self._set_focus(None)
+        sheet.kill()
+
+    # Events and focus.
+
+    @property
+    def typing(self) -> bool:
+        """Whether keys go into a line of text."""
+        return any(field.entry.is_focused for field in self._fields.values())
+
+    @property
+    def focus(self) -> UIElement | None:
+        """The widget that the keyboard works on."""
+        return self._focus
+
+    def process(self, event: pygame.event.Event) -> bool:
+        """Let the widgets have an event; True where they use it."""
+        if event.type == pygame_gui.UI_BUTTON_PRESSED and event.ui_element in self._actions:
+            self._actions[event.ui_element]()
+            return True
+        if event.type == pygame_gui.UI_DROP_DOWN_MENU_CHANGED and event.ui_element in self._choosers:
+            self._choosers[event.ui_element](event.text)
+            return True
+        if event.type == pygame_gui.UI_TEXT_ENTRY_FINISHED and event.ui_element in self._fields:
+            field = self._fields[event.ui_element]
+            if field.enter is None:
+                field.finish()
+            else:
+                field.enter(event.text)
+            return True
+        if event.type == pygame.KEYDOWN and self._press_key(event):
+            return True
+        if event.type == pygame.MOUSEBUTTONDOWN:
+            self._focus = None
+        used = bool(self.manager.process_events(event))
+        self._finish_left_fields()
+        return used
+
+    def _finish_left_fields(self) -> None:
+        for field in list(self._fields.values()):
+            if field.focused and not field.entry.is_focused:
+                field.finish()
+            field.focused = field.entry.is_focused
+
+    def _press_key(self, event: pygame.event.Event) -> bool:
+        typed_into = next((field for field in self._fields.values() if field.entry.is_focused), None)
+        if event.key == pygame.K_TAB and not event.mod & (pygame.KMOD_CTRL | pygame.KMOD_ALT):
+            self._move_focus(-1 if event.mod & pygame.KMOD_SHIFT else 1)
+            return True
+        if event.key == pygame.K_ESCAPE:
+            return self._escape(typed_into)
+        if typed_into is not None:
+            return False
+        if self._focus is None:
+            return False
+        if isinstance(self._focus, Painted):
+            return self._focus.press_key(event)
+        if isinstance(self._focus, UIButton) and event.key in (*ENTER_KEYS, pygame.K_SPACE):
+            self._actions[self._focus]()
+            return True
+        if isinstance(self._focus, UIDropDownMenu) and event.key in (pygame.K_UP, pygame.K_DOWN):
+            self._turn_menu(self._focus, -1 if event.key == pygame.K_UP else 1)
+            return True
+        return False
+
+    def _escape(self, typed_into: Field | None) -> bool:
+        open_menus = [menu for menu in self._choosers if menu.current_state is menu.menu_states["expanded"]]
+        for menu in open_menus:
+            menu._close_dropdown_if_open()
+        if open_menus:
+            return True
+        if typed_into is not None:
+            typed_into.revert()
+        if typed_into is not None or self._focus is not None:
+            self._set_focus(None)
+            if not self._sheets:
+                return True
+        if self._sheets:
+            self._sheets[-1][2]()
+            return True
+        return False
+
+    def _turn_menu(self, menu: UIDropDownMenu, by: int) -> None:
+        options = [option[0] if isinstance(option, tuple) else option for option in menu.options_list]
+        chosen = menu.selected_option[0] if isinstance(menu.selected_option, tuple) else menu.selected_option
+        self._choosers[menu](options[(options.index(chosen) + by) % len(options)])
+
+    def _move_focus(self, by: int) -> None:
+        ring = self._sheets[-1][1] if self._sheets else self._page
+        ring = [widget for widget in ring if widget.alive() and widget.visible and getattr(widget, "is_enabled", True)]
+        if not ring:
+            return
+        start = ring.index(self._focus) if self._focus in ring else (-1 if by > 0 else 0)
+        self._set_focus(ring[(start + by) % len(ring)])
+
+    def focus_on(self, widget: UIElement) -> None:
+        """Give a widget the keyboard."""
+        self._set_focus(widget)
+
+    def _set_focus(self, widget: UIElement | None) -> None:
+        self._focus = widget
+        entry = widget if isinstance(widget, UITextEntryLine) else None
+        self.manager.set_focus_set(entry.get_focus_set() if entry is not None else None)
+        if entry is not None:
+            entry.select_range = [0, len(entry.get_text())]
+        self._finish_left_fields()
+
+    def blur(self) -> None:
+        """Give the keyboard back to the world."""
+        self._set_focus(None)
+
+    def update(self, frame_time: float) -> None:
+        """Let the widgets move on by frame_time [s]."""
+        self.manager.update(frame_time)
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """Draw all widgets, and the ring around the one that has the keyboard."""
+        self.manager.draw_ui(surface)
+        if self._focus is not None and self._focus.alive():
+            around = self._focus.rect.inflate(self.px(5), self.px(5))
+            pygame.draw.rect(surface, ACCENT, around, max(1, self.px(2)), self.px(8))
+
+    def font(self, size: float, bold: bool = False) -> pygame.font.Font:
+        """The widgets' font in a size of layout units, for what is painted."""
+        return plain_font(self.px(size), bold)
+
+
+_NO_MARGINS = {"left": 0, "right": 0, "top": 0, "bottom": 0}
+
+
+def set_icon(button: UIButton, icon: pygame.Surface) -> None:
+    """Show a picture on a button."""
+    images = [icon.premul_alpha()]
+    button.normal_images = button.hovered_images = button.selected_images = button.disabled_images = images
+    positions = [(0.5, 0.5)]
+    button.normal_image_positions = button.hovered_image_positions = positions
+    button.selected_image_positions = button.disabled_image_positions = positions
+    button.rebuild()
+
+
+def _style(style: str) -> ObjectID | None:
+    return ObjectID(class_id=style) if style else None
+
+
+def _escaped(text: str) -> str:
+    return html.escape(text, quote=False).replace("\n", "<br>")

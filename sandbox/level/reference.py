@@ -1,0 +1,204 @@
+"""format_reference(): the reference of the level format for level makers, generated from the schema.
+
+`python -m sandbox.level.reference > docs/level-format.md` writes it anew.
+"""
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from sandbox.level import limits
+from sandbox.level.faults import LevelError
+from sandbox.level.parse import parse_level
+from sandbox.level.schema import TITLES, schema
+
+EXAMPLE = """\
+{
+  "format": "spring-sandbox/level",
+  "version": 1,
+  "name": "A ball under a bridge",
+  "settings": {"solver": "iterative", "iterations": 20, "substeps": 4},
+  "materials": {"steel": {"stiffness": 1.0, "damping": 1.0}},
+  "bodies": [
+    {
+      "type": "bridge",
+      "id": "deck",
+      "start": [-5, 2],
+      "end": [5, 2],
+      "segments": 20,
+      "height": 0.5,
+      "pin": ["start", "end"],
+      "material": "steel"
+    }
+  ],
+  "particles": [{"id": "ball", "position": [0, 0], "mass": 20, "radius": 0.3}],
+  "springs": [{"a": "ball", "b": "deck.31", "material": "steel"}],
+  "checks": [
+    {"name": "the ball hangs", "metric": "y", "particle": "ball", "after": 5, "at_least": -1}
+  ]
+}
+"""
+
+_INTRO = f"""\
+# Level format, version {limits.VERSION}
+
+A level is one JSON file. It describes bodies (ropes, bridges, jellies, meshes), loose particles and loose springs;
+the program expands them into particles and springs. Lengths are in metres, masses in kilograms, times in seconds,
+angles in radians; y points up. Everything has a default but `format`, `version`, `name` and what a body cannot do
+without. Keys that are not listed here are refused, so a misspelt key is noticed; `extras` is the place for other
+tools' data.
+
+```json
+{EXAMPLE}```
+
+`sandbox check FILE` says what is wrong with a level and runs its checks, `sandbox format FILE` rewrites it in
+canonical form, `sandbox schema` prints the JSON Schema for an editor that completes keys.
+"""
+
+_NAMES = """\
+## Names and references
+
+- An id is 1 to 256 characters without `.` `:` `,` and control characters, and does not begin with `+`. Bodies and
+  loose particles share one set of ids.
+- `deck.7` is particle 7 of the body `deck`, counted from 0 in generation order; `deck.start` and `deck.end` are the
+  ends of a rope, or of a bridge's top row; a loose particle goes by its id alone. Springs and checks refer so.
+- `deck:7` is spring 7 of `deck`, `:7` the loose spring 7: replays use these.
+- A body's `material` names an entry of `materials`, or is `default`, which exists even where the level has none of
+  that name.
+
+## Generation order
+
+- Particles: those of the bodies in file order, then the loose ones. Springs: likewise.
+- Rope: from start to end, evenly, whatever its rest length.
+- Bridge: the top row from start to end, then the bottom row, `height` straight below it. Springs: top chords, bottom
+  chords, verticals, then per cell the diagonal that falls towards the end and the one that rises.
+- Jelly, box: `round(width / spacing) + 1` columns, rows alike, stretched to fit the box; row by row from the bottom
+  left. Where that leaves one column or row, it stands in the middle.
+- Jelly, circle and polygon: the whole multiples of `spacing` on either side of the centre, the shape's own [0, 0],
+  that lie inside the shape or on its border; row by row from the bottom left.
+- Springs of a jelly: all to the right, all upward, then per cell the diagonal that rises to the right and the other;
+  where both ends exist. The shape is turned by `angle` afterwards.
+- A pinned particle starts at rest, whatever its velocity.
+"""
+
+# Each is one mistake in the example above; the reference shows what the program says to it.
+_MISTAKES = [
+    ('"stiffness": 1.0', '"stiffness": 1.3'),
+    ('"stiffness": 1.0', '"stifness": 1.0'),
+    ('"segments": 20', '"segments": true'),
+    ('"segments": 20', '"segments": 1000000000000'),
+    ('"b": "deck.31"', '"b": "dek.31"'),
+    ('"b": "deck.31"', '"b": "deck"'),
+    ('"mass": 20', '"mass": -20'),
+    ('"mass": 20', '"mass": 20, "mass": 30'),
+    ('"mass": 20,', '"mass": 20'),
+]
+
+
+def format_reference() -> str:
+    """The reference as Markdown."""
+    return "\n".join([_INTRO, *_tables(), _NAMES, _limits(), _errors()])
+
+
+def _tables() -> Iterator[str]:
+    whole = schema()
+    for title, model in [("Level", whole), *((title, whole["$defs"][name]) for name, title in TITLES.items())]:
+        required = model.get("required", [])
+        rows = [
+            f"| `{name}` | {_type(field, whole)} | {_unit(field)} | {_range(field)} | "
+            f"{'required' if name in required else _default(field)} | {field.get('description', '')} |"
+            for name, field in model["properties"].items()
+        ]
+        head = "| field | type | unit | range | default | meaning |\n|---|---|---|---|---|---|"
+        yield "\n".join([f"## {title}\n", f"{model['description']}\n", head, *rows, ""])
+
+
+def _type(field: dict[str, Any], whole: dict[str, Any]) -> str:
+    choices = field.get("anyOf") or field.get("oneOf")
+    if choices:
+        return " or ".join(_type(choice, whole) for choice in choices)
+    if "$ref" in field:
+        return str(whole["$defs"][field["$ref"].rsplit("/", 1)[1]]["title"]).lower()
+    if "const" in field:
+        return f"`{json.dumps(field['const'])}`"
+    if "enum" in field:
+        return " or ".join(f"`{json.dumps(value)}`" for value in field["enum"])
+    if "prefixItems" in field:
+        return "[" + ", ".join(_type(item, whole) for item in field["prefixItems"]) + "]"
+    if field["type"] == "array":
+        return f"list of {_type(field['items'], whole)}"
+    if "patternProperties" in field:
+        return "object of " + " or ".join(_type(item, whole) for item in field["patternProperties"].values())
+    return {"integer": "whole number", "string": "text", "boolean": "true or false"}.get(field["type"], field["type"])
+
+
+def _unit(field: dict[str, Any]) -> str:
+    if "unit" in field:
+        return str(field["unit"])
+    inner = [*field.get("anyOf", []), *([field["items"]] if isinstance(field.get("items"), dict) else [])]
+    return next((unit for unit in map(_unit, inner) if unit), "")
+
+
+def _range(field: dict[str, Any]) -> str:
+    if "minimum" in field and "maximum" in field:
+        return f"{field['minimum']:g}..{field['maximum']:g}"
+    if "exclusiveMinimum" in field:
+        return f"above 0, up to {field['maximum']:g}"
+    if "minimum" in field:
+        return f"{field['minimum']:g} or more"
+    if field.get("type") == "string" and "maxLength" in field:
+        return f"{field.get('minLength', 0)}..{field['maxLength']} characters"
+    inner = [*field.get("anyOf", []), *field.get("prefixItems", [])[:1]]
+    if isinstance(field.get("items"), dict):
+        inner.append(field["items"])
+    each = next((text for text in map(_range, inner) if text), "")
+    counts = {"minItems": "at least", "maxItems": "at most", "maxProperties": "at most"}
+    sizes = [f"{word} {field[key]:,}" for key, word in counts.items() if key in field and "prefixItems" not in field]
+    return "; ".join(part for part in (" ".join(sizes), each) if part)
+
+
+def _default(field: dict[str, Any]) -> str:
+    value = field["default"]
+    return "as below" if isinstance(value, dict) and value else f"`{json.dumps(value)}`"
+
+
+def _limits() -> str:
+    return f"""\
+## Limits
+
+A file beyond one of these is refused before anything is built; nothing is ever clamped.
+
+| what | limit |
+|---|---|
+| file | {limits.FILE_LIMIT // 1024 // 1024} MiB, UTF-8 without a byte order mark |
+| nesting of lists and objects | {limits.DEPTH_LIMIT} |
+| lists and objects in a file | {limits.CONTAINER_LIMIT:,} |
+| particles and springs, after expansion | {limits.PARTICLE_LIMIT:,} and {limits.SPRING_LIMIT:,} |
+| corners of all polygons of a level | {limits.CORNER_LIMIT:,} |
+| coordinates, of what bodies expand to as well | {limits.COORDINATE_LIMIT:g} m either way |
+| velocities, a mesh's own added to the body's | {limits.SPEED_LIMIT:g} m/s each way |
+| text, in `extras` as well | {limits.TEXT_LIMIT} characters |
+| numbers | finite: no NaN, Infinity, 1e999; true and "1" are no numbers, 1.0 is no whole number |
+| keys | no key twice in one object |
+"""
+
+
+def _errors() -> str:
+    lines = []
+    for right, wrong in _MISTAKES:
+        try:
+            parse_level(EXAMPLE.replace(right, wrong, 1).encode(), "levels/x.json")
+        except LevelError as error:
+            lines += [f"- `{wrong}`", "", "  ```", *(f"  {fault}" for fault in error.faults), "  ```"]
+    return f"""\
+## When something is wrong
+
+All faults are listed at once, at most {limits.FAULT_LIMIT}, each on a line with the file, the place and what to do.
+Mistakes in the example above, and what the program says to them:
+
+{chr(10).join(lines)}
+"""
+
+
+if __name__ == "__main__":
+    print(format_reference(), end="")

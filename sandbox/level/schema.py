@@ -1,0 +1,30 @@
+"""JSON Schema of the level format, from the models."""
+
+from typing import Any
+
+from sandbox.level.model import Level
+
+# Titles of the definitions, in the order in which the reference explains them.
+TITLES = {
+    "Settings": "Settings",
+    "NissenMaterial": "Material",
+    "HookeMaterial": "Hooke material",
+    "RopeDef": "Rope",
+    "BridgeDef": "Bridge",
+    "JellyDef": "Jelly",
+    "BoxShape": "Box",
+    "CircleShape": "Circle",
+    "PolygonShape": "Polygon",
+    "MeshDef": "Mesh",
+    "ParticleDef": "Loose particle",
+    "SpringDef": "Loose spring",
+    "CheckDef": "Acceptance check",
+}
+
+
+def schema() -> dict[str, Any]:
+    """JSON Schema (2020-12) of a level file; `unit` on a property is its unit. References and counts are beyond it."""
+    result = Level.model_json_schema()
+    for name, definition in result["$defs"].items():
+        definition["title"] = TITLES[name]
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **result, "title": "Spring Sandbox level"}

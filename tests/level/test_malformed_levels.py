@@ -1,0 +1,123 @@
+"""Malformed levels: each is refused in lines that a person can use, and nothing else is ever raised."""
+
+import gc
+
+import pytest
+from malformed_levels import GOOD, encoded, enormous, small
+
+from sandbox.level.files import LevelError, parse_level
+from sandbox.level.limits import FAULT_LIMIT
+
+SMALL = list(small())
+
+# What the validation library or Python would say, and no level maker should have to read.
+JARGON = ("pydantic", "http", "Traceback", "Input should", "Value error", "discriminator", "Error", "<class", "tuple")
+
+
+def faults_of(data):
+    with pytest.raises(LevelError) as refused:
+        parse_level(data, "levels/x.json")
+    return refused.value.faults
+
+
+def assert_clear(faults):
+    assert 1 <= len(faults) <= FAULT_LIMIT
+    for fault in faults:
+        assert fault.startswith("levels/x.json: ")
+        assert fault.isprintable() and len(fault) < 600
+        assert not [word for word in JARGON if word in fault], fault
+    assert len(set(faults)) == len(faults)
+
+
+def test_the_level_that_the_corpus_mutates_is_good():
+    assert parse_level(encoded(GOOD), "good").name == "Good"
+
+
+def test_the_corpus_is_large():
+    assert len(SMALL) > 250
+
+
+@pytest.mark.parametrize("batch", range(10))
+def test_every_malformed_level_is_refused_in_clear_lines(batch):
+    for name, data in SMALL[batch::10]:
+        try:
+            assert_clear(faults_of(data))
+        except BaseException as error:
+            raise AssertionError(name) from error
+
+
+def test_every_enormous_malformed_level_is_refused_in_clear_lines():
+    for name, data in enormous():
+        try:
+            assert_clear(faults_of(data))
+        except BaseException as error:
+            raise AssertionError(name) from error
+
+
+@pytest.mark.parametrize("length", [1, 7, 64, 500])
+def test_a_level_with_any_byte_damaged_is_read_or_refused(length):
+    good = encoded(GOOD)
+    for start in range(0, len(good), 13):
+        damaged = good[:start] + bytes(255 - byte for byte in good[start : start + length]) + good[start + length :]
+        try:
+            parse_level(damaged, "x.json")
+        except LevelError as error:
+            assert all(fault.isprintable() for fault in error.faults)
+
+
+def test_all_faults_are_listed_at_once_in_the_order_of_the_file():
+    wrong = {**GOOD, "settings": {"tick_rate": 0, "substeps": 3}, "materials": {"steel": {"stiffness": 1.3}}}
+    assert faults_of(encoded(wrong)) == [
+        "levels/x.json: settings.tick_rate: 0 is below the limit 1",
+        "levels/x.json: settings.substeps: 3: substeps are a power of two: 1, 2, 4, 8, 16, 32, 64",
+        "levels/x.json: materials.steel.stiffness: 1.3 is above the limit 1",
+    ]
+
+
+def test_all_faults_of_references_are_listed_at_once():
+    springs = [{"a": "ball", "b": "ball"}, {"a": "nobody", "b": "deck.1000"}]
+    assert faults_of(encoded({**GOOD, "springs": springs})) == [
+        'levels/x.json: springs.0: joins "ball" to itself; name two particles',
+        'levels/x.json: springs.1.a: there is no body or particle "nobody"',
+        'levels/x.json: springs.1.b: "deck" has the particles deck.0 to deck.81',
+    ]
+
+
+def test_of_thousands_of_faults_the_first_are_listed_and_the_rest_mentioned():
+    springs = [{"a": "ball", "b": "ball"}] * 3_000 + [{"a": 1}] * 3_000
+    faults = faults_of(encoded({**GOOD, "springs": springs}))
+    assert faults[0] == "levels/x.json: springs.3000.a: 1 is not text in quotes"
+    assert len(faults) == FAULT_LIMIT
+    assert faults[-1] == "levels/x.json: there are more faults than these"
+
+
+def test_a_flood_of_keys_does_not_make_present_keys_missing():
+    keys = {f"k{number}": 1 for number in range(5_000)}
+    faults = faults_of(encoded({**keys, "bodies": [{**keys, **GOOD["bodies"][0]}], **GOOD}))
+    assert all("unknown key" in fault for fault in faults[:-1])
+
+
+def test_a_syntax_fault_has_its_line_and_column():
+    assert faults_of(b'{\n "format": 1,\n "name" "x"\n}') == [
+        "levels/x.json: line 3, column 9: not JSON: expecting ':' delimiter"
+    ]
+
+
+def test_nesting_is_measured_outside_strings_alone():
+    deepest = '{"a":' * 30 + '["[[[[", "\\\\", "{\\"{"]' + "}" * 30
+    level = {**GOOD, "extras": {}}
+    text = encoded(level).decode().replace('"extras": {}', f'"extras": {deepest}')
+    assert parse_level(text.encode(), "x").extras
+    deeper = text.replace('["[[[["', '[["[[[["]').encode()
+    assert faults_of(deeper)[0].startswith("levels/x.json: line 1: lists and objects are nested more than 32 deep")
+
+
+def test_the_collector_of_cycles_runs_on_after_a_large_file():
+    assert gc.isenabled()
+    faults_of(b'{"tags": [' + b"1," * 600_000 + b"1]}")
+    assert gc.isenabled()
+
+
+def test_every_name_in_the_corpus_stands_once():
+    names = [name for name, _ in SMALL]
+    assert len(set(names)) == len(names)
