@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.physics.world import STATE_ARRAYS
+from sandbox.physics.world import STATE_ARRAYS, VECTOR_ARRAYS
 from sandbox.session.commands import AddParticle, CutSprings, Pin
 from sandbox.session.reading import read_replay
 from sandbox.session.replay import Divergence, ReplayError, verify
@@ -92,7 +92,7 @@ def test_a_fault_of_one_unit_in_the_last_place_is_named(recorded, array):
 
     divergence = verify(replay, on_tick=disturb)
     assert isinstance(divergence, Divergence)
-    vector = array in ("position", "velocity", "impulse")
+    vector = array in VECTOR_ARRAYS
     assert (divergence.tick, divergence.array) == (tick, array)
     assert divergence.index == ((slot, 1) if vector else slot)
     assert divergence.expected != divergence.actual

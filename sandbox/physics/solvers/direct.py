@@ -60,9 +60,8 @@ def _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h,
         else:
             rows.moved[r, 0] += velocity[p, 0] * h
             rows.moved[r, 1] += velocity[p, 1] * h
-        for axis in range(2):
-            rows.trial[r, axis] = rows.start[r, axis]
-            rows.best[r, axis] = rows.target[r, axis]
+        rows.trial[r, 0] = rows.start[r, 0]
+        rows.trial[r, 1] = rows.start[r, 1]
 
 
 @inner_kernel
@@ -260,6 +259,9 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
         body_mass = 0.0
         for r in range(first_row, last_row):
             body_mass += rows.mass[r]
+        # Gravity moves a body without anchors as a whole: started there, it falls without rounding.
+        if not bodies.anchored[body]:
+            _copy(first_row, last_row, rows.target, rows.trial)
         bouncy = load_springs(
             first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs
         )

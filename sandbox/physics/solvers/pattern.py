@@ -63,11 +63,12 @@ class Matrix(NamedTuple):
 
 
 class Bodies(NamedTuple):
-    """First row and first spring of each body, and one past the last; the free particle of lowest slot of each."""
+    """First row and first spring of each body, and one past the last; its free particle of lowest slot; its anchors."""
 
     row_start: Slots
     spring_start: Slots
     lowest: Slots
+    anchored: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -128,10 +129,13 @@ def make_pattern(world: World) -> Pattern:
     )
     grouped = np.argsort(spring_body, kind="stable")
     matrix, blocks = _lay_out(len(nodes), columns, rank, row_a[grouped], row_b[grouped])
+    anchored = np.zeros(len(first_rows), dtype=np.bool_)
+    anchored[spring_body[np.maximum(row_a, row_b) >= len(nodes)]] = True
     bodies = Bodies(
         np.append(first_rows, len(nodes)),
         np.searchsorted(spring_body[grouped], np.arange(len(first_rows) + 1)),
         nodes[body_of_row[first_rows]],
+        anchored,
     )
     hooke = kind == LAW_HOOKE
     particles = np.concatenate([nodes[order], anchors])
