@@ -38,7 +38,6 @@ class Display:
     def __init__(self, scale: float | None = None) -> None:
         pygame.display.init()
         pygame.font.init()
-        pygame.key.set_repeat(400, 40)
         desktop = pygame.display.get_desktop_sizes()[0]
         guess = scale or _guessed_scale(desktop)
         size = [min(round(side * guess), most) for side, most in zip(WINDOW_SIZE, desktop, strict=True)]
