@@ -299,6 +299,8 @@ class App:
             return "Levels - Spring Sandbox"
         playback = self.stage.playback
         words = [playback.level.name, f"tick {playback.session.tick}", self.state()]
+        if self.stage.drag.holds:
+            words.append(f"holding {len(self.stage.drag.holds)}")
         if playback.session.recording is not None:
             words.append("recording")
         if playback.replay is not None:
