@@ -30,7 +30,7 @@ def screen():
     """DISPLAY of a virtual screen of the window's size."""
     read, write = os.pipe()
     size = f"{WINDOW_SIZE[0]}x{WINDOW_SIZE[1]}x24"
-    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", size, "-nolisten", "tcp"]
+    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", size, "-nolisten", "tcp", "-noreset"]
     server = subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL)
     os.close(write)
     with os.fdopen(read) as pipe:
@@ -51,9 +51,12 @@ class Person:
             "DISPLAY": display,
             "XDG_DOCUMENTS_DIR": str(documents),
             "SDL_VIDEODRIVER": "x11",
+            "PYTHONPATH": os.pathsep.join(sys.path),
         }
         command = [sys.executable, "-m", "sandbox", "play", str(level), "--scale", "1"]
-        self.app = subprocess.Popen(command, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.app = subprocess.Popen(
+            command, env=self.environment, cwd=level.parent, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+        )
 
     def do(self, *arguments: object) -> str:
         words = ["xdotool", *map(str, arguments)]
