@@ -55,8 +55,8 @@ class App:
         self._counted = [0.0, 0, 0, 0.0]
         self._seconds = 0.0
         self._build_ui()
-        self._warming = threading.Thread(target=_warm_up_kernels, daemon=True)
-        self._warming.start()
+        self.warming = threading.Thread(target=_warm_up_kernels, daemon=True)
+        self.warming.start()
         if replay is not None:
             self.start(Playback(replay.level, replay))
         elif level is not None:
@@ -204,7 +204,7 @@ class App:
             self.input.process(pygame.event.get())
             if self.display.refresh():
                 self.rebuild()
-        self.ready = self.ready or not self._warming.is_alive()
+        self.ready = self.ready or not self.warming.is_alive()
         if self.stage is not None:
             pointer = self.input.pointer_over_world()
             self.stage.update(frame_time if self.ready and not self.ui.has_sheet else 0.0, pointer, self.profile)
@@ -299,6 +299,8 @@ class App:
             return "Levels - Spring Sandbox"
         playback = self.stage.playback
         words = [playback.level.name, f"tick {playback.session.tick}", self.state()]
+        if self.stage.drag.holds:
+            words.append(f"holding {len(self.stage.drag.holds)}")
         if playback.session.recording is not None:
             words.append("recording")
         if playback.replay is not None:

@@ -6,6 +6,7 @@ import sys
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 # Real pixels on Windows instead of a picture that the system stretches.
 os.environ.setdefault("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
+os.environ.setdefault("SDL_VIDEO_X11_WMCLASS", "spring-sandbox")
 
 import pygame
 
@@ -38,7 +39,6 @@ class Display:
     def __init__(self, scale: float | None = None) -> None:
         pygame.display.init()
         pygame.font.init()
-        pygame.key.set_repeat(400, 40)
         desktop = pygame.display.get_desktop_sizes()[0]
         guess = scale or _guessed_scale(desktop)
         size = [min(round(side * guess), most) for side, most in zip(WINDOW_SIZE, desktop, strict=True)]

@@ -15,6 +15,7 @@ from sandbox.app.recordings import saved_recordings
 from sandbox.app.widgets import ENTER_KEYS, Ui
 from sandbox.level.files import LevelError, read_level, shipped_levels
 from sandbox.level.model import Level
+from sandbox.physics.jit import COMPILED
 
 if TYPE_CHECKING:
     from sandbox.app.files import FileActions
@@ -30,7 +31,7 @@ ROW_HEIGHT = 52.0
 WHEEL_STEP = 70.0
 # The pictures show the level after this time [s], or it would hang in mid-air where it was built.
 PICTURE_SECONDS = 0.8
-# Levels of more particles than this are drawn as they are built: the gallery stays quick.
+# Levels of more particles than this are drawn as they are built, and all where physics is interpreted: the gallery stays quick.
 PICTURE_PARTICLES = 3000
 
 
@@ -182,10 +183,9 @@ class Gallery:
     def _paint_picture(self, card: Card, level: Level) -> None:
         ui = self._ui
         size = (card.rect.width - 2, card.rect.height - ui.px(TEXT_HEIGHT) - 1)
-        seconds = PICTURE_SECONDS
         snapshot = run_ahead(level, 0.0)
-        if len(snapshot.mass) <= PICTURE_PARTICLES:
-            snapshot = run_ahead(level, seconds)
+        if COMPILED and len(snapshot.mass) <= PICTURE_PARTICLES:
+            snapshot = run_ahead(level, PICTURE_SECONDS)
         twice = draw_picture(level, snapshot, (size[0] * 2, size[1] * 2))
         card.picture = pygame.transform.smoothscale(twice, size)
         card.repaint()

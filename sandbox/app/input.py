@@ -11,9 +11,19 @@ if TYPE_CHECKING:
 
 # A press of Space shorter than this [s], without a drag, is the pause key; longer ones are a hand for panning.
 TAP_SECONDS = 0.35
+# With Ctrl these belong to the line of text: all, copy, paste, cut, undo, redo.
+EDITING_KEYS = (pygame.K_a, pygame.K_c, pygame.K_v, pygame.K_x, pygame.K_z, pygame.K_y)
+# Actions that go on while their key is held down.
+REPEATED = ("step", "zoom_in", "zoom_out", "undo", "redo", "next_particle", "previous_particle")
 ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, 1), pygame.K_DOWN: (0, -1)}
 
 Pixel = tuple[float, float]
+
+
+def _works_while_typing(event: pygame.event.Event) -> bool:
+    """Whether a key is no part of a text and no editing of it."""
+    with_ctrl = bool(event.mod & (pygame.KMOD_CTRL | pygame.KMOD_META))
+    return event.key in (pygame.K_F1, pygame.K_F11) or (with_ctrl and event.key not in EDITING_KEYS)
 
 
 class Input:
@@ -25,6 +35,7 @@ class Input:
         self._pressed = False
         self._space_down: int | None = None
         self._space_used = False
+        self._held_keys: set[int] = set()
 
     def process(self, events: list[pygame.event.Event]) -> None:
         """Hand out the events of a frame."""
@@ -53,6 +64,8 @@ class Input:
         return event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONUP) and (self._pressed or self._panning)
 
     def _to_world(self, event: pygame.event.Event) -> None:
+        if event.type == pygame.KEYUP:
+            self._held_keys.discard(event.key)
         if event.type == pygame.KEYDOWN:
             self._key(event)
         elif event.type == pygame.KEYUP and event.key == pygame.K_SPACE:
@@ -74,7 +87,7 @@ class Input:
 
     def _key(self, event: pygame.event.Event) -> None:
         app = self.app
-        if app.ui.typing:
+        if app.ui.typing and not _works_while_typing(event):
             return
         if app.gallery is not None and app.gallery.press_key(event.key):
             return
@@ -86,6 +99,10 @@ class Input:
                 self._space_down, self._space_used = pygame.time.get_ticks(), False
             return
         action = action_of(event.key, event.mod)
+        is_repeated = event.key in self._held_keys
+        self._held_keys.add(event.key)
+        if is_repeated and action not in REPEATED:
+            return
         if action is not None and (not app.ui.has_sheet or action in ("quit", "fullscreen", "larger", "smaller")):
             app.act(action)
 

@@ -21,6 +21,8 @@ warnings.filterwarnings("ignore", message="Label Rect is too small", module="pyg
 
 # Layers between the page and a modal sheet, and between one sheet and the next.
 SHEET_HEIGHT = 40
+# Delay and interval of a key that is held down [ms].
+KEY_REPEAT = (400, 40)
 ENTER_KEYS = (pygame.K_RETURN, pygame.K_KP_ENTER)
 
 
@@ -86,7 +88,10 @@ class Ui:
         self._fields: dict[UIElement, Field] = {}
         self._sheets: list[tuple[UIPanel, list[UIElement], Callable[[], None]]] = []
         self._page: list[UIElement] = []
+        pygame.key.set_repeat(*KEY_REPEAT)
         self._focus: UIElement | None = None
+        # The line that Enter left: Tab goes on from there.
+        self._left: UIElement | None = None
 
     def px(self, units: float) -> int:
         """Layout units in pixels."""
@@ -111,7 +116,9 @@ class Ui:
 
     def label(self, rect: pygame.Rect, text: str, container: Any = None, style: str = "") -> UILabel:
         """One line of text."""
-        return UILabel(rect, text, self.manager, container=container, object_id=_style(style))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return UILabel(rect, text, self.manager, container=container, object_id=_style(style))
 
     def button(
         self,
@@ -242,13 +249,15 @@ class Ui:
             field = self._fields[event.ui_element]
             if field.enter is None:
                 field.finish()
+                self._set_focus(None)
+                self._left = event.ui_element
             else:
                 field.enter(event.text)
             return True
         if event.type == pygame.KEYDOWN and self._press_key(event):
             return True
         if event.type == pygame.MOUSEBUTTONDOWN:
-            self._focus = None
+            self._focus = self._left = None
         used = bool(self.manager.process_events(event))
         self._finish_left_fields()
         return used
@@ -257,6 +266,8 @@ class Ui:
         for field in list(self._fields.values()):
             if field.focused and not field.entry.is_focused:
                 field.finish()
+                # A line of text that is left turns the repetition of keys off.
+                pygame.key.set_repeat(*KEY_REPEAT)
             field.focused = field.entry.is_focused
 
     def _press_key(self, event: pygame.event.Event) -> bool:
@@ -307,7 +318,8 @@ class Ui:
         ring = [widget for widget in ring if widget.alive() and widget.visible and getattr(widget, "is_enabled", True)]
         if not ring:
             return
-        start = ring.index(self._focus) if self._focus in ring else (-1 if by > 0 else 0)
+        here = self._focus or self._left
+        start = ring.index(here) if here in ring else (-1 if by > 0 else 0)
         self._set_focus(ring[(start + by) % len(ring)])
 
     def focus_on(self, widget: UIElement) -> None:

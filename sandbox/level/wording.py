@@ -54,7 +54,7 @@ def _fault(error: dict[str, Any]) -> Fault:
             needed = 4 if location[0] == "view" else 2
             return json_path(parts[:-1]), f"needs {needed} numbers, has {len(value)}"
         return json_path(parts), "is missing; it has no default"
-    if kind in ("union_tag_invalid", "union_tag_not_found", "dict_type") and location[0] == "bodies":
+    if kind.startswith("union_tag") or (kind == "dict_type" and len(parts) == 2 and parts[0] == "bodies"):
         return _kind_fault(parts, kind, value)
     if kind == "extra_forbidden":
         keys = list(_model(location).model_fields)
@@ -82,7 +82,7 @@ def _model(location: Location) -> type[BaseModel]:
     if len(location) == 1:
         return Level
     if location[0] == "bodies":
-        return _SHAPES[location[4]] if location[3] == "shape" else _BODIES[location[2]]
+        return _SHAPES[location[4]] if len(location) > 5 else _BODIES[location[2]]
     return _MATERIALS[location[2]] if location[0] == "materials" else _MODELS[location[0]]
 
 

@@ -150,6 +150,7 @@ OUTSIDE = [
     ("bodies.0.material", "rubber"),
     ("bodies.0.velocity", [2e9, 0.0]),
     ("bodies.0.colour", "red"),
+    ("bodies.0.shape", {"box": [1.0, 1.0]}),
     ("bodies.1.segments", 10**12),
     ("bodies.1.height", 0.0),
     ("bodies.1.height", 1.1e6),

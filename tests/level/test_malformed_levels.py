@@ -3,7 +3,7 @@
 import gc
 
 import pytest
-from malformed_levels import GOOD, encoded, enormous, small
+from malformed_levels import GOOD, changed, encoded, enormous, small
 
 from sandbox.level.files import LevelError, parse_level
 from sandbox.level.limits import FAULT_LIMIT
@@ -95,6 +95,30 @@ def test_a_flood_of_keys_does_not_make_present_keys_missing():
     keys = {f"k{number}": 1 for number in range(5_000)}
     faults = faults_of(encoded({**keys, "bodies": [{**keys, **GOOD["bodies"][0]}], **GOOD}))
     assert all("unknown key" in fault for fault in faults[:-1])
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "fault"),
+    [
+        ("bodies.0", 5, "bodies.0: 5 is not an object {...} that describes a body"),
+        ("bodies.0.extras", 5, "bodies.0.extras: 5 is not an object {...}"),
+        ("bodies.0.type", "chain", 'bodies.0.type: "chain" is not a kind of body; use rope, bridge, jelly or mesh'),
+        ("bodies.0.start", [1], "bodies.0.start: needs 2 numbers, has 1"),
+        ("bodies.0.start", [1, 2, 3], "bodies.0.start: has 3 items; at most 2 are possible"),
+        ("view", [1, 2], "view: needs 4 numbers, has 2"),
+        ("bodies.0.segments", "30", 'bodies.0.segments: "30" is text, not a whole number'),
+        ("bodies.0.segments", 3.0, "bodies.0.segments: 3.0 is not a whole number"),
+        ("particles.0.pinned", 1, "particles.0.pinned: 1 is not true or false"),
+        ("materials.steel.law", "x", 'materials.steel.law: "x" is not "hooke"'),
+        ("bodies.2.shape", {"star": 5}, 'bodies.2.shape: a shape is {"box": [width, height]}, '),
+        ("bodies.1.id", "rope", 'bodies.1.id: "rope" is taken; every body and loose particle needs an id of its own'),
+        ("bodies.1.material", "stel", 'bodies.1.material: there is no material "stel"; did you mean "steel"?'),
+        ("version", 2, "version: 2: this program reads version 1 of the format"),
+        ("format", "map", 'format: "map" is not "spring-sandbox/level"; this is no level'),
+    ],
+)
+def test_a_fault_says_where_it_is_and_what_is_wrong(place, value, fault):
+    assert faults_of(encoded(changed(place, value)))[0].startswith("levels/x.json: " + fault)
 
 
 def test_a_syntax_fault_has_its_line_and_column():

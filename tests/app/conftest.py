@@ -1,0 +1,142 @@
+"""The app on a driver that shows nothing, driven by posted events and frames of a fixed length."""
+
+import os
+
+os.environ["SDL_VIDEODRIVER"] = "dummy"
+os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
+
+import json
+
+import pygame
+import pytest
+
+from sandbox.app.app import App
+from sandbox.app.display import Display
+from sandbox.level.files import parse_level
+
+FRAME = 1 / 60
+
+
+def small_level(**changes):
+    """A rope of 4 links of 1 m, pinned at its start, and a loose pair of another material; no gravity."""
+    data = {
+        "format": "spring-sandbox/level",
+        "version": 1,
+        "name": "Small",
+        "settings": {"solver": "single_pass", "gravity": [0.0, 0.0]},
+        "view": [-3.0, -3.0, 7.0, 4.0],
+        "materials": {"steel": {"stiffness": 0.3, "damping": 0.3}, "rubber": {"stiffness": 0.02, "damping": 0.1}},
+        "bodies": [
+            {"type": "rope", "id": "rope", "start": [0, 0], "end": [4, 0], "segments": 4, "pin": ["start"],
+             "material": "steel"},
+            {"type": "rope", "id": "pair", "start": [0, 2], "end": [1, 2], "segments": 1, "material": "rubber"},
+        ],
+        **changes,
+    }  # fmt: skip
+    return parse_level(json.dumps(data).encode(), "test")
+
+
+class Driver:
+    """A person at the app: moves, clicks, types, and lets frames pass."""
+
+    def __init__(self, level=None, replay=None):
+        self.app = App(Display(1.0), level, replay)
+        self.app.warming.join()
+        self.frames()
+
+    @property
+    def stage(self):
+        return self.app.stage
+
+    @property
+    def playback(self):
+        return self.app.stage.playback
+
+    @property
+    def world(self):
+        return self.playback.session.world
+
+    @property
+    def notices(self):
+        return [notice.text for notice in self.app.status.notices]
+
+    def frames(self, count=1):
+        for _ in range(count):
+            self.app.frame(FRAME)
+
+    def post(self, kind, **data):
+        pygame.event.post(pygame.event.Event(kind, **data))
+
+    def move(self, pixel):
+        at = tuple(round(value) for value in pixel)
+        before = pygame.mouse.get_pos()
+        pygame.mouse.set_pos(at)
+        pygame.event.get(pygame.MOUSEMOTION)
+        self.post(pygame.MOUSEMOTION, pos=at, rel=(at[0] - before[0], at[1] - before[1]), buttons=(0, 0, 0))
+        self.frames()
+
+    def press(self, pixel, button=1):
+        self.move(pixel)
+        self.post(pygame.MOUSEBUTTONDOWN, pos=tuple(round(value) for value in pixel), button=button)
+        self.frames()
+
+    def release(self, pixel, button=1):
+        self.post(pygame.MOUSEBUTTONUP, pos=tuple(round(value) for value in pixel), button=button)
+        self.frames(2)
+
+    def click(self, pixel):
+        self.press(pixel)
+        self.release(pixel)
+
+    def click_widget(self, widget):
+        self.click(widget.rect.center)
+
+    def key(self, key, mod=0):
+        self.post(pygame.KEYDOWN, key=key, mod=mod, unicode="", scancode=0)
+        self.frames()
+        self.post(pygame.KEYUP, key=key, mod=mod, unicode="", scancode=0)
+        self.frames(2)
+
+    def type(self, text):
+        for letter in text:
+            self.post(pygame.TEXTINPUT, text=letter)
+        self.frames()
+
+    def fill(self, field, text):
+        """Focus a field, replace its text and press Enter."""
+        self.app.ui.focus_on(field.entry)
+        self.type(text)
+        self.key(pygame.K_RETURN)
+
+    def pixel_of(self, name):
+        """Where a particle is on the screen."""
+        position = self.playback.current.position[self.world.particle_slot(name)]
+        return self.stage.camera.to_pixels(tuple(position.tolist()))
+
+
+@pytest.fixture
+def documents(tmp_path, monkeypatch):
+    """The person's documents, empty."""
+    monkeypatch.setattr("sandbox.app.recordings.platformdirs.user_documents_dir", lambda: str(tmp_path))
+    return tmp_path / "Spring Sandbox"
+
+
+@pytest.fixture
+def open_app(documents):
+    """Open the app on a level, a replay, or (None) its gallery."""
+    drivers = []
+
+    def open_(level=None, replay=None):
+        drivers.append(Driver(level, replay))
+        return drivers[-1]
+
+    yield open_
+    for driver in drivers:
+        driver.app.files.leave_recording()
+        driver.app.display.close()
+
+
+@pytest.fixture
+def driver(open_app):
+    """The app on the small level."""
+    return open_app(small_level())

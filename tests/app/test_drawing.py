@@ -1,0 +1,243 @@
+"""Camera, clock, lines, renderer and pictures."""
+
+from dataclasses import replace
+
+import numpy as np
+import pygame
+import pytest
+from conftest import small_level
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sandbox.app.camera import Camera, bounds, grid_spacing
+from sandbox.app.colours import BACKGROUND, packed, strain_colours
+from sandbox.app.lines import Canvas
+from sandbox.app.loop import LONGEST_FRAME, SPEEDS, TickClock
+from sandbox.app.picture import draw_picture, save_picture
+from sandbox.app.playback import Playback, interpolated
+from sandbox.app.renderer import Renderer
+from sandbox.physics.jit import COMPILED
+from sandbox.session.session import Session
+
+FRAME = 1 / 60
+within = st.floats(-1e4, 1e4)
+zooms = st.floats(0.01, 1e4)
+
+
+@given(x=within, y=within, cx=within, cy=within, zoom=zooms)
+def test_pixels_and_metres_map_back_and_forth(x, y, cx, cy, zoom):
+    camera = Camera((cx, cy), zoom, (10, 20, 800, 600))
+    assert camera.to_world(camera.to_pixels((x, y))) == pytest.approx((x, y), abs=1e-6)
+    assert camera.project(np.array([[x, y]]))[0] == pytest.approx(camera.to_pixels((x, y)))
+
+
+@given(px=st.floats(0, 800), py=st.floats(0, 600), factor=st.floats(0.2, 5.0), zoom=st.floats(1.0, 500.0))
+def test_zooming_keeps_the_point_under_the_pointer(px, py, factor, zoom):
+    camera = Camera((3.0, -2.0), zoom, (0, 0, 800, 600))
+    before = camera.to_world((px, py))
+    camera.zoom_about((px, py), factor)
+    assert camera.zoom == pytest.approx(zoom * factor)
+    assert camera.to_world((px, py)) == pytest.approx(before, abs=1e-6)
+
+
+def test_y_points_up_and_panning_follows_the_pointer():
+    camera = Camera((0.0, 0.0), 10.0, (0, 0, 200, 100))
+    assert camera.to_pixels((1.0, 1.0)) == (110.0, 40.0)
+    camera.pan(10, 20)
+    assert camera.to_pixels((0.0, 0.0)) == (110.0, 70.0)
+
+
+@pytest.mark.parametrize("box", [(-4.0, 0.0, 4.0, 1.0), (2.0, -30.0, 3.0, 30.0), (1.0, 1.0, 1.0, 1.0)])
+def test_fit_shows_the_whole_box_in_the_viewport(box):
+    camera = Camera(viewport=(100, 50, 640, 480))
+    camera.fit(box)
+    for corner in ((box[0], box[1]), (box[2], box[3])):
+        x, y = camera.to_pixels(corner)
+        assert 100 <= x <= 740 and 50 <= y <= 530
+
+
+def test_bounds_leave_out_what_is_not_finite():
+    points = np.array([[0.0, 1.0], [np.nan, 5.0], [2.0, -1.0], [np.inf, 0.0]])
+    assert bounds(points) == (0.0, -1.0, 2.0, 1.0)
+    assert bounds(points[1:2]) == (-1.0, -1.0, 1.0, 1.0)
+
+
+@given(zoom=st.floats(1e-4, 1e6))
+def test_grid_lines_are_never_closer_than_wanted_and_never_ten_times_farther(zoom):
+    pixels = grid_spacing(zoom, 64.0) * zoom
+    assert 64.0 * (1 - 1e-6) <= pixels < 640.0
+
+
+def test_the_clock_gives_the_same_number_of_ticks_at_every_frame_rate():
+    for rate in (24, 60, 144, 1000):
+        clock = TickClock()
+        assert sum(clock.ticks(1 / rate, 60) for _ in range(5 * rate)) == pytest.approx(300, abs=1)
+
+
+def test_a_long_frame_is_not_made_up_for_and_a_negative_one_takes_nothing_back():
+    clock = TickClock()
+    assert clock.ticks(30.0, 60) == int(LONGEST_FRAME * 60)
+    assert clock.ticks(-5.0, 60) == 0
+    assert clock.accumulator >= 0.0
+
+
+@pytest.mark.parametrize("speed", SPEEDS)
+def test_slow_motion_scales_ticks_and_alpha_stays_in_0_to_1(speed):
+    clock, ticks = TickClock(speed=speed), 0
+    for _ in range(480):
+        ticks += clock.ticks(FRAME, 60)
+        assert 0.0 <= clock.alpha(60) <= 1.0
+    assert ticks == pytest.approx(480 * speed, abs=1)
+
+
+def test_a_paused_clock_gives_single_ticks_only():
+    clock = TickClock(paused=True)
+    assert clock.ticks(1.0, 60) == 0
+    clock.step_once()
+    clock.step_once()
+    assert [clock.ticks(FRAME, 60), clock.ticks(FRAME, 60)] == [2, 0]
+
+
+def test_a_run_that_is_too_slow_loses_time_instead_of_running_away(monkeypatch):
+    playback = Playback(small_level(settings={"solver": "single_pass", "tick_rate": 10_000}))
+    now = [0.0]
+    monkeypatch.setattr("sandbox.app.playback.time.perf_counter", lambda: now[0])
+    advance = playback.session.advance
+
+    def slow_tick():
+        now[0] += 0.02
+        advance()
+
+    monkeypatch.setattr(playback.session, "advance", slow_tick)
+    for _ in range(5):
+        assert playback.advance(0.1) <= 4
+        assert playback.behind
+        assert playback.clock.accumulator == 0.0
+
+
+def test_positions_are_interpolated_and_fall_back_to_the_current_ones():
+    session = Session(small_level())
+    first = session.snapshot()
+    moved = replace(first, position=first.position + 2.0)
+    assert np.allclose(interpolated(first, moved, 0.25), first.position + 0.5)
+    longer = replace(first, position=first.position[:-1], mass=first.mass[:-1])
+    assert interpolated(longer, first, 0.5) is first.position
+
+
+def test_compressed_is_blue_rest_is_grey_and_stretched_is_warm():
+    red, green, blue = ((strain_colours(np.array([-0.3, 0.0, 0.3])) >> shift) & 255 for shift in (16, 8, 0))
+    assert blue[0] > red[0] + 80
+    assert red[2] > blue[2] + 80
+    assert abs(int(red[1]) - int(blue[1])) < 40 and abs(int(red[1]) - int(green[1])) < 40
+    strains = np.array([-np.inf, np.nan, np.inf, -5.0, 1e300])
+    assert (strain_colours(strains) >= 0).all() and (strain_colours(strains) <= 0xFFFFFF).all()
+
+
+def canvas(width=60, height=40, compiled=COMPILED):
+    surface = pygame.Surface((width, height), 0, 32)
+    return Canvas(surface, compiled)
+
+
+def brightness(surface):
+    return pygame.surfarray.array3d(surface).astype(float).sum(axis=2) / 765.0
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+@pytest.mark.parametrize("ends", [(5, 20, 55, 20), (30, 5, 30, 35), (5, 5, 45, 35), (50, 35, 8, 12), (20, 4, 26, 36)])
+def test_a_line_covers_about_its_length_times_its_width(ends, compiled):
+    drawn = canvas(compiled=compiled)
+    drawn.lines(np.array([ends], dtype=float), np.array([0xFFFFFF]), 2.0)
+    length = np.hypot(ends[2] - ends[0], ends[3] - ends[1])
+    exact = drawn.compiled
+    assert brightness(drawn.surface).sum() == pytest.approx(2.0 * length, rel=0.12 if exact else 0.7)
+
+
+def test_lines_and_discs_outside_the_clip_or_beyond_all_sense_draw_nothing_and_do_not_fail():
+    drawn = canvas()
+    drawn.surface.set_clip((20, 10, 10, 10))
+    wild = np.array([[-1e300, 0, 1e300, 0], [np.nan, 0, 5, 5], [np.inf, 0, 0, 0], [0, 0, 5, 2]], dtype=float)
+    drawn.lines(wild, np.full(4, 0xFFFFFF), 2.0)
+    drawn.discs(np.array([[np.nan, 1.0], [1e30, 1.0], [3.0, 3.0]]), np.full(3, 2.0), np.full(3, 0xFFFFFF))
+    assert brightness(drawn.surface).sum() == 0.0
+    drawn.lines(np.array([[-1e4, 15.0, 1e4, 15.0]]), np.array([0xFFFFFF]), 2.0)
+    drawn.discs(np.array([[25.0, 15.0]]), np.array([30.0]), np.array([0xFFFFFF]))
+    lit = np.argwhere(brightness(drawn.surface) > 0)
+    assert (lit.min(axis=0) >= (20, 10)).all() and (lit.max(axis=0) < (30, 20)).all()
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+def test_a_disc_covers_about_its_area(compiled):
+    drawn = canvas(compiled=compiled)
+    drawn.discs(np.array([[30.0, 20.0]]), np.array([9.0]), np.array([0xFFFFFF]))
+    assert brightness(drawn.surface).sum() == pytest.approx(np.pi * 81, rel=0.15)
+
+
+def draw(level, change=None):
+    session = Session(level)
+    snapshot = session.snapshot()
+    if change is not None:
+        position = snapshot.position.copy()
+        change(position)
+        snapshot = replace(snapshot, position=position)
+    surface = pygame.Surface((400, 300), 0, 32)
+    camera = Camera(viewport=(0, 0, 400, 300))
+    camera.fit((-1.0, -3.0, 7.0, 3.0))
+    renderer = Renderer()
+    renderer.draw(surface, camera, snapshot, snapshot, 1.0)
+    return surface, camera, renderer
+
+
+def colour_on_the_last_link(shift):
+    """Average (red, blue) of the middle of the rope's last link, its end moved along it."""
+
+    def change(position):
+        position[4, 0] += shift
+
+    surface, camera, _ = draw(small_level(), change)
+    x, y = camera.to_pixels((3.5 + shift / 2, 0.0))
+    area = pygame.surfarray.array3d(surface)[round(x) - 2 : round(x) + 3, round(y) - 2 : round(y) + 2]
+    line = area[area.sum(axis=2) > 200]
+    return line[:, 0].mean(), line[:, 2].mean()
+
+
+def test_a_stretched_spring_is_drawn_warm_and_a_compressed_one_blue():
+    red, blue = colour_on_the_last_link(0.4)
+    assert red > blue + 60
+    red, blue = colour_on_the_last_link(-0.4)
+    assert blue > red + 60
+
+
+def test_drawing_changes_nothing_in_the_snapshot():
+    session = Session(small_level())
+    before, snapshot = session.snapshot(), session.snapshot()
+    draw_picture(session.level, snapshot, (200, 100))
+    assert (before.position == snapshot.position).all() and (before.spring_active == snapshot.spring_active).all()
+
+
+def test_non_finite_particles_are_counted_and_the_rest_is_drawn():
+    def change(position):
+        position[2] = (np.nan, np.inf)
+        position[3] = (np.inf, 0.0)
+
+    surface, camera, renderer = draw(small_level(), change)
+    assert renderer.non_finite == 2
+    x, y = camera.to_pixels((1.0, 0.0))
+    assert brightness(surface)[round(x), round(y)] > 0.5
+
+
+def test_a_picture_shows_every_particle_and_is_written_as_png(tmp_path):
+    session = Session(small_level())
+    save_picture(session, tmp_path / "picture.png", (320, 240))
+    picture = pygame.image.load(tmp_path / "picture.png")
+    assert picture.get_size() == (320, 240)
+    assert (pygame.surfarray.array2d(picture) & 0xFFFFFF != packed(BACKGROUND)).sum() > 300
+    with pytest.raises(OSError):
+        save_picture(session, tmp_path / "missing" / "picture.png")
+
+
+def test_an_empty_level_and_a_level_of_one_particle_can_be_drawn():
+    empty = small_level(bodies=[], materials={}, view=None)
+    one = small_level(bodies=[], materials={}, view=None, particles=[{"id": "ball"}])
+    for level in (empty, one):
+        surface = draw_picture(level, Session(level).snapshot(), (100, 80))
+        assert surface.get_size() == (100, 80)

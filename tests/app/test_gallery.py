@@ -1,0 +1,99 @@
+"""The gallery: levels with pictures, saved replays, and opening them."""
+
+import numpy as np
+import pygame
+from conftest import Driver
+
+from sandbox.app.recordings import chosen_path, free_path, plain_name
+from sandbox.level.files import shipped_levels
+
+
+def test_every_shipped_level_has_a_card_with_a_picture(open_app):
+    driver = open_app()
+    driver.frames(len(shipped_levels()) + 2)
+    cards = driver.app.gallery.cards
+    assert len(cards) == len(shipped_levels())
+    for card in cards:
+        pixels = pygame.surfarray.array3d(card.picture)
+        assert len(np.unique(pixels.reshape(-1, 3), axis=0)) > 10, card.name
+
+
+def test_a_click_on_a_card_opens_its_level(open_app):
+    driver = open_app()
+    card = driver.app.gallery.cards[1]
+    driver.click_widget(card)
+    assert driver.app.gallery is None
+    assert driver.playback.level.name == card.name
+
+
+def test_arrow_keys_and_enter_open_a_level_too(open_app):
+    driver = open_app()
+    driver.key(pygame.K_DOWN)
+    driver.key(pygame.K_RIGHT)
+    name = driver.app.gallery.cards[1].name
+    driver.key(pygame.K_RETURN)
+    assert driver.playback.level.name == name
+
+
+def test_the_wheel_scrolls_no_further_than_the_last_card(open_app):
+    driver = open_app()
+    gallery = driver.app.gallery
+    top = gallery.cards[0].rect.top
+    for _ in range(100):
+        driver.post(pygame.MOUSEWHEEL, x=0, y=-1, precise_x=0.0, precise_y=-1.0, flipped=False)
+        driver.frames()
+    assert gallery.cards[0].rect.top < top
+    assert gallery.cards[-1].rect.bottom <= driver.app.display.size[1]
+    gallery.scroll(1000)
+    assert gallery.cards[0].rect.top == top
+
+
+def test_escape_goes_back_to_the_run_but_the_first_gallery_stays(driver: Driver):
+    driver.key(pygame.K_g)
+    assert driver.app.gallery is not None
+    driver.key(pygame.K_ESCAPE)
+    assert driver.app.gallery is None and driver.stage is not None
+
+
+def test_without_a_run_escape_leaves_the_gallery_open(open_app):
+    driver = open_app()
+    driver.key(pygame.K_ESCAPE)
+    assert driver.app.gallery is not None
+
+
+def test_saved_replays_are_listed_and_open(driver: Driver, documents):
+    driver.frames(5)
+    driver.key(pygame.K_s, pygame.KMOD_CTRL)
+    driver.key(pygame.K_RETURN)
+    driver.key(pygame.K_l, pygame.KMOD_CTRL)
+    (card,) = driver.app.gallery.cards
+    assert card.name == next(documents.iterdir()).name
+    driver.click_widget(card)
+    assert driver.playback.watching
+
+
+def test_opening_by_name_takes_a_shipped_level_and_says_what_is_wrong_with_others(driver: Driver):
+    driver.key(pygame.K_o, pygame.KMOD_CTRL)
+    driver.type("no such level")
+    driver.key(pygame.K_RETURN)
+    assert driver.app.ui.has_sheet
+    driver.key(pygame.K_ESCAPE)
+    driver.key(pygame.K_o, pygame.KMOD_CTRL)
+    driver.type("spider_web")
+    driver.key(pygame.K_RETURN)
+    assert driver.playback.level.name == "Spider web"
+
+
+def test_names_of_recordings_are_safe_and_never_taken(tmp_path):
+    assert plain_name("Rope, bridge & jelly!") == "rope-bridge-jelly"
+    assert plain_name("../..") == "run"
+    first = free_path(tmp_path, "run")
+    first.touch()
+    assert free_path(tmp_path, "run").name == "run-2.replay.jsonl"
+    for typed in ("", "a/b", "..\\x", ".hidden", "x" * 200, "run", "run.replay.jsonl", "a:b"):
+        try:
+            chosen_path(tmp_path, typed)
+        except ValueError as error:
+            assert "\n" not in str(error)
+        else:
+            raise AssertionError(typed)

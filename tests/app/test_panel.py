@@ -1,0 +1,182 @@
+"""The panel: sliders, typed values, readings and limits."""
+
+import pygame
+import pytest
+from conftest import small_level
+
+from sandbox.app.sliders import fraction_of, value_at
+from sandbox.session.commands import SetCoefficients
+
+
+def coefficients(driver):
+    steel = driver.world.spring_slot("rope:0")
+    rubber = driver.world.spring_slot("pair:0")
+    world = driver.world
+    return tuple(float(x) for x in (world.stiffness[steel], world.damping[steel], world.stiffness[rubber]))
+
+
+def logged(driver):
+    return [entry for entry in driver.playback.session._log if isinstance(entry.command, SetCoefficients)]
+
+
+def test_a_slider_drag_is_one_gesture_and_undone_at_once(driver):
+    slider = driver.app.panel.stiffness
+    y = slider.rect.centery
+    driver.press((slider.pixel_of(0.01), y))
+    for value in (0.02, 0.05, 0.1, 0.2):
+        driver.move((slider.pixel_of(value), y))
+    driver.release((slider.pixel_of(0.2), y))
+    entries = logged(driver)
+    assert len(entries) >= 5 and len({entry.gesture for entry in entries}) == 1
+    assert coefficients(driver)[0] == pytest.approx(0.2, rel=0.05)
+    driver.key(pygame.K_z, pygame.KMOD_CTRL)
+    assert coefficients(driver) == (0.3, 0.3, 0.02)
+
+
+def test_two_slider_drags_are_two_gestures(driver):
+    slider = driver.app.panel.damping
+    for value in (0.01, 0.1):
+        driver.press((slider.pixel_of(value), slider.rect.centery))
+        driver.release((slider.pixel_of(value), slider.rect.centery))
+    assert len({entry.gesture for entry in logged(driver)}) == 2
+
+
+def test_a_chosen_material_alone_is_changed(driver):
+    driver.app.panel._choose_material("rubber")
+    driver.fill(driver.app.panel.stiffness_field, "0.5")
+    assert coefficients(driver) == (0.3, 0.3, 0.5)
+
+
+def test_all_springs_show_mixed_values_and_take_a_common_one(driver):
+    panel = driver.app.panel
+    assert panel.stiffness_field.text == "mixed" and panel.stiffness.mixed
+    driver.fill(panel.stiffness_field, "0.07")
+    assert coefficients(driver)[0] == coefficients(driver)[2] == 0.07
+    assert panel.stiffness_field.text == "0.07" and not panel.stiffness.mixed
+
+
+@pytest.mark.parametrize("typed", ["1.5", "-0.1", "nan", "inf", "soft", ""])
+def test_a_typed_value_out_of_range_is_refused_with_a_line_and_the_old_one_stays(driver, typed):
+    driver.app.panel._choose_material("steel")
+    driver.frames()
+    field = driver.app.panel.stiffness_field
+    driver.app.ui.focus_on(field.entry)
+    driver.key(pygame.K_DELETE)
+    driver.fill(field, typed)
+    driver.app.ui.blur()
+    assert coefficients(driver)[0] == 0.3
+    assert field.entry.get_text() == "0.3"
+    assert any(notice.startswith("Cs: ") for notice in driver.notices)
+
+
+def test_typing_hz_and_damping_ratio_sets_cs_and_cd_and_reads_back(driver):
+    panel = driver.app.panel
+    panel._choose_material("steel")
+    driver.frames()
+    driver.fill(panel.frequency, "3")
+    driver.fill(panel.ratio, "0.2")
+    assert (float(panel.frequency.text), float(panel.ratio.text)) == pytest.approx((3.0, 0.2), rel=1e-3)
+    assert coefficients(driver)[2] == 0.02
+
+
+def test_a_frequency_out_of_reach_is_refused_with_the_highest_one(driver):
+    panel = driver.app.panel
+    panel._choose_material("steel")
+    driver.frames()
+    driver.fill(panel.ratio, "0.1")
+    before = coefficients(driver)
+    driver.fill(panel.frequency, "20")
+    assert coefficients(driver) == before
+    assert any("highest frequency" in notice for notice in driver.notices)
+
+
+def test_cd_1_reads_as_infinite_and_a_typed_frequency_leads_out_of_it(driver):
+    panel = driver.app.panel
+    panel._choose_material("steel")
+    driver.fill(panel.damping_field, "1")
+    assert panel.frequency.text == panel.ratio.text == "infinite"
+    driver.fill(panel.frequency, "2")
+    assert (float(panel.frequency.text), float(panel.ratio.text)) == pytest.approx((2.0, 1.0), rel=1e-3)
+
+
+def test_the_single_pass_marks_its_limit_and_the_iterative_solver_says_that_there_is_none(driver):
+    panel = driver.app.panel
+    panel._choose_material("steel")
+    driver.frames()
+    assert 0.3 < panel.damping.limit < 1.0
+    assert "Proven" in panel.note.text
+    driver.click_widget(panel.solver.buttons["iterative"])
+    assert driver.world.settings.solver == "iterative"
+    assert panel.damping.limit is None
+    assert "No proven limit" in panel.note.text
+
+
+def test_a_hooke_material_cannot_be_tuned_by_cs_and_says_so(open_app):
+    level = small_level(materials={"steel": {"law": "hooke", "k": 20.0, "c": 0.5}, "rubber": {}})
+    driver = open_app(level)
+    panel = driver.app.panel
+    panel._choose_material("steel")
+    driver.frames()
+    assert "k = 20 N/m" in panel.note.text and not panel.stiffness.enabled
+    driver.fill(panel.stiffness_field, "0.5")
+    assert not logged(driver)
+
+
+def test_substeps_iterations_warm_start_and_gravity_reach_the_world(driver):
+    panel = driver.app.panel
+    driver.click_widget(panel.substeps.buttons["8"])
+    driver.fill(panel.iterations, "25")
+    driver.fill(panel.warm_start, "0.75")
+    driver.fill(panel.gravity_y, "-3.7")
+    settings = driver.world.settings
+    assert (settings.substeps, settings.iterations, settings.warm_start) == (8, 25, 0.75)
+    assert settings.gravity == (0.0, -3.7)
+    for field, typed in (
+        (panel.iterations, "2.5"),
+        (panel.iterations, "0"),
+        (panel.warm_start, "2"),
+        (panel.gravity_x, "1e9"),
+    ):
+        driver.fill(field, typed)
+    assert driver.world.settings == settings
+    assert len(driver.notices) == 4
+
+
+def test_edits_show_while_the_run_is_paused(driver):
+    driver.app.act("pause")
+    driver.frames()
+    tick = driver.playback.session.tick
+    driver.fill(driver.app.panel.damping_field, "0.5")
+    assert driver.playback.session.tick == tick
+    assert driver.app.panel.damping_field.text == "0.5"
+
+
+def test_arrow_keys_move_the_focused_slider_and_tab_reaches_every_widget(driver):
+    ui, panel = driver.app.ui, driver.app.panel
+    reached = []
+    for _ in range(60):
+        driver.key(pygame.K_TAB)
+        reached.append(ui.focus)
+    wanted = [panel.stiffness, panel.damping, panel.menu, panel.frequency.entry, *panel.substeps.buttons.values()]
+    assert all(widget in reached for widget in wanted)
+    ui.focus_on(panel.damping)
+    before = driver.world.damping[0]
+    driver.key(pygame.K_LEFT)
+    after = driver.world.damping[0]
+    assert after < before
+    driver.key(pygame.K_RIGHT, pygame.KMOD_SHIFT)
+    assert after < driver.world.damping[0] < before
+    driver.key(pygame.K_HOME)
+    assert driver.world.damping[0] == pytest.approx(1e-5)
+    driver.key(pygame.K_ESCAPE)
+    assert ui.focus is None
+
+
+def test_the_scale_is_logarithmic_and_maps_back():
+    assert [fraction_of(value) for value in (1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)] == pytest.approx(
+        [0, 0.2, 0.4, 0.6, 0.8, 1]
+    )
+    assert fraction_of(0.0) == 0.0
+    for fraction in (0.0, 0.13, 0.5, 0.77, 1.0):
+        assert fraction_of(value_at(fraction)) == pytest.approx(fraction, abs=2e-3)
+    assert value_at(-1.0) == 1e-5 and value_at(2.0) == 1.0
