@@ -64,6 +64,7 @@ def restore(world: World, snapshot: Snapshot) -> None:
     world.tick = snapshot.tick
     world.hand_particle = snapshot.hand_particle
     world.hand_spring = snapshot.hand_spring
+    world.trust()
     world.forget_names_beyond(len(snapshot.mass), len(snapshot.rest_length))
 
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from sandbox.physics.equation import half_step
 from sandbox.physics.jit import kernel
+from sandbox.physics.quarantine import contain_inputs, contain_outcome
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.world import Floats, World, WorldSettings
 
@@ -57,6 +58,7 @@ def step(world: World) -> None:
     settings = world.settings
     solver = SOLVERS[settings.solver]
     h = substep_time(settings)
+    contain_inputs(world)
     stiffness, damping = substep_coefficients(world)
     for _ in range(settings.substeps):
         _add_gravity(world.velocity, world.inverse_mass, world.particle_active, *settings.gravity, h)
@@ -64,6 +66,7 @@ def step(world: World) -> None:
         _integrate(world.position, world.velocity, world.particle_active, h)
     world.rest_hands()
     world.tick += 1
+    contain_outcome(world)
 
 
 def warm_up() -> None:

@@ -36,6 +36,9 @@ SPRING_ARRAYS = {
 }
 # Every array of a world's state, in the order in which it is hashed and stored: part of the replay contract.
 STATE_ARRAYS = (*PARTICLE_ARRAYS, *SPRING_ARRAYS)
+# Constants of springs that the quarantine can take back.
+GUARDED_CONSTANTS = ("rest_length", "stiffness", "damping", "hooke_stiffness", "hooke_damping")
+GUARDED = ("position", "velocity", "mass", *GUARDED_CONSTANTS)
 VECTOR_ARRAYS = frozenset({"position", "velocity", "slow_velocity", "impulse"})
 
 LAW_NISSEN = 0
@@ -113,6 +116,9 @@ class World:
         self.hand_spring = -1
         # What a solver derives from topology and pins alone; never state.
         self.solver_cache: Any = None
+        # The last good values, by array, and what was taken back to them since somebody last looked; never state.
+        self.good: dict[str, Floats] = {}
+        self.contained: list[Any] = []
         for name, kind in (PARTICLE_ARRAYS | SPRING_ARRAYS).items():
             setattr(self, name, np.zeros((0, 2) if name in VECTOR_ARRAYS else 0, dtype=kind))
 
@@ -264,6 +270,12 @@ class World:
         self.slow_velocity[particle] = 0.0
         self._disturb(particle)
 
+    def freeze(self, particle: int) -> None:
+        """Bring a particle back to its last good values and pin it there."""
+        self.position[particle] = self.good["position"][particle]
+        self.mass[particle] = self.good["mass"][particle]
+        self.pin(particle)
+
     def unpin(self, particle: int) -> None:
         """Let a pinned particle move again, with the mass it has."""
         self.inverse_mass[particle] = 1.0 / self.mass[particle]
@@ -326,7 +338,13 @@ class World:
             self.stiffness[chosen] = stiffness
         if damping is not None:
             self.damping[chosen] = damping
+        for name in ("stiffness", "damping"):
+            self.good[name][chosen] = getattr(self, name)[chosen]
         self._disturb(self.particle_a[chosen], self.particle_b[chosen])
+
+    def trust(self) -> None:
+        """Take everything as it is now for good."""
+        self.good = {name: getattr(self, name).copy() for name in GUARDED}
 
     def forget_names_beyond(self, particle_count: int, spring_count: int) -> None:
         """Drop the names of slots that a restored state does not have."""
@@ -345,7 +363,10 @@ class World:
     def _append(self, **arrays: ArrayLike) -> None:
         for name, values in arrays.items():
             present = getattr(self, name)
-            setattr(self, name, np.concatenate([present, np.asarray(values, dtype=present.dtype)]))
+            added = np.asarray(values, dtype=present.dtype)
+            setattr(self, name, np.concatenate([present, added]))
+            if name in GUARDED:
+                self.good[name] = np.concatenate([self.good.get(name, present), added])
 
 
 def _register(slots: dict[str, int], names: list[str], added: Sequence[str]) -> None:

@@ -136,6 +136,7 @@ class Session:
             return
         self._step()
         self._last_tick = self.tick
+        self.messages.extend(str(hit) for hit in self.world.contained)
         if self._recorder is not None:
             self._record(self._recorder.write_tick, self.world)
 
@@ -291,6 +292,7 @@ class Session:
         self._scripted = None
 
     def _step(self) -> None:
+        self.world.contained.clear()
         step(self.world)
         if self.tick % KEYFRAME_TICKS == 0 and self._keyframes[-1].tick < self.tick:
             self._keep_keyframe()

@@ -1,0 +1,123 @@
+import math
+import random
+import sys
+
+import numpy as np
+import pytest
+
+from sandbox.physics.snapshot import restore, state_hash, take
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.step import step
+from sandbox.physics.world import World, WorldSettings
+
+IMPOSSIBLE = (math.nan, math.inf, -math.inf, 1e308, -1e308)
+
+
+def _net(solver: str) -> World:
+    """A hanging net of 6 x 5 particles and a chain of two Hooke springs beside it."""
+    world = World(WorldSettings(solver=solver))
+    grid = [(float(x), -float(y)) for y in range(5) for x in range(6)]
+    world.add_particles([f"net.{k}" for k in range(30)], grid, pinned=[k < 6 for k in range(30)], mass=1.0)
+    pairs = [(k, k + 1) for k in range(30) if k % 6 < 5] + [(k, k + 6) for k in range(24)]
+    world.add_springs([f"net:{k}" for k in range(len(pairs))], *zip(*pairs, strict=True), stiffness=0.2, damping=0.2)
+    first = world.add_particles(["hook.0", "hook.1"], [(9.0, 0.0), (9.0, -1.0)], pinned=[True, False])
+    world.add_springs(["hook:0"], [first], [first + 1], law=1, hooke_stiffness=50.0, hooke_damping=1.0)
+    world.reserve_hands()
+    return world
+
+
+def _steps(world: World, count: int) -> None:
+    for _ in range(count):
+        step(world)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_thousand_impossible_values_are_contained_the_same_tick(solver):
+    world, generator = _net(solver), random.Random(5)
+    _steps(world, 30)
+    start = take(world)
+    arrays = ("position", "velocity", "mass", "inverse_mass", "rest_length", "stiffness", "damping", "hooke_damping")
+    for _ in range(1000 // len(SOLVERS) + 1):
+        restore(world, start)
+        array, value = generator.choice(arrays), generator.choice(IMPOSSIBLE)
+        values = getattr(world, array)
+        slot = generator.randrange(20, 30)
+        values[(slot, generator.randrange(2)) if values.ndim == 2 else slot] = value
+        step(world)
+        assert [(hit.array, hit.name) for hit in world.contained] == [(array, _name(world, array, slot))]
+        world.contained.clear()
+        _steps(world, 3)
+        assert not world.contained
+        assert np.abs(world.velocity).max() < 50.0
+        assert np.abs(world.position).max() < 50.0
+
+
+def _name(world: World, array: str, slot: int) -> str:
+    particles = ("position", "velocity", "mass", "inverse_mass")
+    return world.particle_names[slot] if array in particles else world.spring_names[slot]
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_the_rest_moves_as_if_the_particle_had_been_pinned(solver):
+    hit, pinned = _net(solver), _net(solver)
+    for world in (hit, pinned):
+        _steps(world, 30)
+    pinned.pin(22)
+    hit.position[22, 0] = math.nan
+    for world in (hit, pinned):
+        _steps(world, 60)
+    assert state_hash(hit) == state_hash(pinned)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_frozen_particle_can_be_let_go(solver):
+    world = _net(solver)
+    _steps(world, 30)
+    before = world.position[22].copy()
+    world.velocity[22] = math.inf
+    step(world)
+    assert np.array_equal(world.position[22], before)
+    world.unpin(22)
+    _steps(world, 200)
+    assert not np.array_equal(world.position[22], before)
+    assert np.isfinite(world.position).all()
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_spring_gets_its_last_good_constant_back(solver):
+    hit, untouched = _net(solver), _net(solver)
+    for world in (hit, untouched):
+        world.set_coefficients(0.15, 0.3, None)
+        _steps(world, 10)
+    for name in ("rest_length", "stiffness", "damping", "hooke_stiffness"):
+        getattr(hit, name)[7] = math.nan
+    for world in (hit, untouched):
+        _steps(world, 10)
+    assert state_hash(hit) == state_hash(untouched)
+    assert len(hit.contained) == 4
+    assert str(hit.contained[0]) == "tick 10: net:7: an impossible rest length was taken back"
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_mistuned_hooke_spring_freezes_its_own_particle_and_nothing_else(solver):
+    world, quiet = _net(solver), _net(solver)
+    world.hooke_stiffness[world.spring_slot("hook:0")] = 1e9
+    world.position[world.particle_slot("hook.1"), 1] -= 0.1
+    _steps(world, 400)
+    _steps(quiet, 400)
+    assert np.isfinite(world.position).all()
+    assert {hit.name for hit in world.contained} == {"hook.1"}
+    assert np.array_equal(world.position[:30], quiet.position[:30])
+
+
+def test_hands_and_new_particles_are_guarded_too():
+    world = _net("single_pass")
+    step(world)
+    world.hold(0, 20, (2.0, -3.0))
+    added = world.add_particles(["late"], [(5.0, 5.0)])
+    world.position[added, 1] = math.nan
+    world.position[world.hand_particle, 0] = 1e300
+    step(world)
+    assert {hit.name for hit in world.contained} == {"late", "+hand.0"}
+    assert world.position[added].tolist() == [5.0, 5.0]
+    assert sys.float_info.max > np.abs(world.position).max() < 1e6
