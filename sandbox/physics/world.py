@@ -116,11 +116,13 @@ class World:
         self.hand_spring = -1
         # What a solver derives from topology and pins alone; never state.
         self.solver_cache: Any = None
-        # The last good values, by array, and what was taken back to them since somebody last looked; never state.
-        self.good: dict[str, Floats] = {}
+        # What the quarantine has taken back since somebody last looked, and, in `good`, the last good values by array;
+        # never state.
         self.contained: list[Any] = []
         for name, kind in (PARTICLE_ARRAYS | SPRING_ARRAYS).items():
             setattr(self, name, np.zeros((0, 2) if name in VECTOR_ARRAYS else 0, dtype=kind))
+        self.good: dict[str, Floats] = {}
+        self.trust()
 
     @property
     def settings(self) -> WorldSettings:
@@ -366,7 +368,7 @@ class World:
             added = np.asarray(values, dtype=present.dtype)
             setattr(self, name, np.concatenate([present, added]))
             if name in GUARDED:
-                self.good[name] = np.concatenate([self.good.get(name, present), added])
+                self.good[name] = np.concatenate([self.good[name], added])
 
 
 def _register(slots: dict[str, int], names: list[str], added: Sequence[str]) -> None:
