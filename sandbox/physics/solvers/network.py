@@ -94,6 +94,7 @@ def linearise(first, last, rows, springs, h, ahead, behind):  # type: ignore[no-
         # J = -(K (x' - x) / h + K beta x / h)
         impulse = -(along * growth + springs.pull[k] * springs.error[k] / h)
         springs.impulse[k] = impulse
+        springs.foreseen[k] = springs.error[k] + h * growth
         springs.sideways[k] = 0.0
         pulled = springs.tension[k]
         if behind == 0.0:
@@ -192,8 +193,8 @@ def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # ty
 
 
 @inner_kernel
-def update_impulses(first, last, rows, springs, free_count):  # type: ignore[no-untyped-def]
-    """J = q - K n.(D_b - D_a) of one body's springs, and the like across them; whether D wants refining."""
+def update_impulses(first, last, rows, springs, h, free_count):  # type: ignore[no-untyped-def]
+    """J = q - K n.(D_b - D_a) of one body's springs, the like across them, and x' so far; whether D wants refining."""
     before = 0.0
     after = 0.0
     for k in range(first, last):
@@ -209,7 +210,9 @@ def update_impulses(first, last, rows, springs, free_count):  # type: ignore[no-
             uy -= rows.change[a, 1]
         nx = springs.normal[k, 0]
         ny = springs.normal[k, 1]
-        taken = springs.along[k] * (nx * ux + ny * uy)
+        u = nx * ux + ny * uy
+        springs.foreseen[k] += h * u
+        taken = springs.along[k] * u
         springs.impulse[k] -= taken
         springs.sideways[k] -= springs.across[k] * (nx * uy - ny * ux)
         before += abs(taken)
@@ -269,3 +272,20 @@ def potential(first, last, position, velocity, springs, rest_length, time, h):  
         error = (math.sqrt(dx * dx + dy * dy) - rest_length[springs.slot[k]]) / h
         total += 0.5 * springs.pull[k] * error * error
     return total
+
+
+@inner_kernel
+def largest_misfit(first, last, rows, springs, rest_length, h):  # type: ignore[no-untyped-def]
+    """Largest difference between a spring's length after the step and the length foreseen, as a share of its length."""
+    largest = 0.0
+    for k in range(first, last):
+        a = springs.row_a[k]
+        b = springs.row_b[k]
+        dx = rows.position[b, 0] - rows.position[a, 0] + h * (rows.trial[b, 0] - rows.trial[a, 0])
+        dy = rows.position[b, 1] - rows.position[a, 1] + h * (rows.trial[b, 1] - rows.trial[a, 1])
+        rest = rest_length[springs.slot[k]]
+        extent = rest + springs.length[k]
+        misfit = abs(math.sqrt(dx * dx + dy * dy) - rest - springs.foreseen[k])
+        if extent > SHORTEST and misfit > largest * extent:
+            largest = misfit / extent
+    return 2.0 * largest

@@ -43,6 +43,7 @@ class Springs(NamedTuple):
     pull: Floats
     length: Floats
     error: Floats
+    foreseen: Floats
     normal: Floats
     across: Floats
     impulse: Floats
