@@ -112,6 +112,8 @@ class App:
         self.stage = Stage(playback, self.viewport, self.scale)
         self.follow(playback)
         self.rebuild()
+        if playback.level.description:
+            self.say(playback.level.description)
 
     def follow(self, playback: Playback) -> None:
         """Show how far a run is that has to be played again, for an undo or a recording, where that takes long."""

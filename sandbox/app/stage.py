@@ -5,7 +5,7 @@ from typing import Literal
 import numpy as np
 import pygame
 
-from sandbox.app.camera import Camera
+from sandbox.app.camera import Camera, bounds
 from sandbox.app.picture import view_of
 from sandbox.app.playback import Playback
 from sandbox.app.profile import Profile
@@ -67,9 +67,12 @@ class Stage:
         self.tool_name = name
 
     def fit(self) -> None:
-        """Show the level's view, or all of its particles; once they have left it, all of them."""
+        """Show the level's view, or all of its particles; asked for again, all particles wherever they are."""
+        before = (self.camera.centre, self.camera.zoom)
         snapshot = self.playback.current
         self.camera.fit(view_of(self.playback.level, snapshot))
+        if before == (self.camera.centre, self.camera.zoom):
+            self.camera.fit(bounds(snapshot.position[shown_particles(snapshot)]))
 
     def place(self, viewport: tuple[int, int, int, int], scale: float) -> None:
         """Move to another part of the window and keep showing about the same."""

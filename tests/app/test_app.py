@@ -233,6 +233,37 @@ def test_f1_lists_the_shortcuts_and_escape_closes_the_page(driver):
     assert not driver.app.ui.has_sheet
 
 
+def test_a_drag_that_a_page_interrupts_ends_with_the_button(driver):
+    start = driver.pixel_of("rope.4")
+    driver.press(start)
+    driver.key(pygame.K_F1)
+    driver.release(start)
+    driver.key(pygame.K_ESCAPE)
+    assert not driver.world.is_held(0)
+    driver.move((start[0] + 50, start[1]))
+    assert not driver.stage.drag.holds
+
+
+def test_a_key_that_is_held_down_pauses_once_but_steps_on(driver):
+    for _ in range(5):
+        driver.post(pygame.KEYDOWN, key=pygame.K_k, mod=0, unicode="k", scancode=0)
+        driver.frames()
+    assert driver.playback.clock.paused
+    tick = driver.playback.session.tick
+    for _ in range(5):
+        driver.post(pygame.KEYDOWN, key=pygame.K_PERIOD, mod=0, unicode=".", scancode=0)
+        driver.frames()
+    assert driver.playback.session.tick == tick + 5
+
+
+def test_fit_asked_for_again_shows_particles_that_left_the_view(driver):
+    driver.world.position[4] = (200.0, 50.0)
+    driver.playback.current = driver.playback.previous = driver.playback.session.snapshot()
+    driver.app.act("pause")
+    driver.app.act("fit")
+    assert driver.stage.contains(driver.stage.camera.to_pixels((200.0, 50.0)))
+
+
 def test_every_action_of_the_shortcut_table_exists_and_every_action_is_in_the_table(driver):
     named = {entry.action for entry in SHORTCUTS if entry.action}
     assert named == set(driver.app.actions)
