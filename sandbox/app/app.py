@@ -112,7 +112,7 @@ class App:
         self.stage = Stage(playback, self.viewport, self.scale)
         self.follow(playback)
         self.rebuild()
-        if playback.level.description:
+        if playback.level.description and playback.replay is None:
             self.say(playback.level.description)
 
     def follow(self, playback: Playback) -> None:
@@ -259,7 +259,7 @@ class App:
             if self.stage is None or self.ui.has_sheet:
                 self.status.draw_notices(surface, 16.0)
             if not self.ready:
-                detail = "The first start takes some seconds, later ones none."
+                detail = "Only the first start takes some seconds."
                 draw_spinner(surface, self.ui, self._seconds, "Preparing the physics", detail)
 
     def _status_parts(self, stage: Stage) -> list[tuple[str, Colour]]:
@@ -332,13 +332,16 @@ def run_app(
     app = App(Display(scale), level, replay)
     clock = pygame.time.Clock()
     started = before = time.perf_counter()
-    while app.running and (seconds is None or before - started < seconds):
-        now = time.perf_counter()
-        app.frame(now - before)
-        before = now
-        clock.tick(FRAME_RATE)
-    app.files.leave_recording()
-    app.display.close()
+    try:
+        while app.running and (seconds is None or before - started < seconds):
+            now = time.perf_counter()
+            app.frame(now - before)
+            before = now
+            clock.tick(FRAME_RATE)
+    finally:
+        # Whatever ended the loop, a recording gets its last line.
+        app.files.leave_recording()
+        app.display.close()
     if profile:
         print(app.profile.table(time.perf_counter() - started))
     return 0

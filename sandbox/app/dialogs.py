@@ -51,14 +51,21 @@ def ask(
     text: str,
     verb: str,
     answer: Callable[[str], str | None],
-    given_up: Callable[[], None] = lambda: None,
+    other: tuple[str, Callable[[], None]] | None = None,
 ) -> None:
-    """Ask for a line of text; answer gives None where it is taken, else what is wrong with it, and the box stays."""
+    """Ask for a line of text; answer gives None where it is taken, else what is wrong with it, and the box stays.
+
+    other: the second button and what it does, instead of one that leaves everything as it is, as Escape does.
+    """
     height = 216.0
 
     def close() -> None:
         ui.close_sheet(sheet)
-        given_up()
+
+    def do_other() -> None:
+        close()
+        if other is not None:
+            other[1]()
 
     def accept() -> None:
         take(field.entry.get_text())
@@ -80,5 +87,5 @@ def ask(
     note = ui.label(ui.rect(MARGIN, MARGIN + 92, inside, 22), "", box, "@warning")
     bottom = height - MARGIN - 34
     ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="@primary")
-    ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), "Cancel", close, box)
+    ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), other[0] if other else "Cancel", do_other, box)
     ui.focus_on(field.entry)

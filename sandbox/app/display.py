@@ -76,7 +76,10 @@ class Display:
     def toggle_fullscreen(self) -> None:
         """Fill the screen, or go back to a window."""
         self.fullscreen = not self.fullscreen
-        (self.window.set_fullscreen if self.fullscreen else self.window.set_windowed)()
+        if self.fullscreen:
+            self.window.set_fullscreen(desktop=True)
+        else:
+            self.window.set_windowed()
 
     def flip(self) -> None:
         """Show what was drawn."""

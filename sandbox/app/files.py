@@ -124,10 +124,11 @@ class FileActions:
         ask(
             self.app.ui,
             "Name the replay",
-            f"In {path.parent}",
+            f"In {path.parent}. Escape keeps the name.",
             suggestion,
             "Save",
             lambda typed: self._rename(path, typed),
+            ("Discard", lambda: self._discard(path)),
         )
 
     def _rename(self, path: Path, typed: str) -> str | None:
@@ -147,6 +148,14 @@ class FileActions:
             return f"It stays {path.name}: {error.strerror or error}."
         self.app.say(f"Saved as {wanted}")
         return None
+
+    def _discard(self, path: Path) -> None:
+        try:
+            path.unlink()
+        except OSError as error:
+            self.app.say(f"{path} cannot be removed: {error.strerror or error}.")
+        else:
+            self.app.say(f"Removed {path.name}.")
 
     def leave_recording(self) -> None:
         """End a recording that is being made; its file is complete."""

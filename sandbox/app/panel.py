@@ -26,6 +26,8 @@ ROW = 28.0
 ENTRY_WIDTH = 82.0
 # Height that everything takes; in a lower window rows and gaps shrink by the same part.
 FULL_HEIGHT = 578.0
+# Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
+LOOK_EVERY = 15
 ALL_MATERIALS = "All springs"
 DASH = "–"
 SOLVER_LABELS = {"single_pass": "Single pass", "iterative": "Iterative", "direct": "Direct"}
@@ -40,6 +42,8 @@ class Panel:
         self._gesture: int | None = None
         self._limits: CoefficientLimits | None = None
         self._limits_of: tuple[object, ...] = ()
+        self._refreshes = -1
+        self._refreshed_at: tuple[object, ...] = ()
         self._y = 0.0
         self._tight = min(1.0, height / FULL_HEIGHT)
         self.back = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
@@ -134,6 +138,11 @@ class Panel:
         self.substeps.show(str(settings.substeps))
         self.iterations.show(str(settings.iterations))
         self.warm_start.show(f"{settings.warm_start:g}")
+        self._refreshes += 1
+        fresh = (self.playback.revision, self.material)
+        if fresh == self._refreshed_at and self._refreshes % LOOK_EVERY:
+            return
+        self._refreshed_at = fresh
         inputs = (world.stiffness, world.damping, world.spring_active, world.inverse_mass)
         key = (settings, self.material, *(array.tobytes() for array in inputs))
         if key != self._limits_of:

@@ -55,6 +55,7 @@ class Renderer:
         self.scale = scale
         self.compiled = True
         self.non_finite = 0
+        self._neighbours: tuple[tuple[int, int, int], NDArray[np.float64]] | None = None
 
     def draw(
         self,
@@ -123,7 +124,7 @@ class Renderer:
         pinned = current.inverse_mass[visible] == 0.0
         radii = current.radius[visible] * camera.zoom * self._weight(current, visible)
         # Particles of the usual radius shrink with the mesh that they belong to, or a cloth is a field of dots.
-        crowded = _nearest_neighbours(current)[visible] * camera.zoom * CROWDED
+        crowded = self._nearest_neighbours(current)[visible] * camera.zoom * CROWDED
         usual = radii <= BODY_RADIUS * camera.zoom
         radii = np.where(usual, np.minimum(np.maximum(radii, SMALLEST_RADIUS * self.scale), crowded), radii)
         radii = np.maximum(radii, THINNEST_SPRING * self.scale)
@@ -132,6 +133,17 @@ class Renderer:
         canvas.discs(centres, radii + rim, np.full(len(visible), packed(BACKGROUND)))
         canvas.discs(centres, radii, np.where(pinned, packed(PINNED), packed(PARTICLE)))
         self._draw_pins(canvas, centres[pinned], radii[pinned])
+
+    def _nearest_neighbours(self, current: Snapshot) -> NDArray[np.float64]:
+        """Rest length [m] of the shortest spring of every particle (n,); infinite where it has none."""
+        key = (len(current.mass), len(current.rest_length), int(np.count_nonzero(current.spring_active)))
+        if self._neighbours is None or self._neighbours[0] != key:
+            nearest = np.full(len(current.mass), np.inf)
+            working = current.spring_active & (current.rest_length > 0.0)
+            for ends in (current.particle_a, current.particle_b):
+                np.minimum.at(nearest, ends[working], current.rest_length[working])
+            self._neighbours = key, nearest
+        return self._neighbours[1]
 
     @staticmethod
     def _weight(current: Snapshot, visible: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -182,12 +194,3 @@ class Renderer:
             [[x - far, y, x - near, y], [x + near, y, x + far, y], [x, y - far, x, y - near], [x, y + near, x, y + far]]
         )
         canvas.lines(ends, np.full(4, packed(ACCENT)), 2.0 * self.scale)
-
-
-def _nearest_neighbours(current: Snapshot) -> NDArray[np.float64]:
-    """Rest length [m] of the shortest spring of every particle (n,); infinite where it has none."""
-    nearest = np.full(len(current.mass), np.inf)
-    working = current.spring_active & (current.rest_length > 0.0)
-    for ends in (current.particle_a, current.particle_b):
-        np.minimum.at(nearest, ends[working], current.rest_length[working])
-    return nearest
