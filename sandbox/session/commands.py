@@ -6,7 +6,6 @@ raises CommandError. Command names are part of the replay format and are never r
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
-from functools import cache
 from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
@@ -150,10 +149,14 @@ Command = (
 )  # fmt: skip
 
 
-@cache
-def adapter(kind: type) -> TypeAdapter[Any]:
-    """The strict validator of one command type."""
-    return TypeAdapter(kind)
+_adapters: dict[Any, TypeAdapter[Any]] = {}
+
+
+def adapter(kind: Any) -> TypeAdapter[Any]:
+    """The strict validator of one command type, made when it is first needed."""
+    if kind not in _adapters:
+        _adapters[kind] = TypeAdapter(kind)
+    return _adapters[kind]
 
 
 def plain_fault(error: ValidationError) -> str:

@@ -229,7 +229,7 @@ def _parse(where: str, line: bytes) -> _Sealed:
     kind = next((kind for key, kind in _KINDS.items() if key in values), None)
     if kind is None:
         raise ReplayError(f"{where}: neither a command, a tick, a state nor the end")
-    return _validated(where, kind, line)  # type: ignore[no-any-return]
+    return _validated(where, kind, line)
 
 
 def _gather(gathered: _Gathered, line: _Sealed, number: int, where: str) -> None:

@@ -90,7 +90,7 @@ def from_record(record: dict[str, Any], world: World) -> Command:
         values["material"] = _slot("material", values["material"], world.material_names.index)
     try:
         # JSON mode: lists stand for tuples and whole numbers for floats, and nothing else is converted.
-        return adapter(kind).validate_json(json.dumps(values), strict=True)  # type: ignore[no-any-return]
+        return adapter(kind).validate_json(json.dumps(values), strict=True)
     except (ValidationError, ValueError) as error:
         text = plain_fault(error) if isinstance(error, ValidationError) else str(error)
         raise CommandError(f"{type_name}: {text}") from None
