@@ -256,7 +256,7 @@ class App:
                 left = None if self.ui.has_sheet else 16.0
                 self.status.draw(surface, self._status_parts(self.stage), self.ui.units[0], left)
             self.ui.draw(surface)
-            if self.stage is None or self.ui.has_sheet:
+            if (self.stage is None or self.ui.has_sheet) and not self.ui.shows_page:
                 self.status.draw_notices(surface, 16.0)
             if not self.ready:
                 detail = "Only the first start takes some seconds."

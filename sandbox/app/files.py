@@ -136,12 +136,7 @@ class FileActions:
             return None
         try:
             wanted = chosen_path(path.parent, typed)
-            # A link appears only where nothing is yet: no other program's file is lost in between.
-            try:
-                os.link(path, wanted)
-                path.unlink()
-            except (NotImplementedError, PermissionError):
-                path.rename(wanted)
+            _move(path, wanted)
         except ValueError as error:
             return str(error)
         except OSError as error:
@@ -163,3 +158,16 @@ class FileActions:
         path = stage.playback.session.stop_recording() if stage is not None else None
         if path is not None:
             self.app.say(f"Saved as {path}")
+
+
+def _move(path: Path, wanted: Path) -> None:
+    """Give a file another name, never that of a file that is there. Raises OSError."""
+    try:
+        # A link appears only where nothing is yet: no other program's file is lost in between.
+        os.link(path, wanted)
+    except FileExistsError:
+        raise
+    except (OSError, NotImplementedError):  # a file system without links
+        path.rename(wanted)
+    else:
+        path.unlink()
