@@ -46,6 +46,7 @@ class App:
         self.ready = False
         self.show_panel = True
         self.stage: Stage | None = None
+        self.panel: Panel | None = None
         self.gallery: Gallery | None = None
         self.input = Input(self)
         self.files = FileActions(self)
@@ -70,16 +71,15 @@ class App:
         self.ui = Ui(self.display.size, self.scale, self.display.pixel_ratio)
         self.status = StatusLine(self.ui, self._notices)
         self.toolbar = Toolbar(self.ui, self.act)
-        self.panel: Panel | None = None
-        if self.stage is not None:
-            self.stage.place(self.viewport, self.scale)
-            self._build_panel()
-
-    def _build_panel(self) -> None:
-        if self.stage is None or not self.show_panel:
+        before, self.panel = self.panel, None
+        if self.stage is None:
             return
-        height = self.ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
-        self.panel = Panel(self.ui, self.stage.playback, self.say, BAR_HEIGHT, height)
+        self.stage.place(self.viewport, self.scale)
+        if self.show_panel:
+            height = self.ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
+            self.panel = Panel(self.ui, self.stage.playback, self.say, BAR_HEIGHT, height)
+            if before is not None and before.playback is self.stage.playback:
+                self.panel.choose_material(before.material)
 
     @property
     def viewport(self) -> tuple[int, int, int, int]:

@@ -206,9 +206,13 @@ class Panel:
     def _submit(self, command: Command, gesture: int | None = None) -> None:
         self.playback.submit(command, gesture)
 
+    def choose_material(self, material: int | None) -> None:
+        """Show and change the springs of a material (index); None = all."""
+        self.material = material
+        self._rebuild_menu(ALL_MATERIALS if material is None else self._material_names()[material])
+
     def _choose_material(self, name: str) -> None:
-        self.material = None if name == ALL_MATERIALS else self._material_names().index(name)
-        self._rebuild_menu(name)
+        self.choose_material(None if name == ALL_MATERIALS else self._material_names().index(name))
 
     def _choose_solver(self, name: str) -> None:
         self._submit(SetSolver(solver=name))
