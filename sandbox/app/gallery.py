@@ -31,7 +31,8 @@ ROW_HEIGHT = 52.0
 WHEEL_STEP = 70.0
 # The pictures show the level after this time [s], or it would hang in mid-air where it was built.
 PICTURE_SECONDS = 0.8
-# Levels of more particles than this are drawn as they are built, and all where physics is interpreted: the gallery stays quick.
+# Levels of more particles than this are drawn as they are built, and all where physics is interpreted: the gallery
+# stays quick.
 PICTURE_PARTICLES = 3000
 
 
