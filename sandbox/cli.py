@@ -2,7 +2,6 @@
 
 import argparse
 import json
-import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
@@ -10,6 +9,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sandbox import __version__
+from sandbox.terminal import (
+    count,
+    give_up_output,
+    interrupted_between_ticks,
+    prepare_streams,
+    progress,
+    scale,
+    seconds,
+    size,
+    tell,
+)
 
 if TYPE_CHECKING:
     from sandbox.level.model import Level
@@ -18,9 +28,6 @@ if TYPE_CHECKING:
     from sandbox.session.session import Session
 
 EXIT_OK, EXIT_FAILED, EXIT_REFUSED, EXIT_INTERRUPTED = 0, 1, 2, 130
-# Longest run [s] and picture side [pixels] that a person can mean; more is a slip of the finger.
-SECONDS_LIMIT = 1e6
-PIXEL_LIMIT = 16384
 # What `play` does where there is no display [s].
 HEADLESS_SECONDS = 10.0
 
@@ -35,6 +42,7 @@ class Refused(Exception):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code: 0, 1 a check failed or a replay diverged, 2 refused."""
+    prepare_streams()
     options = _parser().parse_args(arguments)
     try:
         code: int = options.action(options)
@@ -43,17 +51,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Refused as refusal:
         return _refuse(refusal.faults)
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        give_up_output()
         return EXIT_FAILED
     except OSError as error:
-        return _refuse([f"{error.filename or 'sandbox'}: {error.strerror or error}"])
+        give_up_output()
+        # Every file that is written here is named in its error; the stream is what has no name.
+        return _refuse([f"{error.filename or 'standard output'}: {error.strerror or error}"])
     except KeyboardInterrupt:
+        give_up_output()
         return EXIT_INTERRUPTED
 
 
 def _refuse(faults: Iterable[str]) -> int:
-    for fault in faults:
-        print(fault, file=sys.stderr)
+    tell(faults)
     return EXIT_REFUSED
 
 
@@ -73,14 +83,14 @@ def _parser() -> argparse.ArgumentParser:
         "level", nargs="?", metavar="LEVEL", help="a level file, a shipped level's name, or a replay file"
     )
     play.add_argument("--profile", action="store_true", help="print where a frame's time goes, at the end")
-    play.add_argument("--seconds", type=_seconds, help="close the app after so many seconds")
-    play.add_argument("--scale", type=_scale, help="size of the widgets, 0.5 to 4; default: the display's own")
+    play.add_argument("--seconds", type=seconds, help="close the app after so many seconds")
+    play.add_argument("--scale", type=scale, help="size of the widgets, 0.5 to 4; default: the display's own")
 
     run = command("run", _run, "run a level headless and print what came of it")
     run.add_argument("level", metavar="LEVEL")
     length = run.add_mutually_exclusive_group()
-    length.add_argument("--seconds", type=_seconds, help="simulated time; default 10")
-    length.add_argument("--ticks", type=_count, help="the same, in ticks")
+    length.add_argument("--seconds", type=seconds, help="simulated time; default 10")
+    length.add_argument("--ticks", type=count, help="the same, in ticks")
     run.add_argument("--solver", help="instead of the level's solver")
     run.add_argument("--substeps", type=int, help="instead of the level's substeps: a power of two, 1 to 64")
     run.add_argument("--json", action="store_true", help="print the summary as one JSON object")
@@ -88,7 +98,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--commands", type=Path, metavar="FILE.jsonl", help="commands to carry out, as lines of a replay")
     run.add_argument("--dump", type=Path, metavar="FILE", help="write the last position and velocity of every particle")
     run.add_argument("--probe", metavar="ID.K,..", help="particles to follow, by name, into the file of -o")
-    run.add_argument("--every", type=_count, default=1, metavar="N", help="follow them every N ticks; default 1")
+    run.add_argument("--every", type=count, default=1, metavar="N", help="follow them every N ticks; default 1")
     run.add_argument("-o", "--output", type=Path, metavar="FILE.csv", help="where the probe's table goes")
 
     replay = command("replay", _replay, "run recordings again and compare every bit")
@@ -101,8 +111,8 @@ def _parser() -> argparse.ArgumentParser:
 
     render = command("render", _render, "draw a level or a replay into a PNG picture, off screen")
     render.add_argument("level", metavar="LEVEL|REPLAY")
-    render.add_argument("--seconds", type=_seconds, default=0.0, help="simulated time before the picture; default 0")
-    render.add_argument("--size", type=_size, default=(1280, 720), metavar="WxH", help="in pixels; default 1280x720")
+    render.add_argument("--seconds", type=seconds, default=0.0, help="simulated time before the picture; default 0")
+    render.add_argument("--size", type=size, default=(1280, 720), metavar="WxH", help="in pixels; default 1280x720")
     render.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.png")
 
     layout = command("format", _format, "rewrite a level file in its canonical form")
@@ -111,37 +121,6 @@ def _parser() -> argparse.ArgumentParser:
     edit.add_argument("level", nargs="?", metavar="LEVEL")
     command("schema", _schema, "print the JSON Schema of level files")
     return parser
-
-
-def _number(low: float, high: float, text: str) -> float:
-    value = float(text)
-    if not low <= value <= high:
-        raise argparse.ArgumentTypeError(f"{text} is outside {low:g} to {high:g}")
-    return value
-
-
-def _seconds(text: str) -> float:
-    return _number(0.0, SECONDS_LIMIT, text)
-
-
-def _scale(text: str) -> float:
-    return _number(0.5, 4.0, text)
-
-
-def _count(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"{text} is not a number from 1 on")
-    return value
-
-
-def _size(text: str) -> tuple[int, int]:
-    width, _, height = text.lower().partition("x")
-    if not (width.isdigit() and height.isdigit() and min(int(width), int(height)) >= 1):
-        raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT, as in 1280x720")
-    if max(int(width), int(height)) > PIXEL_LIMIT:
-        raise argparse.ArgumentTypeError(f"a side of {text} is above {PIXEL_LIMIT} pixels")
-    return int(width), int(height)
 
 
 def _level(name: str) -> "Level":
@@ -173,33 +152,29 @@ def _is_replay(name: str) -> bool:
     return start[:2] == b"\x1f\x8b" or b"spring-sandbox/replay" in start
 
 
-def _progress(total: int, unit: str = "tick") -> Any:
-    """A progress bar on standard error, where a person looks at it."""
-    from tqdm import tqdm
-
-    return tqdm(total=total, unit=unit, leave=False, disable=not sys.stderr.isatty())
-
-
 def _play(options: argparse.Namespace) -> int:
     replay = _recording(options.level) if options.level and _is_replay(options.level) else None
     level = _level(options.level) if options.level and replay is None else None
     from sandbox.app.display import has_display
 
     if not has_display():
-        return _play_headless(level or (replay.level if replay else _level("rope_bridge_jelly")))
+        return _play_headless(level or (replay.level if replay else _level("rope_bridge_jelly")), replay)
     from sandbox.app.app import run_app
 
     return run_app(level, replay=replay, profile=options.profile, seconds=options.seconds, scale=options.scale)
 
 
-def _play_headless(level: "Level") -> int:
+def _play_headless(level: "Level", replay: "Replay | None") -> int:
     from sandbox.app.picture import save_picture
     from sandbox.session.session import Session
 
     picture = Path("sandbox.png")
-    print(f"no display: playing {level.name!r} headless for {HEADLESS_SECONDS:g} s, the last frame goes to {picture}")
-    session = Session(level)
-    summary = _run_with_bar(session, round(HEADLESS_SECONDS * level.settings.tick_rate))
+    ticks = round(HEADLESS_SECONDS * level.settings.tick_rate)
+    ticks = min(ticks, replay.ticks) if replay else ticks
+    seconds = ticks / level.settings.tick_rate
+    print(f"no display: playing {level.name!r} headless for {seconds:g} s, the last frame goes to {picture}")
+    session = Session(level, replay.script if replay else ())
+    summary = _run_with_bar(session, ticks)
     save_picture(session, picture)
     print(summary.text(level.name))
     return EXIT_OK
@@ -211,25 +186,39 @@ def _run(options: argparse.Namespace) -> int:
     ticks = options.ticks or round((10.0 if options.seconds is None else options.seconds) * rate)
     from sandbox.session.probe import dump, finite
 
+    _keep_apart(options)
     session = _scripted_session(level, options.commands)
     probe = _probe(options, session.world)
     if options.record:
         session.record_to(options.record)
     try:
         summary = _run_with_bar(session, ticks, probe.take)
+    except KeyboardInterrupt:
+        if session.recording:
+            tell([f"{session.recording}: cut off at tick {session.tick}; `sandbox replay --partial` verifies it"])
+        session.abandon_recording()
+        raise
     finally:
-        session.stop_recording()
+        recorded = session.stop_recording()
     if options.output:
         _write_text(options.output, probe.table())
     if options.dump:
         _write_text(options.dump, json.dumps(dump(session.world), indent=1) + "\n")
-    for message in session.messages:
-        print(message, file=sys.stderr)
+    tell(session.messages)
     if options.json:
         print(json.dumps({"level": level.name, **finite(asdict(summary))}))
     else:
         print(summary.text(level.name))
-    return EXIT_OK
+    return EXIT_OK if recorded == options.record else EXIT_REFUSED
+
+
+def _keep_apart(options: argparse.Namespace) -> None:
+    """Refuse to write over what is read, or two outputs into one file."""
+    taken = {Path(path).resolve() for path in (options.level, options.commands) if path}
+    for path in filter(None, (options.record, options.dump, options.output)):
+        if path.resolve() in taken and path.is_file():
+            raise Refused(f"{path}: is used twice in this command; give every file a name of its own")
+        taken.add(path.resolve())
 
 
 def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
@@ -263,12 +252,13 @@ def _run_with_bar(session: "Session", ticks: int, on_tick: "Callable[[World], No
     from sandbox.session.summary import run
 
     warm_up()
-    with _progress(ticks) as bar:
+    with interrupted_between_ticks() as look_up, progress(ticks) as bar:
 
         def after(world: "World") -> None:
             bar.update()
             if on_tick is not None:
                 on_tick(world)
+            look_up()
 
         try:
             return run(session, ticks, after)
@@ -289,7 +279,10 @@ def _probe(options: argparse.Namespace, world: "World") -> Any:
 
 
 def _write_text(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8", newline="\n")
+    try:
+        path.write_text(text, encoding="utf-8", newline="\n")
+    except OSError as error:
+        raise Refused(f"{path}: {error.strerror or error}") from None
 
 
 def _replay(options: argparse.Namespace) -> int:
@@ -312,7 +305,7 @@ def _verify(name: str, partial: bool) -> tuple[int, dict[str, Any]]:
 
     try:
         replay = _recording(name, partial)
-        with _progress(replay.ticks) as bar:
+        with progress(replay.ticks) as bar:
             divergence = verify(replay, progress=lambda done, total: bar.update(done - bar.n))
     except (Refused, ReplayError) as error:
         return EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)}

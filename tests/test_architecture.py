@@ -11,14 +11,15 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "sandbox"
-ROOMS = ("physics", "level", "session", "tools", "editor", "app", "cli", "__main__")
+ROOMS = ("physics", "level", "session", "tools", "editor", "app", "terminal", "cli", "__main__")
 LIBRARIES = {
     "physics": {"numpy", "numba"},
     "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},
     "session": {"numpy", "pydantic", "filelock"},
     "tools": {"numpy"},
     "editor": {"numpy", "pydantic"},
-    "cli": {"tqdm"},
+    "terminal": {"tqdm"},
+    "cli": set(),
     "__main__": set(),
 }
 LONGEST_FILE = 400

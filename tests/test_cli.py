@@ -221,3 +221,97 @@ def test_without_a_display_play_runs_headless_and_draws_a_picture(tmp_path):
     assert run.returncode == 0, run.stderr
     assert run.stdout.splitlines()[0].startswith("no display: playing")
     assert (tmp_path / "sandbox.png").stat().st_size > 1000
+
+
+def _sandbox(arguments: list[str], **options) -> subprocess.CompletedProcess:
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1]), **options.pop("env", {})}
+    command = [sys.executable, "-m", "sandbox", *arguments]
+    return subprocess.run(command, env=environment, check=False, stderr=subprocess.PIPE, **options)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+@pytest.mark.parametrize("output", [["--record"], ["--dump"], ["--probe", "rope.1", "-o"]])
+def test_a_full_disk_is_told_in_one_line_with_the_file_that_is_full(rope, output, capsys):
+    assert main(["run", rope, "--ticks", "3", *output, "/dev/full"]) == 2
+    assert _lines(capsys)[1] == ["/dev/full: No space left on device"]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+def test_a_standard_output_that_is_full_is_told_in_one_line(rope):
+    with open("/dev/full", "w") as full:
+        run = _sandbox(["run", rope, "--ticks", "3", "--json"], stdout=full)
+    assert (run.returncode, run.stderr) == (2, b"standard output: No space left on device\n")
+
+
+def test_a_recording_that_breaks_off_on_a_full_disk_is_told_and_the_run_goes_on(rope, tmp_path, capsys, monkeypatch):
+    from sandbox.session.recording import Recorder
+
+    def full(self, world):
+        if world.tick == 2:
+            raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Recorder, "write_tick", full)
+    replay = tmp_path / "run.jsonl"
+    assert main(["run", rope, "--ticks", "5", "--record", str(replay), "--json"]) == 2
+    captured = capsys.readouterr()
+    assert json.loads(captured.out)["ticks"] == 5
+    assert captured.err == f"{replay}: recording stopped at tick 2: No space left on device\n"
+
+
+def test_a_closed_standard_output_swallows_what_is_printed(rope):
+    closed = {"preexec_fn": lambda: os.close(1)} if os.name == "posix" else {"stdout": subprocess.DEVNULL}
+    run = _sandbox(["run", rope, "--ticks", "3"], **closed)
+    assert (run.returncode, run.stderr) == (0, b"")
+
+
+def test_names_that_a_terminal_cannot_say_are_spelled_out(tmp_path):
+    path = tmp_path / "rö😀pe.json"
+    path.write_text(json.dumps({**ROPE, "name": "Säil 😀"}), encoding="utf-8")
+    run = _sandbox(["check", str(path)], env={"PYTHONIOENCODING": "ascii"}, stdout=subprocess.PIPE)
+    assert run.returncode == 0, run.stderr
+    assert b"S\\xe4il \\U0001f600" in run.stdout
+
+
+def test_a_name_with_a_line_break_stays_on_one_line(capsys):
+    assert main(["replay", "two\nlines"]) == 2
+    assert _lines(capsys)[1] == ["two\\nlines: cannot be read: No such file or directory"]
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["--record", "rope.json"], ["--dump", "./rope.json"],
+        ["--commands", "a", "--dump", "a"], ["--record", "a", "--dump", "a"],
+    ],
+)  # fmt: skip
+def test_nothing_that_is_read_is_written_over(rope, tmp_path, options, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a").write_text("")
+    before = Path(rope).read_bytes()
+    assert main(["run", "rope.json", "--ticks", "3", *options]) == 2
+    assert "is used twice" in _lines(capsys)[1][0]
+    assert Path(rope).read_bytes() == before
+
+
+@pytest.mark.parametrize("suffix", ["jsonl", "gz"])
+def test_an_interrupted_run_leaves_a_recording_that_is_only_cut_off(rope, tmp_path, suffix, monkeypatch, capsys):
+    import signal
+
+    from sandbox.session.recording import Recorder
+
+    write, replay = Recorder.write_tick, tmp_path / f"run.{suffix}"
+
+    def interrupted(self, world):
+        if world.tick == 90:
+            signal.raise_signal(signal.SIGINT)
+        write(self, world)
+
+    monkeypatch.setattr(Recorder, "write_tick", interrupted)
+    assert main(["run", rope, "--ticks", "200", "--record", str(replay)]) == 130
+    out, err = _lines(capsys)
+    assert out == []
+    assert err == [f"{replay}: cut off at tick 90; `sandbox replay --partial` verifies it"]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert main(["replay", str(replay)]) == 2
+    assert main(["replay", "--partial", str(replay)]) == 0
+    assert "equal, 90 ticks" in capsys.readouterr().out

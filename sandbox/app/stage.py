@@ -35,9 +35,7 @@ class Stage:
         self.renderer = Renderer(scale)
         self.cursor: tuple[float, float] | None = None
         self.pressed_by_key = False
-        self.panning = False
         self._hovered: int | None = None
-        self._tool_pressed = False
         self._make_tools()
         self._fit(view_of(playback.level, playback.current))
 
@@ -63,7 +61,7 @@ class Stage:
         """Show another run of the same level, with the same camera and tool."""
         name = self.tool_name
         self.playback = playback
-        self.pressed_by_key = self._tool_pressed = False
+        self.pressed_by_key = False
         self._make_tools()
         self.tool_name = name
 
@@ -101,7 +99,6 @@ class Stage:
 
     def point(self, kind: Literal["down", "move", "up"], pixel: Pixel, modifiers: int, button: int = 1) -> None:
         """Hand a pointer event to the tool."""
-        self._tool_pressed = kind == "down" or (self._tool_pressed and kind == "move")
         if self.playback.has_pending:
             self.playback.apply_pending()
         event = PointerEvent(

@@ -108,7 +108,7 @@ def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> S
         raise ValueError(f"state.material: there are {HAND_COUNT} hands in a row, or none")
     hand_spring = int(hands[0]) if len(hands) else -1
     hand_particle = int(arrays["particle_a"][hand_spring]) if len(hands) else -1
-    if hand_particle + HAND_COUNT > len(arrays["mass"]):
+    if len(hands) and hand_particle + HAND_COUNT > len(arrays["mass"]):
         raise ValueError("state.particle_a: a hand has no particle of its own")
     if settings.solver not in SOLVERS:
         raise ValueError(f"settings.solver: there is no solver {settings.solver!r}")

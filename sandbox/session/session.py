@@ -25,13 +25,15 @@ PROGRESS_TICKS = 120
 class LogEntry:
     """A command that was applied at a tick, before that tick's step.
 
-    in_effect: False while the command cannot be carried out because what it needed is undone.
+    in_effect: False while the command cannot be carried out because what it needed is undone. implied: the release
+    that an Undo brings about by itself, so that a recording of that Undo does not hold it.
     """
 
     tick: int
     gesture: int
     command: Command
     in_effect: bool = True
+    implied: bool = False
 
 
 class Session:
@@ -167,6 +169,8 @@ class Session:
         self._drop_future()
         try:
             for entry in self._log:
+                if entry.implied:
+                    continue
                 self._catch_up(twin, entry.tick)
                 twin._apply(entry.command, entry.gesture)
             self._catch_up(twin, self.tick)
@@ -231,7 +235,7 @@ class Session:
     def _undo(self) -> None:
         if self._keyframes[0].tick > 0:
             raise CommandError(f"undo reaches back before tick {self._keyframes[0].tick}, where this run began")
-        past = [entry.gesture for entry in self._effective_log() if entry.tick <= self.tick]
+        past = [entry.gesture for entry in self._effective_log() if entry.tick <= self.tick and entry.in_effect]
         if not past:
             raise CommandError("nothing to undo")
         self._drop_future()
@@ -255,11 +259,13 @@ class Session:
     def _let_go(self, gesture: int) -> None:
         """End a drag that is still going on, so that doing it again cannot leave a hand holding."""
         grabs = {
-            entry.command.grab: entry.gesture for entry in self._effective_log() if isinstance(entry.command, Grab)
+            entry.command.grab: entry.gesture
+            for entry in self._effective_log()
+            if isinstance(entry.command, Grab) and entry.in_effect
         }
         for hand, owner in grabs.items():
             if owner == gesture and self.world.is_held(hand):
-                self._log.append(LogEntry(self.tick, gesture, Release(hand)))
+                self._log.append(LogEntry(self.tick, gesture, Release(hand), implied=True))
 
     def _step_again_from(self, gesture: int) -> None:
         first = next(entry.tick for entry in self._log if entry.gesture == gesture)
@@ -303,6 +309,8 @@ class Session:
         if self.tick == self._last_tick:
             return
         self._log = [entry for entry in self._effective_log() if entry.tick <= self.tick and entry.in_effect]
+        for entry in self._log:
+            entry.implied = False
         self._done = {entry.gesture for entry in self._log}
         self._undone.clear()
         self._redoable.clear()

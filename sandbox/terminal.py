@@ -1,0 +1,113 @@
+"""Terminal: arguments as text, streams that may be closed or full or lack a character, interrupts, progress."""
+
+import argparse
+import io
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+# Longest run [s] and picture side [pixels] that a person can mean; more is a slip of the finger.
+SECONDS_LIMIT = 1e6
+PIXEL_LIMIT = 16384
+# Longest number of ticks, in digits, for the same reason.
+COUNT_DIGITS = 12
+
+
+def _number(low: float, high: float, text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text[:40]!r} is not a number") from None
+    if not low <= value <= high:
+        raise argparse.ArgumentTypeError(f"{text} is outside {low:g} to {high:g}")
+    return value
+
+
+def seconds(text: str) -> float:
+    """A simulated time [s]."""
+    return _number(0.0, SECONDS_LIMIT, text)
+
+
+def scale(text: str) -> float:
+    """A size of widgets."""
+    return _number(0.5, 4.0, text)
+
+
+def count(text: str) -> int:
+    """A number of ticks."""
+    if not (text.isdecimal() and len(text) <= COUNT_DIGITS and int(text) >= 1):
+        raise argparse.ArgumentTypeError(
+            f"{text[:40]!r} is not a whole number from 1 on, of at most {COUNT_DIGITS} digits"
+        )
+    return int(text)
+
+
+def size(text: str) -> tuple[int, int]:
+    """A picture's width and height [pixels]."""
+    width, _, height = text.lower().partition("x")
+    if not (width.isdecimal() and height.isdecimal() and min(int(width), int(height)) >= 1):
+        raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT, as in 1280x720")
+    if max(int(width), int(height)) > PIXEL_LIMIT:
+        raise argparse.ArgumentTypeError(f"a side of {text} is above {PIXEL_LIMIT} pixels")
+    return int(width), int(height)
+
+
+def prepare_streams() -> None:
+    """Make printing safe: a stream that was closed swallows, a character that it cannot say is spelled out."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def give_up_output() -> None:
+    """Send what standard output cannot take to nowhere, so that leaving does not fail over it."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def tell(lines: Iterable[str]) -> None:
+    """Print lines on standard error."""
+    for line in lines:
+        # A file's name may hold anything, a new line or a terminal's control codes too.
+        print("".join(c if c.isprintable() else repr(c)[1:-1] for c in line), file=sys.stderr)
+
+
+def progress(total: int, unit: str = "tick") -> Any:
+    """A progress bar on standard error, where a person looks at it."""
+    from tqdm import tqdm
+
+    return tqdm(total=total, unit=unit, leave=False, disable=not sys.stderr.isatty())
+
+
+@contextmanager
+def interrupted_between_ticks() -> Iterator[Callable[[], None]]:
+    """Hold an interrupt back until the function given is called: it never strikes in the middle of a recorded line."""
+    asked = False
+
+    def note(*_: object) -> None:
+        nonlocal asked
+        if asked:
+            raise KeyboardInterrupt
+        asked = True
+
+    def look_up() -> None:
+        if asked:
+            raise KeyboardInterrupt
+
+    previous = signal.getsignal(signal.SIGINT)
+    if previous is not signal.default_int_handler:
+        yield look_up
+        return
+    signal.signal(signal.SIGINT, note)
+    try:
+        yield look_up
+    finally:
+        signal.signal(signal.SIGINT, previous)
