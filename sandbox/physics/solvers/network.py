@@ -184,8 +184,8 @@ def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # ty
     assemble(first_row, last_row, first, last, rows, springs, matrix)
     load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
     factorise(
-        first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.diagonal,
-        matrix.lower, matrix.scaled,
+        first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.where,
+        matrix.diagonal, matrix.lower, matrix.scaled,
     )  # fmt: skip
     back_substitute(
         first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
