@@ -9,7 +9,8 @@ from sandbox.level.limits import BODY_RADIUS, DEFAULT_MATERIAL
 from sandbox.level.model import HookeMaterial, Level, Material, NissenMaterial
 from sandbox.level.shapes import Pairs, Points, expand
 from sandbox.level.validate import check_level
-from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, World, WorldSettings
+from sandbox.physics.settings import WorldSettings
+from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, World
 
 Floats = NDArray[np.float64]
 Expanded = tuple[AnyBody, Points, Pairs]

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.world import STATE_ARRAYS, Floats, World, WorldSettings
+from sandbox.physics.settings import WorldSettings
+from sandbox.physics.world import STATE_ARRAYS, Floats, World
 
 
 @dataclass(frozen=True, eq=False)

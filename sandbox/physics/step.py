@@ -5,8 +5,9 @@ import numpy as np
 from sandbox.physics.equation import half_step
 from sandbox.physics.jit import kernel
 from sandbox.physics.quarantine import contain_inputs, contain_outcome
+from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.world import Floats, World, WorldSettings
+from sandbox.physics.world import Floats, World
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
 PHYSICS_VERSION = 1

@@ -1,11 +1,12 @@
 """World: particles, springs, settings and tick, with the only methods that change them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from sandbox.physics.settings import WorldSettings
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
@@ -56,18 +57,6 @@ HAND_DAMPING = 0.3
 
 # An energy bank that the direct solver begins anew at its next step: something outside changed the body.
 BANK_UNOPENED = -1.0
-
-
-@dataclass(frozen=True)
-class WorldSettings:
-    """What a tick needs besides arrays: gravity [m/s^2], tick rate [1/s], substeps and the settings of the solver."""
-
-    gravity: tuple[float, float] = (0.0, -9.81)
-    tick_rate: int = 60
-    substeps: int = 1
-    solver: str = "iterative"
-    iterations: int = 10
-    warm_start: float = 0.5
 
 
 class World:

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
-from sandbox.physics.world import Floats, Slots, World, WorldSettings
+from sandbox.physics.world import Floats, Slots, World
 
 # Kinds of coefficients, and the multiple of its starting energy that no graph may exceed (solver `direct`).
 BOUNDS = {

@@ -45,7 +45,8 @@ def prepare(mode: str) -> None:
 
 def busy_world(solver: str, substeps: int):
     """A mesh with diagonals of unequal masses, Hooke springs, pins, a coincident pair and a free particle."""
-    from sandbox.physics.world import LAW_HOOKE, World, WorldSettings
+    from sandbox.physics.settings import WorldSettings
+    from sandbox.physics.world import LAW_HOOKE, World
 
     settings = WorldSettings((0.3, -9.81), substeps=substeps, solver=solver, iterations=6, warm_start=0.5)
     world = World(settings)

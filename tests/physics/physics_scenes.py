@@ -5,8 +5,9 @@ import itertools
 import numpy as np
 
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
-from sandbox.physics.world import World, WorldSettings
+from sandbox.physics.world import World
 
 STILL = (0.0, 0.0)
 

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS, pattern
 from sandbox.physics.stability import coefficient_limits, report
 from sandbox.physics.step import step
-from sandbox.physics.world import LAW_HOOKE, World, WorldSettings
+from sandbox.physics.world import LAW_HOOKE, World
 from tests.bench import energy_gate, scenes
 
 

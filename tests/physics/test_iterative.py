@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from physics_scenes import grid, grid_with_diagonals, lengths, network, random_graph, run, scaled
 
+from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
 from sandbox.physics.strain import strain
-from sandbox.physics.world import LAW_HOOKE, WorldSettings
+from sandbox.physics.world import LAW_HOOKE
 
 
 def textbook_step(world, accumulated):

@@ -5,10 +5,11 @@ import sys
 import numpy as np
 import pytest
 
+from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
-from sandbox.physics.world import World, WorldSettings
+from sandbox.physics.world import World
 
 IMPOSSIBLE = (math.nan, math.inf, -math.inf, 1e308, -1e308)
 

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from physics_scenes import STILL, grid_with_diagonals, lengths, network, run, scaled
 
+from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import halve, step, substep_coefficients, substep_time, warm_up
-from sandbox.physics.world import LAW_HOOKE, World, WorldSettings
+from sandbox.physics.world import LAW_HOOKE, World
 
 both_solvers = pytest.mark.parametrize("solver", list(SOLVERS))
 

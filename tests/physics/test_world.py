@@ -5,8 +5,9 @@ import pytest
 from physics_scenes import STILL, grid_with_diagonals, network, rope, run, scaled
 
 from sandbox.physics.energy import kinetic_energy, spring_energy
+from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
-from sandbox.physics.world import HAND_COUNT, LAW_HOOKE, STATE_ARRAYS, World, WorldSettings
+from sandbox.physics.world import HAND_COUNT, LAW_HOOKE, STATE_ARRAYS, World
 
 
 def held_rope(**options):
