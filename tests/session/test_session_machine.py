@@ -54,7 +54,7 @@ EMPTY = parse_level(
 )
 
 # How many random sessions; more of them by hand: SESSION_EXAMPLES=3000.
-EXAMPLES = int(os.environ.get("SESSION_EXAMPLES", "60"))
+EXAMPLES = int(os.environ.get("SESSION_EXAMPLES", "150"))
 
 # Few slots, hands and places, so that commands meet each other; some of each are none that exist.
 SLOTS = st.sampled_from([0, 1, 2, 3, 5, 11, 16, 17, 18, 27, 28, 29, 30, 400])
