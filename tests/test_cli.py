@@ -33,7 +33,8 @@ def test_run_prints_every_figure_as_json(rope, capsys):
     figures = json.loads(capsys.readouterr().out)
     assert list(figures) == [
         "level", "ticks", "simulated_seconds", "particles", "springs", "solver", "substeps", "max_strain", "rms_strain",
-        "kinetic_energy", "potential_energy", "max_speed", "non_finite", "broken_springs", "hash",
+        "kinetic_energy", "potential_energy", "spring_energy", "gravity_energy", "dissipated_energy",
+        "max_speed", "non_finite", "broken_springs", "hash",
         "milliseconds_per_tick",
     ]  # fmt: skip
     assert (figures["ticks"], figures["particles"], figures["springs"]) == (120, 5, 4)

@@ -4,7 +4,7 @@ import numpy as np
 
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import substep_coefficients, substep_time
-from sandbox.physics.world import LAW_HOOKE, Floats, World
+from sandbox.physics.world import HAND_MATERIAL, LAW_HOOKE, Floats, World
 
 # The energy of what blew up is inf or NaN, and no fault.
 _unbounded = np.errstate(over="ignore", invalid="ignore")
@@ -32,13 +32,13 @@ def kinetic_energy(world: World) -> float:
 
 @_unbounded
 def spring_energy(world: World) -> float:
-    """Sum of k x^2 / 2 over the active springs [J], with the k that the world's solver gives a spring."""
+    """Sum of k x^2 / 2 [J] over the active springs but the hands', with the k that the world's solver gives them."""
     h = substep_time(world.settings)
     stiffness, damping = substep_coefficients(world)
     nissen = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, reduced_masses(world), h)
     constant = np.where(world.law == LAW_HOOKE, world.hooke_stiffness, nissen)
     error = spring_lengths(world) - world.rest_length
-    return float(0.5 * np.sum((constant * error * error)[world.spring_active]))
+    return float(0.5 * np.sum((constant * error * error)[world.spring_active & (world.material != HAND_MATERIAL)]))
 
 
 @_unbounded
@@ -46,3 +46,8 @@ def gravity_energy(world: World) -> float:
     """Sum of -m g . x over the free particles [J]; zero at the origin's height."""
     free = world.particle_active & (world.inverse_mass > 0.0)
     return float(-np.sum(world.mass[free, None] * world.position[free] * np.asarray(world.settings.gravity)))
+
+
+def total_energy(world: World) -> float:
+    """Kinetic energy and that of springs and gravity [J]."""
+    return kinetic_energy(world) + spring_energy(world) + gravity_energy(world)

@@ -307,6 +307,10 @@ class World:
         """Whether a hand holds a particle."""
         return self.hand_spring >= 0 and bool(self.spring_active[self.hand_spring + hand])
 
+    def hands_in_use(self) -> bool:
+        """Whether any hand holds a particle."""
+        return any(self.is_held(hand) for hand in range(HAND_COUNT))
+
     def move_hand(self, hand: int, target: tuple[float, float]) -> None:
         """Send a hand's cursor to target [m]: it travels there in the coming tick."""
         cursor = self.hand_particle + hand

@@ -13,6 +13,7 @@ from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.strain import load_bearing, strain
 from sandbox.physics.world import World
+from sandbox.session.dissipation import Dissipation
 from sandbox.session.session import Session
 
 # Strain is measured over this last part of a run [s].
@@ -23,8 +24,9 @@ STRAIN_WINDOW = 2.0
 class Summary:
     """Figures of a run. Strain: |l - L| / L at every tick's end of the last 2 s; all else at the end of the run.
 
-    Energies [J], gravity's zero at y = 0; max_speed [m/s] of any particle; non_finite: particles without a finite
-    position and velocity; milliseconds_per_tick: median wall time of the step alone.
+    Energies [J], gravity's zero at y = 0: potential is springs and gravity, dissipated is what Dissipation says;
+    max_speed [m/s] of any particle; non_finite: particles without a finite position and velocity;
+    milliseconds_per_tick: median wall time of the step alone.
     """
 
     ticks: int
@@ -37,6 +39,9 @@ class Summary:
     rms_strain: float
     kinetic_energy: float
     potential_energy: float
+    spring_energy: float
+    gravity_energy: float
+    dissipated_energy: float
     max_speed: float
     non_finite: int
     broken_springs: int
@@ -49,7 +54,8 @@ class Summary:
             f"{name}: {self.ticks} ticks ({self.simulated_seconds:g} s), {self.particles} particles, "
             f"{self.springs} springs, {self.solver}, {self.substeps} substeps\n"
             f"  strain        {self.max_strain:.3%} at most, {self.rms_strain:.3%} RMS (last 2 s)\n"
-            f"  energy        {self.kinetic_energy:.6g} J kinetic, {self.potential_energy:.6g} J potential\n"
+            f"  energy        {self.kinetic_energy:.6g} J kinetic, {self.spring_energy:.6g} J in springs, "
+            f"{self.gravity_energy:.6g} J of gravity, {self.dissipated_energy:.6g} J dissipated\n"
             f"  fastest       {self.max_speed:.6g} m/s\n"
             f"  non-finite    {self.non_finite} particles, broken {self.broken_springs} springs\n"
             f"  a tick took   {self.milliseconds_per_tick:.4f} ms\n"
@@ -62,17 +68,20 @@ def run(session: Session, ticks: int, on_tick: Callable[[World], None] | None = 
     world = session.world
     window = deque[tuple[float, float, int]](maxlen=max(1, round(STRAIN_WINDOW * world.settings.tick_rate)))
     times: list[float] = []
+    dissipation = Dissipation()
     with np.errstate(over="ignore", invalid="ignore"):
         for _ in range(ticks):
             session.apply_pending()
+            dissipation.before(world)
             start = time.perf_counter()
             session.advance()
             times.append(time.perf_counter() - start)
+            dissipation.after(world)
             window.append(_strain_sample(world))
             if on_tick is not None:
                 on_tick(world)
         session.apply_pending()
-        return _summary(world, ticks, window, times)
+        return _summary(world, ticks, window, times, dissipation.energy)
 
 
 def _strain_sample(world: World) -> tuple[float, float, int]:
@@ -81,7 +90,9 @@ def _strain_sample(world: World) -> tuple[float, float, int]:
     return (float(size.max()), float(np.sum(size * size)), len(size)) if len(size) else (0.0, 0.0, 0)
 
 
-def _summary(world: World, ticks: int, window: deque[tuple[float, float, int]], times: list[float]) -> Summary:
+def _summary(
+    world: World, ticks: int, window: deque[tuple[float, float, int]], times: list[float], dissipated: float
+) -> Summary:
     shown = shown_particles(world)
     speed = np.sqrt(np.sum(world.velocity[shown] ** 2, axis=1))
     finite = np.isfinite(speed) & np.isfinite(world.position[shown]).all(axis=1)
@@ -99,6 +110,9 @@ def _summary(world: World, ticks: int, window: deque[tuple[float, float, int]], 
         rms_strain=float(np.sqrt(sum(squares for _, squares, _ in window) / samples)) if samples else 0.0,
         kinetic_energy=kinetic_energy(world),
         potential_energy=spring_energy(world) + gravity_energy(world),
+        spring_energy=spring_energy(world),
+        gravity_energy=gravity_energy(world),
+        dissipated_energy=dissipated,
         max_speed=float(speed.max()) if len(speed) else 0.0,
         non_finite=int(np.count_nonzero(~finite)),
         broken_springs=real - active,

@@ -40,13 +40,6 @@ def test_every_solver_there_is_can_be_named(solver):
     assert parsed(changed("settings.solver", solver)).settings.solver == solver
 
 
-@pytest.mark.skipif("direct" in SOLVERS, reason="the direct solver exists")
-def test_a_known_solver_that_does_not_exist_yet_is_refused_by_its_name():
-    with pytest.raises(LevelError) as refused:
-        parsed(changed("settings.solver", "direct"))
-    assert 'the solver "direct" is not part of this version; use one of iterative, single_pass' in str(refused.value)
-
-
 def test_a_body_has_the_defaults_of_the_format():
     rope = body(type="rope", id="r", start=[0, 0], end=[1, 0], segments=2)
     assert (rope.particle_mass, rope.end_mass, rope.rest_length, rope.pin) == (1.0, None, None, ())
