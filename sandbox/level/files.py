@@ -88,7 +88,9 @@ def _read(source: str) -> bytes:
 
 
 def _reason(error: OSError | ValueError) -> str:
-    text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    if isinstance(error, ValueError):  # which each Python words in its own way
+        return "the name holds a null character"
+    text = error.strerror or str(error)
     return text[:1].lower() + text[1:]
 
 

@@ -147,7 +147,7 @@ def test_files_that_cannot_be_read_are_refused_in_a_line(tmp_path, monkeypatch):
     assert refusal(read_level, missing) == f"{missing}: there is no such file"
     assert refusal(read_level, empty) == f"{empty}: is empty; a level is a JSON object {{...}}"
     assert refusal(read_level, tmp_path) == f"{tmp_path}: is a folder; name a level file"
-    assert refusal(read_level, "x\0.json") == "x\\u0000.json: cannot be read: embedded null byte"
+    assert refusal(read_level, "x\0.json") == "x\\u0000.json: cannot be read: the name holds a null character"
     assert "cannot be read: file name too long" in refusal(read_level, "x" * 5_000)
     assert refusal(read_level, "a\nb.json") == "a\\nb.json: there is no such file"
 
