@@ -17,6 +17,7 @@ import math
 from sandbox.physics.equation import SHORTEST, direction, reduced_mass
 from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.factor import back_substitute, factorise
+from sandbox.physics.solvers.fronts import add_spring, clear_fronts, factorise_fronts, substitute_fronts
 
 # Cd is capped here, and Cs with it: nearer to 1 the solution stretches less, but is rejected more often and damps more.
 HIGHEST_COEFFICIENT = 1.0 - 1e-6
@@ -118,6 +119,26 @@ def _growth(dx, dy, ux, uy, length, h):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
+def _spring_block(springs, k):  # type: ignore[no-untyped-def]
+    nx = springs.normal[k, 0]
+    ny = springs.normal[k, 1]
+    across = springs.across[k]
+    more = springs.along[k] - across
+    return across + more * nx * nx, more * nx * ny, across + more * ny * ny
+
+
+@inner_kernel
+def assemble_fronts(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
+    """The same matrix as `assemble`, of a large body."""
+    clear_fronts(first_row, last_row, rows.mass, matrix.fronts)
+    for k in range(first, last):
+        xx, xy, yy = _spring_block(springs, k)
+        add_spring(
+            springs.row_a[k], springs.row_b[k], springs.block[k], matrix.diagonal.shape[0], xx, xy, yy, matrix.fronts
+        )
+
+
+@inner_kernel
 def assemble(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
     """A = M + sum [K n n^T + g (I - n n^T)]."""
     free_count = matrix.diagonal.shape[0]
@@ -132,13 +153,7 @@ def assemble(first_row, last_row, first, last, rows, springs, matrix):  # type: 
         matrix.lower[at, 2] = 0.0
         matrix.lower[at, 3] = 0.0
     for k in range(first, last):
-        nx = springs.normal[k, 0]
-        ny = springs.normal[k, 1]
-        across = springs.across[k]
-        more = springs.along[k] - across
-        xx = across + more * nx * nx
-        xy = more * nx * ny
-        yy = across + more * ny * ny
+        xx, xy, yy = _spring_block(springs, k)
         a = springs.row_a[k]
         b = springs.row_b[k]
         if a < free_count:
@@ -181,15 +196,28 @@ def load_residual(first_row, last_row, first, last, rows, springs, free_count): 
 @inner_kernel
 def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
     """Solve A D = right side for the rows of one body; D is left in `change`."""
-    assemble(first_row, last_row, first, last, rows, springs, matrix)
     load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
-    factorise(
-        first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.diagonal,
-        matrix.lower, matrix.scaled,
-    )  # fmt: skip
-    back_substitute(
-        first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
-    )  # fmt: skip
+    if matrix.fronts.of_row[first_row] >= 0:
+        assemble_fronts(first_row, last_row, first, last, rows, springs, matrix)
+        factorise_fronts(matrix.fronts.of_row[first_row], matrix.fronts.of_row[last_row - 1] + 1, matrix.fronts)
+    else:
+        assemble(first_row, last_row, first, last, rows, springs, matrix)
+        factorise(
+            first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.diagonal,
+            matrix.lower, matrix.scaled,
+        )  # fmt: skip
+    _substitute(first_row, last_row, rows, matrix)
+
+
+@inner_kernel
+def _substitute(first_row, last_row, rows, matrix):  # type: ignore[no-untyped-def]
+    fronts = matrix.fronts
+    if fronts.of_row[first_row] >= 0:
+        substitute_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
+    else:
+        back_substitute(
+            first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
+        )  # fmt: skip
 
 
 @inner_kernel
@@ -224,9 +252,7 @@ def update_impulses(first, last, rows, springs, h, free_count):  # type: ignore[
 def refine(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
     """Solve for what is left of the right side, with the impulses found so far; it is left in `change`."""
     load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
-    back_substitute(
-        first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
-    )  # fmt: skip
+    _substitute(first_row, last_row, rows, matrix)
 
 
 @inner_kernel
