@@ -259,10 +259,11 @@ def make_fronts(count: int, dissections: list[tuple[int, Dissection]]) -> Fronts
     pivots, borders = 2 * (last - first), 2 * np.diff(border_start)
     width = pivots + borders
     ends = np.cumsum(pivots * width)
-    of_row, diagonal = np.full(count, -1, dtype=np.int64), np.full(count, -1, dtype=np.int64)
+    of_row, diagonal, row_width = np.full((3, count), -1, dtype=np.int64)
     owned = np.repeat(np.arange(len(first)), last - first)
     eliminated = np.arange(len(owned)) - np.repeat(np.cumsum(last - first) - (last - first), last - first)
     of_row[first[owned] + eliminated] = owned
+    row_width[first[owned] + eliminated] = width[owned]
     diagonal[first[owned] + eliminated] = (ends - pivots * width)[owned] + 2 * eliminated * (width[owned] + 1)
     widest = int(width.max(initial=0))
     levels = joined("place", none).reshape(-1, 2) if rows else np.zeros((0, 2), dtype=np.int64)
@@ -272,7 +273,7 @@ def make_fronts(count: int, dissections: list[tuple[int, Dissection]]) -> Fronts
     before = widest + 2 * (np.cumsum(size) - size)
     remains = before[levels[:, 0]] + levels[:, 1] * size[levels[:, 0]]
     return Fronts(
-        of_row, diagonal, first, last, np.concatenate(child) if child else np.zeros((0, 2), dtype=np.int64),
+        of_row, diagonal, row_width, first, last, np.concatenate(child) if child else np.zeros((0, 2), dtype=np.int64),
         border_start, border, joined("to_parent", none), width, ends - pivots * width, remains,
         np.zeros(int(ends[-1]) if len(ends) else 0), np.zeros(widest + 2 * int(size.sum())), np.zeros(2 * count),
         np.zeros(int(PANEL) * widest), np.zeros(int(PANEL)), np.zeros(widest),

@@ -20,7 +20,8 @@ PANEL = unsigned(8)
 class Fronts(NamedTuple):
     """The fronts of all large bodies, children before parents.
 
-    of_row (n,): the front that eliminates a row, -1 for a row of a small body; diagonal (n,): its place in numbers.
+    of_row (n,): the front that eliminates a row, -1 for a row of a small body; diagonal, row_width (n,): its place in
+    numbers and the width of its front.
     first, last, child, border_start, border, to_parent: see Dissection, rows counted over all bodies. width (f,):
     scalars in a row of the front; base and remains (f,): its places in numbers and remainder. inverses (2n,): 1 / d.
     panel, inverse and vector are scratch.
@@ -28,6 +29,7 @@ class Fronts(NamedTuple):
 
     of_row: Slots
     diagonal: Slots
+    row_width: Slots
     first: Slots
     last: Slots
     child: Slots
@@ -168,7 +170,8 @@ def _add_child(numbers, base, remainder, place, pivots, width, child_place, plac
 
 
 @inner_kernel
-def _add_block(numbers, at, width, sign, xx, xy, yy):  # type: ignore[no-untyped-def]
+def add_block(numbers, at, width, sign, xx, xy, yy):  # type: ignore[no-untyped-def]
+    """Add a symmetric block, times a sign, to the one that begins at `at` in rows of `width`."""
     numbers[at] += sign * xx
     numbers[at + 1] += sign * xy
     numbers[at + width] += sign * xy
@@ -186,18 +189,7 @@ def clear_fronts(first_row, last_row, mass, fronts):  # type: ignore[no-untyped-
     for row in range(first_row, last_row):
         at = fronts.diagonal[row]
         fronts.numbers[at] = mass[row]
-        fronts.numbers[at + fronts.width[fronts.of_row[row]] + 1] = mass[row]
-
-
-@inner_kernel
-def add_spring(a, b, block, free_count, xx, xy, yy, fronts):  # type: ignore[no-untyped-def]
-    """Add a spring's symmetric block to those of the rows a and b that are free, and take it off between them."""
-    if a < free_count:
-        _add_block(fronts.numbers, fronts.diagonal[a], fronts.width[fronts.of_row[a]], 1.0, xx, xy, yy)
-    if b < free_count:
-        _add_block(fronts.numbers, fronts.diagonal[b], fronts.width[fronts.of_row[b]], 1.0, xx, xy, yy)
-    if block >= 0:
-        _add_block(fronts.numbers, block, fronts.width[fronts.of_row[min(a, b)]], -1.0, xx, xy, yy)
+        fronts.numbers[at + fronts.row_width[row] + 1] = mass[row]
 
 
 @inner_kernel

@@ -17,7 +17,7 @@ import math
 from sandbox.physics.equation import SHORTEST, direction, reduced_mass
 from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.factor import back_substitute, factorise
-from sandbox.physics.solvers.fronts import add_spring, clear_fronts, factorise_fronts, substitute_fronts
+from sandbox.physics.solvers.fronts import add_block, clear_fronts, factorise_fronts, substitute_fronts
 
 # Cd is capped here, and Cs with it: nearer to 1 the solution stretches less, but is rejected more often and damps more.
 HIGHEST_COEFFICIENT = 1.0 - 1e-6
@@ -118,12 +118,10 @@ def _growth(dx, dy, ux, uy, length, h):  # type: ignore[no-untyped-def]
     return 0.0
 
 
-@inner_kernel
-def _spring_block(springs, k):  # type: ignore[no-untyped-def]
-    nx = springs.normal[k, 0]
-    ny = springs.normal[k, 1]
-    across = springs.across[k]
-    more = springs.along[k] - across
+@scalar_kernel
+def _block(nx, ny, along, across):  # type: ignore[no-untyped-def]
+    # K n n^T + g (I - n n^T)
+    more = along - across
     return across + more * nx * nx, more * nx * ny, across + more * ny * ny
 
 
@@ -131,11 +129,20 @@ def _spring_block(springs, k):  # type: ignore[no-untyped-def]
 def assemble_fronts(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
     """The same matrix as `assemble`, of a large body."""
     clear_fronts(first_row, last_row, rows.mass, matrix.fronts)
+    free_count = matrix.diagonal.shape[0]
+    numbers = matrix.fronts.numbers
+    diagonal = matrix.fronts.diagonal
+    width = matrix.fronts.row_width
     for k in range(first, last):
-        xx, xy, yy = _spring_block(springs, k)
-        add_spring(
-            springs.row_a[k], springs.row_b[k], springs.block[k], matrix.diagonal.shape[0], xx, xy, yy, matrix.fronts
-        )
+        xx, xy, yy = _block(springs.normal[k, 0], springs.normal[k, 1], springs.along[k], springs.across[k])
+        a = springs.row_a[k]
+        b = springs.row_b[k]
+        if a < free_count:
+            add_block(numbers, diagonal[a], width[a], 1.0, xx, xy, yy)
+        if b < free_count:
+            add_block(numbers, diagonal[b], width[b], 1.0, xx, xy, yy)
+        if springs.block[k] >= 0:
+            add_block(numbers, springs.block[k], width[min(a, b)], -1.0, xx, xy, yy)
 
 
 @inner_kernel
@@ -153,7 +160,7 @@ def assemble(first_row, last_row, first, last, rows, springs, matrix):  # type: 
         matrix.lower[at, 2] = 0.0
         matrix.lower[at, 3] = 0.0
     for k in range(first, last):
-        xx, xy, yy = _spring_block(springs, k)
+        xx, xy, yy = _block(springs.normal[k, 0], springs.normal[k, 1], springs.along[k], springs.across[k])
         a = springs.row_a[k]
         b = springs.row_b[k]
         if a < free_count:
