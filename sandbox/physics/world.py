@@ -70,8 +70,9 @@ class World:
     """Particles and springs as a struct of arrays, plus the settings of a tick.
 
     Arrays, n particles and m springs, float64 unless said: position [m] (n, 2), velocity [m/s] (n, 2), origin [m]
-    (n, 2) = where each was created, which orders the direct solver's elimination, mass [kg], inverse_mass [1/kg] (0 = pinned), radius [m], particle_active (bool); particle_a, particle_b (int32 slots),
-    rest_length [m], stiffness, damping (Cs, Cd per tick), law (int8), hooke_stiffness [N/m], hooke_damping [N s/m],
+    (n, 2) = where each was created, which orders the direct solver's elimination, mass [kg], inverse_mass [1/kg]
+    (0 = pinned), radius [m], particle_active (bool); particle_a, particle_b (int32 slots), rest_length [m], stiffness,
+    damping (Cs, Cd per tick), law (int8), hooke_stiffness [N/m], hooke_damping [N s/m],
     material (int32 index into material_names, -1 = a hand's), spring_active (bool), impulse [N s] (m, 2) = what the
     iterative solver keeps for its warm start. The direct solver keeps slow_velocity [m/s] (n, 2) = the slow part of the
     velocity, energy_bank [J] (n,) = what a body's earlier losses still allow it, at its free particle of lowest slot

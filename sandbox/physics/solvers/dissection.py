@@ -253,7 +253,9 @@ def make_fronts(count: int, dissections: list[tuple[int, Dissection]]) -> Fronts
 
     none = [0] * len(rows)
     first, last, border = joined("first", rows), joined("last", rows), joined("border", rows)
-    child = [np.where(one.child < 0, -1, one.child + k) for (_, one), k in zip(dissections, fronts_before, strict=False)]
+    child = [
+        np.where(one.child < 0, -1, one.child + k) for (_, one), k in zip(dissections, fronts_before, strict=False)
+    ]
     starts = [one.border_start[:-1] + k for (_, one), k in zip(dissections, borders_before, strict=False)]
     border_start = np.concatenate([*starts, borders_before[-1:]])
     pivots, borders = 2 * (last - first), 2 * np.diff(border_start)

@@ -54,9 +54,9 @@ class Springs(NamedTuple):
 
 
 class Matrix(NamedTuple):
-    """The matrix by columns: blocks below the diagonal, where their updates land, and the numbers; fronts of large bodies.
+    """The matrix by columns: blocks below the diagonal, where their updates land, and the numbers.
 
-    Columns of large bodies are empty here.
+    Columns of large bodies are empty: those are in the fronts.
     """
 
     column_start: Slots
