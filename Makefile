@@ -18,7 +18,7 @@ lint: $(VENV)/installed-dev
 	$(BIN)/mypy
 
 bench: $(VENV)/installed-dev
-	for bench in tests/bench/*.py; do echo "## $$bench"; $(BIN)/python "$$bench" || exit 1; done
+	for bench in tests/bench/*.py; do echo "## $$bench"; PYTHONPATH=. $(BIN)/python "$$bench" || exit 1; done
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)

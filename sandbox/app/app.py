@@ -46,6 +46,7 @@ class App:
         self.ready = False
         self.show_panel = True
         self.stage: Stage | None = None
+        self.panel: Panel | None = None
         self.gallery: Gallery | None = None
         self.input = Input(self)
         self.files = FileActions(self)
@@ -70,16 +71,15 @@ class App:
         self.ui = Ui(self.display.size, self.scale, self.display.pixel_ratio)
         self.status = StatusLine(self.ui, self._notices)
         self.toolbar = Toolbar(self.ui, self.act)
-        self.panel: Panel | None = None
-        if self.stage is not None:
-            self.stage.place(self.viewport, self.scale)
-            self._build_panel()
-
-    def _build_panel(self) -> None:
-        if self.stage is None or not self.show_panel:
+        before, self.panel = self.panel, None
+        if self.stage is None:
             return
-        height = self.ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
-        self.panel = Panel(self.ui, self.stage.playback, self.say, BAR_HEIGHT, height)
+        self.stage.place(self.viewport, self.scale)
+        if self.show_panel:
+            height = self.ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
+            self.panel = Panel(self.ui, self.stage.playback, self.say, BAR_HEIGHT, height)
+            if before is not None and before.playback is self.stage.playback:
+                self.panel.choose_material(before.material)
 
     @property
     def viewport(self) -> tuple[int, int, int, int]:
@@ -112,6 +112,8 @@ class App:
         self.stage = Stage(playback, self.viewport, self.scale)
         self.follow(playback)
         self.rebuild()
+        if playback.level.description and playback.replay is None:
+            self.say(playback.level.description)
 
     def follow(self, playback: Playback) -> None:
         """Show how far a run is that has to be played again, for an undo or a recording, where that takes long."""
@@ -254,10 +256,10 @@ class App:
                 left = None if self.ui.has_sheet else 16.0
                 self.status.draw(surface, self._status_parts(self.stage), self.ui.units[0], left)
             self.ui.draw(surface)
-            if self.stage is None or self.ui.has_sheet:
+            if (self.stage is None or self.ui.has_sheet) and not self.ui.shows_page:
                 self.status.draw_notices(surface, 16.0)
             if not self.ready:
-                detail = "The first start takes some seconds, later ones none."
+                detail = "Only the first start takes some seconds."
                 draw_spinner(surface, self.ui, self._seconds, "Preparing the physics", detail)
 
     def _status_parts(self, stage: Stage) -> list[tuple[str, Colour]]:
@@ -330,13 +332,16 @@ def run_app(
     app = App(Display(scale), level, replay)
     clock = pygame.time.Clock()
     started = before = time.perf_counter()
-    while app.running and (seconds is None or before - started < seconds):
-        now = time.perf_counter()
-        app.frame(now - before)
-        before = now
-        clock.tick(FRAME_RATE)
-    app.files.leave_recording()
-    app.display.close()
+    try:
+        while app.running and (seconds is None or before - started < seconds):
+            now = time.perf_counter()
+            app.frame(now - before)
+            before = now
+            clock.tick(FRAME_RATE)
+    finally:
+        # Whatever ended the loop, a recording gets its last line.
+        app.files.leave_recording()
+        app.display.close()
     if profile:
         print(app.profile.table(time.perf_counter() - started))
     return 0

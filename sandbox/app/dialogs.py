@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from sandbox.app.colours import TEXT
+from sandbox.app.colours import TEXT, WARNING
 from sandbox.app.painted import TextBlock
 from sandbox.app.widgets import Ui
 
@@ -51,14 +51,21 @@ def ask(
     text: str,
     verb: str,
     answer: Callable[[str], str | None],
-    given_up: Callable[[], None] = lambda: None,
+    other: tuple[str, Callable[[], None]] | None = None,
 ) -> None:
-    """Ask for a line of text; answer gives None where it is taken, else what is wrong with it, and the box stays."""
-    height = 216.0
+    """Ask for a line of text; answer gives None where it is taken, else what is wrong with it, and the box stays.
+
+    other: the second button and what it does, instead of one that leaves everything as it is, as Escape does.
+    """
+    height = 246.0
 
     def close() -> None:
         ui.close_sheet(sheet)
-        given_up()
+
+    def do_other() -> None:
+        close()
+        if other is not None:
+            other[1]()
 
     def accept() -> None:
         take(field.entry.get_text())
@@ -68,7 +75,7 @@ def ask(
         if fault is None:
             ui.close_sheet(sheet)
             return True
-        note.set_text(fault)
+        note.show_text(fault)
         return False
 
     sheet, box, width = _box(ui, height, close)
@@ -77,8 +84,8 @@ def ask(
     ui.label(ui.rect(MARGIN, MARGIN + 26, inside, 20), hint, box, "@muted")
     field = ui.field(ui.rect(MARGIN, MARGIN + 52, inside, 34), text, lambda _: True, box, 400)
     field.enter = take
-    note = ui.label(ui.rect(MARGIN, MARGIN + 92, inside, 22), "", box, "@warning")
+    note = TextBlock(ui, ui.rect(MARGIN, MARGIN + 94, inside, 50), "", box, 12.0, WARNING)
     bottom = height - MARGIN - 34
     ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="@primary")
-    ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), "Cancel", close, box)
+    ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), other[0] if other else "Cancel", do_other, box)
     ui.focus_on(field.entry)

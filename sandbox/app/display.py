@@ -10,9 +10,13 @@ os.environ.setdefault("SDL_VIDEO_X11_WMCLASS", "spring-sandbox")
 
 import pygame
 
+from sandbox.app.colours import ACCENT
+from sandbox.app.icons import icon
+
 # Window at scale 1, and the smallest that everything fits in.
 WINDOW_SIZE = (1280, 720)
 SMALLEST_WINDOW = (640, 440)
+ICON_SIZE = 128
 INVISIBLE_DRIVERS = ("dummy", "offscreen", "evdev")
 SCALE_RANGE = (0.5, 4.0)
 # Desktops higher than this [pixels] have small pixels, unless told otherwise.
@@ -48,6 +52,7 @@ class Display:
             os.environ.setdefault("SDL_FRAMEBUFFER_ACCELERATION", "0")
         self.window = pygame.Window("Spring Sandbox", size, resizable=True, allow_high_dpi=True)
         self.window.minimum_size = SMALLEST_WINDOW
+        self.window.set_icon(icon("spring", ICON_SIZE, ACCENT))
         self.surface = self.window.get_surface()
         self._shown_size = self.size
         self.fullscreen = False
@@ -76,7 +81,10 @@ class Display:
     def toggle_fullscreen(self) -> None:
         """Fill the screen, or go back to a window."""
         self.fullscreen = not self.fullscreen
-        (self.window.set_fullscreen if self.fullscreen else self.window.set_windowed)()
+        if self.fullscreen:
+            self.window.set_fullscreen(desktop=True)
+        else:
+            self.window.set_windowed()
 
     def flip(self) -> None:
         """Show what was drawn."""

@@ -124,10 +124,11 @@ class FileActions:
         ask(
             self.app.ui,
             "Name the replay",
-            f"In {path.parent}",
+            f"In {path.parent}. Escape keeps the name.",
             suggestion,
             "Save",
             lambda typed: self._rename(path, typed),
+            ("Discard", lambda: self._discard(path)),
         )
 
     def _rename(self, path: Path, typed: str) -> str | None:
@@ -135,12 +136,7 @@ class FileActions:
             return None
         try:
             wanted = chosen_path(path.parent, typed)
-            # A link appears only where nothing is yet: no other program's file is lost in between.
-            try:
-                os.link(path, wanted)
-                path.unlink()
-            except (NotImplementedError, PermissionError):
-                path.rename(wanted)
+            _move(path, wanted)
         except ValueError as error:
             return str(error)
         except OSError as error:
@@ -148,9 +144,30 @@ class FileActions:
         self.app.say(f"Saved as {wanted}")
         return None
 
+    def _discard(self, path: Path) -> None:
+        try:
+            path.unlink()
+        except OSError as error:
+            self.app.say(f"{path} cannot be removed: {error.strerror or error}.")
+        else:
+            self.app.say(f"Removed {path.name}.")
+
     def leave_recording(self) -> None:
         """End a recording that is being made; its file is complete."""
         stage = self.app.stage
         path = stage.playback.session.stop_recording() if stage is not None else None
         if path is not None:
             self.app.say(f"Saved as {path}")
+
+
+def _move(path: Path, wanted: Path) -> None:
+    """Give a file another name, never that of a file that is there. Raises OSError."""
+    try:
+        # A link appears only where nothing is yet: no other program's file is lost in between.
+        os.link(path, wanted)
+    except FileExistsError:
+        raise
+    except (OSError, NotImplementedError):  # a file system without links
+        path.rename(wanted)
+    else:
+        path.unlink()

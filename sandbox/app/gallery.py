@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pygame
 
+from sandbox.app.camera import bounds
 from sandbox.app.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT
 from sandbox.app.painted import Painted, wrapped
 from sandbox.app.picture import draw_picture, run_ahead
@@ -16,6 +17,7 @@ from sandbox.app.widgets import ENTER_KEYS, Ui
 from sandbox.level.files import LevelError, read_level, shipped_levels
 from sandbox.level.model import Level
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.query import shown_particles
 
 if TYPE_CHECKING:
     from sandbox.app.files import FileActions
@@ -31,7 +33,10 @@ ROW_HEIGHT = 52.0
 WHEEL_STEP = 70.0
 # The pictures show the level after this time [s], or it would hang in mid-air where it was built.
 PICTURE_SECONDS = 0.8
-# Levels of more particles than this are drawn as they are built, and all where physics is interpreted: the gallery stays quick.
+# Thickness of lines in pictures, which are drawn at twice their size.
+PICTURE_SCALE = 1.4
+# Levels of more particles than this are drawn as they are built, and all where physics is interpreted: the gallery
+# stays quick.
 PICTURE_PARTICLES = 3000
 
 
@@ -186,7 +191,8 @@ class Gallery:
         snapshot = run_ahead(level, 0.0)
         if COMPILED and len(snapshot.mass) <= PICTURE_PARTICLES:
             snapshot = run_ahead(level, PICTURE_SECONDS)
-        twice = draw_picture(level, snapshot, (size[0] * 2, size[1] * 2))
+        box = bounds(snapshot.position[shown_particles(snapshot)])
+        twice = draw_picture(level, snapshot, (size[0] * 2, size[1] * 2), box, PICTURE_SCALE * ui.scale)
         card.picture = pygame.transform.smoothscale(twice, size)
         card.repaint()
 

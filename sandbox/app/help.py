@@ -30,7 +30,7 @@ def show_help(ui: Ui) -> None:
     def close() -> None:
         ui.close_sheet(sheet)
 
-    sheet = ui.open_sheet(close)
+    sheet = ui.open_sheet(close, is_page=True)
     place = ui.rect((width - box_width) / 2, (height - box_height) / 2, box_width, box_height)
     box = ui.panel(place, sheet, "@dialog")
     ui.label(ui.rect(MARGIN, 18, 300, 28), "Shortcuts", box, "@title")

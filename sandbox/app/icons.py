@@ -124,10 +124,16 @@ def _save(pen: _Pen) -> None:
     pen.line((4, 15), (4, 20), (20, 20), (20, 15))
 
 
+def _spring(pen: _Pen) -> None:
+    pen.line((3, 12), (6, 12), (8, 6), (12, 18), (16, 6), (18, 12), (21, 12), width=2.2)
+    pen.disc(3.5, 12, 3)
+    pen.disc(20.5, 12, 3)
+
+
 _DRAWINGS: dict[str, Callable[[_Pen], None]] = {
     "drag": _drag, "pin": _pin, "cut": _cut, "play": _play, "pause": _pause, "step": _step, "reset": _reset,
     "undo": _undo, "redo": _redo, "record": _record, "stop": _stop, "levels": _levels, "fit": _fit,
-    "panel": _panel, "save": _save,
+    "panel": _panel, "save": _save, "spring": _spring,
 }  # fmt: skip
 
 

@@ -72,14 +72,14 @@ class Input:
             self._space_up()
         elif event.type == pygame.MOUSEWHEEL and self.app.gallery is not None:
             self.app.gallery.scroll(event.precise_y or event.y)
+        elif event.type == pygame.MOUSEBUTTONUP:
+            self._button_up(event)
         elif self.app.stage is None or self.app.ui.has_sheet:
             return
         elif event.type == pygame.MOUSEBUTTONDOWN:
             self._button_down(event)
         elif event.type == pygame.MOUSEMOTION:
             self._motion(event)
-        elif event.type == pygame.MOUSEBUTTONUP:
-            self._button_up(event)
         elif event.type == pygame.MOUSEWHEEL:
             pixel = self.pointer_over_world()
             if pixel is not None:

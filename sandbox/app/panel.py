@@ -6,6 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pygame
 
+from sandbox.app.colours import WARNING
 from sandbox.app.painted import TextBlock
 from sandbox.app.playback import Playback
 from sandbox.app.sliders import LogSlider
@@ -25,6 +26,8 @@ ROW = 28.0
 ENTRY_WIDTH = 82.0
 # Height that everything takes; in a lower window rows and gaps shrink by the same part.
 FULL_HEIGHT = 578.0
+# Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
+LOOK_EVERY = 15
 ALL_MATERIALS = "All springs"
 DASH = "–"
 SOLVER_LABELS = {"single_pass": "Single pass", "iterative": "Iterative", "direct": "Direct"}
@@ -39,6 +42,8 @@ class Panel:
         self._gesture: int | None = None
         self._limits: CoefficientLimits | None = None
         self._limits_of: tuple[object, ...] = ()
+        self._refreshes = -1
+        self._refreshed_at: tuple[object, ...] = ()
         self._y = 0.0
         self._tight = min(1.0, height / FULL_HEIGHT)
         self.back = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
@@ -80,14 +85,21 @@ class Panel:
         self._heading("Springs")
         names = [ALL_MATERIALS, *self._material_names()]
         self.menu = ui.menu(self._row(30, 10), names, ALL_MATERIALS, self._choose_material, self.back)
+        self.stiffness_limit = self._limit_label()
         self.stiffness_field = self._named_field("Cs  stiffness", lambda text: self._type_coefficient(text, True))
         self.stiffness = self._slider(lambda value: self._slide(value, True))
+        self.damping_limit = self._limit_label()
         self.damping_field = self._named_field("Cd  damping", lambda text: self._type_coefficient(text, False))
         self.damping = self._slider(lambda value: self._slide(value, False))
         self.frequency, self.ratio = self._pair(
             "Frequency [Hz]", "Damping ratio", (self._type_frequency, self._type_ratio)
         )
         self.note = TextBlock(ui, self._row(45, 8), "", self.back)
+
+    def _limit_label(self) -> TextBlock:
+        """Room for a coefficient's proven limit, on its row."""
+        place = self._place(MARGIN + 96, 6, INSIDE - ENTRY_WIDTH - 104, ROW - 8)
+        return TextBlock(self._ui, place, "", self.back, 11.0, WARNING)
 
     def _slider(self, changed: Callable[[float], None]) -> LogSlider:
         return LogSlider(self._ui, self._row(28, 2, MARGIN - 8, INSIDE + 16), changed, self._end_gesture, self.back)
@@ -126,6 +138,11 @@ class Panel:
         self.substeps.show(str(settings.substeps))
         self.iterations.show(str(settings.iterations))
         self.warm_start.show(f"{settings.warm_start:g}")
+        self._refreshes += 1
+        fresh = (self.playback.revision, self.material)
+        if fresh == self._refreshed_at and self._refreshes % LOOK_EVERY:
+            return
+        self._refreshed_at = fresh
         inputs = (world.stiffness, world.damping, world.spring_active, world.inverse_mass)
         key = (settings, self.material, *(array.tobytes() for array in inputs))
         if key != self._limits_of:
@@ -142,6 +159,8 @@ class Panel:
         world, chosen, limits = self.playback.session.world, self._chosen(), self._limits
         assert limits is not None
         if not len(chosen):
+            self.stiffness_limit.show_text("")
+            self.damping_limit.show_text("")
             for slider, field in ((self.stiffness, self.stiffness_field), (self.damping, self.damping_field)):
                 slider.show_value(slider.value, None, False, False)
                 field.show(DASH)
@@ -150,15 +169,16 @@ class Panel:
             self.note.show_text(self._no_spring_note())
             return
         stiffness, damping = world.stiffness[chosen], world.damping[chosen]
-        for values, slider, field, limit in (
-            (stiffness, self.stiffness, self.stiffness_field, limits.stiffness),
-            (damping, self.damping, self.damping_field, limits.damping),
+        for values, slider, field, limit, label in (
+            (stiffness, self.stiffness, self.stiffness_field, limits.stiffness, self.stiffness_limit),
+            (damping, self.damping, self.damping_field, limits.damping, self.damping_limit),
         ):
+            label.show_text(f"limit {limit:.3g}" if limit is not None and limit < 1.0 else "")
             is_mixed = bool(values.min() != values.max())
             slider.show_value(float(np.median(values)), limit, is_mixed, True)
             field.show("mixed" if is_mixed else f"{values[0]:.6g}")
         self._show_reading(stiffness, damping)
-        self.note.show_text(_limit_note(limits))
+        self.note.show_text(f"{limits.reason[0].upper()}{limits.reason[1:]}.")
 
     def _show_reading(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
         if stiffness.min() != stiffness.max() or damping.min() != damping.max():
@@ -186,9 +206,13 @@ class Panel:
     def _submit(self, command: Command, gesture: int | None = None) -> None:
         self.playback.submit(command, gesture)
 
+    def choose_material(self, material: int | None) -> None:
+        """Show and change the springs of a material (index); None = all."""
+        self.material = material
+        self._rebuild_menu(ALL_MATERIALS if material is None else self._material_names()[material])
+
     def _choose_material(self, name: str) -> None:
-        self.material = None if name == ALL_MATERIALS else self._material_names().index(name)
-        self._rebuild_menu(name)
+        self.choose_material(None if name == ALL_MATERIALS else self._material_names().index(name))
 
     def _choose_solver(self, name: str) -> None:
         self._submit(SetSolver(solver=name))
@@ -294,13 +318,6 @@ class Panel:
             return False
         self._submit(SetSolver(warm_start=value))
         return True
-
-
-def _limit_note(limits: CoefficientLimits) -> str:
-    reason = limits.reason[0].upper() + limits.reason[1:]
-    if limits.stiffness is None or limits.damping is None:
-        return f"{reason}."
-    return f"Stable up to Cs {limits.stiffness:.3g}, Cd {limits.damping:.3g}. {reason}."
 
 
 def _reading(value: float) -> str:

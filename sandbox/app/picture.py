@@ -21,13 +21,14 @@ def view_of(level: Level, snapshot: Snapshot) -> Box:
     return level.view or bounds(snapshot.position[shown_particles(snapshot)])
 
 
-def draw_picture(level: Level, snapshot: Snapshot, size: tuple[int, int], compiled: bool = True) -> pygame.Surface:
-    """A picture of a state of a level; size [pixels]."""
+def draw_picture(
+    level: Level, snapshot: Snapshot, size: tuple[int, int], box: Box | None = None, scale: float | None = None
+) -> pygame.Surface:
+    """A picture of a state of a level; size [pixels]; box [m], None = the level's view; scale: thickness of lines."""
     surface = pygame.Surface(size, 0, 32)
     camera = Camera(viewport=(0, 0, *size))
-    camera.fit(view_of(level, snapshot))
-    renderer = Renderer(scale=max(0.6, min(size[0] / 1280, size[1] / 720)))
-    renderer.compiled = compiled
+    camera.fit(view_of(level, snapshot) if box is None else box)
+    renderer = Renderer(max(0.6, min(size[0] / 1280, size[1] / 720)) if scale is None else scale)
     renderer.draw(surface, camera, snapshot, snapshot, 1.0)
     return surface
 

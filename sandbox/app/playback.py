@@ -32,6 +32,8 @@ class Playback:
         self.current = self.previous = self.session.snapshot()
         self._equal = True
         self._submitted = False
+        # Grows with every command of the person's that was applied.
+        self.revision = 0
 
     @property
     def has_pending(self) -> bool:
@@ -94,6 +96,7 @@ class Playback:
         except CommandError as error:
             self._end_watching(f"the recording holds a command that cannot be carried out: {error}")
         if submitted:
+            self.revision += 1
             self.current = self.session.snapshot()
             if len(self.previous.mass) != len(self.current.mass) or self.clock.paused:
                 self.previous = self.current

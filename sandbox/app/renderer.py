@@ -32,8 +32,11 @@ PIN_RADIUS = 5.0
 GRID_STEP = 64.0
 # A dense mesh seen from afar would be a solid block with full-width springs: they go down to this width.
 THINNEST_SPRING = 0.9
-# Spring width and smallest radius as a part of the usual distance between particles.
+# Width of springs and radius of particles, at most, as a part of the distance between particles.
 DENSITY = 0.14
+CROWDED = 0.19
+# Particles of bodies this many times heavier than most are drawn larger.
+HEAVY = 8.0
 
 
 @dataclass
@@ -52,7 +55,7 @@ class Renderer:
         self.scale = scale
         self.compiled = True
         self.non_finite = 0
-        self._spacing = 10.0
+        self._neighbours: tuple[tuple[int, int, int], NDArray[np.float64]] | None = None
 
     def draw(
         self,
@@ -110,8 +113,8 @@ class Renderer:
         canvas.lines(np.ascontiguousarray(ends), strain_colours(strain), self._spring_width(camera, rest))
 
     def _spring_width(self, camera: Camera, rest: NDArray[np.float64]) -> float:
-        self._spacing = float(np.median(rest)) * camera.zoom if len(rest) else SPRING_WIDTH * self.scale / DENSITY
-        return float(np.clip(self._spacing * DENSITY, THINNEST_SPRING * self.scale, SPRING_WIDTH * self.scale))
+        spacing = float(np.median(rest)) * camera.zoom if len(rest) else np.inf
+        return float(np.clip(spacing * DENSITY, THINNEST_SPRING * self.scale, SPRING_WIDTH * self.scale))
 
     def _draw_particles(self, canvas: Canvas, camera: Camera, current: Snapshot, pixels: NDArray[np.float64]) -> None:
         shown = shown_particles(current)
@@ -119,18 +122,37 @@ class Renderer:
         self.non_finite = int(np.count_nonzero(shown & ~finite))
         visible = np.flatnonzero(shown & finite)
         pinned = current.inverse_mass[visible] == 0.0
-        smallest = np.clip(self._spacing * DENSITY, THINNEST_SPRING * self.scale, SMALLEST_RADIUS * self.scale)
-        radii = current.radius[visible] * camera.zoom
+        radii = current.radius[visible] * camera.zoom * self._weight(current, visible)
         # Particles of the usual radius shrink with the mesh that they belong to, or a cloth is a field of dots.
-        usual = current.radius[visible] <= BODY_RADIUS
-        radii = np.maximum(
-            np.where(usual, np.minimum(radii, np.maximum(self._spacing * 0.2, smallest)), radii), smallest
-        )
+        crowded = self._nearest_neighbours(current)[visible] * camera.zoom * CROWDED
+        usual = radii <= BODY_RADIUS * camera.zoom
+        radii = np.where(usual, np.minimum(np.maximum(radii, SMALLEST_RADIUS * self.scale), crowded), radii)
+        radii = np.maximum(radii, THINNEST_SPRING * self.scale)
         centres = np.ascontiguousarray(pixels[visible])
-        rim = min(1.4 * self.scale, self._spacing * 0.08)
+        rim = np.minimum(1.4 * self.scale, crowded * 0.4)
         canvas.discs(centres, radii + rim, np.full(len(visible), packed(BACKGROUND)))
         canvas.discs(centres, radii, np.where(pinned, packed(PINNED), packed(PARTICLE)))
         self._draw_pins(canvas, centres[pinned], radii[pinned])
+
+    def _nearest_neighbours(self, current: Snapshot) -> NDArray[np.float64]:
+        """Rest length [m] of the shortest spring of every particle (n,); infinite where it has none."""
+        key = (len(current.mass), len(current.rest_length), int(np.count_nonzero(current.spring_active)))
+        if self._neighbours is None or self._neighbours[0] != key:
+            nearest = np.full(len(current.mass), np.inf)
+            working = current.spring_active & (current.rest_length > 0.0)
+            for ends in (current.particle_a, current.particle_b):
+                np.minimum.at(nearest, ends[working], current.rest_length[working])
+            self._neighbours = key, nearest
+        return self._neighbours[1]
+
+    @staticmethod
+    def _weight(current: Snapshot, visible: NDArray[np.int64]) -> NDArray[np.float64]:
+        """How much larger than usual particles of bodies are drawn (n,): the heavy end of a rope looks heavy."""
+        mass, usual = current.mass[visible], current.radius[visible] == BODY_RADIUS
+        if not usual.any():
+            return np.ones(len(visible))
+        ratio = mass / np.median(mass[usual])
+        return np.where(usual & (ratio >= HEAVY), ratio**0.25, 1.0)
 
     def _draw_pins(self, canvas: Canvas, centres: NDArray[np.float64], radii: NDArray[np.float64]) -> None:
         size = np.maximum(radii + 2.0 * self.scale, PIN_RADIUS * self.scale)

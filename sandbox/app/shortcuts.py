@@ -19,7 +19,7 @@ class Shortcut:
 SHORTCUTS = (
     Shortcut("tool_drag", ("D", "1"), "Drag tool: hold and move particles", "Tools"),
     Shortcut("tool_pin", ("P", "2"), "Pin tool: pin or unpin a particle", "Tools"),
-    Shortcut("tool_cut", ("C", "3"), "Cut tool: cut the springs a stroke crosses", "Tools"),
+    Shortcut("tool_cut", ("C", "3"), "Cut tool: a stroke cuts what it crosses", "Tools"),
     Shortcut("", ("Shift+click",), "Keep hold of a particle; a click lets go", "Tools"),
     Shortcut("let_go", ("Escape",), "Let go of everything", "Tools"),
     Shortcut("undo", ("Ctrl+Z",), "Undo a drag, cut, pin or slider move", "Tools"),
@@ -32,7 +32,7 @@ SHORTCUTS = (
     Shortcut("", ("Middle drag", "Space+drag"), "Pan", "View"),
     Shortcut("zoom_in", ("+", "="), "Zoom in", "View"),
     Shortcut("zoom_out", ("-",), "Zoom out", "View"),
-    Shortcut("fit", ("F", "Home"), "Fit to view", "View"),
+    Shortcut("fit", ("F", "Home"), "Fit to view; again: to all particles", "View"),
     Shortcut("fullscreen", ("F11",), "Full screen", "View"),
     Shortcut("panel", ("H",), "Hide or show the panel", "View"),
     Shortcut("larger", ("Ctrl++", "Ctrl+="), "Larger widgets", "View"),

@@ -1,11 +1,12 @@
 """Stage: the world on the screen: pointer and keyboard cursor to tools, pan and zoom, and the drawing of it."""
 
+import math
 from typing import Literal
 
 import numpy as np
 import pygame
 
-from sandbox.app.camera import Camera
+from sandbox.app.camera import Box, Camera, bounds
 from sandbox.app.picture import view_of
 from sandbox.app.playback import Playback
 from sandbox.app.profile import Profile
@@ -38,7 +39,7 @@ class Stage:
         self._hovered: int | None = None
         self._tool_pressed = False
         self._make_tools()
-        self.fit()
+        self._fit(view_of(playback.level, playback.current))
 
     def _make_tools(self) -> None:
         new_gesture = self.playback.session.new_gesture
@@ -67,17 +68,32 @@ class Stage:
         self.tool_name = name
 
     def fit(self) -> None:
-        """Show the level's view, or all of its particles; once they have left it, all of them."""
+        """Show the level's view, or all of its particles; asked for again, all particles wherever they are."""
         snapshot = self.playback.current
-        self.camera.fit(view_of(self.playback.level, snapshot))
+        box = view_of(self.playback.level, snapshot)
+        if self._is_fitted and self._box == box:
+            box = bounds(snapshot.position[shown_particles(snapshot)])
+        self._fit(box)
+
+    def _fit(self, box: Box) -> None:
+        self.camera.fit(box)
+        self._box, self._fitted_at = box, (self.camera.centre, self.camera.zoom)
+
+    @property
+    def _is_fitted(self) -> bool:
+        """Whether the camera is as the last fit left it."""
+        return self._fitted_at == (self.camera.centre, self.camera.zoom)
 
     def place(self, viewport: tuple[int, int, int, int], scale: float) -> None:
         """Move to another part of the window and keep showing about the same."""
-        before = self.camera.viewport
+        before, fitted = self.camera.viewport, self._is_fitted
         self.camera.viewport = viewport
         self.renderer.scale = scale
-        grown = min(viewport[2] / max(before[2], 1), viewport[3] / max(before[3], 1))
-        self.camera.zoom *= grown
+        if fitted:
+            self._fit(self._box)
+        else:
+            # By areas, so that a window made smaller and larger again shows what it showed.
+            self.camera.zoom *= math.sqrt(viewport[2] * viewport[3] / max(before[2] * before[3], 1))
 
     def contains(self, pixel: Pixel) -> bool:
         """Whether a pixel shows the world."""

@@ -7,13 +7,26 @@ from dataclasses import dataclass
 import numpy as np
 import pygame
 
-from sandbox.app.colours import ACCENT, DANGER, LINE, MUTED, SURFACE, TEXT, WARNING, Colour, strain_colours
+from sandbox.app.colours import (
+    ACCENT,
+    DANGER,
+    FULL_STRAIN,
+    LINE,
+    MUTED,
+    SLIGHT_STRAIN,
+    SURFACE,
+    TEXT,
+    WARNING,
+    Colour,
+    strain_colours,
+)
 from sandbox.app.painted import wrapped
 from sandbox.app.widgets import Ui
 
 # Sizes in layout units.
 STATUS_HEIGHT = 30.0
 NOTICE_SECONDS = 6.0
+SECONDS_A_LETTER = 0.06
 NOTICES = 4
 LEGEND_WIDTH = 96.0
 NOTICE_COLOUR: Colour = (33, 39, 49)
@@ -42,7 +55,7 @@ class StatusLine:
             if notice.text == text:
                 notice.left = NOTICE_SECONDS
                 return
-        self.notices.append(Notice(text))
+        self.notices.append(Notice(text, max(NOTICE_SECONDS, len(text) * SECONDS_A_LETTER)))
 
     def update(self, frame_time: float) -> None:
         """Let notices age by frame_time [s]."""
@@ -79,8 +92,9 @@ class StatusLine:
         ui = self.ui
         width = ui.px(LEGEND_WIDTH)
         if self._legend is None:
-            place = np.linspace(-0.9, 0.9, width)
-            colours = strain_colours(0.04 * place / (1.0 - np.abs(place)))
+            place = np.linspace(-1.0, 1.0, width)
+            full = np.log1p(FULL_STRAIN / SLIGHT_STRAIN)
+            colours = strain_colours(np.sign(place) * np.expm1(np.abs(place) * full) * SLIGHT_STRAIN)
             self._legend = pygame.Surface((width, ui.px(6)), 0, 32)
             pixels = pygame.surfarray.pixels2d(self._legend)
             pixels[:] = colours[:, None]

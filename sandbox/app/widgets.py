@@ -4,6 +4,7 @@ import html
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from dataclasses import field as default
 from functools import partial
 from typing import Any
 
@@ -74,6 +75,16 @@ class Choice:
             (button.select if value == chosen else button.unselect)()
 
 
+@dataclass
+class Sheet:
+    """A modal page and the widgets on it; close: what Escape does; is_page: it is read, so no notices lie over it."""
+
+    panel: UIPanel
+    close: Callable[[], None]
+    is_page: bool
+    widgets: list[UIElement] = default(default_factory=list)
+
+
 class Ui:
     """Widgets on a window of size [pixels]; positions and sizes given to it are layout units of `scale` pixels."""
 
@@ -86,7 +97,7 @@ class Ui:
         self._actions: dict[UIElement, Callable[[], None]] = {}
         self._choosers: dict[UIDropDownMenu, Callable[[str], None]] = {}
         self._fields: dict[UIElement, Field] = {}
-        self._sheets: list[tuple[UIPanel, list[UIElement], Callable[[], None]]] = []
+        self._sheets: list[Sheet] = []
         self._page: list[UIElement] = []
         pygame.key.set_repeat(*KEY_REPEAT)
         self._focus: UIElement | None = None
@@ -191,17 +202,22 @@ class Ui:
         self._add_focusable(widget)
 
     def _add_focusable(self, widget: UIElement) -> None:
-        (self._sheets[-1][1] if self._sheets else self._page).append(widget)
+        (self._sheets[-1].widgets if self._sheets else self._page).append(widget)
 
     # Sheets: modal pages on top of all else.
+
+    @property
+    def shows_page(self) -> bool:
+        """Whether the topmost modal page is one to read."""
+        return bool(self._sheets) and self._sheets[-1].is_page
 
     @property
     def has_sheet(self) -> bool:
         """Whether a modal page is open."""
         return bool(self._sheets)
 
-    def open_sheet(self, close: Callable[[], None], style: str = "@shade") -> UIPanel:
-        """Cover the window by a modal page; close is called when Escape asks for it."""
+    def open_sheet(self, close: Callable[[], None], style: str = "@shade", is_page: bool = False) -> UIPanel:
+        """Cover the window by a modal page; close is called when Escape asks for it; is_page: no notices over it."""
         sheet = UIPanel(
             pygame.Rect((0, 0), self.size),
             SHEET_HEIGHT * (len(self._sheets) + 1),
@@ -209,19 +225,19 @@ class Ui:
             margins=_NO_MARGINS,
             object_id=_style(style),
         )
-        self._sheets.append((sheet, [], close))
+        self._sheets.append(Sheet(sheet, close, is_page))
         self._set_focus(None)
         return sheet
 
     def close_sheet(self, sheet: UIPanel) -> None:
         """Take a modal page away."""
-        for _, widgets, _ in [entry for entry in self._sheets if entry[0] is sheet]:
-            for widget in widgets:
+        for entry in [entry for entry in self._sheets if entry.panel is sheet]:
+            for widget in entry.widgets:
                 self._actions.pop(widget, None)
                 if isinstance(widget, UIDropDownMenu):
                     self._choosers.pop(widget, None)
                 self._fields.pop(widget, None)
-        self._sheets = [entry for entry in self._sheets if entry[0] is not sheet]
+        self._sheets = [entry for entry in self._sheets if entry.panel is not sheet]
         self._set_focus(None)
         sheet.kill()
 
@@ -304,7 +320,7 @@ class Ui:
             if not self._sheets:
                 return True
         if self._sheets:
-            self._sheets[-1][2]()
+            self._sheets[-1].close()
             return True
         return False
 
@@ -314,7 +330,7 @@ class Ui:
         self._choosers[menu](options[(options.index(chosen) + by) % len(options)])
 
     def _move_focus(self, by: int) -> None:
-        ring = self._sheets[-1][1] if self._sheets else self._page
+        ring = self._sheets[-1].widgets if self._sheets else self._page
         ring = [widget for widget in ring if widget.alive() and widget.visible and getattr(widget, "is_enabled", True)]
         if not ring:
             return

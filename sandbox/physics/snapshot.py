@@ -76,14 +76,14 @@ def canonical_bytes(array: NDArray[Any]) -> bytes:
     return array.astype(array.dtype.newbyteorder("<"), copy=False).tobytes()
 
 
-def hash_by_array(world: World) -> dict[str, str]:
+def hash_by_array(world: World | Snapshot) -> dict[str, str]:
     """blake2b of each state array, 16 hexadecimal digits, by name."""
     return {
         name: hashlib.blake2b(canonical_bytes(getattr(world, name)), digest_size=8).hexdigest() for name in STATE_ARRAYS
     }
 
 
-def state_hash(world: World, arrays: Mapping[str, str] | None = None) -> str:
+def state_hash(world: World | Snapshot, arrays: Mapping[str, str] | None = None) -> str:
     """blake2b over the hashes of every array in use, the tick and the settings, in fixed order: 32 digits.
 
     arrays: the result of `hash_by_array` for this state, where the caller has it already.

@@ -45,6 +45,8 @@ LAW_HOOKE = 1
 # How many particles can be held at once. A hand is a pinned cursor particle and one spring, in slots reserved when
 # the world is built, so that grabbing never moves another slot.
 HAND_COUNT = 10
+# The material index of a hand's spring: of no material, so that no slider reaches it.
+HAND_MATERIAL = -1
 # Cs and Cd of a hand's spring, for a whole tick. (Cs + 2 Cd) = 0.8 of the proven bound 4, so that a body inside the
 # article's 1/(n+1) stays bounded while it is held; higher values grip harder and use that margin up.
 HAND_STIFFNESS = 0.2
@@ -251,12 +253,18 @@ class World:
         """Reserve the slots of all hands, inactive; done once, when the world is built."""
         if self.hand_particle >= 0 or self.particle_count == 0:
             return
-        names = [f"+hand.{hand}" for hand in range(HAND_COUNT)]
+        names = _hand_names()
         self.hand_particle = self.add_particles(names, np.zeros((HAND_COUNT, 2)), pinned=True, radius=0.0)
         held = np.zeros(HAND_COUNT, dtype=np.int64)
         cursors = self.hand_particle + np.arange(HAND_COUNT)
         self.hand_spring = self.add_springs(
-            names, cursors, held, rest_length=0.0, stiffness=HAND_STIFFNESS, damping=HAND_DAMPING, material=-1
+            names,
+            cursors,
+            held,
+            rest_length=0.0,
+            stiffness=HAND_STIFFNESS,
+            damping=HAND_DAMPING,
+            material=HAND_MATERIAL,
         )
         self.particle_active[self.hand_particle :] = False
         self.spring_active[self.hand_spring :] = False
@@ -332,6 +340,15 @@ class World:
             self.damping[chosen] = damping
         self._disturb(self.particle_a[chosen], self.particle_b[chosen])
 
+    def name_slots(self, particles: Sequence[str], springs: Sequence[str]) -> None:
+        """Name the slots that a restored state brought along, from the first one without a name on."""
+        _register(self._particle_slots, self.particle_names, particles)
+        _register(self._spring_slots, self.spring_names, springs)
+
+    def name_hands(self) -> None:
+        """Name the hands' slots, where a restored state brought them along."""
+        self.name_slots(_hand_names(), _hand_names())
+
     def forget_names_beyond(self, particle_count: int, spring_count: int) -> None:
         """Drop the names of slots that a restored state does not have."""
         for slots, names, count in (
@@ -350,6 +367,10 @@ class World:
         for name, values in arrays.items():
             present = getattr(self, name)
             setattr(self, name, np.concatenate([present, np.asarray(values, dtype=present.dtype)]))
+
+
+def _hand_names() -> list[str]:
+    return [f"+hand.{hand}" for hand in range(HAND_COUNT)]
 
 
 def _register(slots: dict[str, int], names: list[str], added: Sequence[str]) -> None:

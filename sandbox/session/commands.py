@@ -6,7 +6,6 @@ raises CommandError. Command names are part of the replay format and are never r
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
-from functools import cache
 from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
@@ -150,16 +149,20 @@ Command = (
 )  # fmt: skip
 
 
-@cache
-def adapter(kind: type) -> TypeAdapter[Any]:
-    """The strict validator of one command type."""
-    return TypeAdapter(kind)
+_adapters: dict[Any, TypeAdapter[Any]] = {}
+
+
+def adapter(kind: Any) -> TypeAdapter[Any]:
+    """The strict validator of one command type, made when it is first needed."""
+    if kind not in _adapters:
+        _adapters[kind] = TypeAdapter(kind)
+    return _adapters[kind]
 
 
 def plain_fault(error: ValidationError) -> str:
     """The first fault of a validation as `field: what is wrong`, in one line."""
     fault = error.errors(include_url=False, include_context=False, include_input=False)[0]
-    place = ".".join(str(part) for part in fault["loc"])
+    place = ".".join(part if part.isprintable() else repr(part) for part in map(str, fault["loc"]))[:80]
     text = fault["msg"].replace("Input should be", "must be").splitlines()[0]
     return f"{place}: {text}" if place else text
 
@@ -228,15 +231,33 @@ def _cut(world: World, command: CutSprings) -> None:
     world.cut(command.springs)
 
 
-def _next_name(prefix: str, names: list[str]) -> str:
-    return f"{prefix}{sum(name.startswith(prefix) for name in names)}"
+def _next_names(prefix: str, names: list[str], count: int = 1) -> list[str]:
+    first = sum(name.startswith(prefix) for name in names)
+    return [f"{prefix}{number}" for number in range(first, first + count)]
+
+
+def name_added(world: World) -> None:
+    """Name the slots that a restored state brought along as the commands that added them did."""
+    if len(world.particle_names) <= world.hand_particle:
+        # A level without particles reserves its hands at the first grab, behind what was added until then.
+        _name_slots(world, world.hand_particle, world.hand_spring)
+        world.name_hands()
+    _name_slots(world, world.particle_count, world.spring_count)
+
+
+def _name_slots(world: World, particle_count: int, spring_count: int) -> None:
+    """Name the slots up to these counts that have no name yet."""
+    world.name_slots(
+        _next_names("+.", world.particle_names, particle_count - len(world.particle_names)),
+        _next_names("+:", world.spring_names, spring_count - len(world.spring_names)),
+    )
 
 
 def _add_particle(world: World, command: AddParticle) -> None:
     if world.particle_count >= PARTICLE_LIMIT:
         raise CommandError(f"a world holds at most {PARTICLE_LIMIT:,} particles")
     world.add_particles(
-        [_next_name("+.", world.particle_names)],
+        _next_names("+.", world.particle_names),
         [command.position],
         mass=command.mass,
         radius=command.radius,
@@ -252,7 +273,7 @@ def _add_spring(world: World, command: AddSpring) -> None:
     if command.particle_a == command.particle_b:
         raise CommandError(f"a spring joins two different particles, not {name} to itself")
     world.add_springs(
-        [_next_name("+:", world.spring_names)],
+        _next_names("+:", world.spring_names),
         [command.particle_a],
         [command.particle_b],
         rest_length=command.rest_length,

@@ -13,15 +13,16 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sandbox.level.files import LevelError, parse_level
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import STATE_ARRAYS, WorldSettings
-from sandbox.session.commands import plain_fault
+from sandbox.session.commands import Acceleration, Fraction, plain_fault
 from sandbox.session.records import ScriptLine
 from sandbox.session.replay import Replay, ReplayError, StoredState, TickHashes
-from sandbox.session.replay_format import FORMAT, LINE_LIMIT, VERSION, level_digest, unseal
+from sandbox.session.replay_format import FORMAT, HEADER_LIMIT, LINE_LIMIT, VERSION, level_digest, unseal
 
 GZIP_MAGIC = b"\x1f\x8b"
 # The header that a Recorder writes: no flags, no time, no name; another one is a changed byte.
 GZIP_HEADER = b"\x1f\x8b\x08\x00\x00\x00\x00\x00\x00\xff"
 SCRIPT_SIZE_LIMIT = 64 * 2**20  # [bytes]
+FAULT_LIMIT = 50  # that are told of one script
 # Gestures that a script does not number are numbered by line from here, beyond those that it does.
 UNNUMBERED = 2**40
 
@@ -63,12 +64,12 @@ class _TickLine(_Sealed):
 
 
 class _Settings(_Line):
-    gravity: tuple[float, float]
-    tick_rate: int
-    substeps: int
-    solver: str
-    iterations: int
-    warm_start: float
+    gravity: tuple[Acceleration, Acceleration]
+    tick_rate: Annotated[int, Field(ge=1, le=10000)]
+    substeps: Annotated[int, Field(ge=1, le=64)]
+    solver: Annotated[str, Field(max_length=40)]
+    iterations: Annotated[int, Field(ge=1, le=1000)]
+    warm_start: Fraction
 
 
 class _StateLine(_Sealed):
@@ -97,6 +98,12 @@ class _Gathered:
     hashes: list[TickHashes] = field(default_factory=list)
     states: dict[int, StoredState] = field(default_factory=dict)
     end_hash: str | None = None
+    # Most arrays stay as they are from tick to tick: each text is kept once, which halves the memory of a long replay.
+    texts: dict[str, str] = field(default_factory=dict)
+
+    def once(self, text: str) -> str:
+        """The text itself, or the equal one that is kept already."""
+        return self.texts.setdefault(text, text)
 
 
 def read_replay(path: str | Path, partial: bool = False) -> Replay:
@@ -150,17 +157,19 @@ def _lines(path: Path) -> Iterator[bytes]:
         return
     except (gzip.BadGzipFile, zlib.error) as error:
         raise ReplayError(f"{path}: damaged gzip data: {error}") from None
-    except OSError as error:
-        raise ReplayError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except (OSError, ValueError) as error:
+        if isinstance(error, ReplayError):
+            raise
+        raise ReplayError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
 def _limited(path: Path, file: BinaryIO | gzip.GzipFile) -> Iterator[bytes]:
-    number = 0
-    while line := file.readline(LINE_LIMIT + 1):
-        number += 1
-        if len(line) > LINE_LIMIT:
-            raise ReplayError(f"{path}: line {number}: longer than {LINE_LIMIT} bytes")
+    number, limit = 1, HEADER_LIMIT
+    while line := file.readline(limit + 1):
+        if len(line) > limit:
+            raise ReplayError(f"{path}: line {number}: longer than {limit} bytes")
         yield line
+        number, limit = number + 1, LINE_LIMIT
 
 
 def _read_header(source: str, line: bytes) -> tuple[_Header, str]:
@@ -188,9 +197,14 @@ def _read_level(source: str, head: _Header) -> Any:
     if level_digest(head.level) != head.level_sha256:
         raise ReplayError(f"{source}: line 1: the level is not the one that was recorded: its sha256 differs")
     try:
-        return parse_level(json.dumps(head.level).encode(), f"{source}: line 1: level")
+        return parse_level(_compact(head.level), f"{source}: line 1: level")
     except LevelError as error:
         raise ReplayError(*error.faults) from None
+
+
+def _compact(level: dict[str, Any]) -> bytes:
+    """A level as small as it gets, so that one which fits a level file fits here."""
+    return json.dumps(level, ensure_ascii=False, separators=(",", ":")).encode(errors="surrogatepass")
 
 
 def _object(where: str, line: bytes) -> dict[str, Any]:
@@ -215,7 +229,7 @@ def _parse(where: str, line: bytes) -> _Sealed:
     kind = next((kind for key, kind in _KINDS.items() if key in values), None)
     if kind is None:
         raise ReplayError(f"{where}: neither a command, a tick, a state nor the end")
-    return _validated(where, kind, line)  # type: ignore[no-any-return]
+    return _validated(where, kind, line)
 
 
 def _gather(gathered: _Gathered, line: _Sealed, number: int, where: str) -> None:
@@ -227,11 +241,13 @@ def _gather(gathered: _Gathered, line: _Sealed, number: int, where: str) -> None
     if isinstance(line, _TickLine):
         if set(line.arrays) != set(STATE_ARRAYS):
             raise ReplayError(f"{where}: arrays: there are {', '.join(STATE_ARRAYS)}")
-        gathered.hashes.append(TickHashes(line.hash, line.arrays))
+        hashes = tuple(gathered.once(line.arrays[name]) for name in STATE_ARRAYS)
+        gathered.hashes.append(TickHashes(line.hash, hashes))
     elif isinstance(line, _SealedCommand):
         gathered.script.append(ScriptLine(line.tick, line.gesture, line.command, number))
     elif isinstance(line, _StateLine):
-        gathered.states[tick] = StoredState(line.state, WorldSettings(**line.settings.model_dump()), number)
+        arrays = {gathered.once(name): gathered.once(text) for name, text in line.state.items()}
+        gathered.states[tick] = StoredState(arrays, WorldSettings(**line.settings.model_dump()), number)
     elif isinstance(line, _EndLine):
         gathered.end_hash = line.hash
 
@@ -241,16 +257,21 @@ def read_script(path: str | Path) -> tuple[ScriptLine, ...]:
 
     A line without a gesture is a gesture of its own. Raises ReplayError, one line per fault, at most 50.
     """
-    source, faults, script = str(path), [], []
+    source = str(path)
+    faults: list[str] = []
+    script: list[ScriptLine] = []
     try:
-        if Path(path).stat().st_size > SCRIPT_SIZE_LIMIT:
-            raise ReplayError(f"{source}: larger than {SCRIPT_SIZE_LIMIT} bytes")
-        lines = Path(path).read_bytes().splitlines()
-    except OSError as error:
-        raise ReplayError(f"{source}: cannot be read: {error.strerror or error}") from None
-    for number, line in enumerate(lines, 1):
+        with open(path, "rb") as file:
+            data = file.read(SCRIPT_SIZE_LIMIT + 1)
+    except (OSError, ValueError) as error:
+        raise ReplayError(f"{source}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    if len(data) > SCRIPT_SIZE_LIMIT:
+        raise ReplayError(f"{source}: larger than {SCRIPT_SIZE_LIMIT} bytes")
+    for number, line in enumerate(data.splitlines(), 1):
         if not line.strip():
             continue
+        if len(faults) >= FAULT_LIMIT:
+            break
         try:
             _object(f"{source}: line {number}", line)
             parsed = _validated(f"{source}: line {number}", _CommandLine, line)
@@ -258,5 +279,5 @@ def read_script(path: str | Path) -> tuple[ScriptLine, ...]:
         except ReplayError as error:
             faults.extend(error.faults)
     if faults:
-        raise ReplayError(*faults[:50])
+        raise ReplayError(*faults[:FAULT_LIMIT])
     return tuple(sorted(script, key=lambda line: line.tick))

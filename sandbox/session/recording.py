@@ -3,6 +3,7 @@
 import gzip
 import io
 import zlib
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -17,7 +18,8 @@ from sandbox.session.replay_format import STATE_TICKS, encode_state, header, sea
 class Recorder:
     """Writes one run to a file, from the level's first tick; a name ending in .gz is compressed.
 
-    Every line reaches the file when it is written, so that a crash leaves a recording that is only cut off.
+    Every line reaches the file when it is written (compressed: at every state line), so that a crash leaves a
+    recording that is only cut off.
     Raises OSError where the file cannot be written.
     """
 
@@ -31,8 +33,13 @@ class Recorder:
             if self.path.suffix == ".gz"
             else io.BufferedWriter(raw)
         )
-        self._write(header(level, PHYSICS_VERSION, __version__))
-        self.write_tick(world)
+        try:
+            self._write(header(level, PHYSICS_VERSION, __version__))
+            self.write_tick(world)
+        except OSError as error:
+            self.abandon()
+            error.filename = str(self.path)
+            raise
 
     def write_command(self, tick: int, gesture: int, record: dict[str, Any]) -> None:
         """Write a command that was applied at a tick, before its step."""
@@ -50,9 +57,15 @@ class Recorder:
         """Write the last line and close the file."""
         try:
             self._write({"end": True, "tick": world.tick, "hash": state_hash(world)})
-        finally:
             self._file.close()
-            self._raw.close()
+        finally:
+            self.abandon()
+
+    def abandon(self) -> None:
+        """Close the file as it is."""
+        for file in (self._file, self._raw):
+            with suppress(OSError):
+                file.close()
 
     def _write(self, values: dict[str, Any]) -> None:
         line, self._chain = seal(values, self._chain)

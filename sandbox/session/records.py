@@ -80,7 +80,7 @@ def from_record(record: dict[str, Any], world: World) -> Command:
     type_name = values.pop("type", None)
     kind = COMMAND_TYPES.get(type_name) if isinstance(type_name, str) else None
     if kind is None:
-        raise CommandError(f"unknown command {type_name!r}; there are {', '.join(COMMAND_TYPES)}")
+        raise CommandError(f"unknown command {type_name!r:.80}; there are {', '.join(COMMAND_TYPES)}")
     for field in ("particle", "particle_a", "particle_b"):
         if field in values:
             values[field] = _slot("particle", values[field], world.particle_slot)
@@ -90,7 +90,7 @@ def from_record(record: dict[str, Any], world: World) -> Command:
         values["material"] = _slot("material", values["material"], world.material_names.index)
     try:
         # JSON mode: lists stand for tuples and whole numbers for floats, and nothing else is converted.
-        return adapter(kind).validate_json(json.dumps(values), strict=True)  # type: ignore[no-any-return]
+        return adapter(kind).validate_json(json.dumps(values), strict=True)
     except (ValidationError, ValueError) as error:
         text = plain_fault(error) if isinstance(error, ValidationError) else str(error)
         raise CommandError(f"{type_name}: {text}") from None

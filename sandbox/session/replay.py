@@ -27,12 +27,12 @@ class ReplayError(ValueError):
         self.faults = list(faults)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class TickHashes:
-    """What a replay says of the state after a tick: the hash of all, and the hash of each array."""
+    """What a replay says of the state after a tick: the hash of all, and of each array in the order of STATE_ARRAYS."""
 
     whole: str
-    arrays: dict[str, str]
+    arrays: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -60,15 +60,20 @@ class Replay:
         """Ticks recorded."""
         return len(self.hashes) - 1
 
-    def state(self, tick: int, world: World) -> Snapshot:
-        """The stored state of a tick; world: a world of this replay's level. Raises ReplayError where none fits."""
+    def state(self, tick: int) -> Snapshot:
+        """The stored state of a tick. Raises ReplayError where there is none, or one that its own hash belies."""
         stored = self.states.get(tick)
         if stored is None:
             raise ReplayError(f"{self.source}: no state is stored at tick {tick}")
         try:
-            return decode_state(tick, stored.arrays, stored.settings, world)
+            snapshot = decode_state(tick, stored.arrays, stored.settings)
         except ValueError as error:
             raise ReplayError(f"{self.source}: line {stored.line}: {error}") from None
+        if state_hash(snapshot) != self.hashes[tick].whole:
+            raise ReplayError(
+                f"{self.source}: line {stored.line}: state: is not the one whose hash stands at tick {tick}"
+            )
+        return snapshot
 
 
 @dataclass(frozen=True)
@@ -130,7 +135,7 @@ def verify(
 def _session(replay: Replay, start: int) -> Session:
     if start == 0:
         return Session(replay.level, script=replay.script)
-    return Session(replay.level, script=replay.script, start=replay.state(start, Session(replay.level).world))
+    return Session(replay.level, script=replay.script, start=replay.state(start))
 
 
 def _guard(replay: Replay, act: Callable[[], None]) -> None:
@@ -149,7 +154,8 @@ def _compare(replay: Replay, world: World) -> str | None:
     recorded, present = replay.hashes[world.tick], hash_by_array(world)
     if state_hash(world, present) == recorded.whole:
         return None
-    return next((name for name in STATE_ARRAYS if present[name] != recorded.arrays[name]), "settings")
+    pairs = zip(STATE_ARRAYS, recorded.arrays, strict=True)
+    return next((name for name, expected in pairs if present[name] != expected), "settings")
 
 
 def _locate(replay: Replay, tick: int, array: str, world: World) -> Divergence:
@@ -157,14 +163,14 @@ def _locate(replay: Replay, tick: int, array: str, world: World) -> Divergence:
     if array == "settings":
         return Divergence(tick, array, None, replay.hashes[tick].whole, state_hash(world))
     clean = _clean_session(replay, verified=tick - 1, tick=tick)
-    if hash_by_array(clean.world)[array] == replay.hashes[tick].arrays[array]:
+    if hash_by_array(clean.world)[array] == replay.hashes[tick].arrays[STATE_ARRAYS.index(array)]:
         return _first_difference(tick, array, getattr(clean.world, array), world)
     later = min((stored for stored in replay.states if stored >= tick), default=None)
     if later is None:
         note = "this build steps differently, and no later state is stored to show the values"
         return Divergence(tick, array, None, "unknown", "unknown", note=note)
     clean = _clean_session(replay, verified=tick - 1, tick=later)
-    recorded = replay.state(later, clean.world)
+    recorded = replay.state(later)
     found = _first_difference(tick, array, getattr(recorded, array), clean.world)
     note = f"this build steps differently; the values are those of the next stored state, tick {later}"
     return Divergence(tick, array, found.index, found.expected, found.actual, found.name, note)

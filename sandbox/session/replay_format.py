@@ -22,13 +22,25 @@ import numpy as np
 from sandbox.level.files import level_data
 from sandbox.level.model import Level
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
-from sandbox.physics.world import PARTICLE_ARRAYS, SPRING_ARRAYS, STATE_ARRAYS, VECTOR_ARRAYS, World, WorldSettings
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.world import (
+    HAND_COUNT,
+    HAND_MATERIAL,
+    PARTICLE_ARRAYS,
+    SPRING_ARRAYS,
+    STATE_ARRAYS,
+    VECTOR_ARRAYS,
+    World,
+    WorldSettings,
+)
 
 FORMAT = "spring-sandbox/replay"
 VERSION = 1
 STATE_TICKS = 60
 # The longest line [bytes] and the largest array [bytes] that a reader accepts; ten times what the level limits allow.
 LINE_LIMIT = 256 * 2**20
+# The longest first line [bytes]: a level of 8 MiB with every number written out and every character escaped.
+HEADER_LIMIT = 64 * 2**20
 ARRAY_LIMIT = 64 * 2**20
 
 _CHAIN_MARK = b', "chain": "'
@@ -80,17 +92,27 @@ def encode_state(world: World) -> dict[str, Any]:
     return {"state": arrays, "settings": asdict(world.settings)}
 
 
-def decode_state(tick: int, state: dict[str, str], settings: WorldSettings, world: World) -> Snapshot:
-    """The snapshot of a state line; world: the level's world, for the hands' slots. Raises ValueError, one line."""
+def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> Snapshot:
+    """The snapshot of a state line. Raises ValueError, one line."""
     if set(state) != set(STATE_ARRAYS):
         raise ValueError(f"state: the arrays are {', '.join(STATE_ARRAYS)}")
     arrays = {name: _decode_array(name, text) for name, text in state.items()}
     for group in (PARTICLE_ARRAYS, SPRING_ARRAYS):
         if len({len(arrays[name]) for name in group}) != 1:
             raise ValueError(f"state: {', '.join(group)} are not equally long")
-    return Snapshot(
-        **arrays, settings=settings, tick=tick, hand_particle=world.hand_particle, hand_spring=world.hand_spring
-    )
+    for name in ("particle_a", "particle_b"):
+        if np.any((arrays[name] < 0) | (arrays[name] >= len(arrays["mass"]))):
+            raise ValueError(f"state.{name}: names a particle that does not exist")
+    hands = np.flatnonzero(arrays["material"] == HAND_MATERIAL)
+    if len(hands) not in (0, HAND_COUNT) or np.any(np.diff(hands) != 1):
+        raise ValueError(f"state.material: there are {HAND_COUNT} hands in a row, or none")
+    hand_spring = int(hands[0]) if len(hands) else -1
+    hand_particle = int(arrays["particle_a"][hand_spring]) if len(hands) else -1
+    if hand_particle + HAND_COUNT > len(arrays["mass"]):
+        raise ValueError("state.particle_a: a hand has no particle of its own")
+    if settings.solver not in SOLVERS:
+        raise ValueError(f"settings.solver: there is no solver {settings.solver!r}")
+    return Snapshot(**arrays, settings=settings, tick=tick, hand_particle=hand_particle, hand_spring=hand_spring)
 
 
 def _decode_array(name: str, text: str) -> Any:

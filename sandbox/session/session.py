@@ -1,8 +1,6 @@
 """Session: one run of a level: ticks, commands, the log, undo, time travel. No wall clock."""
 
-from bisect import insort
 from collections.abc import Callable, Iterable
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,7 +10,7 @@ from sandbox.level.model import Level
 from sandbox.physics.snapshot import Snapshot, restore, take
 from sandbox.physics.step import step
 from sandbox.physics.world import STATE_ARRAYS
-from sandbox.session.commands import Command, CommandError, Grab, Redo, Release, Undo, apply
+from sandbox.session.commands import Command, CommandError, Grab, Redo, Release, Undo, apply, name_added
 from sandbox.session.recording import Recorder
 from sandbox.session.records import ScriptLine, from_record, to_record
 
@@ -23,13 +21,17 @@ KEYFRAME_BUDGET = 256 * 2**20
 PROGRESS_TICKS = 120
 
 
-@dataclass(frozen=True)
+@dataclass
 class LogEntry:
-    """A command that was applied at a tick, before that tick's step."""
+    """A command that was applied at a tick, before that tick's step.
+
+    in_effect: False while the command cannot be carried out because what it needed is undone.
+    """
 
     tick: int
     gesture: int
     command: Command
+    in_effect: bool = True
 
 
 class Session:
@@ -46,13 +48,14 @@ class Session:
         self.world = build_world(level)
         if start is not None:
             restore(self.world, start)
+            name_added(self.world)
         self.messages: list[str] = []
         self.progress: Callable[[int, int], None] | None = None
         self._script = iter(script)
         self._scripted = next((line for line in self._script if line.tick >= self.tick), None)
         self._pending: list[tuple[Command, int]] = []
         self._log: list[LogEntry] = []
-        self._done: list[int] = []
+        self._done: set[int] = set()
         self._undone: set[int] = set()
         self._redoable: list[int] = []
         self._last_gesture = 0
@@ -77,8 +80,8 @@ class Session:
 
     @property
     def can_redo(self) -> bool:
-        """Whether there is an undone gesture to make again."""
-        return bool(self._redoable)
+        """Whether there is an undone gesture to make again, here at the end of the run."""
+        return bool(self._redoable) and self.tick == self._last_tick
 
     @property
     def scripted(self) -> bool:
@@ -158,14 +161,17 @@ class Session:
         if self._keyframes[0].tick > 0:
             raise ValueError("only a run from the level's start can be recorded")
         self.stop_recording()
-        self._drop_future()
         twin = Session(self.level)
-        recorder = Recorder(path, self.level, twin.world)
-        twin._recorder = recorder
-        for entry in self._log:
-            self._catch_up(twin, entry.tick)
-            twin._apply(entry.command, entry.gesture)
-        self._catch_up(twin, self.tick)
+        twin._recorder = Recorder(path, self.level, twin.world)
+        self._drop_future()
+        try:
+            for entry in self._log:
+                self._catch_up(twin, entry.tick)
+                twin._apply(entry.command, entry.gesture)
+            self._catch_up(twin, self.tick)
+        except BaseException:
+            twin.abandon_recording()
+            raise
         self._recorder = twin._recorder
         self.messages.extend(twin.messages)
 
@@ -175,7 +181,7 @@ class Session:
             self._report_progress(twin.tick, self.tick)
 
     def stop_recording(self) -> Path | None:
-        """Write the recording's last line, if there is one being made, and return its path."""
+        """Write the recording's last line and return its path; None where there is none or it cannot be written."""
         recorder, self._recorder = self._recorder, None
         if recorder is None:
             return None
@@ -183,14 +189,21 @@ class Session:
             recorder.finish(self.world)
         except OSError as error:
             self.messages.append(f"{recorder.path}: the end of the recording could not be written: {error.strerror}")
+            return None
         return recorder.path
+
+    def abandon_recording(self) -> None:
+        """Close the recording without its last line, as a crash would leave it."""
+        recorder, self._recorder = self._recorder, None
+        if recorder is not None:
+            recorder.abandon()
 
     def _record(self, write: Callable[..., None], *what: Any) -> None:
         try:
             write(*what)
         except OSError as error:
-            path, self._recorder = self.recording, None
-            self.messages.append(f"{path}: recording stopped at tick {self.tick}: {error.strerror}")
+            self.messages.append(f"{self.recording}: recording stopped at tick {self.tick}: {error.strerror}")
+            self.abandon_recording()
 
     def _apply(self, command: Command, gesture: int) -> None:
         """Apply a command now, log it and record it. Raises CommandError and changes nothing where it cannot be."""
@@ -205,7 +218,7 @@ class Session:
             apply(self.world, command)
             self._drop_future()
             if gesture not in self._done:
-                insort(self._done, gesture)
+                self._done.add(gesture)
                 self._redoable.clear()
         self._last_gesture = max(self._last_gesture, gesture)
         self._log.append(LogEntry(tick, gesture, command))
@@ -221,7 +234,7 @@ class Session:
         if not past:
             raise CommandError("nothing to undo")
         self._drop_future()
-        gesture = max(past)
+        gesture = list(dict.fromkeys(past))[-1]
         self._let_go(gesture)
         self._done.remove(gesture)
         self._undone.add(gesture)
@@ -231,9 +244,11 @@ class Session:
     def _redo(self) -> None:
         if not self._redoable:
             raise CommandError("nothing to redo")
+        if self.tick < self._last_tick:
+            raise CommandError(f"redo works at the end of the run: go to tick {self._last_tick} first")
         gesture = self._redoable.pop()
         self._undone.remove(gesture)
-        insort(self._done, gesture)
+        self._done.add(gesture)
         self._step_again_from(gesture)
 
     def _let_go(self, gesture: int) -> None:
@@ -255,6 +270,7 @@ class Session:
         """Restore the last keyframe at or before a tick and follow the log to another."""
         keyframe = next(kept for kept in reversed(self._keyframes) if kept.tick <= back_to)
         restore(self.world, keyframe)
+        name_added(self.world)
         self._follow([entry for entry in self._effective_log() if keyframe.tick <= entry.tick <= tick], tick)
 
     def _follow(self, log: list[LogEntry], tick: int) -> None:
@@ -262,8 +278,11 @@ class Session:
         while True:
             while done < len(log) and log[done].tick == self.tick:
                 # What needed an undone gesture has no effect any more.
-                with suppress(CommandError):
+                try:
                     apply(self.world, log[done].command)
+                    log[done].in_effect = True
+                except CommandError:
+                    log[done].in_effect = False
                 done += 1
             if self.tick >= tick:
                 return
@@ -282,8 +301,8 @@ class Session:
         """Make the present tick the end of history, after `seek` went back."""
         if self.tick == self._last_tick:
             return
-        self._log = [entry for entry in self._effective_log() if entry.tick <= self.tick]
-        self._done = sorted({entry.gesture for entry in self._log})
+        self._log = [entry for entry in self._effective_log() if entry.tick <= self.tick and entry.in_effect]
+        self._done = {entry.gesture for entry in self._log}
         self._undone.clear()
         self._redoable.clear()
         self._keyframes = [keyframe for keyframe in self._keyframes if keyframe.tick <= self.tick]

@@ -1,17 +1,22 @@
 """The app end to end: what a person does changes the world, and what it cannot do it says."""
 
 import json
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pygame
 import pytest
 
 from sandbox.app.app import run_app
+from sandbox.app.display import has_display
 from sandbox.app.shortcuts import SHORTCUTS, action_of
 from sandbox.level.files import shipped_levels
 from sandbox.session.reading import read_replay
 from sandbox.session.replay import verify
 
+DISPLAY_NAMES = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
 CTRL = pygame.KMOD_CTRL
 
 
@@ -172,6 +177,17 @@ def test_a_replays_name_that_exists_is_refused_and_nothing_is_overwritten(driver
     assert len(list(documents.iterdir())) == 3
 
 
+def test_a_saved_run_can_be_discarded_and_escape_keeps_it(driver, documents):
+    driver.key(pygame.K_s, CTRL)
+    for _ in range(2):
+        driver.key(pygame.K_TAB)
+    driver.key(pygame.K_RETURN)
+    assert not driver.app.ui.has_sheet and list(documents.iterdir()) == []
+    driver.key(pygame.K_s, CTRL)
+    driver.key(pygame.K_ESCAPE)
+    assert [path.name for path in documents.iterdir()] == ["small.replay.jsonl"]
+
+
 def recording(driver, documents):
     driver.fill(driver.app.panel.damping_field, "0.2")
     driver.frames(30)
@@ -233,6 +249,37 @@ def test_f1_lists_the_shortcuts_and_escape_closes_the_page(driver):
     assert not driver.app.ui.has_sheet
 
 
+def test_a_drag_that_a_page_interrupts_ends_with_the_button(driver):
+    start = driver.pixel_of("rope.4")
+    driver.press(start)
+    driver.key(pygame.K_F1)
+    driver.release(start)
+    driver.key(pygame.K_ESCAPE)
+    assert not driver.world.is_held(0)
+    driver.move((start[0] + 50, start[1]))
+    assert not driver.stage.drag.holds
+
+
+def test_a_key_that_is_held_down_pauses_once_but_steps_on(driver):
+    for _ in range(5):
+        driver.post(pygame.KEYDOWN, key=pygame.K_k, mod=0, unicode="k", scancode=0)
+        driver.frames()
+    assert driver.playback.clock.paused
+    tick = driver.playback.session.tick
+    for _ in range(5):
+        driver.post(pygame.KEYDOWN, key=pygame.K_PERIOD, mod=0, unicode=".", scancode=0)
+        driver.frames()
+    assert driver.playback.session.tick == tick + 5
+
+
+def test_fit_asked_for_again_shows_particles_that_left_the_view(driver):
+    driver.world.position[4] = (200.0, 50.0)
+    driver.playback.current = driver.playback.previous = driver.playback.session.snapshot()
+    driver.app.act("pause")
+    driver.app.act("fit")
+    assert driver.stage.contains(driver.stage.camera.to_pixels((200.0, 50.0)))
+
+
 def test_every_action_of_the_shortcut_table_exists_and_every_action_is_in_the_table(driver):
     named = {entry.action for entry in SHORTCUTS if entry.action}
     assert named == set(driver.app.actions)
@@ -269,6 +316,36 @@ def test_the_window_can_be_resized_and_rescaled(driver):
     driver.app.act("panel")
     assert driver.app.panel is None
     assert driver.stage.camera.viewport[2] == 900
+
+
+def test_a_window_made_smaller_and_larger_again_shows_what_it_showed(driver):
+    size = driver.app.display.size
+    driver.stage.wheel((300.0, 300.0), 2)
+    camera = driver.stage.camera
+    centre, zoom = camera.centre, camera.zoom
+    for other in ((900, 600), (900, 700), (700, 500), size):
+        driver.app.display.window.size = other
+        driver.frames(2)
+    assert (camera.centre, camera.zoom) == (centre, pytest.approx(zoom))
+
+
+def test_a_long_run_played_again_shows_how_far_it_is(driver, monkeypatch):
+    now, shown = [0.0], []
+    monkeypatch.setattr("sandbox.app.progress.time.perf_counter", lambda: now[0])
+    monkeypatch.setattr("sandbox.app.progress.draw_bar", lambda surface, ui, share, text: shown.append(share))
+    for done in range(0, 1000, 100):
+        now[0] += 0.06
+        driver.playback.session.progress(done, 1000)
+    assert shown == sorted(shown) and 0.3 < shown[0] < shown[-1] <= 1.0
+
+
+def test_there_is_no_display_where_none_is_named_or_none_answers(monkeypatch):
+    command = [sys.executable, "-c", "from sandbox.app.display import has_display; print(has_display())"]
+    for names in ({}, {"DISPLAY": ":4321"}):
+        environment = {key: value for key, value in os.environ.items() if key not in DISPLAY_NAMES} | names
+        run = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+        assert run.stdout.strip() == ("False" if sys.platform == "linux" else "True")
+    assert has_display()
 
 
 def test_particles_that_are_no_longer_finite_are_left_out_and_counted(driver):

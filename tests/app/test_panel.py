@@ -47,6 +47,15 @@ def test_a_chosen_material_alone_is_changed(driver):
     assert coefficients(driver) == (0.3, 0.3, 0.5)
 
 
+def test_the_chosen_material_stays_chosen_in_a_window_of_another_size(driver):
+    driver.app.panel._choose_material("rubber")
+    driver.app.display.window.size = (900, 620)
+    driver.frames(2)
+    assert driver.app.panel.menu.selected_option[0] == "rubber"
+    driver.fill(driver.app.panel.stiffness_field, "0.5")
+    assert coefficients(driver) == (0.3, 0.3, 0.5)
+
+
 def test_all_springs_show_mixed_values_and_take_a_common_one(driver):
     panel = driver.app.panel
     assert panel.stiffness_field.text == "mixed" and panel.stiffness.mixed

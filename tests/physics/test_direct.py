@@ -9,7 +9,7 @@ import pytest
 
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.snapshot import restore, state_hash, take
-from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.solvers import SOLVERS, pattern
 from sandbox.physics.stability import coefficient_limits, report
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE, World, WorldSettings
@@ -334,3 +334,38 @@ def test_the_stability_report_says_what_the_energy_test_proves():
     world.set_coefficients(0.9, 0.1, None)
     assert "four times the start" in report(world).text
     assert "p:0" in coefficient_limits(world).reason
+
+
+def test_a_matrix_too_large_for_its_table_of_updates_gives_the_same_bits(monkeypatch):
+    ends = []
+    for largest in (pattern.LARGEST_TABLE, 1):
+        monkeypatch.setattr(pattern, "LARGEST_TABLE", largest)
+        ends.append(state_hash(run(scenes.lattice(6).world(), 10)))
+    assert ends[0] == ends[1]
+
+
+def test_the_factor_solves_what_a_dense_solver_solves():
+    world = energy_gate.random_graphs("any Cs, Cd", 1.0, 3, seed=5).world
+    run(world, 1)
+    made = world.solver_cache
+    matrix, rows, springs, bodies = made.matrix, made.rows, made.springs, made.bodies
+    assert sorted(rows.particle.tolist()) == sorted(set(world.particle_a.tolist()) | set(world.particle_b.tolist()))
+    count = len(matrix.diagonal)
+    # L and D of the last step, put together again, are the matrix of the springs as they were linearised then.
+    factor, middle = np.eye(2 * count), np.zeros(2 * count)
+    for j in range(count):
+        middle[2 * j : 2 * j + 2] = 1.0 / matrix.diagonal[j, [0, 2]]
+        factor[2 * j + 1, 2 * j] = matrix.diagonal[j, 1]
+        for at in range(matrix.column_start[j], matrix.column_start[j + 1]):
+            i = matrix.row[at]
+            factor[2 * i : 2 * i + 2, 2 * j : 2 * j + 2] = matrix.lower[at].reshape(2, 2)
+    dense = np.diag(np.repeat(rows.mass[:count], 2))
+    for k in range(bodies.spring_start[-1]):
+        normal, across = springs.normal[k], springs.across[k]
+        block = across * np.eye(2) + (springs.along[k] - across) * np.outer(normal, normal)
+        ends = [2 * r for r in (springs.row_a[k], springs.row_b[k]) if r < count]
+        for one in ends:
+            for other in ends:
+                dense[one : one + 2, other : other + 2] += block if one == other else -block
+    # Columns of two scalars are stored after the elimination of the first from the second.
+    assert np.allclose(factor * middle @ factor.T, dense, rtol=1e-9, atol=1e-9 * np.abs(dense).max())

@@ -68,14 +68,10 @@ def test_every_front_holds_all_that_its_rows_are_joined_to(seed):
     world = mesh(seed)
     pattern = pattern_of(world)
     fronts, springs = pattern.matrix.fronts, pattern.springs
-    rows = [
-        [*range(fronts.first[front], fronts.last[front])]
-        + fronts.border[fronts.border_start[front] : fronts.border_start[front + 1]].tolist()
-        for front in range(len(fronts.first))
-    ]
-    assert sorted(
-        row for front, held in enumerate(rows) for row in held[: fronts.last[front] - fronts.first[front]]
-    ) == [*np.flatnonzero(fronts.of_row >= 0)]
+    borders = np.split(fronts.border, fronts.border_start[1:-1])
+    own = [list(range(first, last)) for first, last in zip(fronts.first, fronts.last, strict=True)]
+    rows = [[*eliminated, *border.tolist()] for eliminated, border in zip(own, borders, strict=True)]
+    assert sorted(row for eliminated in own for row in eliminated) == np.flatnonzero(fronts.of_row >= 0).tolist()
     for front, held in enumerate(rows):
         assert held == sorted(set(held))
         for below in fronts.child[front]:

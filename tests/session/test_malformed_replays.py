@@ -53,6 +53,22 @@ def test_a_damaged_stored_state_is_refused_when_it_is_used(good, tmp_path):
             verify(replay, start=60)
 
 
+def test_a_stored_state_that_its_own_hash_belies_is_refused(good, tmp_path):
+    import json
+
+    lines = [json.loads(line) for line in good.splitlines()]
+    place = [number for number, line in enumerate(lines) if "state" in line][1]
+    for change in (
+        {"state": {**lines[place]["state"], "position": lines[place]["state"]["velocity"]}},
+        {"settings": {**lines[place]["settings"], "solver": "magic"}},
+        {"settings": {**lines[place]["settings"], "iterations": 11}},
+    ):
+        forged = [*lines[:place], {**lines[place], **change}, *lines[place + 1 :]]
+        (tmp_path / "bad.jsonl").write_bytes(sealed(forged))
+        with pytest.raises(ReplayError, match=rf"line {place + 1}: (state|settings)"):
+            verify(read_replay(tmp_path / "bad.jsonl"), start=60)
+
+
 def test_every_bad_command_is_refused_with_its_line(good, tmp_path):
     import json
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.world import STATE_ARRAYS, VECTOR_ARRAYS
-from sandbox.session.commands import AddParticle, CutSprings, Pin
+from sandbox.session.commands import AddParticle, AddSpring, CutSprings, Grab, MoveGrab, Pin, Release
 from sandbox.session.reading import read_replay
 from sandbox.session.replay import Divergence, ReplayError, verify
 from sandbox.session.session import Session
@@ -230,6 +230,75 @@ def test_a_recording_taken_over_after_seeking_back_verifies(tmp_path):
     play(session, 200)
     session.stop_recording()
     assert verify(read_replay(tmp_path / "run.jsonl")) is None
+
+
+def test_what_has_no_effect_in_a_new_future_stays_out_of_its_recording(tmp_path):
+    session = Session(rope_level())
+    early, late = session.new_gesture(), session.new_gesture()
+    session.submit(Pin(7), early)
+    session.submit(Grab(0, 5, (1.0, 1.0)), late)
+    session.advance()
+    session.submit(Release(0), early)
+    session.advance()
+    session.undo()
+    session.advance()
+    session.advance()
+    session.seek(3)
+    session.submit(Pin(3))
+    session.advance()
+    session.record_to(tmp_path / "run.jsonl")
+    session.undo()
+    session.advance()
+    session.stop_recording()
+    replay = read_replay(tmp_path / "run.jsonl")
+    assert [line.record["type"] for line in replay.script] == ["pin", "pin", "undo"]
+    assert verify(replay) is None
+
+
+@pytest.mark.parametrize("bodies", [{}, {"bodies": []}])
+def test_a_recording_verifies_from_a_state_behind_what_was_added(tmp_path, bodies):
+    session = Session(rope_level(**bodies))
+    session.record_to(tmp_path / "run.jsonl")
+    session.submit(AddParticle((1.0, 1.0)))
+    session.submit(AddParticle((1.0, 2.0)))
+    session.apply_pending()
+    first = session.world.particle_slot("+.0")
+    session.submit(Grab(2, first, (3.0, 3.0)))
+    session.submit(AddParticle((1.0, 3.0)))
+    for _ in range(70):
+        session.advance()
+    session.submit(MoveGrab(2, (4.0, 4.0)))
+    session.submit(Pin(session.world.particle_slot("+.2")))
+    session.submit(AddSpring(first, first + 1))
+    session.advance()
+    session.submit(CutSprings((session.world.spring_slot("+:0"),)))
+    session.advance()
+    session.stop_recording()
+    assert session.messages == []
+    replay = read_replay(tmp_path / "run.jsonl")
+    assert verify(replay) is None
+    assert verify(replay, start=60) is None
+
+
+def test_the_future_is_kept_where_a_recording_cannot_start(tmp_path):
+    session = Session(rope_level())
+    play(session, 50)
+    session.seek(20)
+    with pytest.raises(OSError, match="No such file"):
+        session.record_to(tmp_path / "nowhere" / "run.jsonl")
+    assert session.last_tick == 50
+
+
+def test_an_abandoned_recording_verifies_as_far_as_it_goes(tmp_path):
+    for path in (tmp_path / "run.jsonl", tmp_path / "run.gz"):
+        session = Session(rope_level())
+        session.record_to(path)
+        play(session, 70)
+        session.abandon_recording()
+        assert session.recording is None
+        replay = read_replay(path, partial=True)
+        assert (replay.ticks, replay.end_hash) == (70, None)
+        assert verify(replay) is None
 
 
 def test_the_header_holds_the_level_and_its_digest(recorded):

@@ -177,6 +177,46 @@ def test_seek_goes_back_and_forth_through_the_same_states(session):
     assert session.last_tick == last
 
 
+def test_what_was_added_keeps_its_name_when_time_goes_back_and_forth(session):
+    session.submit(AddParticle((1.0, 1.0)))
+    session.submit(AddSpring(3, session.world.particle_count))
+    _advance(session, 130)
+    session.seek(0)
+    session.seek(125)
+    session.submit(Pin(session.world.particle_slot("+.0")))
+    session.submit(CutSprings((session.world.spring_slot("+:0"),)))
+    session.submit(AddParticle((2.0, 1.0)))
+    session.apply_pending()
+    assert session.messages == []
+    assert session.world.particle_names[-1] == "+.1"
+
+
+def test_redo_belongs_to_the_end_of_the_run(session):
+    _advance(session, 130)
+    session.submit(Pin(3))
+    _advance(session, 20)
+    session.undo()
+    session.apply_pending()
+    session.seek(10)
+    assert not session.can_redo
+    session.redo()
+    session.apply_pending()
+    assert session.messages == ["redo works at the end of the run: go to tick 150 first"]
+    assert session.tick == 10
+    session.seek(150)
+    session.redo()
+    session.apply_pending()
+    assert session.world.inverse_mass[3] == 0.0
+
+
+def test_undo_takes_the_gesture_that_began_last_whatever_its_number(session):
+    session.submit(Pin(3), gesture=2**40)
+    session.submit(Pin(4), gesture=7)
+    session.undo()
+    session.apply_pending()
+    assert session.world.inverse_mass[3] == 0.0 < session.world.inverse_mass[4]
+
+
 def test_seek_refuses_ticks_that_were_never_reached(session):
     _advance(session, 5)
     for tick in (-1, 6):

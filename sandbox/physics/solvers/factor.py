@@ -15,12 +15,13 @@ def inverse_pivot(pivot, original):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def factorise(first, last, column_start, row, target_start, target, diagonal, lower, scaled):  # type: ignore[no-untyped-def]
+def factorise(first, last, column_start, row, target_start, target, where, diagonal, lower, scaled):  # type: ignore[no-untyped-def]
     """Factor the rows first..last in place.
 
     In: diagonal (n, 3) = the symmetric blocks (xx, xy, yy), lower (k, 4) = the blocks below them (xx, xy, yx, yy) by
     column. Out: diagonal = 1 / d_x, l, 1 / d_y of each row's own two scalars, lower = the blocks of L. Scalars are
     eliminated one by one: with inverted 2x2 blocks the error would grow with the square of stiffness over mass.
+    target: the block that each pair of blocks of a column updates, or empty: found anew then, by way of where (n,).
     scaled (longest column, 4) is scratch.
     """
     for j in range(first, last):
@@ -44,6 +45,7 @@ def factorise(first, last, column_start, row, target_start, target, diagonal, lo
             scaled[k, 3] = lower[at, 3] * inverse_y
         # A_ik -= L_ij D_j L_kj^T for every pair of rows i >= k of the column
         found = target_start[j]
+        known = target.shape[0] > 0
         for at in range(begin, end):
             k = at - begin
             a0 = lower[at, 0]
@@ -51,11 +53,14 @@ def factorise(first, last, column_start, row, target_start, target, diagonal, lo
             a2 = lower[at, 2]
             a3 = lower[at, 3]
             i = row[at]
+            if not known:
+                for block in range(column_start[i], column_start[i + 1]):
+                    where[row[block]] = block
             diagonal[i, 0] -= scaled[k, 0] * a0 + scaled[k, 1] * a1
             diagonal[i, 1] -= scaled[k, 0] * a2 + scaled[k, 1] * a3
             diagonal[i, 2] -= scaled[k, 2] * a2 + scaled[k, 3] * a3
             for below in range(k + 1, end - begin):
-                block = target[found]
+                block = target[found] if known else where[row[begin + below]]
                 found += 1
                 lower[block, 0] -= scaled[below, 0] * a0 + scaled[below, 1] * a1
                 lower[block, 1] -= scaled[below, 0] * a2 + scaled[below, 1] * a3

@@ -210,8 +210,8 @@ def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # ty
     else:
         assemble(first_row, last_row, first, last, rows, springs, matrix)
         factorise(
-            first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.diagonal,
-            matrix.lower, matrix.scaled,
+            first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.where,
+            matrix.diagonal, matrix.lower, matrix.scaled,
         )  # fmt: skip
     _substitute(first_row, last_row, rows, matrix)
 

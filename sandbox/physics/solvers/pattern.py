@@ -17,6 +17,9 @@ from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, Floats, Slots, World
 
 # First guess of blocks in the factor per particle; too low costs one more pass, too high memory.
 FILL_GUESS = 24
+# Updates of a factorisation whose places are kept in a table, 4 bytes each; a body of more, some 15,000 particles of a
+# lattice, finds them anew in every step: half as fast, without gigabytes.
+LARGEST_TABLE = 1 << 25
 
 
 class Rows(NamedTuple):
@@ -63,6 +66,7 @@ class Matrix(NamedTuple):
     row: Slots
     target_start: Slots
     target: NDArray[np.int32]
+    where: Slots
     diagonal: Floats
     lower: Floats
     scaled: Floats
@@ -207,15 +211,17 @@ def _lay_out(
     lengths = np.bincount(keys // count, minlength=count) if count else keys
     column_start = np.append(0, np.cumsum(lengths))
     pairs = np.append(0, np.cumsum(lengths * (lengths - 1) // 2))
-    target = np.zeros(pairs[-1], dtype=np.int32)
-    update_targets(column_start, row, target, np.zeros(count, dtype=np.int64))
+    where = np.zeros(count, dtype=np.int64)
+    target = np.zeros(pairs[-1] if pairs[-1] <= LARGEST_TABLE else 0, dtype=np.int32)
+    if len(target):
+        update_targets(column_start, row, target, where)
     low, high = np.minimum(row_a, row_b), np.maximum(row_a, row_b)
     blocks = np.where(high < count, np.searchsorted(keys, low * count + high), -1)
     in_front = np.flatnonzero((high < count) & (np.append(fronts.of_row, -1)[np.minimum(low, count)] >= 0))
     blocks[in_front] = spring_places(fronts, low[in_front], high[in_front])
     longest = int(lengths.max()) if count else 0
     numbers = np.zeros((count, 3)), np.zeros((len(row), 4)), np.zeros((longest, 4))
-    return Matrix(column_start, row, pairs, target, *numbers, fronts), blocks
+    return Matrix(column_start, row, pairs, target, where, *numbers, fronts), blocks
 
 
 def _scratch_rows(particles: Slots) -> Rows:
