@@ -193,8 +193,8 @@ def clear_fronts(first_row, last_row, mass, fronts):  # type: ignore[no-untyped-
 
 
 @inner_kernel
-def factorise_fronts(first_front, last_front, fronts):  # type: ignore[no-untyped-def]
-    """Factor the fronts first_front..last_front in place; those below them are done."""
+def factorise_fronts(first_front, last_front, fronts, change):  # type: ignore[no-untyped-def]
+    """Factor the fronts first_front..last_front in place, and begin to solve for their rows of change (n, 2)."""
     stride = unsigned(fronts.vector.shape[0])
     for front in range(first_front, last_front):
         pivots = TWO * unsigned(fronts.last[front] - fronts.first[front])
@@ -215,6 +215,7 @@ def factorise_fronts(first_front, last_front, fronts):  # type: ignore[no-untype
             fronts.numbers, base, fronts.remainder, place, pivots, width, fronts.panel, stride, fronts.inverse,
             fronts.inverses, TWO * unsigned(fronts.first[front]),
         )  # fmt: skip
+        _eliminate_rows(front, fronts, change)
 
 
 @inner_kernel
@@ -288,15 +289,25 @@ def _substitute_back(numbers, base, pivots, width, inverses, first_inverse, vect
 
 
 @inner_kernel
-def substitute_fronts(first_front, last_front, fronts, change):  # type: ignore[no-untyped-def]
-    """Solve for the rows of the fronts first_front..last_front of change (n, 2) in place."""
+def _eliminate_rows(front, fronts, change):  # type: ignore[no-untyped-def]
+    _gather(front, fronts, change)
+    _substitute_forward(
+        fronts.numbers, unsigned(fronts.base[front]), TWO * unsigned(fronts.last[front] - fronts.first[front]),
+        unsigned(fronts.width[front]), fronts.inverses, TWO * unsigned(fronts.first[front]), fronts.vector,
+    )  # fmt: skip
+    _scatter(front, fronts, change)
+
+
+@inner_kernel
+def eliminate_rows(first_front, last_front, fronts, change):  # type: ignore[no-untyped-def]
+    """Begin to solve for the rows of the fronts first_front..last_front of change (n, 2), with fronts that are ready."""
     for front in range(first_front, last_front):
-        _gather(front, fronts, change)
-        _substitute_forward(
-            fronts.numbers, unsigned(fronts.base[front]), TWO * unsigned(fronts.last[front] - fronts.first[front]),
-            unsigned(fronts.width[front]), fronts.inverses, TWO * unsigned(fronts.first[front]), fronts.vector,
-        )  # fmt: skip
-        _scatter(front, fronts, change)
+        _eliminate_rows(front, fronts, change)
+
+
+@inner_kernel
+def substitute_fronts(first_front, last_front, fronts, change):  # type: ignore[no-untyped-def]
+    """Finish solving for the rows of the fronts first_front..last_front of change (n, 2), in place."""
     for back in range(last_front - first_front):
         front = last_front - 1 - back
         _gather(front, fronts, change)
@@ -304,4 +315,8 @@ def substitute_fronts(first_front, last_front, fronts, change):  # type: ignore[
             fronts.numbers, unsigned(fronts.base[front]), TWO * unsigned(fronts.last[front] - fronts.first[front]),
             unsigned(fronts.width[front]), fronts.inverses, TWO * unsigned(fronts.first[front]), fronts.vector,
         )  # fmt: skip
-        _scatter(front, fronts, change)
+        k = 0
+        for row in range(fronts.first[front], fronts.last[front]):
+            change[row, 0] = fronts.vector[k]
+            change[row, 1] = fronts.vector[k + 1]
+            k += 2

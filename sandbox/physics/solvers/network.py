@@ -17,7 +17,7 @@ import math
 from sandbox.physics.equation import SHORTEST, direction, reduced_mass
 from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.factor import back_substitute, factorise
-from sandbox.physics.solvers.fronts import add_block, clear_fronts, factorise_fronts, substitute_fronts
+from sandbox.physics.solvers.fronts import add_block, clear_fronts, eliminate_rows, factorise_fronts, substitute_fronts
 
 # Cd is capped here, and Cs with it: nearer to 1 the solution stretches less, but is rejected more often and damps more.
 HIGHEST_COEFFICIENT = 1.0 - 1e-6
@@ -204,27 +204,20 @@ def load_residual(first_row, last_row, first, last, rows, springs, free_count): 
 def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
     """Solve A D = right side for the rows of one body; D is left in `change`."""
     load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
-    if matrix.fronts.of_row[first_row] >= 0:
-        assemble_fronts(first_row, last_row, first, last, rows, springs, matrix)
-        factorise_fronts(matrix.fronts.of_row[first_row], matrix.fronts.of_row[last_row - 1] + 1, matrix.fronts)
-    else:
-        assemble(first_row, last_row, first, last, rows, springs, matrix)
-        factorise(
-            first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.where,
-            matrix.diagonal, matrix.lower, matrix.scaled,
-        )  # fmt: skip
-    _substitute(first_row, last_row, rows, matrix)
-
-
-@inner_kernel
-def _substitute(first_row, last_row, rows, matrix):  # type: ignore[no-untyped-def]
     fronts = matrix.fronts
     if fronts.of_row[first_row] >= 0:
+        assemble_fronts(first_row, last_row, first, last, rows, springs, matrix)
+        factorise_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
         substitute_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
-    else:
-        back_substitute(
-            first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
-        )  # fmt: skip
+        return
+    assemble(first_row, last_row, first, last, rows, springs, matrix)
+    factorise(
+        first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.where,
+        matrix.diagonal, matrix.lower, matrix.scaled,
+    )  # fmt: skip
+    back_substitute(
+        first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
+    )  # fmt: skip
 
 
 @inner_kernel
@@ -259,7 +252,14 @@ def update_impulses(first, last, rows, springs, h, free_count):  # type: ignore[
 def refine(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
     """Solve for what is left of the right side, with the impulses found so far; it is left in `change`."""
     load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
-    _substitute(first_row, last_row, rows, matrix)
+    fronts = matrix.fronts
+    if fronts.of_row[first_row] >= 0:
+        eliminate_rows(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
+        substitute_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
+        return
+    back_substitute(
+        first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
+    )  # fmt: skip
 
 
 @inner_kernel

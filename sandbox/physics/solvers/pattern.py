@@ -138,8 +138,11 @@ def make_pattern(world: World) -> Pattern:
     spring_body = (
         np.cumsum(np.diff(body_of_row, prepend=-1) != 0)[np.minimum(row_a, row_b)] - 1 if len(nodes) else row_a
     )
-    grouped = np.argsort(spring_body, kind="stable")
     fronts = make_fronts(len(nodes), [(int(np.searchsorted(body_of_row, body)), large[body]) for body in sorted(large)])
+    # Springs of a large body in the order of its rows: what a step reads together then lies together.
+    low = np.minimum(row_a, row_b)
+    in_front = np.append(fronts.of_row, -1)[np.minimum(low, len(nodes))] >= 0
+    grouped = np.lexsort((np.where(in_front, low, 0), spring_body))
     matrix, blocks = _lay_out(len(nodes), columns, rank, row_a[grouped], row_b[grouped], fronts)
     anchored = np.zeros(len(first_rows), dtype=np.bool_)
     anchored[spring_body[np.maximum(row_a, row_b) >= len(nodes)]] = True
