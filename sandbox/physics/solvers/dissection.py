@@ -13,12 +13,12 @@ from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.solvers.fronts import PANEL, Fronts
 from sandbox.physics.world import Floats, Slots
 
-# Particles that are not split further. Fewer make many small fronts, more make needless zeros.
-LEAF_SIZE = 24
-# Bodies of fewer particles go to the sparse factorisation; so do those whose borders have fewer rows on average, ropes
-# and bridges, for which dense fronts hold mostly zeros.
+# Particles that are not split further. Fewer make many small fronts, more make needless zeros; measured best of 12..48.
+LEAF_SIZE = 16
+# Bodies of fewer particles go to the sparse factorisation, and so do those whose borders have fewer rows on average,
+# ropes, bridges and strips up to 8 particles wide: there dense fronts hold mostly zeros and take up to twice the time.
 SMALLEST_BODY = 400
-NARROWEST_BORDER = 12.0
+NARROWEST_BORDER = 15.0
 # Halvings that no body exceeds: 2^60 particles.
 DEEPEST = 64
 
