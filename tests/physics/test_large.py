@@ -167,6 +167,22 @@ def test_large_lattices_hung_by_a_corner_barely_stretch(side, ticks):
     assert abs(start - scenes.total_energy(world)) <= 0.01 * scenes.swing_energy(scene)
 
 
+@pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
+def test_a_large_lattice_that_is_dragged_about_keeps_its_shape():
+    world = scenes.lattice(48).world()
+    world.reserve_hands()
+    held = 47
+    world.hold(0, held, tuple(world.position[held]))
+    speeds = np.array([0.1, -0.2, 0.25, -0.1])
+    for tick in range(120):
+        world.move_hand(0, tuple(world.position[world.hand_particle] + [speeds[tick // 30], 0.5 * speeds[tick % 4]]))
+        step(world)
+        assert np.sqrt(np.mean(scenes.square_strains(world))) <= 1e-2
+    world.release(0)
+    run(world, 60)
+    assert np.sqrt(np.mean(scenes.square_strains(world))) <= 1e-4
+
+
 @pytest.mark.parametrize("kind", energy_gate.BOUNDS)
 def test_energy_of_violent_random_graphs_stays_bounded_under_fronts(kind, monkeypatch):
     monkeypatch.setattr(dissection, "SMALLEST_BODY", 1)

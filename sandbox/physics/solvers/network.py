@@ -319,6 +319,7 @@ def largest_misfit(first, last, rows, springs, rest_length, h):  # type: ignore[
         rest = rest_length[springs.slot[k]]
         extent = rest + springs.length[k]
         misfit = abs(math.sqrt(dx * dx + dy * dy) - rest - springs.foreseen[k])
-        if extent > SHORTEST and misfit > largest * extent:
+        # One of rest length 0, such as a hand's, has no strain to be spared.
+        if rest > 0.0 and extent > SHORTEST and misfit > largest * extent:
             largest = misfit / extent
     return 2.0 * largest
