@@ -300,7 +300,7 @@ def _eliminate_rows(front, fronts, change):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def eliminate_rows(first_front, last_front, fronts, change):  # type: ignore[no-untyped-def]
-    """Begin to solve for the rows of the fronts first_front..last_front of change (n, 2), with fronts that are ready."""
+    """Begin to solve for the rows of the factored fronts first_front..last_front of change (n, 2)."""
     for front in range(first_front, last_front):
         _eliminate_rows(front, fronts, change)
 
