@@ -13,6 +13,7 @@ import numpy as np
 
 from sandbox.physics.solvers.pattern import make_pattern
 from sandbox.physics.step import step, warm_up
+from sandbox.physics.world import Floats
 from tests.bench import scenes
 from tests.bench.engines import pymunk_setting
 
@@ -27,6 +28,15 @@ def milliseconds(action: Callable[[], object]) -> float:
     began = time.perf_counter()
     action()
     return 1e3 * (time.perf_counter() - began)
+
+
+def stretch_of(scene: scenes.Scene, position: Floats) -> float:
+    """RMS stretch of a scene's links at positions (n, 2) [m]."""
+    lengths = []
+    for place in (scene.position, position):
+        separation = place[scene.links[:, 1]] - place[scene.links[:, 0]]
+        lengths.append(np.sqrt(np.sum(separation * separation, axis=1)))
+    return float(np.sqrt(np.mean((lengths[1] / lengths[0] - 1.0) ** 2)))
 
 
 def row(side: int, seconds: int, with_pymunk: bool) -> str:
@@ -51,6 +61,7 @@ def row(side: int, seconds: int, with_pymunk: bool) -> str:
     text += f"| {np.sqrt(np.mean(squares)):.1e} | {np.sqrt(np.max(squares)):.1e} | {100 * lost:.3f} % "
     if peer is not None:
         text += f"| {np.mean(peer_times):.2f} | {np.mean(times) / np.mean(peer_times):.2f} "
+        text += f"| {stretch_of(scene, peer.state()[0]):.1e} "
     return text + "|"
 
 
@@ -61,7 +72,7 @@ def main() -> None:
     with_pymunk = importlib.util.find_spec("pymunk") is not None
     warm_up()
     head = "| lattice | springs | first | symbolic | mean ms | p99 | worst | RMS stretch | maximum | energy lost |"
-    head += " pymunk ms | ratio |" if with_pymunk else ""
+    head += " pymunk ms | ratio | its stretch |" if with_pymunk else ""
     print(f"{head}\n|{'---|' * (head.count('|') - 1)}")
     for side in sides:
         print(row(side, seconds, with_pymunk), flush=True)
