@@ -48,6 +48,10 @@ _numba = _import_numba()
 COMPILED = _numba is not None
 _CACHE_FOLDER = _cache_folder() if COMPILED else ""
 
+# Turns an index that is never negative into one that loops are vectorised for: of a signed one numba first asks whether
+# it counts from the end. Never mix the two in one sum: that makes a float.
+unsigned: Any = np.uint64 if COMPILED else int
+
 
 def _viewed(item: Any) -> Any:
     if isinstance(item, np.ndarray):

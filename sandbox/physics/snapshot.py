@@ -18,6 +18,7 @@ class Snapshot:
 
     position: Floats
     velocity: Floats
+    origin: Floats
     mass: Floats
     inverse_mass: Floats
     radius: Floats

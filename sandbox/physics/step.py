@@ -7,6 +7,7 @@ from sandbox.physics.jit import kernel
 from sandbox.physics.quarantine import contain_inputs, contain_outcome
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.solvers.dissection import dissect
 from sandbox.physics.world import Floats, World
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
@@ -77,3 +78,5 @@ def warm_up() -> None:
         world.add_particles(["a", "b"], np.array([[0.0, 0.0], [1.0, 0.0]]))
         world.add_springs(["s", "t"], [0, 0], [1, 1], law=[0, 1])
         step(world)
+    # That is too small a body to be dissected by itself.
+    dissect(np.array([0]), np.array([1]), world.position)

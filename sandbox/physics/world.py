@@ -14,6 +14,7 @@ Slots = NDArray[np.int64]
 PARTICLE_ARRAYS = {
     "position": np.float64,
     "velocity": np.float64,
+    "origin": np.float64,
     "mass": np.float64,
     "inverse_mass": np.float64,
     "radius": np.float64,
@@ -40,7 +41,7 @@ STATE_ARRAYS = (*PARTICLE_ARRAYS, *SPRING_ARRAYS)
 # Constants of springs that the quarantine can take back.
 GUARDED_CONSTANTS = ("rest_length", "stiffness", "damping", "hooke_stiffness", "hooke_damping")
 GUARDED = ("position", "velocity", "mass", *GUARDED_CONSTANTS)
-VECTOR_ARRAYS = frozenset({"position", "velocity", "slow_velocity", "impulse"})
+VECTOR_ARRAYS = frozenset({"position", "velocity", "origin", "slow_velocity", "impulse"})
 
 LAW_NISSEN = 0
 LAW_HOOKE = 1
@@ -62,9 +63,10 @@ BANK_UNOPENED = -1.0
 class World:
     """Particles and springs as a struct of arrays, plus the settings of a tick.
 
-    Arrays, n particles and m springs, float64 unless said: position [m] (n, 2), velocity [m/s] (n, 2), mass [kg],
-    inverse_mass [1/kg] (0 = pinned), radius [m], particle_active (bool); particle_a, particle_b (int32 slots),
-    rest_length [m], stiffness, damping (Cs, Cd per tick), law (int8), hooke_stiffness [N/m], hooke_damping [N s/m],
+    Arrays, n particles and m springs, float64 unless said: position [m] (n, 2), velocity [m/s] (n, 2), origin [m]
+    (n, 2) = where each was created, which orders the direct solver's elimination, mass [kg], inverse_mass [1/kg]
+    (0 = pinned), radius [m], particle_active (bool); particle_a, particle_b (int32 slots), rest_length [m], stiffness,
+    damping (Cs, Cd per tick), law (int8), hooke_stiffness [N/m], hooke_damping [N s/m],
     material (int32 index into material_names, -1 = a hand's), spring_active (bool), impulse [N s] (m, 2) = what the
     iterative solver keeps for its warm start. The direct solver keeps slow_velocity [m/s] (n, 2) = the slow part of the
     velocity, energy_bank [J] (n,) = what a body's earlier losses still allow it, at its free particle of lowest slot
@@ -76,6 +78,7 @@ class World:
 
     position: Floats
     velocity: Floats
+    origin: Floats
     mass: Floats
     inverse_mass: Floats
     radius: Floats
@@ -185,6 +188,7 @@ class World:
         velocities = np.broadcast_to(np.asarray(velocity, dtype=np.float64), (count, 2))
         self._append(
             position=np.asarray(position, dtype=np.float64).reshape(count, 2),
+            origin=np.asarray(position, dtype=np.float64).reshape(count, 2),
             velocity=np.where(is_pinned[:, None], 0.0, velocities),
             slow_velocity=np.where(is_pinned[:, None], 0.0, velocities),
             energy_bank=np.full(count, BANK_UNOPENED),

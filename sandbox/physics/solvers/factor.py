@@ -8,7 +8,8 @@ SMALLEST_PIVOT = 1e-15
 
 
 @inner_kernel
-def _inverse_pivot(pivot, original):  # type: ignore[no-untyped-def]
+def inverse_pivot(pivot, original):  # type: ignore[no-untyped-def]
+    """1 / pivot; 0 where that is not a positive number of the original's order."""
     # Written so that NaN and infinities give 0.
     return 1.0 / pivot if pivot > SMALLEST_PIVOT * original else 0.0
 
@@ -26,9 +27,9 @@ def factorise(first, last, column_start, row, target_start, target, where, diago
     for j in range(first, last):
         xx = diagonal[j, 0]
         yy = diagonal[j, 2]
-        inverse_x = _inverse_pivot(xx, xx)
+        inverse_x = inverse_pivot(xx, xx)
         slant = diagonal[j, 1] * inverse_x
-        inverse_y = _inverse_pivot(yy - slant * diagonal[j, 1], yy)
+        inverse_y = inverse_pivot(yy - slant * diagonal[j, 1], yy)
         diagonal[j, 0] = inverse_x
         diagonal[j, 1] = slant
         diagonal[j, 2] = inverse_y

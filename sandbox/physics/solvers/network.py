@@ -17,6 +17,7 @@ import math
 from sandbox.physics.equation import SHORTEST, direction, reduced_mass
 from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.factor import back_substitute, factorise
+from sandbox.physics.solvers.fronts import add_block, clear_fronts, eliminate_rows, factorise_fronts, substitute_fronts
 
 # Cd is capped here, and Cs with it: nearer to 1 the solution stretches less, but is rejected more often and damps more.
 HIGHEST_COEFFICIENT = 1.0 - 1e-6
@@ -117,6 +118,33 @@ def _growth(dx, dy, ux, uy, length, h):  # type: ignore[no-untyped-def]
     return 0.0
 
 
+@scalar_kernel
+def _block(nx, ny, along, across):  # type: ignore[no-untyped-def]
+    # K n n^T + g (I - n n^T)
+    more = along - across
+    return across + more * nx * nx, more * nx * ny, across + more * ny * ny
+
+
+@inner_kernel
+def assemble_fronts(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
+    """The same matrix as `assemble`, of a large body."""
+    clear_fronts(first_row, last_row, rows.mass, matrix.fronts)
+    free_count = matrix.diagonal.shape[0]
+    numbers = matrix.fronts.numbers
+    diagonal = matrix.fronts.diagonal
+    width = matrix.fronts.row_width
+    for k in range(first, last):
+        xx, xy, yy = _block(springs.normal[k, 0], springs.normal[k, 1], springs.along[k], springs.across[k])
+        a = springs.row_a[k]
+        b = springs.row_b[k]
+        if a < free_count:
+            add_block(numbers, diagonal[a], width[a], 1.0, xx, xy, yy)
+        if b < free_count:
+            add_block(numbers, diagonal[b], width[b], 1.0, xx, xy, yy)
+        if springs.block[k] >= 0:
+            add_block(numbers, springs.block[k], width[min(a, b)], -1.0, xx, xy, yy)
+
+
 @inner_kernel
 def assemble(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
     """A = M + sum [K n n^T + g (I - n n^T)]."""
@@ -132,13 +160,7 @@ def assemble(first_row, last_row, first, last, rows, springs, matrix):  # type: 
         matrix.lower[at, 2] = 0.0
         matrix.lower[at, 3] = 0.0
     for k in range(first, last):
-        nx = springs.normal[k, 0]
-        ny = springs.normal[k, 1]
-        across = springs.across[k]
-        more = springs.along[k] - across
-        xx = across + more * nx * nx
-        xy = more * nx * ny
-        yy = across + more * ny * ny
+        xx, xy, yy = _block(springs.normal[k, 0], springs.normal[k, 1], springs.along[k], springs.across[k])
         a = springs.row_a[k]
         b = springs.row_b[k]
         if a < free_count:
@@ -181,8 +203,14 @@ def load_residual(first_row, last_row, first, last, rows, springs, free_count): 
 @inner_kernel
 def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
     """Solve A D = right side for the rows of one body; D is left in `change`."""
-    assemble(first_row, last_row, first, last, rows, springs, matrix)
     load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
+    fronts = matrix.fronts
+    if fronts.of_row[first_row] >= 0:
+        assemble_fronts(first_row, last_row, first, last, rows, springs, matrix)
+        factorise_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
+        substitute_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
+        return
+    assemble(first_row, last_row, first, last, rows, springs, matrix)
     factorise(
         first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.where,
         matrix.diagonal, matrix.lower, matrix.scaled,
@@ -224,6 +252,11 @@ def update_impulses(first, last, rows, springs, h, free_count):  # type: ignore[
 def refine(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
     """Solve for what is left of the right side, with the impulses found so far; it is left in `change`."""
     load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
+    fronts = matrix.fronts
+    if fronts.of_row[first_row] >= 0:
+        eliminate_rows(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
+        substitute_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
+        return
     back_substitute(
         first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
     )  # fmt: skip
@@ -286,6 +319,7 @@ def largest_misfit(first, last, rows, springs, rest_length, h):  # type: ignore[
         rest = rest_length[springs.slot[k]]
         extent = rest + springs.length[k]
         misfit = abs(math.sqrt(dx * dx + dy * dy) - rest - springs.foreseen[k])
-        if extent > SHORTEST and misfit > largest * extent:
+        # One of rest length 0, such as a hand's, has no strain to be spared.
+        if rest > 0.0 and extent > SHORTEST and misfit > largest * extent:
             largest = misfit / extent
     return 2.0 * largest

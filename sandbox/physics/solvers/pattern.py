@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.jit import kernel
+from sandbox.physics.solvers.dissection import Dissection, dissect_bodies, make_fronts, spring_places
+from sandbox.physics.solvers.fronts import Fronts
 from sandbox.physics.solvers.ordering import label_bodies, minimum_degree, update_targets
 from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, Floats, Slots, World
 
@@ -55,7 +57,10 @@ class Springs(NamedTuple):
 
 
 class Matrix(NamedTuple):
-    """The matrix by columns: blocks below the diagonal, where their updates land, and the numbers."""
+    """The matrix by columns: blocks below the diagonal, where their updates land, and the numbers.
+
+    Columns of large bodies are empty: those are in the fronts.
+    """
 
     column_start: Slots
     row: Slots
@@ -65,6 +70,7 @@ class Matrix(NamedTuple):
     diagonal: Floats
     lower: Floats
     scaled: Floats
+    fronts: Fronts
 
 
 class Bodies(NamedTuple):
@@ -123,7 +129,7 @@ def make_pattern(world: World) -> Pattern:
     index[anchors] = len(nodes) + np.arange(len(anchors))
     end_a, end_b = index[a_chosen], index[b_chosen]
     links = np.flatnonzero((end_a < len(nodes)) & (end_b < len(nodes)))
-    order, label, columns = _eliminate(len(nodes), end_a[links], end_b[links])
+    order, label, columns, large = _eliminate(len(nodes), end_a[links], end_b[links], world.origin[nodes])
     rank = np.arange(len(nodes) + len(anchors))
     rank[order] = np.arange(len(nodes))
     row_a, row_b = rank[end_a], rank[end_b]
@@ -132,8 +138,12 @@ def make_pattern(world: World) -> Pattern:
     spring_body = (
         np.cumsum(np.diff(body_of_row, prepend=-1) != 0)[np.minimum(row_a, row_b)] - 1 if len(nodes) else row_a
     )
-    grouped = np.argsort(spring_body, kind="stable")
-    matrix, blocks = _lay_out(len(nodes), columns, rank, row_a[grouped], row_b[grouped])
+    fronts = make_fronts(len(nodes), [(int(np.searchsorted(body_of_row, body)), large[body]) for body in sorted(large)])
+    # Springs of a large body in the order of its rows: what a step reads together then lies together.
+    low = np.minimum(row_a, row_b)
+    in_front = np.append(fronts.of_row, -1)[np.minimum(low, len(nodes))] >= 0
+    grouped = np.lexsort((np.where(in_front, low, 0), spring_body))
+    matrix, blocks = _lay_out(len(nodes), columns, rank, row_a[grouped], row_b[grouped], fronts)
     anchored = np.zeros(len(first_rows), dtype=np.bool_)
     anchored[spring_body[np.maximum(row_a, row_b) >= len(nodes)]] = True
     bodies = Bodies(
@@ -155,10 +165,28 @@ def make_pattern(world: World) -> Pattern:
     )
 
 
-def _eliminate(count: int, link_a: Slots, link_b: Slots) -> tuple[Slots, Slots, tuple[Slots, Slots]]:
-    """Elimination order of the nodes, bodies one after another; the body of each node; the blocks (column, row)."""
+def _eliminate(
+    count: int, link_a: Slots, link_b: Slots, origin: Floats
+) -> tuple[Slots, Slots, tuple[Slots, Slots], dict[int, Dissection]]:
+    """Elimination order of the nodes, bodies one after another in the order of their lowest nodes.
+
+    Also the body of each node, the blocks (column, row) of small bodies, and the dissections of large ones.
+    """
     label = np.arange(count)
     label_bodies(link_a, link_b, label)
+    large = dissect_bodies(label, link_a, link_b, origin)
+    is_small = ~np.isin(label, list(large))
+    small = np.flatnonzero(is_small)
+    index = np.cumsum(is_small) - 1
+    kept = np.flatnonzero(is_small[link_a])
+    order, columns = _order_small(len(small), index[link_a[kept]], index[link_b[kept]])
+    order = np.concatenate([small[order], *(np.flatnonzero(label == body)[large[body].order] for body in large)])
+    by_body = np.argsort(label[order], kind="stable")
+    return order[by_body], label, (small[columns[0]], small[columns[1]]), large
+
+
+def _order_small(count: int, link_a: Slots, link_b: Slots) -> tuple[Slots, tuple[Slots, Slots]]:
+    """Elimination order of the nodes of small bodies, and the blocks (column, row) of their factor."""
     keys = np.unique(np.concatenate([link_a * count + link_b, link_b * count + link_a]))
     near = keys % count if count else keys
     degree = np.bincount(keys // count, minlength=count) if count else keys
@@ -174,12 +202,12 @@ def _eliminate(count: int, link_a: Slots, link_b: Slots) -> tuple[Slots, Slots, 
         ):  # fmt: skip
             break
         capacity *= 2
-    by_body = np.argsort(label[order], kind="stable")
-    owner = np.repeat(order, np.diff(column_start))
-    return order[by_body], label, (owner, column[: column_start[-1]])
+    return order, (np.repeat(order, np.diff(column_start)), column[: column_start[-1]])
 
 
-def _lay_out(count: int, columns: tuple[Slots, Slots], rank: Slots, row_a: Slots, row_b: Slots) -> tuple[Matrix, Slots]:
+def _lay_out(
+    count: int, columns: tuple[Slots, Slots], rank: Slots, row_a: Slots, row_b: Slots, fronts: Fronts
+) -> tuple[Matrix, Slots]:
     """The matrix, ready for numbers, and the block of each spring (-1: one end is pinned)."""
     keys = np.sort(rank[columns[0]] * count + rank[columns[1]])
     row = keys % count if count else keys
@@ -192,9 +220,11 @@ def _lay_out(count: int, columns: tuple[Slots, Slots], rank: Slots, row_a: Slots
         update_targets(column_start, row, target, where)
     low, high = np.minimum(row_a, row_b), np.maximum(row_a, row_b)
     blocks = np.where(high < count, np.searchsorted(keys, low * count + high), -1)
+    in_front = np.flatnonzero((high < count) & (np.append(fronts.of_row, -1)[np.minimum(low, count)] >= 0))
+    blocks[in_front] = spring_places(fronts, low[in_front], high[in_front])
     longest = int(lengths.max()) if count else 0
     numbers = np.zeros((count, 3)), np.zeros((len(row), 4)), np.zeros((longest, 4))
-    return Matrix(column_start, row, pairs, target, where, *numbers), blocks
+    return Matrix(column_start, row, pairs, target, where, *numbers, fronts), blocks
 
 
 def _scratch_rows(particles: Slots) -> Rows:
