@@ -12,6 +12,7 @@ from sandbox.app.playback import Playback
 from sandbox.app.sliders import LogSlider
 from sandbox.app.widgets import Field, Ui
 from sandbox.level.limits import GRAVITY_LIMIT, SUBSTEPS
+from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.stability import CoefficientLimits, coefficient_limits
@@ -25,7 +26,7 @@ INSIDE = PANEL_WIDTH - 2 * MARGIN
 ROW = 28.0
 ENTRY_WIDTH = 82.0
 # Height that everything takes; in a lower window rows and gaps shrink by the same part.
-FULL_HEIGHT = 578.0
+FULL_HEIGHT = 636.0
 # Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
 LOOK_EVERY = 15
 ALL_MATERIALS = "All springs"
@@ -122,6 +123,9 @@ class Panel:
         self.iterations, self.warm_start = self._pair(
             "Iterations", "Warm start (0 to 1)", (self._type_iterations, self._type_warm_start)
         )
+        self._heading("Energy [J]")
+        columns = (self._place(MARGIN, 0, INSIDE / 2, 34), self._place(MARGIN + INSIDE / 2, 0, INSIDE / 2, 34))
+        self.energies = [TextBlock(ui, place, "", self.back) for place in columns]
 
     def _material_names(self) -> list[str]:
         return list(self.playback.session.world.material_names)
@@ -138,6 +142,8 @@ class Panel:
         self.substeps.show(str(settings.substeps))
         self.iterations.show(str(settings.iterations))
         self.warm_start.show(f"{settings.warm_start:g}")
+        if self._refreshes % LOOK_EVERY == 0 or self.playback.clock.paused:
+            self._show_energy()
         self._refreshes += 1
         fresh = (self.playback.revision, self.material)
         if fresh == self._refreshed_at and self._refreshes % LOOK_EVERY:
@@ -149,6 +155,13 @@ class Panel:
             self._limits_of = key
             self._limits = coefficient_limits(world, self.material)
             self._show_springs()
+
+    def _show_energy(self) -> None:
+        world = self.playback.session.world
+        kinetic, springs, gravity = kinetic_energy(world), spring_energy(world), gravity_energy(world)
+        dissipated = self.playback.dissipation.energy
+        self.energies[0].show_text(f"kinetic {kinetic:.4g}\nsprings {springs:.4g}")
+        self.energies[1].show_text(f"gravity {gravity:.4g}\ndissipated {dissipated:.4g}")
 
     def _chosen(self) -> np.ndarray:
         world = self.playback.session.world

@@ -9,6 +9,7 @@ from sandbox.app.loop import TickClock
 from sandbox.level.model import Level
 from sandbox.physics.snapshot import Snapshot, state_hash
 from sandbox.session.commands import Command, CommandError, Redo, Undo
+from sandbox.session.dissipation import Dissipation
 from sandbox.session.replay import Replay
 from sandbox.session.session import Session
 from sandbox.tools.tool import Response
@@ -26,6 +27,7 @@ class Playback:
         self.level = level
         self.replay = replay
         self.clock = TickClock()
+        self.dissipation = Dissipation()
         self.behind = False
         self.verdict = ""
         self.messages: list[str] = []
@@ -128,7 +130,10 @@ class Playback:
     def _tick(self) -> bool:
         try:
             with np.errstate(over="ignore", invalid="ignore"):
+                self.session.apply_pending()
+                self.dissipation.before(self.session.world)
                 self.session.advance()
+                self.dissipation.after(self.session.world)
         except CommandError as error:
             self._end_watching(f"the recording holds a command that cannot be carried out: {error}")
             return False
