@@ -42,6 +42,7 @@ class App:
         self.scale = display.scale
         self.profile = Profile()
         self._notices: deque[Notice] = deque(maxlen=NOTICES)
+        self._description = ""
         self.running = True
         self.ready = False
         self.show_panel = True
@@ -112,8 +113,14 @@ class App:
         self.stage = Stage(playback, self.viewport, self.scale)
         self.follow(playback)
         self.rebuild()
-        if playback.level.description and playback.replay is None:
-            self.say(playback.level.description)
+        self._describe("" if playback.replay else playback.level.description)
+
+    def _describe(self, description: str) -> None:
+        """Say what a level is about, in place of what the one before it was."""
+        self.status.take_back(self._description)
+        self._description = description
+        if description:
+            self.say(description)
 
     def follow(self, playback: Playback) -> None:
         """Show how far a run is that has to be played again, for an undo or a recording, where that takes long."""
@@ -122,6 +129,7 @@ class App:
     def open_gallery(self, section: str = "levels") -> None:
         """Choose a level or a recording."""
         self.close_gallery()
+        self._describe("")
         self.gallery = Gallery(self.ui, self.files, section, self.close_gallery)
 
     def close_gallery(self) -> None:

@@ -57,6 +57,12 @@ class Camera:
         """Move the picture by pixels."""
         self.centre = (self.centre[0] - dx / self.zoom, self.centre[1] + dy / self.zoom)
 
+    def can_show(self, box: Box) -> bool:
+        """Whether a box [m] is no larger than the widest view."""
+        left, bottom, right, top = box
+        width, height = self.viewport[2] / ZOOM_RANGE[0], self.viewport[3] / ZOOM_RANGE[0]
+        return right - left <= width and top - bottom <= height
+
     def fit(self, box: Box) -> None:
         """Show a box (left, bottom, right, top) [m] as large as it goes."""
         left, bottom, right, top = box

@@ -37,7 +37,8 @@ class Stage:
         self.pressed_by_key = False
         self._hovered: int | None = None
         self._make_tools()
-        self._fit(view_of(playback.level, playback.current))
+        self._first_box = view_of(playback.level, playback.current)
+        self._fit(self._first_box)
 
     def _make_tools(self) -> None:
         new_gesture = self.playback.session.new_gesture
@@ -66,11 +67,17 @@ class Stage:
         self.tool_name = name
 
     def fit(self) -> None:
-        """Show the level's view, or all of its particles; asked for again, all particles wherever they are."""
+        """Show the level's view, or all of its particles; asked for again, all particles wherever they are.
+
+        Where an explosion has carried them farther than any zoom shows, the view that the run began with.
+        """
         snapshot = self.playback.current
         box = view_of(self.playback.level, snapshot)
         if self._is_fitted and self._box == box:
             box = bounds(snapshot.position[shown_particles(snapshot)])
+        if not self.camera.can_show(box):
+            box = self._first_box
+            self.playback.messages.append("Some particles are too far away to be shown. Ctrl+Z or R brings them back.")
         self._fit(box)
 
     def _fit(self, box: Box) -> None:

@@ -57,6 +57,12 @@ class StatusLine:
                 return
         self.notices.append(Notice(text, max(NOTICE_SECONDS, len(text) * SECONDS_A_LETTER)))
 
+    def take_back(self, text: str) -> None:
+        """Show a line no longer."""
+        for notice in list(self.notices):
+            if notice.text == text:
+                self.notices.remove(notice)
+
     def update(self, frame_time: float) -> None:
         """Let notices age by frame_time [s]."""
         for notice in list(self.notices):

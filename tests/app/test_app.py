@@ -8,6 +8,7 @@ import sys
 import numpy as np
 import pygame
 import pytest
+from conftest import small_level
 
 from sandbox.app.app import run_app
 from sandbox.app.display import has_display
@@ -278,6 +279,29 @@ def test_fit_asked_for_again_shows_particles_that_left_the_view(driver):
     driver.app.act("pause")
     driver.app.act("fit")
     assert driver.stage.contains(driver.stage.camera.to_pixels((200.0, 50.0)))
+
+
+def test_fit_shows_the_first_view_where_particles_are_farther_than_any_zoom_shows(open_app):
+    driver = open_app(small_level(view=None))
+    first = driver.stage.camera.centre, driver.stage.camera.zoom
+    driver.world.position[4] = (1e12, 0.0)
+    driver.playback.current = driver.playback.previous = driver.playback.session.snapshot()
+    driver.app.act("pause")
+    driver.app.act("fit")
+    assert (driver.stage.camera.centre, driver.stage.camera.zoom) == first
+    driver.frames()
+    assert any("too far away" in notice for notice in driver.notices)
+
+
+def test_the_description_of_a_level_gives_way_to_that_of_the_next(driver):
+    driver.app.files.open_path(next(path for path in shipped_levels() if path.stem == "girder"))
+    girder = driver.playback.level.description
+    assert girder in driver.notices
+    driver.app.files.open_path(next(path for path in shipped_levels() if path.stem == "mast"))
+    assert girder not in driver.notices
+    assert driver.playback.level.description in driver.notices
+    driver.key(pygame.K_g)
+    assert not driver.notices
 
 
 def test_every_action_of_the_shortcut_table_exists_and_every_action_is_in_the_table(driver):
