@@ -51,7 +51,7 @@ def _fastest_turn(  # type: ignore[no-untyped-def]
         for hand in range(hands):
             if spring_active[hand_spring + hand]:
                 end = particle_b[hand_spring + hand]
-                if (end == a or end == b) and (shortest[hand] == 0.0 or length < shortest[hand]):
+                if end in (a, b) and (shortest[hand] == 0.0 or length < shortest[hand]):
                     shortest[hand] = length
     for hand in range(hands):
         s = hand_spring + hand

@@ -118,7 +118,7 @@ class World:
 
     @property
     def settings(self) -> WorldSettings:
-        """Settings of a tick, replaced as a whole; another solver begins anew what solvers keep from step to step."""
+        """Settings of a tick, replaced as a whole; another solver begins anew what solvers keep, auto the energy banks."""
         return self._settings
 
     @settings.setter
@@ -129,7 +129,6 @@ class World:
             self.impulse[:] = 0.0
             self.tension[:] = 0.0
         if (settings.substeps == AUTO) != (self._settings.substeps == AUTO):
-            # Banks are in another measure of energy, impulses per tick.
             self.energy_bank[:] = BANK_UNOPENED
             self.scale_impulses(self._settings.fewest_substeps / settings.fewest_substeps)
         self._settings = settings

@@ -55,7 +55,7 @@ def extremes(world: World) -> tuple[Floats, Floats]:
 
 
 def cap(stiffness: Floats, damping: Floats, parts: int) -> tuple[Floats, Floats]:
-    """Cs and Cd (m,) of one of `parts` substeps, capped so that a rigid spring has the k of one part, whatever parts."""
+    """Cs and Cd (m,) of one of `parts` substeps, capped so that a rigid spring has the k of one part."""
     if parts == 1:
         return stiffness, damping
     highest = 1.0 - (1.0 - HIGHEST_COEFFICIENT) * (parts * parts)
