@@ -18,6 +18,7 @@ from sandbox.terminal import (
     scale,
     seconds,
     size,
+    substeps,
     tell,
 )
 
@@ -92,7 +93,7 @@ def _parser() -> argparse.ArgumentParser:
     length.add_argument("--seconds", type=seconds, help="simulated time; default 10")
     length.add_argument("--ticks", type=count, help="the same, in ticks")
     run.add_argument("--solver", help="instead of the level's solver")
-    run.add_argument("--substeps", type=int, help="instead of the level's substeps: a power of two, 1 to 64")
+    run.add_argument("--substeps", type=substeps, help="instead of the level's: a power of two, 1 to 64, or auto")
     run.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     run.add_argument("--record", type=Path, metavar="FILE", help="write a replay; .gz compresses")
     run.add_argument("--commands", type=Path, metavar="FILE.jsonl", help="commands to carry out, as lines of a replay")
@@ -251,7 +252,7 @@ def _run_with_bar(session: "Session", ticks: int, on_tick: "Callable[[World], No
     from sandbox.session.commands import CommandError
     from sandbox.session.summary import run
 
-    warm_up()
+    warm_up((session.world.settings.solver,))
     with interrupted_between_ticks() as look_up, progress(ticks) as bar:
 
         def after(world: "World") -> None:

@@ -36,6 +36,11 @@ def scale(text: str) -> float:
     return _number(0.5, 4.0, text)
 
 
+def substeps(text: str) -> int | str:
+    """Substeps of a tick, a whole number or the word auto; the level format says which."""
+    return text if text == "auto" else int(text)
+
+
 def count(text: str) -> int:
     """A number of ticks."""
     if not (text.isdecimal() and len(text) <= COUNT_DIGITS and int(text) >= 1):

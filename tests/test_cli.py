@@ -50,6 +50,21 @@ def test_run_gives_the_same_hash_every_time_and_another_for_other_settings(rope,
     assert len(set(hashes)) == 3
 
 
+def test_a_run_whose_ticks_choose_their_substeps_says_so_and_its_recording_verifies(rope, tmp_path, capsys):
+    replay = tmp_path / "auto.replay.jsonl"
+    moves = tmp_path / "moves.jsonl"
+    moves.write_text(
+        '{"tick": 5, "gesture": 1, "command": {"type": "grab", "grab": 0, "particle": "rope.4", "target": [4, 4]}}\n'
+        '{"tick": 20, "command": {"type": "set_solver", "substeps": 2}}\n'
+        '{"tick": 40, "command": {"type": "set_solver", "substeps": "auto"}}\n'
+    )
+    command = ["run", rope, "--ticks", "130", "--substeps", "auto", "--commands", str(moves), "--record", str(replay)]
+    assert main([*command, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["substeps"] == "auto"
+    assert '"substeps": "auto"' in replay.read_text()
+    assert main(["replay", str(replay)]) == 0
+
+
 def test_a_scripted_run_is_recorded_and_verifies(rope, tmp_path, capsys):
     moves, replay = tmp_path / "moves.jsonl", tmp_path / "run.replay.jsonl"
     moves.write_text(

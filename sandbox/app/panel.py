@@ -14,6 +14,7 @@ from sandbox.app.widgets import Field, Ui
 from sandbox.level.limits import GRAVITY_LIMIT, SUBSTEPS
 from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
+from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.stability import CoefficientLimits, coefficient_limits
 from sandbox.physics.world import LAW_HOOKE
@@ -119,6 +120,7 @@ class Panel:
         self.solver = ui.choice(self._row(ROW, 8), options, self._choose_solver, self.back)
         ui.label(self._row(18, 2), "Substeps", self.back, "@muted")
         counts = [(str(count), str(count), "") for count in SUBSTEPS]
+        counts.insert(0, (AUTO, "Auto", "Every tick takes as many as it needs, 1 to 8"))
         self.substeps = ui.choice(self._row(ROW - 2, 6), counts, self._choose_substeps, self.back)
         self.iterations, self.warm_start = self._pair(
             "Iterations", "Warm start (0 to 1)", (self._type_iterations, self._type_warm_start)
@@ -231,7 +233,7 @@ class Panel:
         self._submit(SetSolver(solver=name))
 
     def _choose_substeps(self, count: str) -> None:
-        self._submit(SetSolver(substeps=int(count)))
+        self._submit(SetSolver(substeps=AUTO if count == AUTO else int(count)))
 
     def _rebuild_menu(self, name: str) -> None:
         if self.menu.selected_option[0] != name:

@@ -3,6 +3,7 @@
 from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, field_validator
+from pydantic_core import PydanticKnownError
 
 from sandbox.level.bodies import AnyBody
 from sandbox.level.checks import CheckDef
@@ -34,6 +35,7 @@ from sandbox.level.quantities import (
     Velocity,
     unit,
 )
+from sandbox.physics.settings import AUTO, Substeps
 from sandbox.physics.solvers import SOLVERS
 
 
@@ -42,10 +44,11 @@ class Settings(Description):
 
     gravity: Gravity = Field(default=(0.0, -9.81), description="Acceleration of every free particle.")
     tick_rate: int = Field(default=60, ge=1, le=10_000, description="Ticks in a second.", json_schema_extra=unit("1/s"))
-    substeps: int = Field(
+    substeps: Substeps = Field(
         default=1,
-        description="Parts that a tick is cut into; coefficients are converted, so springs keep their motion.",
-        json_schema_extra={"enum": list(SUBSTEPS)},
+        description="Parts that a tick is cut into; coefficients are converted, so springs keep their motion. "
+        '"auto": every tick chooses 1, 2, 4 or 8, by how far the springs turn in it.',
+        json_schema_extra={"enum": [*SUBSTEPS, AUTO]},
     )
     solver: str = Field(
         default=DEFAULT_SOLVER,
@@ -60,12 +63,17 @@ class Settings(Description):
         description="Part of the last step's pulling impulses that the iterative solver reuses.",
     )
 
-    @field_validator("substeps")
+    @field_validator("substeps", mode="before")
     @classmethod
-    def _power_of_two(cls, substeps: int) -> int:
-        if substeps in SUBSTEPS:
+    def _count_or_auto(cls, substeps: Any) -> Any:
+        # Before the type is looked at: of a choice of types, the library would list a fault for each.
+        if isinstance(substeps, int) and not isinstance(substeps, bool):
+            if substeps in SUBSTEPS:
+                return substeps
+            raise ValueError("substeps are a power of two: " + ", ".join(map(str, SUBSTEPS)) + f'; or "{AUTO}"')
+        if substeps == AUTO:
             return substeps
-        raise ValueError("substeps are a power of two: " + ", ".join(map(str, SUBSTEPS)))
+        raise PydanticKnownError("int_type")
 
     @field_validator("solver")
     @classmethod

@@ -32,7 +32,10 @@ def kinetic_energy(world: World) -> float:
 
 @_unbounded
 def spring_energy(world: World) -> float:
-    """Sum of k x^2 / 2 [J] over the active springs but the hands', with the k that the world's solver gives them."""
+    """Sum of k x^2 / 2 [J] over the active springs but the hands', with the k that the world's solver gives them.
+
+    With substeps "auto" that is the k of a tick in one part, however many parts the last tick had.
+    """
     h = substep_time(world.settings)
     stiffness, damping = substep_coefficients(world)
     nissen = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, reduced_masses(world), h)

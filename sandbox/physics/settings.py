@@ -1,6 +1,11 @@
 """WorldSettings: the few numbers of a world that are no arrays."""
 
 from dataclasses import dataclass
+from typing import Literal
+
+# Substeps that every tick chooses for itself, see substeps.py.
+AUTO: Literal["auto"] = "auto"
+Substeps = int | Literal["auto"]
 
 
 @dataclass(frozen=True)
@@ -9,7 +14,12 @@ class WorldSettings:
 
     gravity: tuple[float, float] = (0.0, -9.81)
     tick_rate: int = 60
-    substeps: int = 1
+    substeps: Substeps = 1
     solver: str = "iterative"
     iterations: int = 10
     warm_start: float = 0.5
+
+    @property
+    def fewest_substeps(self) -> int:
+        """Substeps that every tick takes at least; what limits, energies and stored impulses are stated for."""
+        return 1 if self.substeps == AUTO else self.substeps

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from sandbox.physics.energy import reduced_masses
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.step import halve, substep_time
+from sandbox.physics.step import substep_time
+from sandbox.physics.substeps import halve
 from sandbox.physics.world import LAW_HOOKE, Floats, World
 
 # (Cs + 2 Cd) times an eigenvalue stays below this, or the mode grows; from the linear theory, not a setting.
@@ -104,7 +105,7 @@ def largest_eigenvalue(world: World) -> float:
 def _demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
     """Cs + 2 Cd of a substep (m,) from Cs and Cd per tick; a Hooke spring's are those that it amounts to."""
     stiffness, damping = stiffness.copy(), damping.copy()
-    halve(stiffness, damping, world.settings.substeps)
+    halve(stiffness, damping, world.settings.fewest_substeps)
     working, mass = _working(world), reduced_masses(world)
     hooke = (world.law == LAW_HOOKE) & working
     h = substep_time(world.settings)
@@ -145,7 +146,7 @@ def _equal_limit(world: World, effective: float) -> float:
 
     def inside(c: float) -> bool:
         stiffness, damping = np.array([c]), np.array([c])
-        halve(stiffness, damping, world.settings.substeps)
+        halve(stiffness, damping, world.settings.fewest_substeps)
         return bool((stiffness[0] + 2.0 * damping[0]) * effective < BOUND)
 
     return _largest(inside)

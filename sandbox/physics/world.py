@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sandbox.physics.settings import WorldSettings
+from sandbox.physics.settings import AUTO, WorldSettings
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
@@ -70,7 +70,8 @@ class World:
     material (int32 index into material_names, -1 = a hand's), spring_active (bool), impulse [N s] (m, 2) = what the
     iterative solver keeps for its warm start. The direct solver keeps slow_velocity [m/s] (n, 2) = the slow part of the
     velocity, energy_bank [J] (n,) = what a body's earlier losses still allow it, at its free particle of lowest slot
-    (-1: to be begun anew), tension [N s] (m,) = the impulse by which a spring pulled in the last step.
+    (-1: to be begun anew), tension [N s] (m,) = the impulse by which a spring pulled in the last step, of a whole tick
+    where substeps are "auto", as impulse then is.
 
     Slots are append-only: an index stays a particle's or spring's handle for ever; removing clears the active flag.
     Pinned particles have velocity 0, except a hand's cursor while it moves.
@@ -120,7 +121,7 @@ class World:
 
     @property
     def settings(self) -> WorldSettings:
-        """Settings of a tick, replaced as a whole; another solver begins anew what solvers keep from step to step."""
+        """Settings of a tick, replaced as a whole; another solver begins anew what solvers keep, auto the energy banks."""
         return self._settings
 
     @settings.setter
@@ -130,7 +131,16 @@ class World:
             self.energy_bank[:] = BANK_UNOPENED
             self.impulse[:] = 0.0
             self.tension[:] = 0.0
+        if (settings.substeps == AUTO) != (self._settings.substeps == AUTO):
+            self.energy_bank[:] = BANK_UNOPENED
+            self.scale_impulses(self._settings.fewest_substeps / settings.fewest_substeps)
         self._settings = settings
+
+    def scale_impulses(self, factor: float) -> None:
+        """Turn what solvers keep of the last step's impulses into those of a step of another length."""
+        if factor != 1.0:
+            self.impulse *= factor
+            self.tension *= factor
 
     @property
     def particle_count(self) -> int:

@@ -18,6 +18,7 @@ from sandbox.level.limits import (
     SPRING_LIMIT,
     SUBSTEPS,
 )
+from sandbox.physics.settings import AUTO, Substeps
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.world import HAND_COUNT, LAW_NISSEN, World
 
@@ -125,11 +126,11 @@ class SetGravity(_Validated):
 
 @dataclass(frozen=True)
 class SetSolver(_Validated):
-    """Set the solver or any of its settings (None = leave); substeps is a power of two."""
+    """Set the solver or any of its settings (None = leave); substeps is a power of two or "auto"."""
 
     solver: str | None = None
     iterations: Annotated[int, Field(ge=1, le=1000)] | None = None
-    substeps: int | None = None
+    substeps: Substeps | None = None
     warm_start: Fraction | None = None
 
 
@@ -296,8 +297,8 @@ def _set_gravity(world: World, command: SetGravity) -> None:
 def _set_solver(world: World, command: SetSolver) -> None:
     if command.solver is not None and command.solver not in SOLVERS:
         raise CommandError(f"there is no solver {command.solver!r}; there are {', '.join(SOLVERS)}")
-    if command.substeps is not None and command.substeps not in SUBSTEPS:
-        raise CommandError(f"substeps is a power of two from 1 to 64, not {command.substeps}")
+    if command.substeps is not None and command.substeps not in (*SUBSTEPS, AUTO):
+        raise CommandError(f'substeps is a power of two from 1 to 64 or "{AUTO}", not {command.substeps}')
     given = {name: value for name, value in asdict(command).items() if value is not None}
     world.settings = replace(world.settings, **given)
 

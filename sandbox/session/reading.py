@@ -6,7 +6,7 @@ import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, BinaryIO
+from typing import Annotated, Any, BinaryIO, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -67,7 +67,7 @@ class _TickLine(_Sealed):
 class _Settings(_Line):
     gravity: tuple[Acceleration, Acceleration]
     tick_rate: Annotated[int, Field(ge=1, le=10000)]
-    substeps: Annotated[int, Field(ge=1, le=64)]
+    substeps: Annotated[int, Field(ge=1, le=64)] | Literal["auto"]
     solver: Annotated[str, Field(max_length=40)]
     iterations: Annotated[int, Field(ge=1, le=1000)]
     warm_start: Fraction

@@ -10,6 +10,7 @@ import numpy as np
 
 from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.query import shown_particles, shown_springs
+from sandbox.physics.settings import Substeps
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.strain import load_bearing, strain
 from sandbox.physics.world import World
@@ -34,7 +35,7 @@ class Summary:
     particles: int
     springs: int
     solver: str
-    substeps: int
+    substeps: Substeps
     max_strain: float
     rms_strain: float
     kinetic_energy: float

@@ -96,7 +96,7 @@ def square_strains(world: World) -> Floats:
 
 def total_energy(world: World) -> float:
     """Kinetic, spring and gravity energy [J], the last at x - h v / 2: symplectic Euler keeps that sum in free fall."""
-    h = 1.0 / (world.settings.tick_rate * world.settings.substeps)
+    h = 1.0 / (world.settings.tick_rate * world.settings.fewest_substeps)
     free = world.inverse_mass > 0.0
     momentum = np.sum(world.mass[free, None] * world.velocity[free], axis=0)
     half = float(np.sum(momentum * np.asarray(world.settings.gravity))) * 0.5 * h

@@ -115,5 +115,5 @@ if __name__ == "__main__":
     from sandbox.physics.jit import COMPILED
 
     print("compiled" if COMPILED else "interpreted")
-    print("\n".join(hashes(chosen, int(substeps), int(ticks))))
+    print("\n".join(hashes(chosen, substeps if substeps == "auto" else int(substeps), int(ticks))))
     print("\n".join(blow_up(chosen, 2 * int(ticks))))

@@ -37,7 +37,7 @@ def test_a_fresh_process_repeats_every_bit(solver):
 
 @needs_numba
 @pytest.mark.parametrize("solver", SOLVERS)
-@pytest.mark.parametrize("substeps", [1, 4])
+@pytest.mark.parametrize("substeps", [1, 4, "auto"])
 def test_compiled_and_interpreted_kernels_give_the_same_bits(solver, substeps):
     compiled, interpreted = lines(solver, substeps), lines(solver, substeps, interpreted=True)
     assert (compiled[0], interpreted[0]) == ("compiled", "interpreted")

@@ -114,6 +114,7 @@ OUTSIDE = [
     ("settings.tick_rate", 10_001),
     ("settings.substeps", 3),
     ("settings.substeps", 128),
+    ("settings.substeps", "Auto"),
     ("settings.solver", "magic"),
     ("settings.iterations", 0),
     ("settings.iterations", 1_001),

@@ -264,7 +264,7 @@ def levels(draw):
         {},
         gravity=points,
         tick_rate=st.integers(1, 10_000),
-        substeps=st.sampled_from([1, 2, 64]),
+        substeps=st.sampled_from([1, 2, 64, "auto"]),
         solver=st.sampled_from(["single_pass", "iterative"]),
         warm_start=coefficients,
     )

@@ -62,6 +62,7 @@ def test_a_material_has_the_defaults_of_the_format():
         ("settings.tick_rate", 1),
         ("settings.tick_rate", 10_000),
         ("settings.substeps", 64),
+        ("settings.substeps", "auto"),
         ("settings.iterations", 1_000),
         ("settings.warm_start", 0),
         ("settings.warm_start", 1),

@@ -69,7 +69,7 @@ def test_all_faults_are_listed_at_once_in_the_order_of_the_file():
     wrong = {**GOOD, "settings": {"tick_rate": 0, "substeps": 3}, "materials": {"steel": {"stiffness": 1.3}}}
     assert faults_of(encoded(wrong)) == [
         "levels/x.json: settings.tick_rate: 0 is below the limit 1",
-        "levels/x.json: settings.substeps: 3: substeps are a power of two: 1, 2, 4, 8, 16, 32, 64",
+        'levels/x.json: settings.substeps: 3: substeps are a power of two: 1, 2, 4, 8, 16, 32, 64; or "auto"',
         "levels/x.json: materials.steel.stiffness: 1.3 is above the limit 1",
     ]
 

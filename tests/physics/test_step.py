@@ -9,7 +9,8 @@ from physics_scenes import STILL, grid_with_diagonals, lengths, network, run, sc
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.step import halve, step, substep_coefficients, substep_time, warm_up
+from sandbox.physics.step import step, substep_coefficients, substep_time, warm_up
+from sandbox.physics.substeps import halve
 from sandbox.physics.world import LAW_HOOKE, World
 
 both_solvers = pytest.mark.parametrize("solver", list(SOLVERS))

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from sandbox.physics.query import shown_particles, shown_springs
+from sandbox.physics.settings import AUTO
 from sandbox.session.commands import (
     CutSprings,
     Grab,
@@ -81,6 +82,6 @@ def _undo_and_redo(session: Session, number: int):
 
 
 def _tune(session: Session, number: int):
-    session.submit(SetSolver(substeps=2 if session.world.settings.substeps == 1 else 1))
+    session.submit(SetSolver(substeps=AUTO if session.world.settings.substeps == 1 else 1))
     session.submit(SetGravity((0.5, -9.81)))
     yield

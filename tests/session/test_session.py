@@ -255,7 +255,7 @@ def test_a_command_in_the_past_starts_a_new_future(session):
         (SetCoefficients(1.5), "stiffness: must be less than or equal to 1"),
         (SetCoefficients(0.5, None, 9), "there is no material 9"),
         (SetSolver("magic"), "there is no solver 'magic'"),
-        (SetSolver(substeps=3), "substeps is a power of two from 1 to 64, not 3"),
+        (SetSolver(substeps=3), 'substeps is a power of two from 1 to 64 or "auto", not 3'),
         (SetGravity((float("inf"), 0.0)), "gravity.0: must be a finite number"),
     ],
 )

@@ -72,7 +72,11 @@ COMMANDS = st.one_of(
     st.builds(AddSpring, SLOTS, SLOTS, st.sampled_from([None, 0.0, 1.5])),
     st.builds(SetCoefficients, SHARES | st.none(), SHARES | st.none(), st.sampled_from([None, 0, 1, 2, 9])),
     st.builds(SetGravity, PLACES),
-    st.builds(SetSolver, st.sampled_from([None, "single_pass", "iterative", "magic"]), substeps=st.integers(1, 4)),
+    st.builds(
+        SetSolver,
+        st.sampled_from([None, "single_pass", "iterative", "magic"]),
+        substeps=st.integers(1, 4) | st.just("auto"),
+    ),
 )
 
 

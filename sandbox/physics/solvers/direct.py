@@ -8,6 +8,8 @@ the body's energy stays within what it had plus what its bank holds of earlier l
 import numpy as np
 
 from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.settings import AUTO
+from sandbox.physics.solvers.measure import cap, extremes
 from sandbox.physics.solvers.network import (
     HIGHEST_COEFFICIENT,
     kinetic,
@@ -46,6 +48,8 @@ NEWTON_HALVINGS = 30
 NEWTON_TOLERANCE = 1e-6
 # Halvings of the velocities before a body is stopped.
 LAST_HALVINGS = 60
+# The measures of springs where the number of parts is fixed: none.
+NOTHING = np.zeros(0)
 
 
 @inner_kernel
@@ -181,13 +185,13 @@ def _keep_tension(first, last, rows, springs, h):  # type: ignore[no-untyped-def
 def _energy(first_row, last_row, first, last, rows, springs, rest_length, h):  # type: ignore[no-untyped-def]
     # H = KE(v') + PE(x + h v')
     return kinetic(first_row, last_row, rows.mass, rows.trial) + potential(
-        first, last, rows.position, rows.trial, springs, rest_length, h, h
+        first, last, rows.position, rows.trial, springs, springs.measured, rest_length, h, h
     )
 
 
 @inner_kernel
 def _open_bank(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, kinetic_after, moved, rest_length, h
+    first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, spread, kinetic_after, moved, rest_length, h
 ):
     # The body's bank before the step. It is begun anew where a particle says so (-1): after any change from outside.
     begun = True
@@ -196,23 +200,35 @@ def _open_bank(  # type: ignore[no-untyped-def]
         if bank[p] < 0.0:
             begun = False
             bank[p] = 0.0
+    held = bank[lowest] if begun else 0.0
+    if spread:
+        # What the most k adds to the measure: of the start, and of the work of hands.
+        hidden = potential(first, last, rows.position, rows.start, springs, springs.hidden, rest_length, 0.0, h)
+        hidden_moved = potential(first, last, rows.moved, rows.moved, springs, springs.hidden, rest_length, 0.0, h)
+        held += max(0.0, hidden_moved - hidden)
+        if not begun:
+            held += hidden
     if not bouncy:
-        return bank[lowest] if begun else 0.0
+        return held
     before = kinetic(first_row, last_row, rows.mass, rows.start)
-    present = potential(first, last, rows.position, rows.start, springs, rest_length, 0.0, h)
-    held = bank[lowest] if begun else BOUNCY_BANK_SHARE * (before + present)
+    present = potential(first, last, rows.position, rows.start, springs, springs.measured, rest_length, 0.0, h)
+    if not begun:
+        held += BOUNCY_BANK_SHARE * (before + present)
     # Work done by gravity and by hands since then counts as energy of the start.
     return max(0.0, held + BOUNCY_BANK_SHARE * (kinetic_after - before + moved - present))
 
 
 @inner_kernel
-def _step_body(first_row, last_row, first, last, rows, springs, matrix, rest_length, lowest, bank, bouncy, h):  # type: ignore[no-untyped-def]
+def _step_body(  # type: ignore[no-untyped-def]
+    first_row, last_row, first, last, rows, springs, matrix, rest_length, lowest, bank, bouncy, spread, h
+):
     kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
-    moved = potential(first, last, rows.moved, rows.moved, springs, rest_length, 0.0, h)
+    moved = potential(first, last, rows.moved, rows.moved, springs, springs.measured, rest_length, 0.0, h)
     before = kinetic_after + moved
     held = _open_bank(
-        first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, kinetic_after, moved, rest_length, h
-    )
+        first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, spread, kinetic_after, moved,
+        rest_length, h,
+    )  # fmt: skip
     allowed = before * (1.0 + ENERGY_ROUNDING) + held
     _take_candidate(first_row, last_row, first, last, rows, springs, matrix, h)
     after = _energy(first_row, last_row, first, last, rows, springs, rest_length, h)
@@ -233,7 +249,10 @@ def _step_body(first_row, last_row, first, last, rows, springs, matrix, rest_len
         if not after <= allowed:
             after = _brake(first_row, last_row, first, last, rows, springs, rest_length, allowed, h)
     share = BOUNCY_BANK_SHARE if bouncy else BANK_SHARE
-    saved = min(held + before - after, share * before)
+    limit = share * before
+    if spread:
+        limit += potential(first, last, rows.position, rows.trial, springs, springs.hidden, rest_length, h, h)
+    saved = min(held + before - after, limit)
     bank[lowest] = saved if saved > 0.0 else 0.0
 
 
@@ -258,7 +277,7 @@ def _brake(first_row, last_row, first, last, rows, springs, rest_length, allowed
 @kernel
 def _solve_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, particle_active, rest_length, stiffness,
-    damping, material, tension, bodies, rows, springs, matrix, gravity_x, gravity_y, h,
+    damping, material, tension, bodies, rows, springs, matrix, least, most, parts, gravity_x, gravity_y, h,
 ):  # fmt: skip
     _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, matrix.diagonal.shape[0], rows)
     for body in range(bodies.lowest.shape[0]):
@@ -272,12 +291,13 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
         # Gravity moves a body without anchors as a whole: started there, it falls without rounding.
         if not bodies.anchored[body]:
             _copy(first_row, last_row, rows.target, rows.trial)
-        bouncy = load_springs(
-            first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs
-        )
+        bouncy, spread = load_springs(
+            first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,
+            least, most, parts,
+        )  # fmt: skip
         _step_body(
             first_row, last_row, first, last, rows, springs, matrix, rest_length, bodies.lowest[body], energy_bank,
-            bouncy, h,
+            bouncy, spread, h,
         )  # fmt: skip
         for r in range(first_row, last_row):
             velocity[rows.particle[r], 0] = rows.trial[r, 0]
@@ -306,11 +326,16 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
     pattern = pattern_of(world)
     if pattern.has_hooke:
         apply_explicit(world, pattern.hooke, stiffness, damping, h)
+    least, most, parts = NOTHING, NOTHING, 0
+    if world.settings.substeps == AUTO:
+        parts = round(1.0 / (h * world.settings.tick_rate))
+        stiffness, damping = cap(stiffness, damping, parts)
+        least, most = extremes(world)
     gravity_x, gravity_y = world.settings.gravity
     _solve_bodies(
         world.position, world.velocity, world.mass, world.inverse_mass, world.slow_velocity, world.energy_bank,
         world.particle_active, world.rest_length, stiffness, damping, world.material, world.tension, pattern.bodies,
-        pattern.rows, pattern.springs, pattern.matrix, gravity_x, gravity_y, h,
+        pattern.rows, pattern.springs, pattern.matrix, least, most, parts, gravity_x, gravity_y, h,
     )  # fmt: skip
 
 

@@ -38,10 +38,15 @@ def implicit_masses(stiffness, damping, mass):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def load_springs(  # type: ignore[no-untyped-def]
-    first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,
+    first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs, least,
+    most, parts,
 ):  # fmt: skip
-    """Bring the springs first..last into their scratch; whether any has Cs > Cd."""
+    """Bring the springs first..last into their scratch; whether any has Cs > Cd, and any a measure that spreads.
+
+    parts: 0, or those of a tick that chooses them, with the measures least and most of each spring (measure.py).
+    """
     bouncy = False
+    spread = False
     for k in range(first, last):
         s = springs.slot[k]
         a = springs.row_a[k]
@@ -56,13 +61,19 @@ def load_springs(  # type: ignore[no-untyped-def]
         springs.pull[k] = pull
         if pull > along:
             bouncy = True
+        springs.measured[k] = pull
+        if parts > 0:
+            springs.measured[k] = mass * least[s] / (parts * parts)
+            springs.hidden[k] = mass * (most[s] - least[s]) / (parts * parts)
+            if most[s] > least[s]:
+                spread = True
         dx = rows.position[b, 0] - rows.position[a, 0]
         dy = rows.position[b, 1] - rows.position[a, 1]
         length = math.sqrt(dx * dx + dy * dy)
         springs.length[k] = length
         springs.error[k] = length - rest_length[s]
         springs.tension[k] = tension[s]
-    return bouncy
+    return bouncy, spread
 
 
 @inner_kernel
@@ -294,8 +305,8 @@ def kinetic(first_row, last_row, mass, velocity):  # type: ignore[no-untyped-def
 
 
 @inner_kernel
-def potential(first, last, position, velocity, springs, rest_length, time, h):  # type: ignore[no-untyped-def]
-    """Energy of one body's springs at position + time velocity [J]: sum of K beta x^2 / (2 h^2)."""
+def potential(first, last, position, velocity, springs, weight, rest_length, time, h):  # type: ignore[no-untyped-def]
+    """Energy of one body's springs at position + time velocity [J]: sum of weight x^2 / (2 h^2)."""
     total = 0.0
     for k in range(first, last):
         a = springs.row_a[k]
@@ -303,7 +314,7 @@ def potential(first, last, position, velocity, springs, rest_length, time, h):  
         dx = position[b, 0] - position[a, 0] + time * (velocity[b, 0] - velocity[a, 0])
         dy = position[b, 1] - position[a, 1] + time * (velocity[b, 1] - velocity[a, 1])
         error = (math.sqrt(dx * dx + dy * dy) - rest_length[springs.slot[k]]) / h
-        total += 0.5 * springs.pull[k] * error * error
+        total += 0.5 * weight[k] * error * error
     return total
 
 

@@ -46,6 +46,8 @@ class Springs(NamedTuple):
     block: Slots
     along: Floats
     pull: Floats
+    measured: Floats
+    hidden: Floats
     length: Floats
     error: Floats
     foreseen: Floats

@@ -1,0 +1,83 @@
+"""Parts of a tick: coefficients of a part, and how many parts a tick takes where that is left to it ("auto").
+
+The choice is a pure function of the state at the tick's start, of + - * / and comparisons alone.
+"""
+
+import numpy as np
+
+from sandbox.physics.equation import half_step
+from sandbox.physics.jit import kernel
+from sandbox.physics.settings import AUTO
+from sandbox.physics.world import HAND_COUNT, World
+
+# No tick chooses more parts than this. 4 leaves a rope dragged at 20 m/s at a stretch above 1e-2, 16 doubles the time.
+MOST_AUTO = 8
+# The ends of a spring move by at most this share of its rest length against each other in a part. A link that turns
+# over within one step is beyond any linear solve; a smaller share costs time on every swing.
+LARGEST_TURN = 0.5
+
+
+@kernel
+def halve(stiffness, damping, substeps):  # type: ignore[no-untyped-def]
+    """Turn Cs and Cd (m,) of a tick into those of a substep, in place; substeps is a power of two."""
+    # One exact halving of h at a time.
+    for s in range(stiffness.shape[0]):
+        parts = 1
+        while parts < substeps:
+            stiffness[s], damping[s] = half_step(stiffness[s], damping[s])
+            parts *= 2
+
+
+@kernel
+def _fastest_turn(  # type: ignore[no-untyped-def]
+    velocity, inverse_mass, particle_a, particle_b, rest_length, spring_active, hand_spring, hands, h, shortest
+):
+    # Largest ((|v_b - v_a| h) / L)^2; a hand's spring, which has no length, counts by the shortest spring at its end.
+    largest = 0.0
+    for s in range(rest_length.shape[0]):
+        held = hand_spring <= s < hand_spring + hands
+        if not spring_active[s] or held:
+            continue
+        length = rest_length[s]
+        a = particle_a[s]
+        b = particle_b[s]
+        if not length > 0.0 or (inverse_mass[a] == 0.0 and inverse_mass[b] == 0.0):
+            continue
+        u = (velocity[b, 0] - velocity[a, 0]) * h / length
+        v = (velocity[b, 1] - velocity[a, 1]) * h / length
+        turn = u * u + v * v
+        if not turn <= largest:
+            largest = turn
+        for hand in range(hands):
+            if spring_active[hand_spring + hand]:
+                end = particle_b[hand_spring + hand]
+                if end in (a, b) and (shortest[hand] == 0.0 or length < shortest[hand]):
+                    shortest[hand] = length
+    for hand in range(hands):
+        s = hand_spring + hand
+        if spring_active[s] and shortest[hand] > 0.0:
+            u = (velocity[particle_b[s], 0] - velocity[particle_a[s], 0]) * h / shortest[hand]
+            v = (velocity[particle_b[s], 1] - velocity[particle_a[s], 1]) * h / shortest[hand]
+            turn = u * u + v * v
+            if not turn <= largest:
+                largest = turn
+    return largest
+
+
+def substep_count(world: World) -> int:
+    """Parts of the coming tick: as set, or, for "auto", the fewest (1, 2, 4, 8) in which no spring turns too far.
+
+    Looked at are the springs' ends as they move at the tick's start, cursors of hands and moved pins included.
+    """
+    if world.settings.substeps != AUTO:
+        return world.settings.substeps
+    # A whole tick's turn, halved at each doubling of the parts.
+    hands = HAND_COUNT if world.hand_spring >= 0 else 0
+    turn = _fastest_turn(
+        world.velocity, world.inverse_mass, world.particle_a, world.particle_b, world.rest_length, world.spring_active,
+        world.hand_spring, hands, 1.0 / world.settings.tick_rate, np.zeros(HAND_COUNT),
+    )  # fmt: skip
+    parts = 1
+    while parts < MOST_AUTO and not turn <= (LARGEST_TURN * parts) * (LARGEST_TURN * parts):
+        parts *= 2
+    return parts
