@@ -195,7 +195,10 @@ class Ui:
     def replace_menu(self, menu: UIDropDownMenu, chosen: str) -> None:
         """Show another chosen option on a menu, which then keeps its place among the widgets."""
         menu.selected_option = (chosen, chosen)
-        menu.rebuild()
+        # The menu's state, closed or open, has a copy of the option and a button that shows it.
+        state: Any = menu.current_state
+        state.selected_option = menu.selected_option
+        state.selected_option_button.set_text(chosen)
 
     def add(self, widget: Painted) -> None:
         """Let a painted widget be reached by Tab."""

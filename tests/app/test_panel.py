@@ -47,6 +47,16 @@ def test_a_chosen_material_alone_is_changed(driver):
     assert coefficients(driver) == (0.3, 0.3, 0.5)
 
 
+def test_the_menu_shows_the_material_that_the_keyboard_chose(driver):
+    menu = driver.app.panel.menu
+    driver.app.ui.focus_on(menu)
+    for wanted in ("default", "steel", "rubber"):
+        driver.key(pygame.K_DOWN)
+        assert menu.selected_option[0] == menu.current_state.selected_option_button.text == wanted
+    driver.key(pygame.K_UP)
+    assert menu.current_state.selected_option_button.text == "steel"
+
+
 def test_the_chosen_material_stays_chosen_in_a_window_of_another_size(driver):
     driver.app.panel._choose_material("rubber")
     driver.app.display.window.size = (900, 620)
