@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.arrays import GUARDED_CONSTANTS
 from sandbox.physics.jit import kernel
-from sandbox.physics.world import GUARDED_CONSTANTS, World
+from sandbox.physics.world import World
 
 # Larger than anything that a level or a command can ask for (1e6 m, 1e9 m/s, 1e9 kg, 1e15 N/m), and small enough that
 # energies stay finite; a mistuned spring that passes it is frozen there.

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.world import STATE_ARRAYS, Floats, World
+from sandbox.physics.world import Floats, World
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,9 +11,9 @@ from typing import Annotated, Any, BinaryIO, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sandbox.level.files import LevelError, parse_level
+from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import PHYSICS_VERSION
-from sandbox.physics.world import STATE_ARRAYS
 from sandbox.session.commands import Acceleration, Fraction, plain_fault
 from sandbox.session.records import ScriptLine
 from sandbox.session.replay import Replay, ReplayError, StoredState, TickHashes

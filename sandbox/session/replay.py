@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.level.model import Level
+from sandbox.physics.arrays import PARTICLE_ARRAYS, STATE_ARRAYS
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, canonical_bytes, hash_by_array, state_hash
-from sandbox.physics.world import PARTICLE_ARRAYS, STATE_ARRAYS, World
+from sandbox.physics.world import World
 from sandbox.session.commands import CommandError
 from sandbox.session.records import ScriptLine
 from sandbox.session.replay_format import decode_state

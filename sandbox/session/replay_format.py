@@ -21,18 +21,10 @@ import numpy as np
 
 from sandbox.level.files import level_data
 from sandbox.level.model import Level
+from sandbox.physics.arrays import PARTICLE_ARRAYS, SPRING_ARRAYS, STATE_ARRAYS, VECTOR_ARRAYS
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.world import (
-    HAND_COUNT,
-    HAND_MATERIAL,
-    PARTICLE_ARRAYS,
-    SPRING_ARRAYS,
-    STATE_ARRAYS,
-    VECTOR_ARRAYS,
-    World,
-    WorldSettings,
-)
+from sandbox.physics.world import HAND_COUNT, HAND_MATERIAL, World, WorldSettings
 
 FORMAT = "spring-sandbox/replay"
 VERSION = 1

@@ -7,9 +7,9 @@ from typing import Any
 
 from sandbox.level.build import build_world
 from sandbox.level.model import Level
+from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.snapshot import Snapshot, restore, take
 from sandbox.physics.step import step
-from sandbox.physics.world import STATE_ARRAYS
 from sandbox.session.commands import Command, CommandError, Grab, Redo, Release, Undo, apply, name_added
 from sandbox.session.recording import Recorder
 from sandbox.session.records import ScriptLine, from_record, to_record

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from physics_scenes import grid, network, run, scaled
 
+from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
-from sandbox.physics.world import LAW_HOOKE, STATE_ARRAYS, World
+from sandbox.physics.world import LAW_HOOKE, World
 
 
 def busy_world(solver="iterative"):

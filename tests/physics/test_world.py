@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from physics_scenes import STILL, grid_with_diagonals, network, rope, run, scaled
 
+from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.energy import kinetic_energy, spring_energy
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
-from sandbox.physics.world import HAND_COUNT, LAW_HOOKE, STATE_ARRAYS, World
+from sandbox.physics.world import HAND_COUNT, LAW_HOOKE, World
 
 
 def held_rope(**options):

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.physics.world import STATE_ARRAYS, VECTOR_ARRAYS
+from sandbox.physics.arrays import STATE_ARRAYS, VECTOR_ARRAYS
 from sandbox.session.commands import AddParticle, AddSpring, CutSprings, Grab, MoveGrab, Pin, Release
 from sandbox.session.reading import read_replay
 from sandbox.session.replay import Divergence, ReplayError, verify
