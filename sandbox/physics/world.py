@@ -118,7 +118,7 @@ class World:
 
     @property
     def settings(self) -> WorldSettings:
-        """Settings of a tick, replaced as a whole; another solver begins anew what solvers keep, auto the energy banks."""
+        """Settings of a tick, replaced as a whole; another solver begins anew what solvers keep, auto the banks."""
         return self._settings
 
     @settings.setter
