@@ -90,7 +90,7 @@ class World:
 
     @property
     def settings(self) -> WorldSettings:
-        """Settings of a tick, replaced as a whole; another solver begins anew what solvers keep."""
+        """Settings of a tick, replaced as a whole; another solver begins anew what solvers keep, auto the banks."""
         return self._settings
 
     @settings.setter

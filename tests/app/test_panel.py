@@ -151,7 +151,8 @@ def test_substeps_iterations_warm_start_and_gravity_reach_the_world(driver):
     assert (settings.substeps, settings.iterations, settings.warm_start) == (8, 25, 0.75)
     assert settings.gravity == (0.0, -3.7)
     driver.click_widget(panel.substeps.buttons["auto"])
-    assert driver.world.settings.substeps == "auto"
+    settings = driver.world.settings
+    assert settings.substeps == "auto"
     for field, typed in (
         (panel.iterations, "2.5"),
         (panel.iterations, "0"),
