@@ -175,7 +175,7 @@ def _play_headless(level: "Level", replay: "Replay | None") -> int:
     seconds = ticks / level.settings.tick_rate
     print(f"no display: playing {level.name!r} headless for {seconds:g} s, the last frame goes to {picture}")
     session = Session(level, replay.script if replay else ())
-    summary = _run_with_bar(session, ticks)
+    summary = _run_with_bar(session, ticks, replay.source if replay else level.name)
     save_picture(session, picture)
     print(summary.text(level.name))
     return EXIT_OK
@@ -193,7 +193,7 @@ def _run(options: argparse.Namespace) -> int:
     if options.record:
         session.record_to(options.record)
     try:
-        summary = _run_with_bar(session, ticks, probe.take)
+        summary = _run_with_bar(session, ticks, options.commands, probe.take)
     except KeyboardInterrupt:
         if session.recording:
             tell([f"{session.recording}: cut off at tick {session.tick}; `sandbox replay --partial` verifies it"])
@@ -247,7 +247,10 @@ def _scripted_session(level: "Level", commands: Path | None) -> "Session":
         raise Refused(*error.faults) from None
 
 
-def _run_with_bar(session: "Session", ticks: int, on_tick: "Callable[[World], None] | None" = None) -> Any:
+def _run_with_bar(
+    session: "Session", ticks: int, source: object, on_tick: "Callable[[World], None] | None" = None
+) -> Any:
+    """Run a session with a progress bar; source: the file that its commands come from."""
     from sandbox.physics.step import warm_up
     from sandbox.session.commands import CommandError
     from sandbox.session.summary import run
@@ -264,7 +267,7 @@ def _run_with_bar(session: "Session", ticks: int, on_tick: "Callable[[World], No
         try:
             return run(session, ticks, after)
         except CommandError as error:
-            raise Refused(f"tick {session.tick}: {error}") from None
+            raise Refused(f"{source}: tick {session.tick}: {error}") from None
 
 
 def _probe(options: argparse.Namespace, world: "World") -> Any:
@@ -339,8 +342,8 @@ def _check_level(name: str) -> int:
     stability = report(world)
     print(f"  stability  {stability.text}")
     print(
-        f"             Cs = Cd up to {stability.proven_limit:.3g} proven, {stability.estimated_limit:.3g} estimated, "
-        f"{stability.article_limit:.3g} by the article's 1/(n+1)"
+        f"  in a single pass Cs = Cd would be stable up to {stability.proven_limit:.3g} proven, "
+        f"{stability.estimated_limit:.3g} estimated, {stability.article_limit:.3g} by the article's 1/(n+1)"
     )
     results = run_checks(level)
     for result in results:
@@ -359,7 +362,7 @@ def _render(options: argparse.Namespace) -> int:
     ticks = round(options.seconds * level.settings.tick_rate)
     if replay and ticks > replay.ticks:
         raise Refused(f"{options.level}: is {replay.ticks / level.settings.tick_rate:g} s long")
-    _run_with_bar(session, ticks)
+    _run_with_bar(session, ticks, options.level)
     from sandbox.app.picture import save_picture
 
     save_picture(session, options.output, options.size)

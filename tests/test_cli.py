@@ -84,7 +84,7 @@ def test_a_script_that_names_nothing_is_refused_with_its_line(rope, tmp_path, ca
     assert main(["run", rope, "--ticks", "60", "--commands", str(moves)]) == 2
     out, err = _lines(capsys)
     assert out == []
-    assert err == ["tick 5: line 1: there is no particle 'rope.99'"]
+    assert err == [f"{moves}: tick 5: line 1: there is no particle 'rope.99'"]
 
 
 def test_probe_and_dump_write_what_happened(rope, tmp_path, capsys):

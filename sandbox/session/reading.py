@@ -241,7 +241,9 @@ def _gather(gathered: _Gathered, line: _Sealed, number: int, where: str) -> None
         raise ReplayError(f"{where}: is of tick {line.tick}, where tick {expected} belongs")  # type: ignore[attr-defined]
     if isinstance(line, _TickLine):
         if set(line.arrays) != set(STATE_ARRAYS):
-            raise ReplayError(f"{where}: arrays: there are {', '.join(STATE_ARRAYS)}")
+            raise ReplayError(
+                f"{where}: arrays: recorded by a version whose state has other arrays; record the run again"
+            )
         hashes = tuple(gathered.once(line.arrays[name]) for name in STATE_ARRAYS)
         gathered.hashes.append(TickHashes(line.hash, hashes))
     elif isinstance(line, _SealedCommand):
