@@ -56,7 +56,9 @@ def step(world: World) -> None:
     contain_inputs(world)
     parts = substep_count(world)
     h = substep_time(settings, parts)
-    stiffness, damping = substep_coefficients(world, parts)
+    # Solvers only read them, so a tick in one part needs no copies.
+    whole = world.stiffness, world.damping
+    stiffness, damping = whole if parts == 1 else substep_coefficients(world, parts)
     # What a solver keeps is an impulse of one step: exact, as parts are a power of two.
     world.scale_impulses(settings.fewest_substeps / parts)
     for _ in range(parts):
