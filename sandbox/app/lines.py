@@ -6,10 +6,20 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.physics.jit import COMPILED, kernel
+from sandbox.physics.jit import COMPILED, kernel, scalar_kernel
 
 # Coordinates beyond this [pixels] are not drawn: float rounding would bend the line, and no screen is that large.
 FARTHEST = 1e7
+
+
+@scalar_kernel
+def _blended(under, red, green, blue, share):  # type: ignore[no-untyped-def]
+    # A packed pixel with share / 256 of a colour laid over it.
+    r, g, b = (under >> 16) & 255, (under >> 8) & 255, under & 255
+    r += ((red - r) * share) >> 8
+    g += ((green - g) * share) >> 8
+    b += ((blue - b) * share) >> 8
+    return 0xFF000000 | (r << 16) | (g << 8) | b
 
 
 @kernel
@@ -57,12 +67,7 @@ def _draw_lines(pixels, ends, colours, half_width, left, top, right, bottom):  #
                     continue
                 share = int(min(cover, 1.0) * 256.0)
                 x, y = (j, i) if steep else (i, j)
-                under = int(pixels[x, y])
-                r, g, b = (under >> 16) & 255, (under >> 8) & 255, under & 255
-                r += ((red - r) * share) >> 8
-                g += ((green - g) * share) >> 8
-                b += ((blue - b) * share) >> 8
-                pixels[x, y] = 0xFF000000 | (r << 16) | (g << 8) | b
+                pixels[x, y] = _blended(int(pixels[x, y]), red, green, blue, share)
 
 
 @kernel
@@ -84,12 +89,7 @@ def _draw_discs(pixels, centres, radii, colours, left, top, right, bottom):  # t
                 if cover <= 0.0:
                     continue
                 share = int(min(cover, 1.0) * 256.0)
-                under = int(pixels[x, y])
-                r, g, b = (under >> 16) & 255, (under >> 8) & 255, under & 255
-                r += ((red - r) * share) >> 8
-                g += ((green - g) * share) >> 8
-                b += ((blue - b) * share) >> 8
-                pixels[x, y] = 0xFF000000 | (r << 16) | (g << 8) | b
+                pixels[x, y] = _blended(int(pixels[x, y]), red, green, blue, share)
 
 
 def _has_plain_pixels(surface: pygame.Surface) -> bool:

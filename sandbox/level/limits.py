@@ -31,8 +31,6 @@ FORMAT = "spring-sandbox/level"
 VERSION = 1
 # The solver of a level that names none; written into every file all the same, so that a file keeps its meaning.
 DEFAULT_SOLVER = "direct"
-# Every solver that the format knows; those that this version has are physics.solvers.SOLVERS.
-KNOWN_SOLVERS = ("single_pass", "iterative", "direct")
 SUBSTEPS = (1, 2, 4, 8, 16, 32, 64)  # powers of two, which the exact map of coefficients needs
 DEFAULT_MATERIAL = "default"
 BODY_RADIUS = 0.05  # [m] of the drawn disc of a body's particles

@@ -100,6 +100,7 @@ def _summary(
     samples = sum(count for _, _, count in window)
     active = int(np.count_nonzero(shown_springs(world)))
     real = sum(not world.is_hand_spring(slot) for slot in range(world.spring_count))
+    springs_hold, gravity_holds = spring_energy(world), gravity_energy(world)
     return Summary(
         ticks=ticks,
         simulated_seconds=ticks / world.settings.tick_rate,
@@ -110,9 +111,9 @@ def _summary(
         max_strain=float(np.max([largest for largest, _, _ in window], initial=0.0)),
         rms_strain=float(np.sqrt(sum(squares for _, squares, _ in window) / samples)) if samples else 0.0,
         kinetic_energy=kinetic_energy(world),
-        potential_energy=spring_energy(world) + gravity_energy(world),
-        spring_energy=spring_energy(world),
-        gravity_energy=gravity_energy(world),
+        potential_energy=springs_hold + gravity_holds,
+        spring_energy=springs_hold,
+        gravity_energy=gravity_holds,
         dissipated_energy=dissipated,
         max_speed=float(speed.max()) if len(speed) else 0.0,
         non_finite=int(np.count_nonzero(~finite)),
