@@ -1,6 +1,7 @@
-"""Models of bodies: rope, bridge, jelly and mesh, as a level file describes them before expansion."""
+"""Models of bodies: rope, bridge, girder, web, wheel, jelly and mesh, as a file describes them before expansion."""
 
-from typing import Annotated, Any, Literal
+from collections.abc import Iterable
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Discriminator, Field, Tag
 
@@ -9,6 +10,7 @@ from sandbox.level.quantities import (
     Angle,
     Description,
     Extras,
+    Group,
     Id,
     Index,
     Length,
@@ -24,19 +26,30 @@ from sandbox.level.quantities import (
 End = Literal["start", "end"]
 
 
-# What every body has. The order of a model's fields is the order in which they are written.
-BodyId = Annotated[
-    Id, Field(description="Name of the body; `id.k` is its k-th particle and `id:k` its k-th spring, from 0.")
-]
-BodyVelocity = Annotated[Velocity, Field(description="Start velocity of every particle that is not pinned.")]
-BodyMaterial = Annotated[Name, Field(description="Name of the material of its springs.")]
+class BodyDef(Description):
+    """What every body has; `file_order` says where its fields stand between those of a kind of body."""
+
+    type: str = Field(description="Kind of body.")
+    id: Id = Field(description="Name of the body; `id.k` is its k-th particle and `id:k` its k-th spring, from 0.")
+    velocity: Velocity = Field(default=(0.0, 0.0), description="Start velocity of every particle that is not pinned.")
+    material: Name = Field(default=DEFAULT_MATERIAL, description="Name of the material of its springs.")
+    pinned: tuple[Index, ...] = Field(default=(), description="Particles that are held, by index.")
+    cut: tuple[Index, ...] = Field(
+        default=(), description="Springs that are left out, by index; the others keep their names."
+    )
+    pose: tuple[Point, ...] | None = Field(
+        default=None,
+        description="Start place of each particle where the body does not start in its own form; "
+        "rest lengths stay those of its form. null = its form.",
+    )
+    group: Group = None
+    extras: Extras = Field(default={})
 
 
-class RopeDef(Description):
+class RopeDef(BodyDef):
     """A chain of particles, placed evenly from start to end, with a spring between each two neighbours."""
 
     type: Literal["rope"] = Field(description="Kind of body.")
-    id: BodyId
     start: Point = Field(description="Place of the first particle, `id.start`.")
     end: Point = Field(description="Place of the last particle, `id.end`.")
     segments: int = Field(ge=1, description="Number of springs; the particles are one more.")
@@ -44,25 +57,61 @@ class RopeDef(Description):
     end_mass: Mass | None = Field(default=None, description="Mass of the last particle; null = `particle_mass`.")
     rest_length: Length | None = Field(default=None, description="Rest length of each spring; null = as placed.")
     pin: tuple[End, ...] = Field(default=(), max_length=2, description='Ends that are held: any of "start", "end".')
-    velocity: BodyVelocity = (0.0, 0.0)
-    material: BodyMaterial = DEFAULT_MATERIAL
-    extras: Extras = Field(default={})
 
 
-class BridgeDef(Description):
+class BridgeDef(BodyDef):
     """A truss: a top row from start to end, a bottom row `height` below, chords, verticals and crossed diagonals."""
 
     type: Literal["bridge"] = Field(description="Kind of body.")
-    id: BodyId
     start: Point = Field(description="Place of the top row's first particle, `id.start`.")
     end: Point = Field(description="Place of the top row's last particle, `id.end`.")
     segments: int = Field(ge=1, description="Number of cells; each row has one particle more.")
     height: Size = Field(default=1.0, description="How far the bottom row lies straight below the top row.")
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
     pin: tuple[End, ...] = Field(default=(), max_length=2, description='Ends where both rows are held: "start", "end".')
-    velocity: BodyVelocity = (0.0, 0.0)
-    material: BodyMaterial = DEFAULT_MATERIAL
-    extras: Extras = Field(default={})
+
+
+class GirderDef(BodyDef):
+    """A Warren truss: a row from start to end, a row on its right half a cell further, chords and zigzag diagonals."""
+
+    type: Literal["girder"] = Field(description="Kind of body.")
+    start: Point = Field(description="Place of the first row's first particle, `id.start`.")
+    end: Point = Field(description="Place of the first row's last particle, `id.end`.")
+    segments: int = Field(ge=1, description="Number of cells, and of the second row's particles; the first has one more.")
+    height: Size = Field(
+        default=1.0, description="How far the second row lies to the right of the way from start to end."
+    )
+    particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
+    pin: tuple[End, ...] = Field(default=(), max_length=2, description='Ends that are held: any of "start", "end".')
+
+
+class WebDef(BodyDef):
+    """A round net: a particle in the centre, rings about it, a thread along every spoke and every ring."""
+
+    type: Literal["web"] = Field(description="Kind of body.")
+    position: Point = Field(default=(0.0, 0.0), description="Place of the particle in the centre, `id.centre`.")
+    angle: Angle = Field(default=0.0, description="Direction of the first spoke, counter-clockwise from the right.")
+    radius: Size = Field(description="Radius of the outermost ring; the others lie evenly inside.")
+    spokes: int = Field(ge=3, description="Number of spokes, and of the particles of each ring.")
+    rings: int = Field(ge=1, description="Number of rings.")
+    particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
+    pin: tuple[Literal["rim"], ...] = Field(
+        default=(), max_length=1, description='"rim": the outermost ring is held.'
+    )
+
+
+class WheelDef(BodyDef):
+    """A rim of two rings, braced crosswise, with a spoke from every particle of the inner ring to a hub."""
+
+    type: Literal["wheel"] = Field(description="Kind of body.")
+    position: Point = Field(default=(0.0, 0.0), description="Place of the hub, `id.hub`.")
+    angle: Angle = Field(default=0.0, description="Direction of the first spoke, counter-clockwise from the right.")
+    radius: Size = Field(description="Radius of the outer ring.")
+    thickness: Size = Field(description="How far the inner ring lies inside the outer; below the radius.")
+    segments: int = Field(ge=3, description="Number of spokes, and of the particles of each ring.")
+    particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
+    hub_mass: Mass | None = Field(default=None, description="Mass of the hub; null = `particle_mass`.")
+    pin: tuple[Literal["hub"], ...] = Field(default=(), max_length=1, description='"hub": the hub is held.')
 
 
 class BoxShape(Description):
@@ -101,26 +150,21 @@ Shape = Annotated[
 ]
 
 
-class JellyDef(Description):
+class JellyDef(BodyDef):
     """A soft body: particles on a square grid inside a shape, each joined to its eight neighbours."""
 
     type: Literal["jelly"] = Field(description="Kind of body.")
-    id: BodyId
     shape: Shape = Field(description='`{"box": [w, h]}`, `{"circle": radius}` or `{"polygon": [[x, y], ...]}`.')
     position: Point = Field(default=(0.0, 0.0), description="Place of the centre, the shape's own [0, 0].")
     angle: Angle = Field(default=0.0, description="Turn about the centre, counter-clockwise.")
     spacing: Spacing = Field(description="Distance of neighbours in the grid; a box stretches it to fit.")
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
-    velocity: BodyVelocity = (0.0, 0.0)
-    material: BodyMaterial = DEFAULT_MATERIAL
-    extras: Extras = Field(default={})
 
 
-class MeshDef(Description):
+class MeshDef(BodyDef):
     """Particles and springs one by one, for whatever the other bodies do not offer."""
 
     type: Literal["mesh"] = Field(description="Kind of body.")
-    id: BodyId
     particles: tuple[Point, ...] = Field(min_length=1, description="Place of each particle.")
     masses: tuple[Mass, ...] | None = Field(
         default=None, description="Mass of each particle; null = 1 each.", json_schema_extra=unit("kg")
@@ -130,13 +174,22 @@ class MeshDef(Description):
         description="Start velocity of each particle, added to the body's `velocity`; null = none.",
         json_schema_extra=unit("m/s"),
     )
-    pinned: tuple[Index, ...] = Field(default=(), description="Particles that are held, by index.")
     springs: tuple[tuple[Index, Index], ...] = Field(
         default=(), description="Pairs of particles, by index, that a spring joins; rest lengths are as placed."
     )
-    velocity: BodyVelocity = (0.0, 0.0)
-    material: BodyMaterial = DEFAULT_MATERIAL
-    extras: Extras = Field(default={})
 
 
-AnyBody = Annotated[RopeDef | BridgeDef | JellyDef | MeshDef, Field(discriminator="type")]
+AnyBody = Annotated[
+    RopeDef | BridgeDef | GirderDef | WebDef | WheelDef | JellyDef | MeshDef, Field(discriminator="type")
+]
+# Kinds of body by the name that a file gives them, in the order in which they are explained.
+KINDS: dict[str, type[BodyDef]] = {
+    get_args(kind.model_fields["type"].annotation)[0]: kind for kind in get_args(get_args(AnyBody)[0])
+}
+
+
+def file_order(names: Iterable[str]) -> list[str]:
+    """Names of fields of a body in the order of a file: type, id, those of its kind, then the others of every body."""
+    first = ("type", "id")
+    last = tuple(name for name in BodyDef.model_fields if name not in first)
+    return sorted(names, key=lambda name: 0 if name in first else 2 if name in last else 1)

@@ -3,12 +3,13 @@
 import json
 from typing import Any
 
+from sandbox.level.bodies import file_order
 from sandbox.level.model import Level, Settings
 
 # A value goes on one line where it fits into this many columns; otherwise its items go one to a line.
 _WIDTH = 100
 # Parts of a level whose items always go one to a line, so that adding one changes one line.
-_LISTED = ("materials", "bodies", "particles", "springs", "checks")
+_LISTED = ("materials", "bodies", "particles", "springs", "welds", "checks")
 
 
 def level_data(level: Level) -> dict[str, Any]:
@@ -16,6 +17,8 @@ def level_data(level: Level) -> dict[str, Any]:
     data = level.model_dump(mode="json", exclude_defaults=True)
     settings = data.get("settings", {}) | {"solver": level.settings.solver}
     data["settings"] = {name: settings[name] for name in Settings.model_fields if name in settings}
+    if "bodies" in data:
+        data["bodies"] = [{name: body[name] for name in file_order(body)} for body in data["bodies"]]
     return {name: data[name] for name in Level.model_fields if name in data}
 
 

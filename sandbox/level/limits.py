@@ -3,7 +3,7 @@
 # Reading a hostile file costs time and memory in proportion to these.
 FILE_LIMIT = 8 * 1024 * 1024  # [bytes]
 DEPTH_LIMIT = 32  # lists and objects inside each other
-CONTAINER_LIMIT = 1_000_000  # lists and objects in one file; a full mesh has 600,000
+CONTAINER_LIMIT = 1_000_000  # lists and objects in one file; a full mesh with velocities, pose and welds has 800,000
 TEXT_LIMIT = 256  # [characters] of any string
 TAG_LIMIT = 100
 MATERIAL_LIMIT = 1_000

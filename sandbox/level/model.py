@@ -22,6 +22,7 @@ from sandbox.level.quantities import (
     Description,
     Extras,
     Gravity,
+    Group,
     HookeDamping,
     HookeStiffness,
     Id,
@@ -121,16 +122,18 @@ class ParticleDef(Description):
     mass: Mass = Field(default=1.0, description="Mass.")
     radius: Length = Field(default=0.05, description="Radius of the drawn disc.")
     pinned: bool = Field(default=False, description="Whether it is held where it is.")
+    group: Group = None
     extras: Extras = Field(default={})
 
 
 class SpringDef(Description):
     """A loose spring between two particles of the level; the k-th of the list is named `:k`."""
 
-    a: Name = Field(description="One end: `id`, `id.k`, `id.start` or `id.end`.")
+    a: Name = Field(description="One end: `id`, `id.k`, or a name such as `id.start`.")
     b: Name = Field(description="The other end.")
     rest_length: Length | None = Field(default=None, description="Rest length; null = as placed.")
     material: Name = Field(default=DEFAULT_MATERIAL, description="Name of its material.")
+    group: Group = None
     extras: Extras = Field(default={})
 
 
@@ -154,6 +157,11 @@ class Level(Description):
     bodies: tuple[AnyBody, ...] = Field(default=(), description="Bodies, in the order of their particles and springs.")
     particles: tuple[ParticleDef, ...] = Field(default=(), description="Loose particles, after those of the bodies.")
     springs: tuple[SpringDef, ...] = Field(default=(), description="Loose springs, after those of the bodies.")
+    welds: tuple[tuple[Name, Name], ...] = Field(
+        default=(),
+        description="Pairs of particles that are one: their masses add, and it stands where the first of them in "
+        "order does. Both names find it.",
+    )
     checks: tuple[CheckDef, ...] = Field(
         default=(), max_length=CHECK_LIMIT, description="What must hold of the level's run."
     )

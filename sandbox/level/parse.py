@@ -36,12 +36,13 @@ _FLOOD = 2_000
 _PIECE = 500
 _LARGE = 1024 * 1024  # [bytes]
 
-_MESH_LISTS = ("particles", "masses", "velocities", "pinned")
-_MESH_LIMITS = {"springs": SPRING_LIMIT} | dict.fromkeys(_MESH_LISTS, PARTICLE_LIMIT)
+_BODY_LISTS = ("particles", "masses", "velocities", "pinned", "pose")
+_BODY_LIMITS = {"springs": SPRING_LIMIT, "cut": SPRING_LIMIT} | dict.fromkeys(_BODY_LISTS, PARTICLE_LIMIT)
 _LEVEL_LIMITS = {
     "bodies": PARTICLE_LIMIT,
     "particles": PARTICLE_LIMIT,
     "springs": SPRING_LIMIT,
+    "welds": PARTICLE_LIMIT,
     "tags": TAG_LIMIT,
     "checks": CHECK_LIMIT,
     "materials": MATERIAL_LIMIT,
@@ -161,8 +162,8 @@ def _too_long(raw: dict[str, Any]) -> Iterator[Fault]:
     bodies = raw.get("bodies")
     if not whole and isinstance(bodies, list):
         for index, body in enumerate(bodies):
-            if isinstance(body, dict) and body.get("type") == "mesh":
-                yield from _long_lists(("bodies", index), body, _MESH_LIMITS)
+            if isinstance(body, dict):
+                yield from _long_lists(("bodies", index), body, _BODY_LIMITS)
 
 
 def _long_lists(path: tuple[Any, ...], holder: dict[str, Any], limits: dict[str, int]) -> Iterator[Fault]:

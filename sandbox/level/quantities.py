@@ -56,3 +56,4 @@ HookeDamping = Annotated[float, Field(ge=0.0, le=HOOKE_LIMIT, json_schema_extra=
 Seconds = Annotated[float, Field(ge=0.0, le=SECONDS_LIMIT, json_schema_extra=unit("s"))]
 Index = Annotated[int, Field(ge=0)]
 Extras = Annotated[dict[str, Any], Field(description="Data of other tools; kept and ignored.")]
+Group = Annotated[Name | None, Field(description="Group that it is selected and moved with in the editor.")]

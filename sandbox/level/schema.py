@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from sandbox.level.bodies import KINDS, file_order
 from sandbox.level.model import Level
 
 # Titles of the definitions, in the order in which the reference explains them.
@@ -11,6 +12,9 @@ TITLES = {
     "HookeMaterial": "Hooke material",
     "RopeDef": "Rope",
     "BridgeDef": "Bridge",
+    "GirderDef": "Girder",
+    "WebDef": "Web",
+    "WheelDef": "Wheel",
     "JellyDef": "Jelly",
     "BoxShape": "Box",
     "CircleShape": "Circle",
@@ -27,4 +31,7 @@ def schema() -> dict[str, Any]:
     result = Level.model_json_schema()
     for name, definition in result["$defs"].items():
         definition["title"] = TITLES[name]
+    for kind in KINDS.values():
+        definition = result["$defs"][kind.__name__]
+        definition["properties"] = {name: definition["properties"][name] for name in file_order(definition["properties"])}
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **result, "title": "Spring Sandbox level"}

@@ -5,7 +5,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from sandbox.level.bodies import BoxShape, BridgeDef, CircleShape, JellyDef, MeshDef, PolygonShape, RopeDef
+from sandbox.level.bodies import KINDS, BoxShape, CircleShape, PolygonShape
 from sandbox.level.checks import CheckDef
 from sandbox.level.faults import Fault, json_path, shown, suggestion
 from sandbox.level.model import HookeMaterial, Level, NissenMaterial, ParticleDef, Settings, SpringDef
@@ -13,7 +13,6 @@ from sandbox.level.quantities import ID_PATTERN
 
 Location = tuple[Any, ...]
 
-_BODIES: dict[str, type[BaseModel]] = {"rope": RopeDef, "bridge": BridgeDef, "jelly": JellyDef, "mesh": MeshDef}
 _SHAPES: dict[str, type[BaseModel]] = {"box": BoxShape, "circle": CircleShape, "polygon": PolygonShape}
 _MATERIALS: dict[str, type[BaseModel]] = {"nissen": NissenMaterial, "hooke": HookeMaterial}
 _MODELS: dict[str, type[BaseModel]] = {
@@ -22,7 +21,7 @@ _MODELS: dict[str, type[BaseModel]] = {
     "springs": SpringDef,
     "checks": CheckDef,
 }
-_KINDS = "use rope, bridge, jelly or mesh"
+_KINDS = "use {} or {}".format(", ".join([*KINDS][:-1]), [*KINDS][-1])
 _SHAPE_FORMS = 'a shape is {"box": [width, height]}, {"circle": radius} or {"polygon": [[x, y], ...]}'
 
 
@@ -51,8 +50,8 @@ def _fault(error: dict[str, Any]) -> Fault:
     parts, context = place(location), error.get("ctx", {})
     if kind == "missing":
         if isinstance(location[-1], int):
-            needed = 4 if location[0] == "view" else 2
-            return json_path(parts[:-1]), f"needs {needed} numbers, has {len(value)}"
+            needed = "4 numbers" if location[0] == "view" else "2 names" if location[0] == "welds" else "2 numbers"
+            return json_path(parts[:-1]), f"needs {needed}, has {len(value)}"
         return json_path(parts), "is missing; it has no default"
     if kind.startswith("union_tag") or (kind == "dict_type" and len(parts) == 2 and parts[0] == "bodies"):
         return _kind_fault(parts, kind, value)
@@ -82,7 +81,7 @@ def _model(location: Location) -> type[BaseModel]:
     if len(location) == 1:
         return Level
     if location[0] == "bodies":
-        return _SHAPES[location[4]] if len(location) > 5 else _BODIES[location[2]]
+        return _SHAPES[location[4]] if len(location) > 5 else KINDS[location[2]]
     return _MATERIALS[location[2]] if location[0] == "materials" else _MODELS[location[0]]
 
 
