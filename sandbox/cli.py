@@ -377,9 +377,11 @@ def _format(options: argparse.Namespace) -> int:
     from sandbox.level.files import LevelError, read_level, write_level
 
     try:
-        write_level(read_level(options.file), options.file)
+        warning = write_level(read_level(options.file), options.file)
     except LevelError as error:
         raise Refused(*error.faults) from None
+    if warning:
+        print(warning, file=sys.stderr)
     return EXIT_OK
 
 

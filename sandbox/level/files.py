@@ -1,8 +1,6 @@
-"""Level files: read with limits first, write in one step that cannot leave half a file, find what is shipped."""
+"""Level files: read with limits first, write so that no level is lost, find what is shipped."""
 
-import contextlib
 import os
-import secrets
 import stat
 from pathlib import Path
 
@@ -12,6 +10,7 @@ from sandbox.level.limits import FILE_LIMIT
 from sandbox.level.model import Level
 from sandbox.level.parse import parse_level
 from sandbox.level.validate import check_level
+from sandbox.level.writing import refusal_of, write_over
 
 __all__ = [
     "LevelError",
@@ -46,17 +45,21 @@ def load_level(name: str | os.PathLike[str]) -> Level:
     raise LevelError(text, [("", "there is no such file and no shipped level of that name" + hint)])
 
 
-def write_level(level: Level, path: str | os.PathLike[str]) -> None:
-    """Write a level in canonical form, whole or not at all. Raises LevelError where it could not be read back."""
+def write_level(level: Level, path: str | os.PathLike[str], backups: Path | None = None) -> str | None:
+    """Write a level in canonical form, whole or not at all. Raises LevelError where it could not be read back.
+
+    Where the place cannot replace a file in one step, a copy of the old one is kept first (beside it, or in the
+    folder `backups`): the warning that says so, else None.
+    """
     source = os.fspath(path)
     check_level(level, source)
     data = level_text(level).encode()
     if len(data) > FILE_LIMIT:
         raise LevelError(source, [("", f"would be larger than {FILE_LIMIT // 1024 // 1024} MiB; make it smaller")])
     try:
-        _replace(Path(os.path.realpath(source)), data)
+        return write_over(Path(os.path.realpath(source)), data, backups)
     except (OSError, ValueError) as error:
-        raise LevelError(source, [("", f"cannot be written: {_reason(error)}")]) from None
+        raise LevelError(source, [("", f"cannot be written: {refusal_of(error)}")]) from None
 
 
 def shipped_folder(kind: str) -> Path:
@@ -84,34 +87,4 @@ def _read(source: str) -> bytes:
     except LevelError:
         raise
     except (OSError, ValueError) as error:
-        raise LevelError(source, [("", f"cannot be read: {_reason(error)}")]) from None
-
-
-def _reason(error: OSError | ValueError) -> str:
-    if isinstance(error, ValueError):  # which each Python words in its own way
-        return "the name holds a null character"
-    text = error.strerror or str(error)
-    return text[:1].lower() + text[1:]
-
-
-def _replace(path: Path, data: bytes) -> None:
-    temporary = path.with_name(f".{secrets.token_hex(8)}.tmp")
-    try:
-        with open(temporary, "xb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        if path.exists():
-            os.chmod(temporary, stat.S_IMODE(path.stat().st_mode))
-        os.replace(temporary, path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(temporary)
-        raise
-    # Only where a folder can be opened does its entry need, and allow, to be flushed too.
-    with contextlib.suppress(OSError):
-        folder = os.open(path.parent, os.O_RDONLY)
-        try:
-            os.fsync(folder)
-        finally:
-            os.close(folder)
+        raise LevelError(source, [("", f"cannot be read: {refusal_of(error)}")]) from None
