@@ -83,10 +83,10 @@ class FileActions:
 
     def toggle_recording(self) -> None:
         """Start recording the run, its beginning included, or stop and ask for a name."""
-        stage = self.app.stage
-        if stage is None:
+        play = self.app.play
+        if play is None:
             return
-        session = stage.playback.session
+        session = play.playback.session
         if session.recording is not None:
             self._stop_and_name()
             return
@@ -96,16 +96,16 @@ class FileActions:
 
     def save_run(self) -> None:
         """Save the run so far as a replay, under a name that is asked for."""
-        stage = self.app.stage
-        if stage is None:
+        play = self.app.play
+        if play is None:
             return
-        if stage.playback.session.recording is None and self._record_now() is None:
+        if play.playback.session.recording is None and self._record_now() is None:
             return
         self._stop_and_name()
 
     def _record_now(self) -> Path | None:
-        assert self.app.stage is not None
-        playback = self.app.stage.playback
+        assert self.app.play is not None
+        playback = self.app.play.playback
         try:
             path = free_path(recordings_folder(), plain_name(playback.level.name))
             playback.session.record_to(path)
@@ -115,8 +115,8 @@ class FileActions:
         return path
 
     def _stop_and_name(self) -> None:
-        assert self.app.stage is not None
-        path = self.app.stage.playback.session.stop_recording()
+        assert self.app.play is not None
+        path = self.app.play.playback.session.stop_recording()
         if path is None:
             return
         self.app.say(f"Saved as {path}")
@@ -151,13 +151,6 @@ class FileActions:
             self.app.say(f"{path} cannot be removed: {error.strerror or error}.")
         else:
             self.app.say(f"Removed {path.name}.")
-
-    def leave_recording(self) -> None:
-        """End a recording that is being made; its file is complete."""
-        stage = self.app.stage
-        path = stage.playback.session.stop_recording() if stage is not None else None
-        if path is not None:
-            self.app.say(f"Saved as {path}")
 
 
 def _move(path: Path, wanted: Path) -> None:

@@ -112,10 +112,11 @@ class Gallery:
     def __init__(self, ui: Ui, files: "FileActions", section: str, close: Callable[[], None]) -> None:
         self._ui, self._files = ui, files
         self.cards: list[Card] = []
+        self.section = section
         self._unpainted: list[tuple[Card, Level]] = []
         self._scroll = 0.0
         self._columns = 1
-        self.sheet = ui.open_sheet(close if files.app.stage is not None else lambda: None, "@cover")
+        self.sheet = ui.open_sheet(close if files.app.screen is not None else lambda: None, "@cover")
         width, height = ui.units
         ui.label(ui.rect(MARGIN, 26, 400, 40), "Spring Sandbox", self.sheet, "@display")
         options = [("levels", "Levels", ""), ("recordings", "Replays", "")]

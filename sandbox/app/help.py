@@ -6,7 +6,7 @@ import pygame
 
 from sandbox.app.colours import ACCENT, MUTED, TEXT
 from sandbox.app.painted import Painted
-from sandbox.app.shortcuts import GROUPS, SHORTCUTS, Shortcut
+from sandbox.app.shortcuts import Mode, Shortcut, shortcuts
 from sandbox.app.widgets import Ui
 
 # Sizes in layout units.
@@ -16,16 +16,14 @@ ROW = 22.0
 HEADING = 34.0
 TOP = 62.0
 MARGIN = 28.0
-# Groups by column, in windows that are wide enough for two.
-COLUMNS = (("Tools", "View"), ("Time", "Files", "Keyboard"))
 
 
-def show_help(ui: Ui) -> None:
-    """Cover the window by the list of all shortcuts, until it is closed."""
+def show_help(ui: Ui, mode: Mode) -> None:
+    """Cover the window by the list of a mode's shortcuts, until it is closed."""
     width, height = ui.units
-    columns = COLUMNS if width >= 2 * NARROWEST_COLUMN + 20 else (GROUPS,)
+    columns = _columns(shortcuts(mode), 2 if width >= 2 * NARROWEST_COLUMN + 20 else 1)
     box_width = min(len(columns) * COLUMN_WIDTH, width - 16)
-    box_height = min(TOP + max(_height(groups) for groups in columns) + MARGIN, height - 16)
+    box_height = min(TOP + max(map(_height, columns)) + MARGIN, height - 16)
 
     def close() -> None:
         ui.close_sheet(sheet)
@@ -39,8 +37,19 @@ def show_help(ui: Ui) -> None:
     ui.focus_on(button)
 
 
-def _height(groups: tuple[str, ...]) -> float:
-    return sum(HEADING + ROW * sum(entry.group == group for entry in SHORTCUTS) for group in groups)
+Column = dict[str, list[Shortcut]]
+
+
+def _columns(entries: tuple[Shortcut, ...], count: int) -> list[Column]:
+    """The entries by their groups, whole groups side by side in columns of about the same height."""
+    columns: list[Column] = [{} for _ in range(count)]
+    for group in dict.fromkeys(entry.group for entry in entries):
+        min(columns, key=_height)[group] = [entry for entry in entries if entry.group == group]
+    return columns
+
+
+def _height(column: Column) -> float:
+    return sum(HEADING + ROW * len(entries) for entries in column.values())
 
 
 def _keys(entry: Shortcut) -> str:
@@ -50,29 +59,27 @@ def _keys(entry: Shortcut) -> str:
 class ShortcutTable(Painted):
     """All shortcuts in columns; rows move closer together where the window is low."""
 
-    def __init__(self, ui: Ui, rect: pygame.Rect, columns: tuple[tuple[str, ...], ...], container: Any) -> None:
+    def __init__(self, ui: Ui, rect: pygame.Rect, columns: list[Column], container: Any) -> None:
         super().__init__(ui, rect, container)
         self.columns = columns
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """The whole table."""
         surface = pygame.Surface(size, pygame.SRCALPHA)
-        tallest = max(_height(groups) for groups in self.columns)
-        row = min(1.0, size[1] / self.ui.px(tallest))
-        for index, groups in enumerate(self.columns):
-            self._paint_column(surface, index * size[0] // len(self.columns), groups, row)
+        row = min(1.0, size[1] / self.ui.px(max(map(_height, self.columns))))
+        for index, column in enumerate(self.columns):
+            self._paint_column(surface, index * size[0] // len(self.columns), column, row)
         return surface
 
-    def _paint_column(self, surface: pygame.Surface, left: int, groups: tuple[str, ...], squeeze: float) -> None:
+    def _paint_column(self, surface: pygame.Surface, left: int, column: Column, squeeze: float) -> None:
         ui, y = self.ui, 0.0
         size = 12.5 * max(squeeze, 0.7)
-        shown = [entry for entry in SHORTCUTS if entry.group in groups]
-        widest = max(ui.font(size, True).size(_keys(entry))[0] for entry in shown)
-        for group in groups:
+        widest = max(ui.font(size, True).size(_keys(entry))[0] for entries in column.values() for entry in entries)
+        for group, entries in column.items():
             heading = ui.font(11 * max(squeeze, 0.7), True).render(group.upper(), True, MUTED)
             surface.blit(heading, (left, ui.px(y + (HEADING - 22) * squeeze)))
             y += HEADING * squeeze
-            for entry in (entry for entry in SHORTCUTS if entry.group == group):
+            for entry in entries:
                 keys = ui.font(size, True).render(_keys(entry), True, ACCENT)
                 surface.blit(keys, (left, ui.px(y)))
                 label = ui.font(size).render(entry.label, True, TEXT)

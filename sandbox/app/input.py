@@ -1,5 +1,6 @@
 """Input: pygame's events to widgets first, then to the world; pygame's events end here."""
 
+import math
 from typing import TYPE_CHECKING
 
 import pygame
@@ -11,6 +12,8 @@ if TYPE_CHECKING:
 
 # A press of Space shorter than this [s], without a drag, is the pause key; longer ones are a hand for panning.
 TAP_SECONDS = 0.35
+# The second press of a double click comes no later [s].
+DOUBLE_SECONDS = 0.4
 # With Ctrl these belong to the line of text: all, copy, paste, cut, undo, redo.
 EDITING_KEYS = (pygame.K_a, pygame.K_c, pygame.K_v, pygame.K_x, pygame.K_z, pygame.K_y)
 # Actions that go on while their key is held down.
@@ -36,6 +39,7 @@ class Input:
         self._space_down: int | None = None
         self._space_used = False
         self._held_keys: set[int] = set()
+        self._last_press: tuple[int, Pixel] | None = None
 
     def process(self, events: list[pygame.event.Event]) -> None:
         """Hand out the events of a frame."""
@@ -50,8 +54,8 @@ class Input:
     def pointer_over_world(self) -> Pixel | None:
         """Where the mouse is, while it is over the world and no widget."""
         pixel = self._pixel(pygame.mouse.get_pos())
-        stage = self.app.stage
-        if stage is None or self.app.ui.has_sheet or not pygame.mouse.get_focused() or not stage.contains(pixel):
+        screen = self.app.screen
+        if screen is None or self.app.ui.has_sheet or not pygame.mouse.get_focused() or not screen.contains(pixel):
             return None
         return pixel
 
@@ -74,7 +78,7 @@ class Input:
             self.app.gallery.scroll(event.precise_y or event.y)
         elif event.type == pygame.MOUSEBUTTONUP:
             self._button_up(event)
-        elif self.app.stage is None or self.app.ui.has_sheet:
+        elif self.app.screen is None or self.app.ui.has_sheet:
             return
         elif event.type == pygame.MOUSEBUTTONDOWN:
             self._button_down(event)
@@ -83,7 +87,7 @@ class Input:
         elif event.type == pygame.MOUSEWHEEL:
             pixel = self.pointer_over_world()
             if pixel is not None:
-                self.app.stage.wheel(pixel, event.precise_y or event.y)
+                self.app.screen.wheel(pixel, event.precise_y or event.y)
 
     def _key(self, event: pygame.event.Event) -> None:
         app = self.app
@@ -91,14 +95,14 @@ class Input:
             return
         if app.gallery is not None and app.gallery.press_key(event.key):
             return
-        if event.key in ARROWS and app.stage is not None and not app.ui.has_sheet:
-            app.stage.move_cursor(*ARROWS[event.key], event.mod)
+        if event.key in ARROWS and app.screen is not None and not app.ui.has_sheet:
+            app.screen.press_arrow(*ARROWS[event.key], event.mod)
             return
         if event.key == pygame.K_SPACE and not app.ui.has_sheet:
             if self._space_down is None:
                 self._space_down, self._space_used = pygame.time.get_ticks(), False
             return
-        action = action_of(event.key, event.mod)
+        action = action_of(event.key, event.mod, app.mode)
         is_repeated = event.key in self._held_keys
         self._held_keys.add(event.key)
         if is_repeated and action not in REPEATED:
@@ -111,35 +115,43 @@ class Input:
         if pressed is None or self._space_used or self.app.ui.has_sheet:
             return
         if pygame.time.get_ticks() - pressed <= 1000 * TAP_SECONDS:
-            self.app.act("pause")
+            action = action_of(pygame.K_SPACE, 0, self.app.mode)
+            if action is not None:
+                self.app.act(action)
 
     def _button_down(self, event: pygame.event.Event) -> None:
-        stage, pixel = self.app.stage, self._pixel(event.pos)
-        if stage is None or not stage.contains(pixel):
+        screen, pixel = self.app.screen, self._pixel(event.pos)
+        if screen is None or not screen.contains(pixel):
             return
         self.app.ui.blur()
         if event.button == 2 or (event.button == 1 and self._space_down is not None):
             self._panning, self._space_used = True, True
         elif event.button == 1:
             self._pressed = True
-            stage.cursor = None
-            stage.point("down", pixel, pygame.key.get_mods())
+            screen.point("down", pixel, pygame.key.get_mods(), self._clicks(pixel))
+
+    def _clicks(self, pixel: Pixel) -> int:
+        """Which press of a double click this is, 1 or 2."""
+        before, now = self._last_press, pygame.time.get_ticks()
+        is_second = before is not None and now - before[0] <= 1000 * DOUBLE_SECONDS and math.dist(before[1], pixel) <= 6
+        self._last_press = None if is_second else (now, pixel)
+        return 2 if is_second else 1
 
     def _motion(self, event: pygame.event.Event) -> None:
-        stage, ratio = self.app.stage, self.app.display.pixel_ratio
-        if stage is None:
+        screen, ratio = self.app.screen, self.app.display.pixel_ratio
+        if screen is None:
             return
         if self._panning:
-            stage.camera.pan(event.rel[0] * ratio[0], event.rel[1] * ratio[1])
+            screen.camera.pan(event.rel[0] * ratio[0], event.rel[1] * ratio[1])
         elif self._pressed:
-            stage.point("move", self._pixel(event.pos), pygame.key.get_mods())
+            screen.point("move", self._pixel(event.pos), pygame.key.get_mods())
 
     def _button_up(self, event: pygame.event.Event) -> None:
-        stage = self.app.stage
-        if stage is None:
+        screen = self.app.screen
+        if screen is None:
             return
         if self._panning and event.button in (1, 2):
             self._panning = False
         elif self._pressed and event.button == 1:
             self._pressed = False
-            stage.point("up", self._pixel(event.pos), pygame.key.get_mods())
+            screen.point("up", self._pixel(event.pos), pygame.key.get_mods())

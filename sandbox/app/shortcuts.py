@@ -2,32 +2,39 @@
 
 from dataclasses import dataclass
 from functools import cache
+from typing import Literal
 
 import pygame
+
+Mode = Literal["play", "edit"]
 
 
 @dataclass(frozen=True)
 class Shortcut:
-    """An action, the keys that start it, and what it does; an action of "" is a gesture that the help page explains."""
+    """An action, the keys that start it, what it does, and the mode that it belongs to, None = every one.
+
+    An action of "" is a gesture that the help page explains.
+    """
 
     action: str
     keys: tuple[str, ...]
     label: str
     group: str
+    mode: Mode | None = None
 
 
 SHORTCUTS = (
-    Shortcut("tool_drag", ("D", "1"), "Drag tool: hold and move particles", "Tools"),
-    Shortcut("tool_pin", ("P", "2"), "Pin tool: pin or unpin a particle", "Tools"),
-    Shortcut("tool_cut", ("C", "3"), "Cut tool: a stroke cuts what it crosses", "Tools"),
-    Shortcut("", ("Shift+click",), "Keep hold of a particle; a click lets go", "Tools"),
-    Shortcut("let_go", ("Escape",), "Let go of everything", "Tools"),
-    Shortcut("undo", ("Ctrl+Z",), "Undo a drag, cut, pin or slider move", "Tools"),
-    Shortcut("redo", ("Ctrl+Y", "Ctrl+Shift+Z"), "Redo", "Tools"),
-    Shortcut("pause", ("Space", "K"), "Pause or play", "Time"),
-    Shortcut("step", (".",), "One tick", "Time"),
-    Shortcut("slow", ("S",), "Slow motion: 1/2, 1/4, 1/8, real time", "Time"),
-    Shortcut("reset", ("R",), "Back to the beginning", "Time"),
+    Shortcut("tool_drag", ("D", "1"), "Drag tool: hold and move particles", "Tools", "play"),
+    Shortcut("tool_pin", ("P", "2"), "Pin tool: pin or unpin a particle", "Tools", "play"),
+    Shortcut("tool_cut", ("C", "3"), "Cut tool: a stroke cuts what it crosses", "Tools", "play"),
+    Shortcut("", ("Shift+click",), "Keep hold of a particle; a click lets go", "Tools", "play"),
+    Shortcut("let_go", ("Escape",), "Let go of everything", "Tools", "play"),
+    Shortcut("undo", ("Ctrl+Z",), "Undo a drag, cut, pin or slider move", "Tools", "play"),
+    Shortcut("redo", ("Ctrl+Y", "Ctrl+Shift+Z"), "Redo", "Tools", "play"),
+    Shortcut("pause", ("Space", "K"), "Pause or play", "Time", "play"),
+    Shortcut("step", (".",), "One tick", "Time", "play"),
+    Shortcut("slow", ("S",), "Slow motion: 1/2, 1/4, 1/8, real time", "Time", "play"),
+    Shortcut("reset", ("R",), "Back to the beginning", "Time", "play"),
     Shortcut("", ("Wheel",), "Zoom about the pointer", "View"),
     Shortcut("", ("Middle drag", "Space+drag"), "Pan", "View"),
     Shortcut("zoom_in", ("+", "="), "Zoom in", "View"),
@@ -37,21 +44,21 @@ SHORTCUTS = (
     Shortcut("panel", ("H",), "Hide or show the panel", "View"),
     Shortcut("larger", ("Ctrl++", "Ctrl+="), "Larger widgets", "View"),
     Shortcut("smaller", ("Ctrl+-",), "Smaller widgets", "View"),
-    Shortcut("gallery", ("G",), "Levels", "Files"),
-    Shortcut("open", ("Ctrl+O",), "Open a level or replay; or drop its file here", "Files"),
-    Shortcut("record", ("Ctrl+R",), "Start or stop recording", "Files"),
-    Shortcut("save", ("Ctrl+S",), "Save the run so far as a replay", "Files"),
-    Shortcut("recordings", ("Ctrl+L",), "Saved replays", "Files"),
+    Shortcut("gallery", ("G",), "Levels", "Files", "play"),
+    Shortcut("open", ("Ctrl+O",), "Open a level or replay; or drop its file here", "Files", "play"),
+    Shortcut("record", ("Ctrl+R",), "Start or stop recording", "Files", "play"),
+    Shortcut("save", ("Ctrl+S",), "Save the run so far as a replay", "Files", "play"),
+    Shortcut("recordings", ("Ctrl+L",), "Saved replays", "Files", "play"),
     Shortcut("help", ("F1",), "This page", "Files"),
     Shortcut("quit", ("Ctrl+Q",), "Quit", "Files"),
-    Shortcut("", ("Arrows",), "Move the keyboard cursor; Shift: faster", "Keyboard"),
-    Shortcut("press", ("Enter",), "Press or release the tool at the cursor", "Keyboard"),
-    Shortcut("next_particle", ("N",), "Cursor to the next particle", "Keyboard"),
-    Shortcut("previous_particle", ("Shift+N",), "Cursor to the previous particle", "Keyboard"),
+    Shortcut("", ("Arrows",), "Move the keyboard cursor; Shift: faster", "Keyboard", "play"),
+    Shortcut("press", ("Enter",), "Press or release the tool at the cursor", "Keyboard", "play"),
+    Shortcut("next_particle", ("N",), "Cursor to the next particle", "Keyboard", "play"),
+    Shortcut("previous_particle", ("Shift+N",), "Cursor to the previous particle", "Keyboard", "play"),
     Shortcut("", ("Tab", "Shift+Tab"), "Next or previous widget", "Keyboard"),
     Shortcut("", ("Left", "Right"), "Move the slider; Shift: fine", "Keyboard"),
 )
-GROUPS = ("Tools", "Time", "View", "Files", "Keyboard")
+
 
 _NAMES = {
     "Escape": pygame.K_ESCAPE, "Space": pygame.K_SPACE, "Enter": pygame.K_RETURN, "Home": pygame.K_HOME,
@@ -64,6 +71,11 @@ _TWINS = {
 }  # fmt: skip
 
 
+def shortcuts(mode: Mode) -> tuple[Shortcut, ...]:
+    """The entries of the table that hold in a mode."""
+    return tuple(entry for entry in SHORTCUTS if entry.mode in (None, mode))
+
+
 def _combination(text: str) -> tuple[int, bool, bool]:
     """Key, Ctrl and Shift of "Ctrl+Shift+Z"."""
     ctrl, rest = text.startswith("Ctrl+"), text.removeprefix("Ctrl+")
@@ -72,11 +84,11 @@ def _combination(text: str) -> tuple[int, bool, bool]:
 
 
 @cache
-def _table() -> dict[tuple[int, bool, bool], str]:
-    return {_combination(keys): entry.action for entry in SHORTCUTS if entry.action for keys in entry.keys}
+def _table(mode: Mode) -> dict[tuple[int, bool, bool], str]:
+    return {_combination(keys): entry.action for entry in shortcuts(mode) if entry.action for keys in entry.keys}
 
 
-def action_of(key: int, modifiers: int) -> str | None:
+def action_of(key: int, modifiers: int, mode: Mode = "play") -> str | None:
     """The action that a key press starts; Cmd counts as Ctrl, and Shift does not count where a key is typed with it."""
     if modifiers & pygame.KMOD_ALT:
         return None
@@ -85,9 +97,10 @@ def action_of(key: int, modifiers: int) -> str | None:
     key = _TWINS.get(key, key)
     if key in (pygame.K_PLUS, pygame.K_EQUALS, pygame.K_MINUS, pygame.K_RETURN):
         shift = False
-    return _table().get((key, ctrl, shift))
+    return _table(mode).get((key, ctrl, shift))
 
 
-def keys_of(action: str) -> str:
-    """The first keys of an action, for tooltips."""
-    return next(entry.keys[0] for entry in SHORTCUTS if entry.action == action)
+def tip_of(action: str, mode: Mode) -> str:
+    """What an action does and its first keys, for tooltips."""
+    entry = next(entry for entry in shortcuts(mode) if entry.action == action)
+    return f"{entry.label}  [{entry.keys[0]}]"

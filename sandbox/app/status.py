@@ -71,22 +71,28 @@ class StatusLine:
                 self.notices.remove(notice)
 
     def draw(
-        self, surface: pygame.Surface, parts: list[tuple[str, Colour]], right: float, notices_left: float | None
+        self,
+        surface: pygame.Surface,
+        parts: list[tuple[str, Colour]],
+        right: float,
+        notices_left: float | None,
+        legend: bool = True,
     ) -> None:
         """Draw parts of text from the left, the legend up to `right`, notices from a left edge; in layout units."""
         ui = self.ui
         height = ui.px(STATUS_HEIGHT)
         top = surface.get_height() - height
         pygame.draw.rect(surface, SURFACE, (0, top, surface.get_width(), height))
-        legend_left = ui.px(right - LEGEND_WIDTH - 150)
+        parts_end = ui.px(right - (LEGEND_WIDTH + 150 if legend else 0))
         x = ui.px(16)
         for text, colour in parts:
             picture = self._text(text, colour)
-            if x + picture.get_width() > legend_left:
+            if x + picture.get_width() > parts_end:
                 break
             surface.blit(picture, (x, top + (height - picture.get_height()) // 2))
             x += picture.get_width() + ui.px(18)
-        self._draw_legend(surface, ui.px(right), top, height)
+        if legend:
+            self._draw_legend(surface, ui.px(right), top, height)
         if notices_left is not None:
             self._draw_notices_above(surface, top, notices_left)
 

@@ -8,7 +8,7 @@ import pygame
 
 from sandbox.app.colours import ACCENT, DANGER, TEXT, Colour
 from sandbox.app.icons import icon
-from sandbox.app.shortcuts import SHORTCUTS, keys_of
+from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets import Ui, set_icon
 
 # Sizes in layout units.
@@ -38,7 +38,7 @@ class BarState:
 class Toolbar:
     """Buttons for every action of the bar; `press` starts an action by its name."""
 
-    def __init__(self, ui: Ui, press: Callable[[str], None]) -> None:
+    def __init__(self, ui: Ui, press: Callable[[str], None], of_document: bool = False) -> None:
         self._ui, self._press = ui, press
         self._state: BarState | None = None
         width = ui.units[0]
@@ -107,15 +107,12 @@ class Toolbar:
             lambda: self._press(action),
             self.back,
             icon=self._icon(picture, TEXT),
-            tip=_tip(action),
+            tip=tip_of(action, "play"),
             style="@quiet",
         )
 
     def _text_button(self, action: str, text: str, width: float) -> Any:
         place = self._place(width)
-        return self._ui.button(place, text, lambda: self._press(action), self.back, tip=_tip(action), style="@quiet")
-
-
-def _tip(action: str) -> str:
-    label = next(entry.label for entry in SHORTCUTS if entry.action == action)
-    return f"{label}  [{keys_of(action)}]"
+        return self._ui.button(
+            place, text, lambda: self._press(action), self.back, tip=tip_of(action, "play"), style="@quiet"
+        )

@@ -46,11 +46,15 @@ class Driver:
 
     @property
     def stage(self):
-        return self.app.stage
+        return self.app.play.stage
+
+    @property
+    def panel(self):
+        return self.app.play.panel
 
     @property
     def playback(self):
-        return self.app.stage.playback
+        return self.app.play.playback
 
     @property
     def world(self):
@@ -132,8 +136,7 @@ def open_app(documents):
 
     yield open_
     for driver in drivers:
-        driver.app.files.leave_recording()
-        driver.app.display.close()
+        driver.app.close()
 
 
 @pytest.fixture

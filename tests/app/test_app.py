@@ -12,7 +12,7 @@ from conftest import small_level
 
 from sandbox.app.app import run_app
 from sandbox.app.display import has_display
-from sandbox.app.shortcuts import SHORTCUTS, action_of
+from sandbox.app.shortcuts import action_of, shortcuts
 from sandbox.level.files import shipped_levels
 from sandbox.session.reading import read_replay
 from sandbox.session.replay import verify
@@ -153,7 +153,7 @@ def test_record_drag_slide_and_save_gives_a_replay_that_verifies(driver, documen
     for step in range(10):
         driver.move((start[0], start[1] - 8 * step))
     driver.release((start[0], start[1] - 72))
-    driver.fill(driver.app.panel.stiffness_field, "0.11")
+    driver.fill(driver.panel.stiffness_field, "0.11")
     driver.key(pygame.K_r, CTRL)
     driver.type("my run")
     driver.key(pygame.K_RETURN)
@@ -190,7 +190,7 @@ def test_a_saved_run_can_be_discarded_and_escape_keeps_it(driver, documents):
 
 
 def recording(driver, documents):
-    driver.fill(driver.app.panel.damping_field, "0.2")
+    driver.fill(driver.panel.damping_field, "0.2")
     driver.frames(30)
     driver.key(pygame.K_s, CTRL)
     driver.key(pygame.K_RETURN)
@@ -212,7 +212,7 @@ def test_a_replay_is_watched_to_its_end_and_said_to_be_equal(driver, documents):
 def test_touching_a_replay_takes_it_over(driver, documents):
     driver.app.files.open_path(recording(driver, documents))
     driver.frames(3)
-    driver.fill(driver.app.panel.stiffness_field, "0.25")
+    driver.fill(driver.panel.stiffness_field, "0.25")
     driver.frames(100)
     assert "took over" in driver.playback.verdict
     assert driver.world.stiffness[0] == 0.25
@@ -305,12 +305,13 @@ def test_the_description_of_a_level_gives_way_to_that_of_the_next(driver):
 
 
 def test_every_action_of_the_shortcut_table_exists_and_every_action_is_in_the_table(driver):
-    named = {entry.action for entry in SHORTCUTS if entry.action}
+    named = {entry.action for entry in shortcuts("play") if entry.action}
     assert named == set(driver.app.actions)
 
 
-def test_no_two_actions_share_a_key():
-    keys = [key for entry in SHORTCUTS if entry.action for key in entry.keys]
+@pytest.mark.parametrize("mode", ["play", "edit"])
+def test_no_two_actions_share_a_key(mode):
+    keys = [key for entry in shortcuts(mode) if entry.action for key in entry.keys]
     assert len(keys) == len(set(keys))
 
 
@@ -334,11 +335,11 @@ def test_the_window_can_be_resized_and_rescaled(driver):
     driver.app.display.window.size = (900, 600)
     driver.frames(2)
     assert driver.stage.camera.viewport[2] < 900
-    assert driver.app.panel.back.rect.right == 900
+    assert driver.panel.back.rect.right == 900
     driver.key(pygame.K_EQUALS, CTRL)
     assert driver.app.ui.scale == pytest.approx(1.125)
     driver.app.act("panel")
-    assert driver.app.panel is None
+    assert driver.panel is None
     assert driver.stage.camera.viewport[2] == 900
 
 
@@ -379,7 +380,7 @@ def test_particles_that_are_no_longer_finite_are_left_out_and_counted(driver):
     driver.playback.current = driver.playback.previous = driver.playback.session.snapshot()
     driver.frames()
     assert driver.stage.renderer.non_finite == 1
-    assert any("no longer finite" in text for text, _ in driver.app._status_parts(driver.stage))
+    assert any("no longer finite" in text for text, _ in driver.app.screen.status(0.0, 0.0))
 
 
 def test_run_app_closes_after_the_given_time_and_prints_where_the_time_went(capsys, documents):

@@ -52,7 +52,7 @@ def test_escape_goes_back_to_the_run_but_the_first_gallery_stays(driver: Driver)
     driver.key(pygame.K_g)
     assert driver.app.gallery is not None
     driver.key(pygame.K_ESCAPE)
-    assert driver.app.gallery is None and driver.stage is not None
+    assert driver.app.gallery is None and driver.app.play is not None
 
 
 def test_without_a_run_escape_leaves_the_gallery_open(open_app):

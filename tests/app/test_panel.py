@@ -20,7 +20,7 @@ def logged(driver):
 
 
 def test_a_slider_drag_is_one_gesture_and_undone_at_once(driver):
-    slider = driver.app.panel.stiffness
+    slider = driver.panel.stiffness
     y = slider.rect.centery
     driver.press((slider.pixel_of(0.01), y))
     for value in (0.02, 0.05, 0.1, 0.2):
@@ -34,7 +34,7 @@ def test_a_slider_drag_is_one_gesture_and_undone_at_once(driver):
 
 
 def test_two_slider_drags_are_two_gestures(driver):
-    slider = driver.app.panel.damping
+    slider = driver.panel.damping
     for value in (0.01, 0.1):
         driver.press((slider.pixel_of(value), slider.rect.centery))
         driver.release((slider.pixel_of(value), slider.rect.centery))
@@ -42,13 +42,13 @@ def test_two_slider_drags_are_two_gestures(driver):
 
 
 def test_a_chosen_material_alone_is_changed(driver):
-    driver.app.panel._choose_material("rubber")
-    driver.fill(driver.app.panel.stiffness_field, "0.5")
+    driver.panel._choose_material("rubber")
+    driver.fill(driver.panel.stiffness_field, "0.5")
     assert coefficients(driver) == (0.3, 0.3, 0.5)
 
 
 def test_the_menu_shows_the_material_that_the_keyboard_chose(driver):
-    menu = driver.app.panel.menu
+    menu = driver.panel.menu
     driver.app.ui.focus_on(menu)
     for wanted in ("default", "steel", "rubber"):
         driver.key(pygame.K_DOWN)
@@ -58,16 +58,16 @@ def test_the_menu_shows_the_material_that_the_keyboard_chose(driver):
 
 
 def test_the_chosen_material_stays_chosen_in_a_window_of_another_size(driver):
-    driver.app.panel._choose_material("rubber")
+    driver.panel._choose_material("rubber")
     driver.app.display.window.size = (900, 620)
     driver.frames(2)
-    assert driver.app.panel.menu.selected_option[0] == "rubber"
-    driver.fill(driver.app.panel.stiffness_field, "0.5")
+    assert driver.panel.menu.selected_option[0] == "rubber"
+    driver.fill(driver.panel.stiffness_field, "0.5")
     assert coefficients(driver) == (0.3, 0.3, 0.5)
 
 
 def test_all_springs_show_mixed_values_and_take_a_common_one(driver):
-    panel = driver.app.panel
+    panel = driver.panel
     assert panel.stiffness_field.text == "mixed" and panel.stiffness.mixed
     driver.fill(panel.stiffness_field, "0.07")
     assert coefficients(driver)[0] == coefficients(driver)[2] == 0.07
@@ -76,9 +76,9 @@ def test_all_springs_show_mixed_values_and_take_a_common_one(driver):
 
 @pytest.mark.parametrize("typed", ["1.5", "-0.1", "nan", "inf", "soft", ""])
 def test_a_typed_value_out_of_range_is_refused_with_a_line_and_the_old_one_stays(driver, typed):
-    driver.app.panel._choose_material("steel")
+    driver.panel._choose_material("steel")
     driver.frames()
-    field = driver.app.panel.stiffness_field
+    field = driver.panel.stiffness_field
     driver.app.ui.focus_on(field.entry)
     driver.key(pygame.K_DELETE)
     driver.fill(field, typed)
@@ -89,7 +89,7 @@ def test_a_typed_value_out_of_range_is_refused_with_a_line_and_the_old_one_stays
 
 
 def test_typing_hz_and_damping_ratio_sets_cs_and_cd_and_reads_back(driver):
-    panel = driver.app.panel
+    panel = driver.panel
     panel._choose_material("steel")
     driver.frames()
     driver.fill(panel.frequency, "3")
@@ -99,7 +99,7 @@ def test_typing_hz_and_damping_ratio_sets_cs_and_cd_and_reads_back(driver):
 
 
 def test_a_frequency_out_of_reach_is_refused_with_the_highest_one(driver):
-    panel = driver.app.panel
+    panel = driver.panel
     panel._choose_material("steel")
     driver.frames()
     driver.fill(panel.ratio, "0.1")
@@ -110,7 +110,7 @@ def test_a_frequency_out_of_reach_is_refused_with_the_highest_one(driver):
 
 
 def test_cd_1_reads_as_infinite_and_a_typed_frequency_leads_out_of_it(driver):
-    panel = driver.app.panel
+    panel = driver.panel
     panel._choose_material("steel")
     driver.fill(panel.damping_field, "1")
     assert panel.frequency.text == panel.ratio.text == "infinite"
@@ -119,7 +119,7 @@ def test_cd_1_reads_as_infinite_and_a_typed_frequency_leads_out_of_it(driver):
 
 
 def test_the_single_pass_marks_its_limit_and_the_iterative_solver_says_that_there_is_none(driver):
-    panel = driver.app.panel
+    panel = driver.panel
     panel._choose_material("steel")
     driver.frames()
     assert 0.3 < panel.damping.limit < 1.0
@@ -133,7 +133,7 @@ def test_the_single_pass_marks_its_limit_and_the_iterative_solver_says_that_ther
 def test_a_hooke_material_cannot_be_tuned_by_cs_and_says_so(open_app):
     level = small_level(materials={"steel": {"law": "hooke", "k": 20.0, "c": 0.5}, "rubber": {}})
     driver = open_app(level)
-    panel = driver.app.panel
+    panel = driver.panel
     panel._choose_material("steel")
     driver.frames()
     assert "k = 20 N/m" in panel.note.text and not panel.stiffness.enabled
@@ -142,7 +142,7 @@ def test_a_hooke_material_cannot_be_tuned_by_cs_and_says_so(open_app):
 
 
 def test_substeps_iterations_warm_start_and_gravity_reach_the_world(driver):
-    panel = driver.app.panel
+    panel = driver.panel
     driver.click_widget(panel.substeps.buttons["8"])
     driver.fill(panel.iterations, "25")
     driver.fill(panel.warm_start, "0.75")
@@ -168,13 +168,13 @@ def test_edits_show_while_the_run_is_paused(driver):
     driver.app.act("pause")
     driver.frames()
     tick = driver.playback.session.tick
-    driver.fill(driver.app.panel.damping_field, "0.5")
+    driver.fill(driver.panel.damping_field, "0.5")
     assert driver.playback.session.tick == tick
-    assert driver.app.panel.damping_field.text == "0.5"
+    assert driver.panel.damping_field.text == "0.5"
 
 
 def test_arrow_keys_move_the_focused_slider_and_tab_reaches_every_widget(driver):
-    ui, panel = driver.app.ui, driver.app.panel
+    ui, panel = driver.app.ui, driver.panel
     reached = []
     for _ in range(60):
         driver.key(pygame.K_TAB)

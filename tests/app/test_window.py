@@ -93,7 +93,7 @@ def test_a_person_drags_slides_pauses_records_and_saves_and_the_replay_verifies(
     twin.app.display.window.size = WINDOW_SIZE
     twin.frames(2)
     start = twin.pixel_of("rope.4")
-    slider = twin.app.panel.stiffness
+    slider = twin.panel.stiffness
     places = [(slider.pixel_of(value), slider.rect.centery) for value in (0.1, 0.05, 0.01)]
 
     person = Person(screen, tmp_path / "small.json", tmp_path / "documents")

@@ -1,0 +1,67 @@
+"""Screen: what fills the window under its pages: the run that is played, or the level that is edited."""
+
+from collections.abc import Callable
+from typing import Literal, Protocol
+
+import pygame
+
+from sandbox.app.camera import Camera
+from sandbox.app.colours import Colour
+from sandbox.app.profile import Profile
+from sandbox.app.shortcuts import Mode
+from sandbox.app.widgets import Ui
+
+Pixel = tuple[float, float]
+Pointer = Literal["down", "move", "up"]
+
+
+class Screen(Protocol):
+    """What the app asks of a screen; actions by the names of the table of shortcuts."""
+
+    mode: Mode
+    actions: dict[str, Callable[[], None]]
+
+    @property
+    def camera(self) -> Camera:
+        """What part of the world is seen."""
+        ...
+
+    def build(self, ui: Ui) -> None:
+        """Lay the widgets out anew."""
+        ...
+
+    def contains(self, pixel: Pixel) -> bool:
+        """Whether a pixel shows the world."""
+        ...
+
+    def point(self, kind: Pointer, pixel: Pixel, modifiers: int, clicks: int = 1) -> None:
+        """React to the pointer; clicks: 2 for the second press of a double click."""
+        ...
+
+    def wheel(self, pixel: Pixel, notches: float) -> None:
+        """React to the wheel over the world."""
+        ...
+
+    def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
+        """React to an arrow key; dy is upward."""
+        ...
+
+    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
+        """Let frame_time [s] pass; pointer: where the mouse is over the world, if it is; ready: kernels are compiled."""
+        ...
+
+    def draw(self, surface: pygame.Surface, profile: Profile) -> None:
+        """Draw everything but the widgets."""
+        ...
+
+    def status(self, ticks: float, frame: float) -> list[tuple[str, Colour]]:
+        """The status line's parts; ticks [1/s] and frame [ms] are the figures of the loop."""
+        ...
+
+    def title(self) -> list[str]:
+        """Words of the window's title."""
+        ...
+
+    def leave(self) -> None:
+        """Give up what is under way, as another screen comes."""
+        ...
