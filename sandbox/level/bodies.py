@@ -77,7 +77,9 @@ class GirderDef(BodyDef):
     type: Literal["girder"] = Field(description="Kind of body.")
     start: Point = Field(description="Place of the first row's first particle, `id.start`.")
     end: Point = Field(description="Place of the first row's last particle, `id.end`.")
-    segments: int = Field(ge=1, description="Number of cells, and of the second row's particles; the first has one more.")
+    segments: int = Field(
+        ge=1, description="Number of cells, and of the second row's particles; the first has one more."
+    )
     height: Size = Field(
         default=1.0, description="How far the second row lies to the right of the way from start to end."
     )
@@ -95,9 +97,7 @@ class WebDef(BodyDef):
     spokes: int = Field(ge=3, description="Number of spokes, and of the particles of each ring.")
     rings: int = Field(ge=1, description="Number of rings.")
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
-    pin: tuple[Literal["rim"], ...] = Field(
-        default=(), max_length=1, description='"rim": the outermost ring is held.'
-    )
+    pin: tuple[Literal["rim"], ...] = Field(default=(), max_length=1, description='"rim": the outermost ring is held.')
 
 
 class WheelDef(BodyDef):

@@ -3,113 +3,103 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.bodies import AnyBody, BridgeDef, MeshDef, RopeDef
+from sandbox.level.expansion import Expansion, expansion
 from sandbox.level.layout import Layout
 from sandbox.level.limits import BODY_RADIUS, DEFAULT_MATERIAL
 from sandbox.level.model import HookeMaterial, Level, Material, NissenMaterial
-from sandbox.level.shapes import Pairs, Points, expand
 from sandbox.level.validate import check_level
+from sandbox.level.welds import welded
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, World
 
-Floats = NDArray[np.float64]
-Expanded = tuple[AnyBody, Points, Pairs]
+Slots = NDArray[np.int64]
 
 
 def build_world(level: Level) -> World:
     """Build the world that a level describes.
 
-    Particle slots: the particles of the bodies in file order, then the loose particles; spring slots: the springs of
-    the bodies in file order, then the loose springs; then the slots of the hands. Materials: "default" first, then
-    the level's in file order. Raises LevelError for a level that breaks a limit or refers to nothing.
+    Particle slots: the particles of the bodies in file order, then the loose particles, of welded ones the first
+    alone; spring slots: the springs of the bodies in file order, then the loose springs; then the slots of the hands.
+    Materials: "default" first, then the level's in file order. Raises LevelError for a level that breaks a limit or
+    refers to nothing.
     """
     check_level(level, f'level "{level.name}"')
     materials = {DEFAULT_MATERIAL: NissenMaterial(), **level.materials}
     world = World(WorldSettings(**dict(level.settings)), list(materials))
-    bodies = [(body, *expand(body)) for body in level.bodies]
-    _add_particles(world, level, bodies)
-    layout = Layout(level, [len(points) for _, points, _ in bodies])
-    for name, slot in layout.end_names():
-        world.name_particle(slot, name)
-    _add_springs(world, layout, level, bodies, materials)
+    bodies = [expansion(body) for body in level.bodies]
+    layout = Layout(level, [len(body.mass) for body in bodies])
+    firsts = welded(level, layout)
+    stays = firsts == np.arange(len(firsts))
+    slots = (np.cumsum(stays) - 1)[firsts]
+    _add_particles(world, level, bodies, slots, stays)
+    for name, slot in layout.second_names():
+        world.name_particle(int(slots[slot]), name)
+    _add_springs(world, layout, level, bodies, slots, materials)
     world.reserve_hands()
     return world
 
 
-def _add_particles(world: World, level: Level, bodies: list[Expanded]) -> None:
+def _add_particles(world: World, level: Level, bodies: list[Expansion], slots: Slots, stays: NDArray[np.bool_]) -> None:
+    """Add the particles that stay (bool, one per particle before welds); slots: which of them each becomes."""
     loose = level.particles
-    names = [f"{body.id}.{index}" for body, points, _ in bodies for index in range(len(points))]
-    radii = [BODY_RADIUS] * len(names) + [particle.radius for particle in loose]
-    position = [points for _, points, _ in bodies]
-    velocity = [_velocities(body, len(points)) for body, points, _ in bodies]
-    mass = [_masses(body, len(points)) for body, points, _ in bodies]
-    pinned = [_pinned(body, len(points)) for body, points, _ in bodies]
+    names = [f"{body.id}.{k}" for body, made in zip(level.bodies, bodies, strict=True) for k in range(len(made.mass))]
+    radius = np.array([BODY_RADIUS] * len(names) + [particle.radius for particle in loose], dtype=np.float64)
+    names += [particle.id for particle in loose]
+    position = np.array([p.position for p in loose], dtype=np.float64).reshape(-1, 2)
+    velocity = np.array([p.velocity for p in loose], dtype=np.float64).reshape(-1, 2)
+    mass = np.array([p.mass for p in loose], dtype=np.float64)
+    pinned = np.array([p.pinned for p in loose], dtype=np.bool_)
+    position = np.concatenate([*(body.position for body in bodies), position])
+    velocity = np.concatenate([*(body.velocity for body in bodies), velocity])
+    mass = np.concatenate([*(body.mass for body in bodies), mass])
+    pinned = np.concatenate([*(body.pinned for body in bodies), pinned])
+    kept, gone = np.flatnonzero(stays), np.flatnonzero(~stays).tolist()
+    for slot in gone:
+        first = kept[slots[slot]]
+        both = mass[first] + mass[slot]
+        velocity[first] = (mass[first] * velocity[first] + mass[slot] * velocity[slot]) / both
+        mass[first] = both
+        radius[first] = max(radius[first], radius[slot])
+        pinned[first] |= pinned[slot]
     # Adding 0.0 turns -0.0 into 0.0, so that a sign nobody sees cannot reach the state.
     world.add_particles(
-        names + [particle.id for particle in loose],
-        np.concatenate([*position, np.array([p.position for p in loose], dtype=np.float64).reshape(-1, 2)]) + 0.0,
-        velocity=np.concatenate([*velocity, np.array([p.velocity for p in loose]).reshape(-1, 2)]) + 0.0,
-        mass=np.concatenate([*mass, np.array([p.mass for p in loose], dtype=np.float64)]),
-        radius=np.array(radii, dtype=np.float64) + 0.0,
-        pinned=np.concatenate([*pinned, np.array([p.pinned for p in loose], dtype=np.bool_)]),
+        [names[slot] for slot in kept.tolist()],
+        position[stays] + 0.0,
+        velocity=velocity[stays] + 0.0,
+        mass=mass[stays],
+        radius=radius[stays] + 0.0,
+        pinned=pinned[stays],
     )
-
-
-def _velocities(body: AnyBody, count: int) -> Floats:
-    velocities = np.zeros((count, 2)) + np.array(body.velocity)
-    if isinstance(body, MeshDef) and body.velocities is not None:
-        velocities += np.array(body.velocities)
-    return velocities
-
-
-def _masses(body: AnyBody, count: int) -> Floats:
-    if isinstance(body, MeshDef):
-        return np.ones(count) if body.masses is None else np.array(body.masses, dtype=np.float64)
-    masses = np.full(count, body.particle_mass)
-    if isinstance(body, RopeDef) and body.end_mass is not None:
-        masses[-1] = body.end_mass
-    return masses
-
-
-def _pinned(body: AnyBody, count: int) -> NDArray[np.bool_]:
-    pinned = np.zeros(count, dtype=np.bool_)
-    if isinstance(body, MeshDef):
-        pinned[list(body.pinned)] = True
-    elif isinstance(body, RopeDef | BridgeDef):
-        row = body.segments + 1
-        for end in body.pin:
-            pinned[(0 if end == "start" else row - 1) :: row] = True
-    return pinned
+    for slot in gone:
+        world.name_particle(int(slots[slot]), names[slot])
 
 
 def _add_springs(
-    world: World, layout: Layout, level: Level, bodies: list[Expanded], materials: dict[str, Material]
+    world: World,
+    layout: Layout,
+    level: Level,
+    bodies: list[Expansion],
+    slots: Slots,
+    materials: dict[str, Material],
 ) -> None:
     index = {name: number for number, name in enumerate(materials)}
     loose = level.springs
-    names = [f"{body.id}:{number}" for body, _, pairs in bodies for number in range(len(pairs))]
-    first = [layout.owners[body.id].first for body, _, _ in bodies]
-    ends = [pairs + start for (_, _, pairs), start in zip(bodies, first, strict=True)]
+    made = list(zip(level.bodies, bodies, strict=True))
+    names = [f"{body.id}:{number}" for body, expanded in made for number in expanded.numbers.tolist()]
+    ends = [layout.owners[body.id].first + expanded.pairs for body, expanded in made]
     between = np.array([(layout.slot(s.a), layout.slot(s.b)) for s in loose], dtype=np.int64).reshape(-1, 2)
-    rest = [np.full(len(pairs), _rest_length(body)) for body, _, pairs in bodies]
     given = np.array([np.nan if s.rest_length is None else s.rest_length for s in loose], dtype=np.float64)
-    used = [np.full(len(pairs), index[body.material]) for body, _, pairs in bodies]
+    used = [np.full(len(expanded.pairs), index[body.material]) for body, expanded in made]
     material = np.concatenate([*used, np.array([index[s.material] for s in loose], dtype=np.int64)]).astype(np.int64)
-    pairs = np.concatenate([*ends, between])
+    pairs = slots[np.concatenate([*ends, between])]
     world.add_springs(
         names + [f":{number}" for number in range(len(loose))],
         pairs[:, 0],
         pairs[:, 1],
-        rest_length=np.concatenate([*rest, given]) + 0.0,
+        rest_length=np.concatenate([*(expanded.rest_length for expanded in bodies), given]) + 0.0,
         material=material,
         **_coefficients(material, materials),
     )
-
-
-def _rest_length(body: AnyBody) -> float:
-    """Rest length [m] that a body gives its springs; NaN = as placed."""
-    given = body.rest_length if isinstance(body, RopeDef) else None
-    return np.nan if given is None else given
 
 
 def _coefficients(material: NDArray[np.int64], materials: dict[str, Material]) -> dict[str, NDArray[np.generic]]:

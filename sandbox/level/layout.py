@@ -2,9 +2,9 @@
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from sandbox.level.bodies import AnyBody, BridgeDef, RopeDef
+from sandbox.level.expansion import named_particles
 from sandbox.level.faults import shown, suggestion
 from sandbox.level.model import Level
 
@@ -13,16 +13,16 @@ _INDEX = re.compile(r"0|[1-9][0-9]{0,8}")
 
 @dataclass(frozen=True)
 class Owner:
-    """The slots of one body or loose particle: first, how many, and the indices of its ends if it has ends."""
+    """The slots of one body or loose particle: first, how many, and the indices of those with a name of their own."""
 
     first: int
     count: int
-    ends: dict[str, int] | None = None
+    named: dict[str, int] = field(default_factory=dict)
     loose: bool = False
 
 
 class Layout:
-    """Slots by name: particles of bodies in file order, then loose particles.
+    """Slots by name, as they are before welds: particles of bodies in file order, then loose particles.
 
     counts: particles of each body. Names that are taken twice keep their first owner; `repeated` lists the others.
     """
@@ -32,7 +32,7 @@ class Layout:
         self.repeated: list[tuple[str, str]] = []
         first = 0
         for index, (body, count) in enumerate(zip(level.bodies, counts, strict=True)):
-            self._add(body.id, Owner(first, count, _ends(body)), f"bodies.{index}.id")
+            self._add(body.id, Owner(first, count, named_particles(body)), f"bodies.{index}.id")
             first += count
         for index, particle in enumerate(level.particles):
             self._add(particle.id, Owner(first, 1, loose=True), f"particles.{index}.id")
@@ -45,14 +45,14 @@ class Layout:
         else:
             self.owners[name] = owner
 
-    def end_names(self) -> Iterator[tuple[str, int]]:
-        """The names `id.start` and `id.end` of the bodies that have ends, with their slots."""
+    def second_names(self) -> Iterator[tuple[str, int]]:
+        """Names such as `id.start` of particles that have a number too, with their slots."""
         for name, owner in self.owners.items():
-            for end, index in (owner.ends or {}).items():
-                yield f"{name}.{end}", owner.first + index
+            for part, index in owner.named.items():
+                yield f"{name}.{part}", owner.first + index
 
     def slot(self, reference: str) -> int:
-        """Slot of the particle that `id`, `id.k`, `id.start` or `id.end` refers to. Raises LookupError."""
+        """Slot of the particle that `id`, `id.k` or a name such as `id.start` refers to. Raises LookupError."""
         name, dot, part = reference.partition(".")
         owner = self.owners.get(name)
         if owner is None:
@@ -61,15 +61,12 @@ class Layout:
             if dot:
                 raise LookupError(f'"{name}" is a single particle; write "{name}"')
             return owner.first
-        if owner.ends and part in owner.ends:
-            return owner.first + owner.ends[part]
+        if part in owner.named:
+            return owner.first + owner.named[part]
         if _INDEX.fullmatch(part):
             if int(part) < owner.count:
                 return owner.first + int(part)
             raise LookupError(f'"{name}" has the particles {name}.0 to {name}.{owner.count - 1}')
-        ends = f", {name}.start or {name}.end" if owner.ends else ""
-        raise LookupError(f'"{name}" is a body; name one of its particles: {name}.0 to {name}.{owner.count - 1}{ends}')
-
-
-def _ends(body: AnyBody) -> dict[str, int] | None:
-    return {"start": 0, "end": body.segments} if isinstance(body, RopeDef | BridgeDef) else None
+        choices = [f"{name}.0 to {name}.{owner.count - 1}", *(f"{name}.{part}" for part in owner.named)]
+        listed = choices[0] if len(choices) == 1 else ", ".join(choices[:-1]) + " or " + choices[-1]
+        raise LookupError(f'"{name}" is a body; name one of its particles: {listed}')

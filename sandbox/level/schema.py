@@ -33,5 +33,7 @@ def schema() -> dict[str, Any]:
         definition["title"] = TITLES[name]
     for kind in KINDS.values():
         definition = result["$defs"][kind.__name__]
-        definition["properties"] = {name: definition["properties"][name] for name in file_order(definition["properties"])}
+        definition["properties"] = {
+            name: definition["properties"][name] for name in file_order(definition["properties"])
+        }
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **result, "title": "Spring Sandbox level"}

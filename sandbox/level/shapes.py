@@ -1,7 +1,8 @@
 """Where the particles of a body stand and which of them springs join, in generation order.
 
-Every function gives positions [m] (n, 2) and pairs of indices (m, 2). Counts come first and cost nothing: `count`
-tells how many particles and springs a body expands to before anything of that size is allocated.
+Every function gives positions [m] (n, 2) and pairs of indices (m, 2), of the body's own form: before its cuts and its
+pose. Counts come first and cost nothing: `form_count` tells how many particles and springs a form has before anything
+of that size is allocated, and `count` how many are left of it.
 """
 
 import math
@@ -9,7 +10,18 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.bodies import AnyBody, BoxShape, BridgeDef, CircleShape, JellyDef, MeshDef, RopeDef
+from sandbox.level.bodies import (
+    AnyBody,
+    BoxShape,
+    BridgeDef,
+    CircleShape,
+    GirderDef,
+    JellyDef,
+    MeshDef,
+    RopeDef,
+    WebDef,
+    WheelDef,
+)
 from sandbox.level.limits import PARTICLE_LIMIT
 from sandbox.level.polygon import polygon_grid
 
@@ -24,31 +36,53 @@ TRIGONOMETRY_DECIMALS = 12
 
 def count(body: AnyBody) -> tuple[int, int]:
     """Particles and springs that a body expands to; a jelly beyond the particle limit may be counted short of it."""
-    if isinstance(body, RopeDef):
-        return body.segments + 1, body.segments
-    if isinstance(body, BridgeDef):
-        return 2 * (body.segments + 1), 5 * body.segments + 1
-    if isinstance(body, MeshDef):
-        return len(body.particles), len(body.springs)
-    if isinstance(body.shape, BoxShape):
-        columns, rows = box_grid(body)
-        across, up = columns - 1, rows - 1
-        return columns * rows, across * rows + columns * up + 2 * across * up
-    if isinstance(body.shape, CircleShape) and _reach(body.shape, body.spacing) ** 2 > PARTICLE_LIMIT:
-        return 2 * PARTICLE_LIMIT, 0
-    return count_cells(jelly_cells(body))
+    particles, springs = form_count(body)
+    return particles, springs - len({number for number in body.cut if number < springs})
+
+
+def form_count(body: AnyBody) -> tuple[int, int]:
+    """Particles and springs of a body's form, those that are cut included; else as `count`."""
+    match body:
+        case RopeDef():
+            return body.segments + 1, body.segments
+        case BridgeDef():
+            return 2 * (body.segments + 1), 5 * body.segments + 1
+        case GirderDef():
+            return 2 * body.segments + 1, 4 * body.segments - 1
+        case WebDef():
+            return 1 + body.spokes * body.rings, 2 * body.spokes * body.rings
+        case WheelDef():
+            return 1 + 2 * body.segments, 6 * body.segments
+        case MeshDef():
+            return len(body.particles), len(body.springs)
+        case JellyDef():
+            return _count_jelly(body)
 
 
 def expand(body: AnyBody) -> tuple[Points, Pairs]:
-    """Positions [m] (n, 2) and pairs (m, 2) of a body, in generation order."""
-    if isinstance(body, RopeDef):
-        return _row(body.start, body.end, body.segments), _chain(body.segments)
-    if isinstance(body, BridgeDef):
-        return _bridge(body)
-    if isinstance(body, MeshDef):
-        pairs = np.array(body.springs, dtype=np.int64).reshape(-1, 2)
-        return np.array(body.particles, dtype=np.float64).reshape(-1, 2), pairs
-    return _jelly(body)
+    """Positions [m] (n, 2) and pairs (m, 2) of a body's form, in generation order."""
+    match body:
+        case RopeDef():
+            return _row(body.start, body.end, body.segments), _chain(body.segments)
+        case BridgeDef():
+            return _bridge(body)
+        case GirderDef():
+            return _girder(body)
+        case WebDef():
+            return _web(body)
+        case WheelDef():
+            return _wheel(body)
+        case MeshDef():
+            pairs = np.array(body.springs, dtype=np.int64).reshape(-1, 2)
+            return np.array(body.particles, dtype=np.float64).reshape(-1, 2), pairs
+        case JellyDef():
+            return _jelly(body)
+
+
+def distances(points: Points, pairs: Pairs) -> Points:
+    """Distance [m] (m,) of the two particles of each pair."""
+    apart = points[pairs[:, 1]] - points[pairs[:, 0]]
+    return np.asarray(np.sqrt(apart[:, 0] * apart[:, 0] + apart[:, 1] * apart[:, 1]))
 
 
 def box_grid(body: JellyDef) -> tuple[int, int]:
@@ -91,6 +125,56 @@ def _bridge(body: BridgeDef) -> tuple[Points, Pairs]:
     return np.concatenate([top, bottom]), np.concatenate([chords, chords + nodes, posts, diagonals])
 
 
+def girder_offset(body: GirderDef) -> tuple[float, float]:
+    """How far [m] a girder's second row lies to the right of its first; start and end must be apart."""
+    across, up = body.end[0] - body.start[0], body.end[1] - body.start[1]
+    length = math.sqrt(across * across + up * up)
+    return body.height * (up / length), -body.height * (across / length)
+
+
+def _girder(body: GirderDef) -> tuple[Points, Pairs]:
+    nodes = body.segments + 1
+    first = _row(body.start, body.end, body.segments)
+    second = (first[:-1] + first[1:]) / 2.0 + np.array(girder_offset(body))
+    cell = np.arange(body.segments, dtype=np.int64)
+    zigzag = np.stack([np.stack([cell, cell + nodes], axis=1), np.stack([cell + nodes, cell + 1], axis=1)], axis=1)
+    chords = np.concatenate([_chain(body.segments), _chain(body.segments - 1) + nodes])
+    return np.concatenate([first, second]), np.concatenate([chords, zigzag.reshape(-1, 2)])
+
+
+def _spokes(angle: float, spokes: int) -> Points:
+    """Unit vectors (spokes, 2) all round, counter-clockwise from an angle [rad] on."""
+    return np.array([turn(angle + math.tau * spoke / spokes) for spoke in range(spokes)])
+
+
+def _ring(first: int, size: int) -> Pairs:
+    """Pairs of neighbours in a ring of that many particles, which begins at an index."""
+    spoke = np.arange(size, dtype=np.int64)
+    return first + np.stack([spoke, (spoke + 1) % size], axis=1)
+
+
+def _web(body: WebDef) -> tuple[Points, Pairs]:
+    centre = np.array([body.position], dtype=np.float64)
+    radii = body.radius * np.arange(1, body.rings + 1, dtype=np.float64) / body.rings
+    rings = centre + (radii[:, None, None] * _spokes(body.angle, body.spokes)).reshape(-1, 2)
+    outer = np.arange(1, len(rings) + 1, dtype=np.int64)
+    radial = np.stack([np.maximum(outer - body.spokes, 0), outer], axis=1)
+    chords = [_ring(1 + ring * body.spokes, body.spokes) for ring in range(body.rings)]
+    return np.concatenate([centre, rings]), np.concatenate([radial, *chords])
+
+
+def _wheel(body: WheelDef) -> tuple[Points, Pairs]:
+    hub = np.array([body.position], dtype=np.float64)
+    spokes = _spokes(body.angle, body.segments)
+    points = np.concatenate([hub, hub + (body.radius - body.thickness) * spokes, hub + body.radius * spokes])
+    inner = np.arange(1, body.segments + 1, dtype=np.int64)
+    outer = inner + body.segments
+    first, second = _ring(1, body.segments), _ring(1 + body.segments, body.segments)
+    diagonals = np.stack([np.stack([inner, second[:, 1]], axis=1), np.stack([outer, first[:, 1]], axis=1)], axis=1)
+    spring_rows = [np.stack([np.zeros_like(inner), inner], axis=1), first, second, np.stack([inner, outer], axis=1)]
+    return points, np.concatenate([*spring_rows, diagonals.reshape(-1, 2)])
+
+
 def _reach(shape: CircleShape, spacing: float) -> int:
     return math.floor(shape.circle / spacing + BORDER)
 
@@ -104,6 +188,16 @@ def jelly_cells(body: JellyDef) -> NDArray[np.bool_]:
         return steps[:, None] * steps[:, None] + steps[None, :] * steps[None, :] <= ratio * ratio
     assert not isinstance(body.shape, BoxShape)
     return polygon_grid(body.shape.polygon, body.spacing)[2]
+
+
+def _count_jelly(body: JellyDef) -> tuple[int, int]:
+    if isinstance(body.shape, BoxShape):
+        columns, rows = box_grid(body)
+        across, up = columns - 1, rows - 1
+        return columns * rows, across * rows + columns * up + 2 * across * up
+    if isinstance(body.shape, CircleShape) and _reach(body.shape, body.spacing) ** 2 > PARTICLE_LIMIT:
+        return 2 * PARTICLE_LIMIT, 0
+    return count_cells(jelly_cells(body))
 
 
 def count_cells(cells: NDArray[np.bool_]) -> tuple[int, int]:

@@ -1,10 +1,22 @@
 """What no single field can tell: names, references, counts after expansion, outlines; all before anything is built."""
 
+import itertools
 import math
 from collections.abc import Iterator
 from typing import Any
 
-from sandbox.level.bodies import AnyBody, BoxShape, BridgeDef, CircleShape, JellyDef, MeshDef, PolygonShape
+from sandbox.level.bodies import (
+    AnyBody,
+    BoxShape,
+    BridgeDef,
+    CircleShape,
+    GirderDef,
+    JellyDef,
+    MeshDef,
+    PolygonShape,
+    WebDef,
+    WheelDef,
+)
 from sandbox.level.checks import PARTICLE_METRICS, CheckDef
 from sandbox.level.faults import Fault, LevelError, json_path, shown, suggestion
 from sandbox.level.layout import Layout
@@ -14,13 +26,15 @@ from sandbox.level.limits import (
     DEFAULT_MATERIAL,
     PARTICLE_LIMIT,
     POLYGON_WORK_LIMIT,
+    SPACING_RANGE,
     SPEED_LIMIT,
     SPRING_LIMIT,
     TEXT_LIMIT,
 )
 from sandbox.level.model import Level
 from sandbox.level.polygon import grid_bounds, is_simple
-from sandbox.level.shapes import count, turn
+from sandbox.level.shapes import form_count, girder_offset, turn
+from sandbox.level.welds import weld_faults
 
 
 def check_level(level: Level, source: str) -> None:
@@ -28,20 +42,17 @@ def check_level(level: Level, source: str) -> None:
     counts, too_large = _counts(level)
     if too_large:
         raise LevelError(source, too_large)
-    faults = _all_faults(level, counts)
-    first = next(faults, None)
-    if first is not None:
-        raise LevelError(source, _chain(first, faults))
+    layout = Layout(level, [particles for particles, _ in counts])
+    # What welds make can only be looked at where all else is sound.
+    for faults in (_all_faults(level, counts, layout), weld_faults(level, layout)):
+        first = next(faults, None)
+        if first is not None:
+            raise LevelError(source, itertools.chain([first], faults))
 
 
-def _chain(first: Fault, rest: Iterator[Fault]) -> Iterator[Fault]:
-    yield first
-    yield from rest
-
-
-def _counts(level: Level) -> tuple[list[int], list[Fault]]:
-    """Particles of each body, and the fault of a level that is too large; stops at the body that goes beyond."""
-    counts: list[int] = []
+def _counts(level: Level) -> tuple[list[tuple[int, int]], list[Fault]]:
+    """Particles and springs of each body's form, and the fault of a level that is too large, at which it stops."""
+    counts: list[tuple[int, int]] = []
     particles, springs, corners, work = len(level.particles), len(level.springs), 0, 0
     for index, body in enumerate(level.bodies):
         if isinstance(body, JellyDef) and isinstance(body.shape, PolygonShape):
@@ -50,18 +61,19 @@ def _counts(level: Level) -> tuple[list[int], list[Fault]]:
             corners, work = corners + sides, work + rows * (columns + sides)
         fault = _beyond_polygon(corners, work)
         if fault is None:
-            body_particles, body_springs = count(body)
-            particles, springs = particles + body_particles, springs + body_springs
+            body_particles, body_springs = form_count(body)
+            cut = len({number for number in body.cut if number < body_springs})
+            particles, springs = particles + body_particles, springs + body_springs - cut
             fault = _beyond_count(particles, springs)
         if fault is not None:
-            return counts, [(json_path(["bodies", index, *_SIZE[body.type]]), fault)]
-        counts.append(body_particles)
+            return counts, [(json_path(["bodies", index, *_SIZE.get(body.type, ["segments"])]), fault)]
+        counts.append((body_particles, body_springs))
     fault = _beyond_count(particles, springs)
     return counts, [] if fault is None else [("", fault)]
 
 
-# Where a body says how large it is.
-_SIZE = {"rope": ["segments"], "bridge": ["segments"], "jelly": ["spacing"], "mesh": []}
+# Where a body says how large it is, if not by its segments.
+_SIZE = {"jelly": ["spacing"], "web": ["rings"], "mesh": []}
 
 
 def _beyond_polygon(corners: int, work: int) -> str | None:
@@ -79,8 +91,7 @@ def _beyond_count(particles: int, springs: int) -> str | None:
     return None
 
 
-def _all_faults(level: Level, counts: list[int]) -> Iterator[Fault]:
-    layout = Layout(level, counts)
+def _all_faults(level: Level, counts: list[tuple[int, int]], layout: Layout) -> Iterator[Fault]:
     if level.view is not None and not (level.view[0] < level.view[2] and level.view[1] < level.view[3]):
         yield "view", "left and bottom come first and must be below right and top"
     for path, name in layout.repeated:
@@ -89,9 +100,13 @@ def _all_faults(level: Level, counts: list[int]) -> Iterator[Fault]:
         path = f"bodies.{index}"
         yield from _material(level, path, body.material)
         yield from _mesh(path, body) if isinstance(body, MeshDef) else _outline(path, body)
-        if counts[index] == 0:
+        if counts[index][0] == 0:
             yield f"{path}.spacing", "no point of the grid lies inside the polygon; make it smaller"
+        else:
+            yield from _changes(path, body, *counts[index])
     yield from _springs(level, layout)
+    for index, (a, b) in enumerate(level.welds):
+        yield from _pair(f"welds.{index}", layout, {"0": a, "1": b})
     for index, check in enumerate(level.checks):
         yield from _check(f"checks.{index}", check, layout)
     yield from _extras(level)
@@ -110,9 +125,6 @@ def _mesh(path: str, body: MeshDef) -> Iterator[Fault]:
     for axis, base in enumerate(body.velocity):
         if any(abs(base + velocity[axis]) > SPEED_LIMIT for velocity in body.velocities or ()):
             yield f"{path}.velocities", f"with the body's velocity one goes beyond the limit {SPEED_LIMIT:.15g}"
-    for index, particle in enumerate(body.pinned):
-        if particle >= size:
-            yield f"{path}.pinned.{index}", f"{shown(particle)} is beyond the last particle, {size - 1}"
     for index, (a, b) in enumerate(body.springs):
         if max(a, b) >= size:
             yield f"{path}.springs.{index}", f"{shown(max(a, b))} is beyond the last particle, {size - 1}"
@@ -120,16 +132,49 @@ def _mesh(path: str, body: MeshDef) -> Iterator[Fault]:
             yield f"{path}.springs.{index}", f"joins particle {a} to itself; name two particles"
 
 
+def _changes(path: str, body: AnyBody, particles: int, springs: int) -> Iterator[Fault]:
+    """Whether pins, cuts and pose of a body speak of particles and springs that its form has."""
+    for index, particle in enumerate(body.pinned):
+        if particle >= particles:
+            yield f"{path}.pinned.{index}", f"{shown(particle)} is beyond the last particle, {particles - 1}"
+    for index, spring in enumerate(body.cut):
+        if spring >= springs:
+            last = f"is beyond the last spring, {springs - 1}" if springs else "does not exist; the body has no springs"
+            yield f"{path}.cut.{index}", f"{shown(spring)} {last}"
+    if body.pose is not None and len(body.pose) != particles:
+        yield f"{path}.pose", f"has {len(body.pose)} items for {particles} particles; give one each"
+
+
 def _outline(path: str, body: AnyBody) -> Iterator[Fault]:
     """Whether what a body expands to stays inside the world."""
     if isinstance(body, BridgeDef):
         if min(body.start[1], body.end[1]) - body.height < -COORDINATE_LIMIT:
             yield f"{path}.height", f"takes the bottom row beyond the limit {-COORDINATE_LIMIT:.15g}"
+    elif isinstance(body, GirderDef):
+        yield from _girder(path, body)
+    elif isinstance(body, WebDef | WheelDef):
+        if isinstance(body, WheelDef) and body.thickness >= body.radius:
+            yield f"{path}.thickness", f"{shown(body.thickness)} is not below the radius, {shown(body.radius)}"
+        if max(map(abs, body.position)) + body.radius > COORDINATE_LIMIT:
+            yield f"{path}.radius", f"takes the {body.type} beyond the limit {COORDINATE_LIMIT:.15g}"
     elif isinstance(body, JellyDef):
         if isinstance(body.shape, PolygonShape) and not is_simple(body.shape.polygon):
             yield f"{path}.shape.polygon", "its sides touch or cross, or a corner comes twice; draw it without"
         if _farthest(body) > COORDINATE_LIMIT:
             yield f"{path}.position", f"takes the shape beyond the limit {COORDINATE_LIMIT:.15g}"
+
+
+def _girder(path: str, body: GirderDef) -> Iterator[Fault]:
+    apart = [end - start for start, end in zip(body.start, body.end, strict=True)]
+    if max(map(abs, apart)) < SPACING_RANGE[0]:
+        yield f"{path}.end", f"is where start is; a girder is at least {SPACING_RANGE[0]:.15g} long"
+        return
+    half = 0.5 / body.segments
+    for axis, offset in enumerate(girder_offset(body)):
+        inner = (body.start[axis] + half * apart[axis], body.end[axis] - half * apart[axis])
+        if max(abs(place + offset) for place in inner) > COORDINATE_LIMIT:
+            yield f"{path}.height", f"takes the second row beyond the limit {COORDINATE_LIMIT:.15g}"
+            return
 
 
 def _farthest(body: JellyDef) -> float:
@@ -150,15 +195,20 @@ def _springs(level: Level, layout: Layout) -> Iterator[Fault]:
     for index, spring in enumerate(level.springs):
         path = f"springs.{index}"
         yield from _material(level, path, spring.material)
-        slots = set()
-        for end, reference in (("a", spring.a), ("b", spring.b)):
-            try:
-                slots.add(layout.slot(reference))
-            except LookupError as error:
-                yield f"{path}.{end}", str(error.args[0])
-                slots.add(-1 - len(slots))
-        if len(slots) == 1:
-            yield path, f"joins {shown(spring.a)} to itself; name two particles"
+        yield from _pair(path, layout, {"a": spring.a, "b": spring.b})
+
+
+def _pair(path: str, layout: Layout, references: dict[str, str]) -> Iterator[Fault]:
+    """Whether two references, by the last part of their places, are of two particles."""
+    slots = set()
+    for end, reference in references.items():
+        try:
+            slots.add(layout.slot(reference))
+        except LookupError as error:
+            yield f"{path}.{end}", str(error.args[0])
+            slots.add(-1 - len(slots))
+    if len(slots) == 1:
+        yield path, f"joins {shown(next(iter(references.values())))} to itself; name two particles"
 
 
 def _check(path: str, check: CheckDef, layout: Layout) -> Iterator[Fault]:

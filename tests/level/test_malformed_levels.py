@@ -102,7 +102,7 @@ def test_a_flood_of_keys_does_not_make_present_keys_missing():
     [
         ("bodies.0", 5, "bodies.0: 5 is not an object {...} that describes a body"),
         ("bodies.0.extras", 5, "bodies.0.extras: 5 is not an object {...}"),
-        ("bodies.0.type", "chain", 'bodies.0.type: "chain" is not a kind of body; use rope, bridge, jelly or mesh'),
+        ("bodies.0.type", "chain", 'bodies.0.type: "chain" is not a kind of body; use rope, bridge, girder, web, '),
         ("bodies.0.start", [1], "bodies.0.start: needs 2 numbers, has 1"),
         ("bodies.0.start", [1, 2, 3], "bodies.0.start: has 3 items; at most 2 are possible"),
         ("view", [1, 2], "view: needs 4 numbers, has 2"),
