@@ -17,6 +17,7 @@ __all__ = [
     "level_data",
     "load_level",
     "parse_level",
+    "read_bytes",
     "read_level",
     "shipped_folder",
     "shipped_levels",
@@ -29,7 +30,24 @@ _PACKAGE = Path(__file__).resolve().parent.parent
 def read_level(path: str | os.PathLike[str]) -> Level:
     """Read a level file. Raises LevelError with one line per fault, also where the file itself cannot be read."""
     source = os.fspath(path)
-    return parse_level(_read(source), source)
+    return parse_level(read_bytes(source), source)
+
+
+def read_bytes(path: str | os.PathLike[str]) -> bytes:
+    """Read the bytes of a level file, of one beyond the limit no more than shows it. Raises LevelError."""
+    source = os.fspath(path)
+    try:
+        if not stat.S_ISREG(os.stat(source).st_mode):
+            kind = "a folder" if os.path.isdir(source) else "no regular file"
+            raise LevelError(source, [("", f"is {kind}; name a level file")])
+        with open(source, "rb") as file:
+            return file.read(FILE_LIMIT + 1)
+    except FileNotFoundError:
+        raise LevelError(source, [("", "there is no such file")]) from None
+    except LevelError:
+        raise
+    except (OSError, ValueError) as error:
+        raise LevelError(source, [("", f"cannot be read: {refusal_of(error)}")]) from None
 
 
 def load_level(name: str | os.PathLike[str]) -> Level:
@@ -73,18 +91,3 @@ def shipped_folder(kind: str) -> Path:
 def shipped_levels() -> list[Path]:
     """Files of the shipped levels, in order of their names."""
     return sorted(shipped_folder("levels").glob("*.json"))
-
-
-def _read(source: str) -> bytes:
-    try:
-        if not stat.S_ISREG(os.stat(source).st_mode):
-            kind = "a folder" if os.path.isdir(source) else "no regular file"
-            raise LevelError(source, [("", f"is {kind}; name a level file")])
-        with open(source, "rb") as file:
-            return file.read(FILE_LIMIT + 1)
-    except FileNotFoundError:
-        raise LevelError(source, [("", "there is no such file")]) from None
-    except LevelError:
-        raise
-    except (OSError, ValueError) as error:
-        raise LevelError(source, [("", f"cannot be read: {refusal_of(error)}")]) from None

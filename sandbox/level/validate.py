@@ -39,15 +39,26 @@ from sandbox.level.welds import weld_faults
 
 def check_level(level: Level, source: str) -> None:
     """Raise LevelError with every fault of a level, named by source, that its fields alone do not show."""
+    faults = level_faults(level)
+    first = next(faults, None)
+    if first is not None:
+        raise LevelError(source, itertools.chain([first], faults))
+
+
+def level_faults(level: Level) -> Iterator[Fault]:
+    """Every fault of a level that its fields alone do not show, in the order of the file; nothing is built for it."""
     counts, too_large = _counts(level)
     if too_large:
-        raise LevelError(source, too_large)
+        yield from too_large
+        return
     layout = Layout(level, [particles for particles, _ in counts])
     # What welds make can only be looked at where all else is sound.
-    for faults in (_all_faults(level, counts, layout), weld_faults(level, layout)):
-        first = next(faults, None)
-        if first is not None:
-            raise LevelError(source, itertools.chain([first], faults))
+    sound = True
+    for fault in _all_faults(level, counts, layout):
+        sound = False
+        yield fault
+    if sound:
+        yield from weld_faults(level, layout)
 
 
 def _counts(level: Level) -> tuple[list[tuple[int, int]], list[Fault]]:
