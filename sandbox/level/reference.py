@@ -42,11 +42,11 @@ EXAMPLE = """\
 _INTRO = f"""\
 # Level format, version {limits.VERSION}
 
-A level is one JSON file. It describes bodies (ropes, bridges, jellies, meshes), loose particles and loose springs;
-the program expands them into particles and springs. Lengths are in metres, masses in kilograms, times in seconds,
-angles in radians; y points up. Everything has a default but `format`, `version`, `name` and what a body cannot do
-without. Keys that are not listed here are refused, so a misspelt key is noticed; `extras` is the place for other
-tools' data.
+A level is one JSON file. It describes bodies (ropes, bridges, girders, webs, wheels, jellies, meshes), loose
+particles and loose springs; the program expands them into particles and springs. Lengths are in metres, masses in
+kilograms, times in seconds, angles in radians; y points up. Everything has a default but `format`, `version`, `name`
+and what a body cannot do without. Keys that are not listed here are refused, so a misspelt key is noticed; `extras`
+is the place for other tools' data.
 
 ```json
 {EXAMPLE}```
@@ -61,8 +61,10 @@ _NAMES = """\
 - An id is 1 to 256 characters without `.` `:` `,` and control characters, and does not begin with `+`. Bodies and
   loose particles share one set of ids.
 - `deck.7` is particle 7 of the body `deck`, counted from 0 in generation order; `deck.start` and `deck.end` are the
-  ends of a rope, or of a bridge's top row; a loose particle goes by its id alone. Springs and checks refer so.
-- `deck:7` is spring 7 of `deck`, `:7` the loose spring 7: replays use these.
+  ends of a rope, of a bridge's top row, or of a girder's first row; `net.centre` is the middle of a web, `cart.hub`
+  that of a wheel; a loose particle goes by its id alone. Springs, welds and checks refer so.
+- `deck:7` is spring 7 of `deck`, `:7` the loose spring 7: replays use these. Springs that are `cut` leave their
+  numbers unused.
 - A body's `material` names an entry of `materials`, or is `default`, which exists even where the level has none of
   that name.
 
@@ -72,6 +74,13 @@ _NAMES = """\
 - Rope: from start to end, evenly, whatever its rest length.
 - Bridge: the top row from start to end, then the bottom row, `height` straight below it. Springs: top chords, bottom
   chords, verticals, then per cell the diagonal that falls towards the end and the one that rises.
+- Girder: the first row from start to end, then the second, each particle half a cell further and `height` to the
+  right of the way from start to end. Springs: first chords, second chords, then per cell the diagonal that leaves the
+  first row and the one that comes back. It can stand at any angle; a bridge's bottom row lies straight below.
+- Web: the particle in the centre, then ring by ring from the inside, each counter-clockwise from the first spoke.
+  Springs: the threads along the spokes in the order of their outer particles, then those of the rings.
+- Wheel: the hub, the inner ring, the outer ring, each counter-clockwise from the first spoke. Springs: hub to inner
+  ring, inner ring, outer ring, between the rings, then per cell both diagonals.
 - Jelly, box: `round(width / spacing) + 1` columns, rows alike, stretched to fit the box; row by row from the bottom
   left. Where that leaves one column or row, it stands in the middle.
 - Jelly, circle and polygon: the whole multiples of `spacing` on either side of the centre, the shape's own [0, 0],
@@ -79,6 +88,16 @@ _NAMES = """\
 - Springs of a jelly: all to the right, all upward, then per cell the diagonal that rises to the right and the other;
   where both ends exist. The shape is turned by `angle` afterwards.
 - A pinned particle starts at rest, whatever its velocity.
+
+## Pins, cuts, poses and welds
+
+- `pinned` and `cut` of a body name particles and springs by number, beside what its `pin` holds. A body stays a rope
+  or a wheel with them.
+- `pose` places every particle of a body anew and leaves its rest lengths as they are: a rope saved as it hangs.
+- The two particles of a weld are one, and so are all that welds join to each other. It stands where the first of them
+  in generation order stands, under all their names. Masses add, up to the limit of one particle; the velocity is that
+  of the common centre of mass; the radius is the largest; it is held where one of them is. Rest lengths stay as they
+  are. A spring that would lose its length so is refused.
 """
 
 # Each is one mistake in the example above; the reference shows what the program says to it.
@@ -89,6 +108,7 @@ _MISTAKES = [
     ('"segments": 20', '"segments": 1000000000000'),
     ('"b": "deck.31"', '"b": "dek.31"'),
     ('"b": "deck.31"', '"b": "deck"'),
+    ('"height": 0.5', '"height": 0.5, "cut": [101]'),
     ('"mass": 20', '"mass": -20'),
     ('"mass": 20', '"mass": 20, "mass": 30'),
     ('"mass": 20,', '"mass": 20'),
