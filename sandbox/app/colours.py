@@ -1,7 +1,12 @@
 """Colours and sizes of everything that is drawn over the world; the widgets' are in assets/theme.json."""
 
+from collections.abc import Iterable
+from itertools import cycle
+
 import numpy as np
 from numpy.typing import NDArray
+
+from sandbox.level.limits import DEFAULT_MATERIAL
 
 Colour = tuple[int, int, int]
 
@@ -17,6 +22,12 @@ WARNING: Colour = (255, 180, 84)
 DANGER: Colour = (255, 107, 107)
 PARTICLE: Colour = (226, 231, 239)
 PINNED: Colour = (94, 208, 178)
+
+# Springs by material while a level is edited; the material `default` is grey, then they repeat.
+MATERIAL_COLOURS: tuple[Colour, ...] = (
+    (122, 162, 247), (255, 170, 96), (122, 208, 130), (232, 131, 183), (240, 214, 104), (96, 205, 224), (190, 150, 255),
+    (255, 128, 116), (176, 196, 116), (128, 178, 178),
+)  # fmt: skip
 
 # Springs by signed strain: compressed, at rest, stretched, torn at.
 COMPRESSED: Colour = (77, 155, 255)
@@ -39,6 +50,12 @@ def strain_colours(strain: NDArray[np.float64]) -> NDArray[np.int64]:
     place = np.sign(finite) * np.log1p(np.abs(finite) / SLIGHT_STRAIN) / full
     channels = [np.interp(place, _STOPS, _RAMP[:, k]).astype(np.int64) for k in range(3)]
     return (channels[0] << 16) | (channels[1] << 8) | channels[2]
+
+
+def material_colours(names: Iterable[str]) -> dict[str, Colour]:
+    """Colours of the materials of a level, in its order, and of the one that needs no definition."""
+    own = (name for name in names if name != DEFAULT_MATERIAL)
+    return {DEFAULT_MATERIAL: RELAXED, **dict(zip(own, cycle(MATERIAL_COLOURS), strict=False))}
 
 
 def packed(colour: Colour) -> int:

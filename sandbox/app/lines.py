@@ -71,6 +71,23 @@ def _draw_lines(pixels, ends, colours, half_width, left, top, right, bottom):  #
 
 
 @kernel
+def _draw_plain_lines(pixels, ends, colours, left, top, right, bottom):  # type: ignore[no-untyped-def]
+    # One pixel per step along the longer side.
+    for s in range(ends.shape[0]):
+        ax, ay, bx, by = ends[s, 0], ends[s, 1], ends[s, 2], ends[s, 3]
+        if not (abs(ax) < FARTHEST and abs(ay) < FARTHEST and abs(bx) < FARTHEST and abs(by) < FARTHEST):
+            continue
+        if max(ax, bx) < left or min(ax, bx) >= right or max(ay, by) < top or min(ay, by) >= bottom:
+            continue
+        colour = 0xFF000000 | colours[s]
+        steps = int(max(abs(bx - ax), abs(by - ay))) + 1
+        for i in range(steps + 1):
+            x, y = math.floor(ax + (bx - ax) * i / steps), math.floor(ay + (by - ay) * i / steps)
+            if left <= x < right and top <= y < bottom:
+                pixels[x, y] = colour
+
+
+@kernel
 def _draw_discs(pixels, centres, radii, colours, left, top, right, bottom):  # type: ignore[no-untyped-def]
     # Coverage of a pixel centre at distance d from the middle: clamp(radius + 1/2 - d, 0, 1).
     for p in range(centres.shape[0]):
@@ -117,6 +134,17 @@ class Canvas:
         for (x1, y1, x2, y2), colour in zip(ends[seen].tolist(), colours[seen].tolist(), strict=True):
             pygame.draw.aaline(self.surface, _rgb(colour), (x1, y1), (x2, y2), max(1, round(width)))
 
+    def plain_lines(self, ends: NDArray[np.float64], colours: NDArray[np.int64]) -> None:
+        """Draw segments as `lines` does, a pixel wide and with steps, in a tenth of the time."""
+        if not len(ends):
+            return
+        if not self.compiled:
+            self.lines(ends, colours, 1.0)
+            return
+        clip = self.surface.get_clip()
+        pixels = pygame.surfarray.pixels2d(self.surface)
+        _draw_plain_lines(pixels, ends, colours, clip.left, clip.top, clip.right, clip.bottom)
+
     def discs(self, centres: NDArray[np.float64], radii: NDArray[np.float64], colours: NDArray[np.int64]) -> None:
         """Draw filled circles of centres (n, 2) and radii (n,) [pixels] in colours (n,) 0xRRGGBB."""
         if not len(centres):
@@ -155,4 +183,5 @@ def warm_up_lines() -> None:
         return
     canvas = Canvas(pygame.Surface((8, 8), 0, 32))
     canvas.lines(np.array([[1.0, 1.0, 6.0, 5.0]]), np.array([0xFFFFFF]), 2.0)
+    canvas.plain_lines(np.array([[1.0, 1.0, 6.0, 5.0]]), np.array([0xFFFFFF]))
     canvas.discs(np.array([[3.0, 3.0]]), np.array([2.0]), np.array([0xFFFFFF]))
