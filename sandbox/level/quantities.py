@@ -1,6 +1,6 @@
 """Types of the level format's values: numbers with unit and range, names, texts, and the base of every model."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -26,6 +26,27 @@ class Description(BaseModel):
     """Base of all models: strict types, frozen, no unknown keys, finite numbers."""
 
     model_config = ConfigDict(strict=True, frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+Described = TypeVar("Described", bound=Description)
+
+# Looked up once: a copy costs little more than these calls.
+_new, _set = object.__new__, object.__setattr__
+
+
+def replaced(item: Described, **changes: Any) -> Described:
+    """A copy of a description with other values of some fields, which are NOT validated.
+
+    For edits of thousands of items at once by code that has checked types, ranges and field names itself: about 0.7 us
+    each, half of `model_copy`. What the item shares with its copy is immutable, but for `extras`, which nobody changes.
+    """
+    copy = _new(type(item))
+    _set(copy, "__dict__", {**item.__dict__, **changes})
+    # Which fields were given is of no interest anywhere, so the copy shares the item's.
+    _set(copy, "__pydantic_fields_set__", item.__pydantic_fields_set__)
+    _set(copy, "__pydantic_extra__", None)
+    _set(copy, "__pydantic_private__", None)
+    return copy
 
 
 # Control characters would break one-line messages; a description alone may hold line breaks.
