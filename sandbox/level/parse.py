@@ -26,6 +26,7 @@ from sandbox.level.limits import (
     SPRING_LIMIT,
     TAG_LIMIT,
 )
+from sandbox.level.migrate import migrated
 from sandbox.level.model import Level
 from sandbox.level.scan import scan
 from sandbox.level.validate import check_level
@@ -38,7 +39,7 @@ _LARGE = 1024 * 1024  # [bytes]
 
 _BODY_LISTS = ("particles", "masses", "velocities", "pinned", "pose")
 _BODY_LIMITS = {"springs": SPRING_LIMIT, "cut": SPRING_LIMIT} | dict.fromkeys(_BODY_LISTS, PARTICLE_LIMIT)
-_LEVEL_LIMITS = {
+LEVEL_LIMITS = {
     "bodies": PARTICLE_LIMIT,
     "particles": PARTICLE_LIMIT,
     "springs": SPRING_LIMIT,
@@ -82,6 +83,12 @@ def _parse(data: bytes, source: str) -> Level:
     if raw.get("format", FORMAT) != FORMAT:
         fault = "format", f'{shown(raw["format"])} is not "{FORMAT}"; this is no level'
         raise LevelError(source, [fault])
+    try:
+        raw, before = migrated(raw), raw
+    except ValueError as error:
+        raise LevelError(source, [("version", str(error))]) from None
+    if raw is not before:
+        data = json.dumps(raw).encode()
     too_long = list(itertools.islice(_too_long(raw), FAULT_LIMIT + 1))
     if too_long:
         raise LevelError(source, too_long)
@@ -157,7 +164,7 @@ def _repeated_keys(raw: Any, repeated: list[tuple[dict[str, Any], str]]) -> Iter
 
 
 def _too_long(raw: dict[str, Any]) -> Iterator[Fault]:
-    whole = list(_long_lists((), raw, _LEVEL_LIMITS))
+    whole = list(_long_lists((), raw, LEVEL_LIMITS))
     yield from whole
     bodies = raw.get("bodies")
     if not whole and isinstance(bodies, list):
