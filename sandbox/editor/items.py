@@ -1,12 +1,14 @@
 """Items: what can be selected in a level, and how it is named."""
 
-from collections.abc import Iterable
-from typing import Literal, NamedTuple
+from collections.abc import Callable
+from typing import Literal, NamedTuple, TypeVar
 
 from sandbox.level.bodies import AnyBody
 from sandbox.level.model import Level, ParticleDef, SpringDef
+from sandbox.level.quantities import replaced
 
 Kind = Literal["body", "particle", "spring"]
+Definition = AnyBody | ParticleDef | SpringDef
 
 
 class Item(NamedTuple):
@@ -17,7 +19,7 @@ class Item(NamedTuple):
 
 
 Selection = frozenset[Item]
-Definition = AnyBody | ParticleDef | SpringDef
+Part = TypeVar("Part", AnyBody, ParticleDef, SpringDef)
 
 
 def items_of(level: Level) -> tuple[Item, ...]:
@@ -29,8 +31,37 @@ def items_of(level: Level) -> tuple[Item, ...]:
     )
 
 
-def definitions(level: Level, items: Iterable[Item]) -> dict[Item, Definition]:
-    """What the level says of each of the items that it has, in file order."""
-    wanted = items if isinstance(items, frozenset | set) else set(items)
-    everything = (*level.bodies, *level.particles, *level.springs)
-    return {item: definition for item, definition in zip(items_of(level), everything, strict=True) if item in wanted}
+def keys(selection: Selection, kind: Kind) -> set[str | int]:
+    """Keys of the selected items of a kind."""
+    return {item.key for item in selection if item.kind == kind}
+
+
+def chosen_bodies(level: Level, selection: Selection) -> list[AnyBody]:
+    """The selected bodies in file order."""
+    wanted = keys(selection, "body")
+    return [body for body in level.bodies if body.id in wanted]
+
+
+def chosen_particles(level: Level, selection: Selection) -> list[ParticleDef]:
+    """The selected loose particles in file order."""
+    wanted = keys(selection, "particle")
+    return [particle for particle in level.particles if particle.id in wanted]
+
+
+def chosen_springs(level: Level, selection: Selection) -> list[SpringDef]:
+    """The selected loose springs in file order."""
+    wanted = keys(selection, "spring")
+    return [spring for index, spring in enumerate(level.springs) if index in wanted]
+
+
+def changed(level: Level, selection: Selection, change: Callable[[Definition], Definition]) -> Level:
+    """The level with every selected item changed; what is not selected stays the same object."""
+    bodies, particles, springs = (keys(selection, kind) for kind in ("body", "particle", "spring"))
+    update: dict[str, object] = {}
+    if bodies:
+        update["bodies"] = tuple(change(body) if body.id in bodies else body for body in level.bodies)
+    if particles:
+        update["particles"] = tuple(change(part) if part.id in particles else part for part in level.particles)
+    if springs:
+        update["springs"] = tuple(change(part) if k in springs else part for k, part in enumerate(level.springs))
+    return replaced(level, **update) if update else level
