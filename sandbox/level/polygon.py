@@ -101,3 +101,39 @@ def _folds_back(p: NDArray[np.float64], q: NDArray[np.float64], r: NDArray[np.fl
         return True
     along = (q - p) * (r - q)
     return bool(_side_of(p, q, r) == 0 and along[0] + along[1] < 0)
+
+
+def simplified(corners: Corners, tolerance: float) -> list[tuple[float, float]]:
+    """Corners of a closed line drawn by hand, without those that change it by at most a tolerance [m].
+
+    Two far corners stay; of the ways between them each is replaced by its chord or divided at the corner farthest from
+    it (Ramer 1972; Douglas and Peucker 1973). What comes twice in a row goes first.
+    """
+    given = [corner for index, corner in enumerate(corners) if corner != corners[index - 1]]
+    if len(given) < 3:
+        return given
+    points = np.array([*given, given[0]], dtype=np.float64)
+    far = int(np.argmax(np.sum((points - points[0]) ** 2, axis=1)))
+    kept = {0, far}
+    ways = [(0, far), (far, len(given))]
+    while ways:
+        first, last = ways.pop()
+        between = points[first + 1 : last]
+        if not len(between):
+            continue
+        distance = _distance_from(points[first], points[last], between)
+        worst = int(np.argmax(distance))
+        if distance[worst] > tolerance:
+            middle = first + 1 + worst
+            kept.add(middle)
+            ways += [(first, middle), (middle, last)]
+    return [given[index] for index in sorted(kept)]
+
+
+def _distance_from(a: NDArray[np.float64], b: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distance of points (k, 2) from the segment a b (2,)."""
+    along, offset = b - a, points - a
+    squared = float(along[0] * along[0] + along[1] * along[1])
+    share = np.clip(offset @ along / squared, 0.0, 1.0) if squared > 0.0 else np.zeros(len(points))
+    gap = offset - share[:, None] * along
+    return np.asarray(np.sqrt(gap[:, 0] ** 2 + gap[:, 1] ** 2))

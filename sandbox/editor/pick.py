@@ -1,0 +1,147 @@
+"""What is under the pointer, in a box, in a lasso, of a material; and how that joins what is selected already."""
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.editor.items import Item, Selection
+from sandbox.editor.scene import Scene
+from sandbox.level.model import Level
+
+Point = tuple[float, float]
+Box = tuple[float, float, float, float]
+Mode = Literal["replace", "add", "subtract", "toggle"]
+
+
+def particle_at(scene: Scene, point: Point, within: float) -> int | None:
+    """Slot of the particle at point [m], by its disc, at most `within` [m] beside it; None = none.
+
+    Where discs overlap the one whose centre is nearest; of those in the same place the one drawn last.
+    """
+    dx, dy = scene.position[:, 0] - point[0], scene.position[:, 1] - point[1]
+    near = np.flatnonzero((np.abs(dx) <= scene.radius + within) & (np.abs(dy) <= scene.radius + within))
+    distance = np.sqrt(dx[near] ** 2 + dy[near] ** 2)
+    gap = np.maximum(distance - scene.radius[near], 0.0)
+    reached = gap <= within
+    if not reached.any():
+        return None
+    near, distance, gap = near[reached], distance[reached], gap[reached]
+    return int(near[np.lexsort((-near, distance, gap))[0]])
+
+
+def spring_at(scene: Scene, point: Point, within: float) -> int | None:
+    """Slot of the spring nearest to point [m], at most `within` [m] away; of equals the one drawn last; None = none."""
+    ax, ay, bx, by = _ends(scene)
+    x, y = point
+    near = np.flatnonzero(
+        (np.minimum(ax, bx) <= x + within)
+        & (np.maximum(ax, bx) >= x - within)
+        & (np.minimum(ay, by) <= y + within)
+        & (np.maximum(ay, by) >= y - within)
+    )
+    start = np.stack([ax[near], ay[near]], axis=1)
+    along = np.stack([bx[near], by[near]], axis=1) - start
+    offset = np.array(point) - start
+    squared = np.sum(along * along, axis=1)
+    share = np.divide(np.sum(offset * along, axis=1), squared, out=np.zeros_like(squared), where=squared > 0.0)
+    gap = offset - np.clip(share, 0.0, 1.0)[:, None] * along
+    distance = np.sqrt(np.sum(gap * gap, axis=1))
+    reached = distance <= within
+    if not reached.any():
+        return None
+    near = near[reached]
+    return int(near[np.lexsort((-near, distance[reached]))[0]])
+
+
+def item_at(scene: Scene, point: Point, within: float) -> Item | None:
+    """The item at point [m]: its particles count before springs, springs before the insides of bodies.
+
+    within [m]: how far beside a particle or a spring still counts. A point is inside a body that has springs to its
+    left and right, above and below; of several the one drawn last.
+    """
+    particle = particle_at(scene, point, within)
+    if particle is not None:
+        return scene.items[int(scene.particle_item[particle])]
+    spring = spring_at(scene, point, within)
+    if spring is not None:
+        return scene.items[int(scene.spring_item[spring])]
+    around = [index for index in _items_around(scene, point) if scene.items[index].kind == "body"]
+    return scene.items[max(around)] if around else None
+
+
+def _ends(scene: Scene) -> tuple[NDArray[np.float64], ...]:
+    x, y = scene.position[:, 0], scene.position[:, 1]
+    return x[scene.particle_a], y[scene.particle_a], x[scene.particle_b], y[scene.particle_b]
+
+
+def _items_around(scene: Scene, point: Point) -> set[int]:
+    ax, ay, bx, by = _ends(scene)
+    left, right = _beside(scene, ay, ax, by, bx, point[1], point[0])
+    below, above = _beside(scene, ax, ay, bx, by, point[0], point[1])
+    return left & right & below & above
+
+
+def _beside(
+    scene: Scene,
+    au: NDArray[np.float64],
+    av: NDArray[np.float64],
+    bu: NDArray[np.float64],
+    bv: NDArray[np.float64],
+    u: float,
+    v: float,
+) -> tuple[set[int], set[int]]:
+    """Items whose springs cross the line of constant u before v and after it."""
+    crossing = np.flatnonzero((au <= u) != (bu <= u))
+    au, av, bu, bv = au[crossing], av[crossing], bu[crossing], bv[crossing]
+    at = av + (bv - av) * ((u - au) / (bu - au))
+    owner = scene.spring_item[crossing]
+    return set(np.unique(owner[at <= v]).tolist()), set(np.unique(owner[at >= v]).tolist())
+
+
+def items_in_box(scene: Scene, box: Box) -> Selection:
+    """Items of which everything lies in a box: two opposite corners x, y, x, y [m] in any order."""
+    left, right = sorted((box[0], box[2]))
+    bottom, top = sorted((box[1], box[3]))
+    x, y = scene.position[:, 0], scene.position[:, 1]
+    return _enclosed(scene, (x >= left) & (x <= right) & (y >= bottom) & (y <= top))
+
+
+def items_in_lasso(scene: Scene, polygon: Sequence[Point]) -> Selection:
+    """Items of which everything lies inside a closed line through points [m]; where it crosses itself, by turns."""
+    inside = np.zeros(len(scene.position), dtype=np.bool_)
+    if len(polygon) < 3:
+        return frozenset()
+    corners = np.array(polygon, dtype=np.float64)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    near = np.flatnonzero(np.all((scene.position >= low) & (scene.position <= high), axis=1))
+    x, y = scene.position[near, 0], scene.position[near, 1]
+    odd = np.zeros(len(near), dtype=np.bool_)
+    for (ax, ay), (bx, by) in zip(corners.tolist(), np.roll(corners, -1, axis=0).tolist(), strict=True):
+        if ay != by:
+            odd ^= ((ay > y) != (by > y)) & (x < ax + (bx - ax) * ((y - ay) / (by - ay)))
+    inside[near] = odd
+    return _enclosed(scene, inside)
+
+
+def _enclosed(scene: Scene, inside: NDArray[np.bool_]) -> Selection:
+    enclosed = np.ones(len(scene.items), dtype=np.bool_)
+    enclosed[scene.particle_item[~inside]] = False
+    enclosed[scene.spring_item[~(inside[scene.particle_a] & inside[scene.particle_b])]] = False
+    return frozenset(scene.items[index] for index in np.flatnonzero(enclosed).tolist())
+
+
+def items_of_material(level: Level, name: str) -> Selection:
+    """Bodies and loose springs whose springs are of the material of that name."""
+    bodies = frozenset(Item("body", body.id) for body in level.bodies if body.material == name)
+    return bodies | frozenset(Item("spring", index) for index, s in enumerate(level.springs) if s.material == name)
+
+
+def combined(old: Selection, new: Selection, mode: Mode) -> Selection:
+    """What is selected after new items are picked: they alone, too, no longer, or each the other way round."""
+    if mode == "replace":
+        return new
+    if mode == "add":
+        return old | new
+    return old - new if mode == "subtract" else old ^ new
