@@ -7,13 +7,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sandbox.editor.items import Definition, Selection, items_of
+from sandbox.editor.items import Selection, items_of
 from sandbox.level.bodies import AnyBody
 from sandbox.level.canonical import level_text
 from sandbox.level.faults import LevelError, shown
 from sandbox.level.limits import FILE_LIMIT, VERSION
 from sandbox.level.model import Level, NissenMaterial
-from sandbox.level.quantities import replaced
+from sandbox.level.quantities import Described, Description, replaced
 from sandbox.level.validate import check_level
 from sandbox.level.wording import worded
 
@@ -70,7 +70,7 @@ def check_bodies(level: Level, bodies: Iterable[AnyBody]) -> None:
     checked(replaced(level, bodies=tuple(bodies), particles=(), springs=(), welds=(), checks=()))
 
 
-def validated(definition: Definition) -> Definition:
+def validated(definition: Described) -> Described:
     """A definition whose fields have been changed unseen, read anew. Raises EditError where one is out of range."""
     data = dict(definition.__dict__)
     if "shape" in data:
@@ -80,11 +80,11 @@ def validated(definition: Definition) -> Definition:
         level = Level.model_validate({"format": "spring-sandbox/level", "version": VERSION, "name": "-", part: (data,)})
     except ValidationError as error:
         raise EditError(first_fault(error, subject(definition))) from None
-    result: Definition = getattr(level, part)[0]
+    result: Described = getattr(level, part)[0]
     return result
 
 
-def subject(definition: Definition) -> str:
+def subject(definition: Description) -> str:
     """What messages call a definition: its id in quotes, or what a spring joins."""
     name = getattr(definition, "id", None)
     return shown(name) if name is not None else "the spring"

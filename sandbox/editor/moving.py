@@ -1,35 +1,194 @@
-"""Moving, turning, scaling, mirroring and lining up what is selected."""
+"""Moving, turning, scaling, mirroring and lining up what is selected; loose springs follow their ends."""
 
+import math
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Literal
 
-from sandbox.editor.document import Document
+import numpy as np
+
+from sandbox.editor.document import Document, EditError, check_bodies, subject, validated
+from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles, keys
+from sandbox.editor.names import owner_of
+from sandbox.editor.placement import Motion, can_stretch, mapped_body, mapped_particle, shifted, stretch
+from sandbox.editor.remap import rebuilt
+from sandbox.editor.scene import Scene, make_scene
+from sandbox.level.bodies import AnyBody
+from sandbox.level.limits import COORDINATE_LIMIT
+from sandbox.level.model import Level, ParticleDef, SpringDef
+from sandbox.level.quantities import replaced
+from sandbox.level.shapes import Points
 
 Point = tuple[float, float]
+Edge = Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]
+Axis = Literal["x", "y"]
 
 
 def move(document: Document, dx: float, dy: float) -> Document:
-    raise NotImplementedError
+    """Move the selection by dx, dy [m]. Raises EditError where it would leave the world."""
+    _finite("a move", dx, dy)
+    return document if (dx, dy) == (0.0, 0.0) else _moved(document, lambda _: (dx, dy))
 
 
 def rotate(document: Document, angle: float, centre: Point) -> Document:
-    raise NotImplementedError
+    """Turn the selection by an angle [rad], counter-clockwise, about a centre [m]; start velocities turn with it."""
+    _finite("a turn", angle, *centre)
+    return _mapped(document, Motion(centre, angle=math.remainder(angle, 2.0 * math.pi)))
 
 
 def scale(document: Document, sx: float, sy: float, centre: Point) -> Document:
-    raise NotImplementedError
-
-
-def mirror(document: Document, axis: Literal["x", "y"], centre: Point) -> Document:
-    raise NotImplementedError
-
-
-def align(document: Document, edge: Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]) -> Document:
-    raise NotImplementedError
-
-
-def distribute(document: Document, axis: Literal["x", "y"]) -> Document:
-    raise NotImplementedError
+    """Make the selection sx times as wide and sy times as high about a centre [m]. Raises EditError where it bends."""
+    _finite("a scale", sx, sy, *centre)
+    if min(sx, sy) <= 0.0:
+        raise EditError("a scale is a number above 0; to turn something over, mirror it")
+    return _mapped(document, Motion(centre, sx=sx, sy=sy))
 
 
 def can_scale_unevenly(document: Document) -> bool:
-    raise NotImplementedError
+    """Whether everything selected can be made longer without being made higher as much."""
+    return all(can_stretch(body) for body in chosen_bodies(document.level, document.selection))
+
+
+def mirror(document: Document, axis: Axis, centre: Point) -> Document:
+    """Turn the selection over, left to right ("x") or upside down ("y"), about a centre [m]."""
+    _finite("a centre", *centre)
+    return _mapped(document, Motion(centre, sx=-1.0) if axis == "x" else Motion(centre, sy=-1.0))
+
+
+def align(document: Document, edge: Edge) -> Document:
+    """Move every selected item, groups as one, so that an edge or middle lies where that of all of them does."""
+    parts, low, high = _boxes(document)
+    if not len(low):
+        return document
+    axis = 0 if edge in ("left", "right", "centre_x") else 1
+    share = {"left": 0.0, "bottom": 0.0, "right": 1.0, "top": 1.0}.get(edge, 0.5)
+    # Of each and of all: the low border, the high one, or the middle between them.
+    own = low[:, axis] + share * (high[:, axis] - low[:, axis])
+    whole = low[:, axis].min() + share * (high[:, axis].max() - low[:, axis].min())
+    return _moved_along(document, parts, whole - own, axis)
+
+
+def distribute(document: Document, axis: Axis) -> Document:
+    """Move every selected item, groups as one, so that the gaps between neighbours along an axis are the same."""
+    parts, lows, highs = _boxes(document)
+    if len(lows) < 3:
+        raise EditError("select three things or more to space them evenly")
+    along = 0 if axis == "x" else 1
+    low, high = lows[:, along], highs[:, along]
+    order = np.argsort(low + high, kind="stable")
+    size = (high - low)[order]
+    gap = (high[order[-1]] - low[order[0]] - size.sum()) / (len(order) - 1)
+    apart = np.zeros(len(order))
+    apart[order] = low[order[0]] + np.cumsum(size + gap) - (size + gap) - low[order]
+    return _moved_along(document, parts, apart, along)
+
+
+def _moved(document: Document, by: Callable[[str], Point]) -> Document:
+    """Move each selected body and loose particle by what is asked for its id [m]."""
+
+    def moved(part: Definition) -> Definition:
+        if isinstance(part, SpringDef):
+            return part
+        dx, dy = by(part.id)
+        if not isinstance(part, ParticleDef):
+            return _within(shifted(part, dx, dy))
+        x, y = part.position[0] + dx, part.position[1] + dy
+        if abs(x) > COORDINATE_LIMIT or abs(y) > COORDINATE_LIMIT:
+            raise _beyond(part)
+        return replaced(part, position=(x, y))
+
+    level = changed(document.level, _placed(document.selection), moved)
+    if level.bodies is not document.level.bodies:
+        check_bodies(level, chosen_bodies(level, document.selection))
+    return replace(document, level=level)
+
+
+def _finite(what: str, *numbers: float) -> None:
+    if not all(map(math.isfinite, numbers)):
+        raise EditError(f"{what} needs finite numbers")
+
+
+def _beyond(part: Definition) -> EditError:
+    return EditError(f"{subject(part)} would lie beyond the limit {COORDINATE_LIMIT:.15g}")
+
+
+def _within(body: AnyBody) -> AnyBody:
+    """A body whose points all lie inside the world. Raises EditError."""
+    for name in ("start", "end", "position"):
+        if max(map(abs, body.__dict__.get(name, (0.0,)))) > COORDINATE_LIMIT:
+            raise _beyond(body)
+    for name in ("particles", "pose"):
+        points = body.__dict__.get(name)
+        if points is not None and float(np.max(np.abs(np.array(points)))) > COORDINATE_LIMIT:
+            raise _beyond(body)
+    return body
+
+
+def _mapped(document: Document, motion: Motion) -> Document:
+    if (motion.angle, motion.sx, motion.sy) == (0.0, 1.0, 1.0):
+        return document
+    level, selection = document.level, document.selection
+    images: dict[str, Points] = {}
+    bodies: dict[str, AnyBody] = {}
+    for body in chosen_bodies(level, selection):
+        new, images[body.id] = mapped_body(body, motion)
+        bodies[body.id] = validated(new)
+    inside = selection - {item for item in selection if item.kind == "spring"}
+    springs = _inside_springs(level, inside) if motion.factor != 1.0 or not motion.is_even else frozenset()
+    scene = make_scene(level) if springs else None
+
+    def part(old: Definition) -> Definition:
+        if isinstance(old, ParticleDef):
+            return validated(mapped_particle(old, motion))
+        if isinstance(old, SpringDef) and old.rest_length is not None and scene is not None:
+            return validated(replaced(old, rest_length=old.rest_length * _spring_stretch(scene, old, motion)))
+        return old
+
+    level = changed(level, frozenset(item for item in selection if item.kind == "particle") | springs, part)
+    return replace(document, level=rebuilt(level, bodies, images) if bodies else level)
+
+
+def _inside_springs(level: Level, selection: Selection) -> Selection:
+    """Loose springs of a given rest length between two selected things."""
+    owners = keys(selection, "body") | keys(selection, "particle")
+    return frozenset(
+        Item("spring", index)
+        for index, spring in enumerate(level.springs)
+        if spring.rest_length is not None and owner_of(spring.a) in owners and owner_of(spring.b) in owners
+    )
+
+
+def _spring_stretch(scene: Scene, spring: SpringDef, motion: Motion) -> float:
+    (ax, ay), (bx, by) = (scene.position[scene.slot(end)].tolist() for end in (spring.a, spring.b))
+    return stretch((ax, ay), (bx, by), motion)
+
+
+def _placed(selection: Selection) -> Selection:
+    return frozenset(item for item in selection if item.kind != "spring")
+
+
+def _boxes(document: Document) -> tuple[dict[str, int], Points, Points]:
+    """What is lined up as one, by the ids in it: a group, or an item in none; lowest and highest corners [m] (k, 2)."""
+    chosen = [*chosen_bodies(document.level, document.selection), *chosen_particles(document.level, document.selection)]
+    numbers: dict[tuple[bool, str], int] = {}
+    parts = {
+        part.id: numbers.setdefault((part.group is None, part.id if part.group is None else part.group), len(numbers))
+        for part in chosen
+    }
+    scene = make_scene(document.level)
+    part_of_item = np.array([parts.get(str(item.key), 0) for item in scene.items], dtype=np.int64)
+    mine = scene.particles_of(_placed(document.selection))
+    part = part_of_item[scene.particle_item[mine]]
+    low, high = np.full((len(numbers), 2), np.inf), np.full((len(numbers), 2), -np.inf)
+    np.minimum.at(low, part, scene.position[mine])
+    np.maximum.at(high, part, scene.position[mine])
+    return parts, low, high
+
+
+def _moved_along(document: Document, parts: dict[str, int], apart: Points, axis: int) -> Document:
+    distances = apart.tolist()
+    if not any(distances):
+        return document
+    if axis == 0:
+        return _moved(document, lambda name: (distances[parts[name]], 0.0))
+    return _moved(document, lambda name: (0.0, distances[parts[name]]))

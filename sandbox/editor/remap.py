@@ -1,12 +1,12 @@
-"""What hangs on a body's particles and springs by number, when the body's form is another one: the nearest takes over."""
+"""What hangs on a body's particles and springs by number, when its form becomes another one: the nearest take over."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.editor.document import check_bodies, checked
-from sandbox.editor.names import owner_of, rewired, with_owner
+from sandbox.editor.names import owner_of, rewired
 from sandbox.level.bodies import AnyBody
 from sandbox.level.expansion import named_particles
 from sandbox.level.model import Level
@@ -69,16 +69,12 @@ def _fitted(old: AnyBody, new: AnyBody, image: Points | None) -> tuple[AnyBody, 
         image = _laid_on(old_form, form)
     else:
         shift = None if pose is None else pose - image
-        size = max(float(np.ptp(form)), 1.0)
-        if form.shape == image.shape and float(np.max(np.abs(form - image))) <= SAME * size:
-            return _posed(new, form, shift), None
     particles = nearest(image, form)
-    springs = _spring_map(old_pairs, pairs, particles, image, form)
-    fitted = replaced(
-        new,
-        pinned=tuple(sorted({int(particles[index]) for index in new.pinned})),
-        cut=tuple(sorted({int(springs[index]) for index in new.cut})) if len(pairs) else (),
-    )
+    if len(form) == len(image) and np.array_equal(particles, np.arange(len(form))):
+        return _posed(new, form, shift), None
+    cut = _followed(old_pairs[list(new.cut)], pairs, particles, image, form)
+    pinned = tuple(sorted({int(particles[index]) for index in new.pinned}))
+    fitted = replaced(new, pinned=pinned, cut=cut)
     return _posed(fitted, form, None if shift is None else spread(image, shift, form)), particles
 
 
@@ -96,9 +92,21 @@ def _laid_on(old: Points, new: Points) -> Points:
 def nearest(points: Points, places: Points) -> Indices:
     """Index of the place nearest to each point (n,), the lowest on a tie."""
     result = np.zeros(len(points), dtype=np.int64)
+    if len(points) == len(places):
+        # The same places in another order, as in a mirror image, need no search.
+        size = max(float(np.ptp(places, axis=0).max()), SAME)
+        before, after = _reading_order(points, size), _reading_order(places, size)
+        if float(np.max(np.abs(points[before] - places[after]))) <= SAME * size:
+            result[before] = after
+            return result
     for rows, squared in _squared(points, places):
         result[rows] = np.argmin(squared, axis=1)
     return result
+
+
+def _reading_order(points: Points, size: float) -> Indices:
+    # A third of a step aside, so that what is equal but for rounding seldom falls into two steps.
+    return np.lexsort(np.floor(points / (1e-6 * size) + 1.0 / 3.0).T)
 
 
 def spread(points: Points, values: Points, places: Points) -> Points:
@@ -116,7 +124,7 @@ def spread(points: Points, values: Points, places: Points) -> Points:
     return np.asarray(result)
 
 
-def _squared(points: Points, places: Points):  # type: ignore[no-untyped-def]
+def _squared(points: Points, places: Points) -> Iterator[tuple[slice, Points]]:
     """Squared distances [m^2] of points from all places, a chunk of points at a time, with their rows."""
     step = max(1, CHUNK // max(1, len(places)))
     for first in range(0, len(points), step):
@@ -125,12 +133,11 @@ def _squared(points: Points, places: Points):  # type: ignore[no-untyped-def]
         yield rows, np.sum(apart * apart, axis=2)
 
 
-def _spring_map(old: Pairs, new: Pairs, particles: Indices, image: Points, form: Points) -> Indices:
-    """The new spring for each old one: between the same two particles, or else the one with the nearest middle."""
-    numbers = {pair: number for number, pair in reversed(list(enumerate(map(tuple, np.sort(new, axis=1).tolist()))))}
-    wanted = np.sort(particles[old], axis=1)
-    found = np.array([numbers.get(pair, -1) for pair in map(tuple, wanted.tolist())], dtype=np.int64)
-    missing = np.flatnonzero(found < 0)
-    if len(missing) and len(new):
-        found[missing] = nearest(image[old[missing]].mean(axis=1), form[new].mean(axis=1))
-    return found
+def _followed(cut: Pairs, pairs: Pairs, particles: Indices, image: Points, form: Points) -> tuple[int, ...]:
+    """The springs to cut for those that were: between the same two particles, or else with the nearest middle."""
+    if not len(cut) or not len(pairs):
+        return ()
+    numbers = {pair: k for k, pair in reversed(list(enumerate(map(tuple, np.sort(pairs, axis=1).tolist()))))}
+    wanted = map(tuple, np.sort(particles[cut], axis=1).tolist())
+    close = nearest(image[cut].mean(axis=1), form[pairs].mean(axis=1)).tolist()
+    return tuple(sorted({numbers.get(pair, near) for pair, near in zip(wanted, close, strict=True)}))
