@@ -48,9 +48,33 @@ GOOD: dict[str, Any] = {
             "springs": [[0, 1]],
             "material": "steel",
         },
+        {
+            "type": "girder",
+            "id": "crane",
+            "start": [0.5, 0],
+            "end": [0.5, 4],
+            "segments": 4,
+            "height": 0.5,
+            "pin": ["start"],
+            "pinned": [1, 8],
+            "cut": [0, 14],
+            "group": "yard",
+        },
+        {"type": "web", "id": "net 2", "radius": 2.0, "spokes": 6, "rings": 2, "pin": ["rim"], "angle": 0.5},
+        {
+            "type": "wheel",
+            "id": "cart",
+            "position": [4, 1],
+            "radius": 1.0,
+            "thickness": 0.25,
+            "segments": 3,
+            "hub_mass": 5.0,
+            "pose": [[4, 1], [5, 1], [4, 2], [3, 1], [6, 1], [4, 3], [2, 1]],
+        },
     ],
     "particles": [{"id": "ball", "position": [0, 3], "mass": 100.0, "radius": 0.3, "pinned": False}],
-    "springs": [{"a": "ball", "b": "deck.20", "rest_length": 0.5, "material": "steel"}],
+    "springs": [{"a": "ball", "b": "deck.20", "rest_length": 0.5, "material": "steel", "group": "yard"}],
+    "welds": [["cube.3", "kite.0"], ["net 2.centre", "cube.3"]],
     "checks": [{"name": "holds", "metric": "y", "particle": "ball", "after": 1.0, "at_least": -100.0}],
     "extras": {"editor": {"grid": 0.5}},
 }
@@ -71,6 +95,11 @@ NUMBERS = [
     "bodies.4.shape.polygon.1.0",
     "bodies.5.masses.1",
     "bodies.5.velocities.1.0",
+    "bodies.6.height",
+    "bodies.7.radius",
+    "bodies.8.thickness",
+    "bodies.8.hub_mass",
+    "bodies.8.pose.2.1",
     "particles.0.mass",
     "particles.0.radius",
     "springs.0.rest_length",
@@ -79,10 +108,13 @@ NUMBERS = [
 ]
 NO_NUMBERS = [True, "1", [], {}, float("nan"), float("inf"), float("-inf"), 10**400]
 WHOLE = ["settings.tick_rate", "settings.substeps", "settings.iterations", "bodies.0.segments", "bodies.5.pinned.0"]
+WHOLE += ["bodies.6.segments", "bodies.6.pinned.1", "bodies.6.cut.1", "bodies.7.spokes", "bodies.7.rings"]
 NO_WHOLE = [1.0, True, "1", None, -1, 10**30]
 TEXTS = ["name", "bodies.0.id", "bodies.0.material", "springs.0.a", "tags.0", "settings.solver", "checks.0.metric"]
+TEXTS += ["welds.1.0", "bodies.7.pin.0"]
 NO_TEXTS = [1, None, True, ["x"], "x" * 257, "\x00", "\x1b[31m"]
 LISTS = ["bodies", "particles", "springs", "checks", "tags", "settings.gravity", "bodies.0.pin", "bodies.5.springs"]
+LISTS += ["welds", "welds.0", "bodies.6.cut", "bodies.7.pinned"]
 OBJECTS = ["settings", "materials", "materials.steel", "bodies.0", "bodies.2.shape", "springs.0", "extras"]
 REQUIRED = [
     "format",
@@ -96,7 +128,13 @@ REQUIRED = [
     "bodies.2.shape",
     "bodies.3.spacing",
     "bodies.5.particles",
+    "bodies.6.segments",
+    "bodies.7.spokes",
+    "bodies.7.rings",
+    "bodies.8.radius",
+    "bodies.8.thickness",
     "particles.0.id",
+    "welds.0.1",
     "springs.0.a",
     "springs.0.b",
     "checks.0.metric",
@@ -186,6 +224,54 @@ OUTSIDE = [
     ("bodies.5.springs", [[0]]),
     ("bodies.5.springs", [[0, 1, 1]]),
     ("bodies.5.springs", [[0, -1]]),
+    ("bodies.6.height", 0.0),
+    ("bodies.6.height", 1e6),
+    ("bodies.6.end", [0.5, 0]),
+    ("bodies.6.end", [0.5, 1e-200]),
+    ("bodies.6.segments", 0),
+    ("bodies.6.segments", 50_000),
+    ("bodies.6.segments", 10**12),
+    ("bodies.6.pinned", [9]),
+    ("bodies.6.cut", [15]),
+    ("bodies.6.cut", [0, 10**15]),
+    ("bodies.6.group", ""),
+    ("bodies.6.group", 1),
+    ("bodies.6.pose", [[0, 0]]),
+    ("bodies.6.pose", []),
+    ("bodies.0.pinned", [31]),
+    ("bodies.0.cut", [30]),
+    ("bodies.1.cut", [201]),
+    ("bodies.2.pose", [[0, 0]] * 80),
+    ("bodies.3.pinned", [1_000]),
+    ("bodies.5.cut", [1]),
+    ("bodies.7.spokes", 2),
+    ("bodies.7.rings", 0),
+    ("bodies.7.rings", 10**12),
+    ("bodies.7.spokes", 10**12),
+    ("bodies.7.pin", ["hub"]),
+    ("bodies.7.pin", ["rim", "rim"]),
+    ("bodies.7.radius", 0.0),
+    ("bodies.7.position", [999_999.0, 0.0]),
+    ("bodies.7.cut", [24]),
+    ("bodies.8.segments", 2),
+    ("bodies.8.thickness", 1.0),
+    ("bodies.8.thickness", 0.0),
+    ("bodies.8.hub_mass", 0.0),
+    ("bodies.8.pose", [[0, 0]] * 6),
+    ("bodies.8.pose", [[0, 1e7]] * 7),
+    ("bodies.8.position", [0.0, -1e6]),
+    ("welds", [["rope.0"]]),
+    ("welds", [["rope.0", "deck.0", "ball"]]),
+    ("welds", [["rope.0", "rope.start"]]),
+    ("welds", [["rope.0", "rope.1"]]),
+    ("welds", [["rope.0", "deck.7"], ["deck.7", "rope.1"]]),
+    ("welds", [["ball", "deck.20"]]),
+    ("welds", [["rope", "deck.0"]]),
+    ("welds", [["nobody", "deck.0"]]),
+    ("welds", [["rope.0", "cart.8"]]),
+    ("welds", [["rope.0", ""]]),
+    ("particles.0.group", []),
+    ("springs.0.group", "a\nb"),
     ("particles.0.id", "rope"),
     ("particles.0.mass", -100.0),
     ("particles.0.mass", 0),
@@ -319,6 +405,14 @@ def enormous() -> Iterator[tuple[str, bytes]]:
     mesh = b'"bodies": [{"type": "mesh", "id": "m", "particles": ['
     yield "1,000,000 particles", head + mesh + b",".join([b"[0,0]"] * 1_000_000) + b"]}]}"
     yield "99,000 bad particles", head + mesh + b",".join([b'["",1]'] * 99_000) + b"]}]}"
+    rope_with = b'"bodies": [{"type":"rope","id":"r","start":[0,0],"end":[1,0],"segments":3,"%s":['
+    yield "500,000 cuts", head + rope_with % b"cut" + b",".join([b"1"] * 500_000) + b"]}]}"
+    yield "99,000 bad cuts", head + rope_with % b"cut" + b",".join([b'""'] * 99_000) + b"]}]}"
+    yield "99,000 cuts of nothing", head + rope_with % b"cut" + b",".join([b"77"] * 99_000) + b"]}]}"
+    yield "200,000 pins", head + rope_with % b"pinned" + b",".join([b"1"] * 200_000) + b"]}]}"
+    yield "200,000 places", head + rope_with % b"pose" + b",".join([b"[0,0]"] * 200_000) + b"]}]}"
+    yield "150,000 welds", head + b'"welds": [' + b",".join([b'["a","b"]'] * 150_000) + b"]}"
+    yield "99,000 welds to nowhere", head + b'"welds": [' + b",".join([b'["a","b"]'] * 99_000) + b"]}"
     keys = b",".join(b'"k%d":1' % number for number in range(600_000))
     yield "600,000 unknown keys", head + keys + b"}"
     yield "600,000 bad materials", head + b'"materials": {' + keys + b"}}"

@@ -7,9 +7,10 @@ import pytest
 from malformed_levels import GOOD, encoded
 
 from sandbox.level.build import build_world
+from sandbox.level.expansion import expansion
 from sandbox.level.faults import LevelError
 from sandbox.level.files import parse_level
-from sandbox.level.shapes import count, expand
+from sandbox.level.shapes import count, expand, form_count
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from sandbox.physics.world import HAND_COUNT, LAW_HOOKE, LAW_NISSEN
@@ -237,11 +238,13 @@ def test_negative_zeros_do_not_reach_the_world():
         assert not np.any(np.signbit(array))
 
 
-@pytest.mark.parametrize("index", range(6))
+@pytest.mark.parametrize("index", range(len(GOOD["bodies"])))
 def test_what_is_counted_before_is_what_is_built(index):
     body = parse_level(encoded(GOOD), "x.json").bodies[index]
     points, pairs = expand(body)
-    assert count(body) == (len(points), len(pairs))
+    built = expansion(body)
+    assert form_count(body) == (len(points), len(pairs))
+    assert count(body) == (len(built.mass), len(built.pairs))
 
 
 @pytest.mark.parametrize(
@@ -249,6 +252,10 @@ def test_what_is_counted_before_is_what_is_built(index):
     [
         rope(segments=99_989),
         bridge(segments=49_998),
+        {"type": "girder", "id": "g", "start": [0, 0], "end": [9, 1], "segments": 49_994},
+        {"type": "web", "id": "w", "radius": 9, "spokes": 99_998, "rings": 1},
+        {"type": "web", "id": "w", "radius": 9, "spokes": 3, "rings": 33_330},
+        {"type": "wheel", "id": "w", "radius": 9, "thickness": 1, "segments": 49_994},
         jelly({"box": [315, 315]}),
         jelly({"circle": 177}),
         jelly({"polygon": [[0, 0], [440, 0], [0, 440]]}),

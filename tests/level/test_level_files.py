@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from malformed_levels import GOOD, encoded
 
 from sandbox.level import files
+from sandbox.level.build import build_world
 from sandbox.level.canonical import level_text
 from sandbox.level.files import (
     LevelError,
@@ -21,6 +22,8 @@ from sandbox.level.files import (
     shipped_levels,
     write_level,
 )
+from sandbox.level.shapes import form_count
+from sandbox.physics.snapshot import state_hash
 
 
 def good():
@@ -102,7 +105,7 @@ def test_text_outside_ascii_is_written_as_it_is():
 
 def test_no_line_of_a_long_list_grows_beyond_the_page():
     mesh = {"type": "mesh", "id": "m", "particles": [[k, 0.125] for k in range(100)], "pinned": list(range(100))}
-    text = level_text(parse_level(encoded({**GOOD, "bodies": [mesh], "springs": []}), "x"))
+    text = level_text(parse_level(encoded({**GOOD, "bodies": [mesh], "springs": [], "welds": []}), "x"))
     assert max(map(len, text.splitlines())) <= 100
 
 
@@ -206,7 +209,7 @@ def test_the_wheel_s_folder_is_used_where_there_is_no_checkout(tmp_path, monkeyp
 
 numbers = st.floats(-1e6, 1e6)
 points = st.tuples(numbers, numbers).map(list)
-masses = st.floats(1e-9, 1e9)
+masses = st.floats(1e-9, 1e8)  # ten of them can be welded into one
 coefficients = st.floats(0, 1)
 texts = st.text(st.characters(exclude_categories=("Cs", "Cc")), max_size=20)
 ids = st.text(st.characters(exclude_categories=("Cs", "Cc"), exclude_characters="+.:,"), min_size=1, max_size=8)
@@ -232,7 +235,7 @@ def some(required, **optional):
 
 def bodies(name, material):
     """Any body of that name and material."""
-    common = {"velocity": points, "extras": extras, "material": st.just(material)}
+    common = {"velocity": points, "extras": extras, "material": st.just(material), "group": ids}
     pin = st.lists(st.sampled_from(["start", "end"]), max_size=2)
     near = st.tuples(st.floats(-99, 99), st.floats(-99, 99)).map(list)
     size = st.floats(0.01, 3)
@@ -243,13 +246,38 @@ def bodies(name, material):
     )
     ends = {"id": st.just(name), "start": near, "end": near, "segments": st.integers(1, 50)}
     jelly = {"id": st.just(name), "shape": shapes, "spacing": st.floats(0.1, 2)}
+    round_one = {"id": st.just(name), "radius": st.floats(0.5, 3)}
+    web = {"type": st.just("web"), **round_one, "spokes": st.integers(3, 9), "rings": st.integers(1, 5)}
+    wheel = {"type": st.just("wheel"), **round_one, "thickness": st.floats(0.01, 0.4), "segments": st.integers(3, 9)}
     mesh = {"id": st.just(name), "particles": st.lists(points, min_size=2, max_size=2), "springs": st.just([[0, 1]])}
     return st.one_of(
         some({"type": st.just("rope"), **ends}, end_mass=masses, rest_length=st.floats(0, 10), pin=pin, **common),
         some({"type": st.just("bridge"), **ends}, height=size, particle_mass=masses, pin=pin, **common),
+        some({"type": st.just("girder"), **ends}, height=size, pin=pin, **common).filter(is_long),
+        some(web, angle=st.floats(-10, 10), position=near, pin=st.just(["rim"]), **common),
+        some(wheel, angle=st.floats(-10, 10), hub_mass=masses, pin=st.just(["hub"]), **common),
         some({"type": st.just("jelly"), **jelly}, angle=st.floats(-10, 10), position=near, **common),
         some({"type": st.just("mesh"), **mesh}, masses=st.lists(masses, min_size=2, max_size=2), **common),
     )
+
+
+def is_long(girder):
+    return max(abs(end - start) for start, end in zip(girder["start"], girder["end"], strict=True)) > 1e-5
+
+
+@st.composite
+def changed_bodies(draw, name, material):
+    """Any body, perhaps with pins, cuts and a pose."""
+    body = draw(bodies(name, material))
+    head = {"format": "spring-sandbox/level", "version": 1, "name": "n", "materials": {material: {}}}
+    particles, springs = form_count(parse_level(encoded({**head, "bodies": [body]}), "x.json").bodies[0])
+    changes = some(
+        {},
+        pinned=st.lists(st.integers(0, particles - 1), max_size=4),
+        cut=st.lists(st.integers(0, springs - 1), max_size=4) if springs else st.just([]),
+        pose=points.map(lambda first: [first] + [[0.0, 0.0]] * (particles - 1)),
+    )
+    return body | draw(changes)
 
 
 @st.composite
@@ -259,7 +287,14 @@ def levels(draw):
     classic = some({"law": st.just("hooke")}, k=st.floats(0, 1e15), c=st.floats(0, 1e15))
     materials = draw(st.dictionaries(ids, material | classic, max_size=3))
     chosen = st.sampled_from(["default", *materials])
-    optional = {"position": points, "velocity": points, "mass": masses, "radius": st.floats(0, 10), "extras": extras}
+    optional = {
+        "group": ids,
+        "position": points,
+        "velocity": points,
+        "mass": masses,
+        "radius": st.floats(0, 10),
+        "extras": extras,
+    }
     settings = some(
         {},
         gravity=points,
@@ -271,12 +306,15 @@ def levels(draw):
     head = {"format": st.just("spring-sandbox/level"), "version": st.just(1), "name": ids, "settings": settings}
     return draw(some(head, description=texts, tags=st.lists(texts, max_size=3), extras=extras)) | {
         "materials": materials,
-        "bodies": [draw(bodies(name, draw(chosen))) for name in names[3:]],
+        "bodies": [draw(changed_bodies(name, draw(chosen))) for name in names[3:]],
         "particles": [draw(some({"id": st.just(name)}, pinned=st.booleans(), **optional)) for name in names[:3]],
         "springs": [
             {"a": names[0], "b": names[1], "material": draw(chosen)},
             {"a": names[2], "b": names[0], "rest_length": draw(st.floats(0, 1e6))},
         ],
+        "welds": draw(st.lists(st.sampled_from([[names[1], f"{name}.0"] for name in [*names[3:]]]), max_size=4))
+        if names[3:]
+        else [],
     }
 
 
@@ -288,3 +326,4 @@ def test_any_level_is_loaded_as_it_was_saved(data):
     assert again == level
     assert list(again.materials) == list(level.materials)
     assert level_text(again) == text
+    assert state_hash(build_world(again)) == state_hash(build_world(level))
