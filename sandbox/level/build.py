@@ -98,11 +98,11 @@ def _add_springs(
         pairs[:, 1],
         rest_length=np.concatenate([*(expanded.rest_length for expanded in bodies), given]) + 0.0,
         material=material,
-        **_coefficients(material, materials),
+        **coefficients(material, materials),
     )
 
 
-def _coefficients(material: NDArray[np.int64], materials: dict[str, Material]) -> dict[str, NDArray[np.generic]]:
+def coefficients(material: NDArray[np.int64], materials: dict[str, Material]) -> dict[str, NDArray[np.generic]]:
     """Law and coefficients of every spring (m,), by the argument of World.add_springs that takes them."""
     rows = [_row(chosen) for chosen in materials.values()]
     law, stiffness, damping, k, c = (np.array(column)[material] for column in zip(*rows, strict=True))

@@ -123,7 +123,7 @@ def _summed_loads(world: World, demands: Floats) -> Floats:
     )
 
 
-def _loads(world: World) -> Floats:
+def spring_loads(world: World) -> Floats:
     """What must stay below BOUND for every spring (m,): of the two proven bounds the one that allows more here."""
     demands = _demands(world, world.stiffness, world.damping)
     summed, counted = _summed_loads(world, demands), demands * effective_count(world)
@@ -172,7 +172,7 @@ def report(world: World) -> StabilityReport:
         return StabilityReport(solver, 0.0, 1.0, 1.0, 1.0, True, None, "no spring does anything: nothing can blow up")
     tightest = int(np.argmax(counts))
     most = max(int(ends[tightest]) for ends in _springs_at_ends(world))
-    load = _loads(world)
+    load = spring_loads(world)
     worst = int(np.argmax(load))
     within: bool | None = bool(load[worst] < BOUND)
     if SOLVERS[solver].proven_limit:
