@@ -1,11 +1,86 @@
 """Taking things out of a level, and taking bodies apart."""
 
-from sandbox.editor.document import Document
+from dataclasses import replace
+
+from sandbox.editor.document import Document, EditError, checked
+from sandbox.editor.grouping import taken_groups
+from sandbox.editor.items import Item, chosen_bodies, keys
+from sandbox.editor.names import free_ids, owner_of, rewired, taken_ids
+from sandbox.editor.scene import make_scene
+from sandbox.level.expansion import Expansion, expansion, named_particles
+from sandbox.level.limits import BODY_RADIUS
+from sandbox.level.model import ParticleDef, SpringDef
+from sandbox.level.quantities import replaced
+from sandbox.level.shapes import Points, distances
+
+# A rest length is taken as placed where both differ by no more than this share: above rounding, below what is seen.
+SAME_LENGTH = 1e-12
 
 
 def delete(document: Document) -> Document:
-    raise NotImplementedError
+    """Delete what is selected, with the springs, welds and checks that hang on it."""
+    level, selection = document.level, document.selection
+    if not selection:
+        return document
+    bodies, particles, springs = keys(selection, "body"), keys(selection, "particle"), keys(selection, "spring")
+    level = replaced(
+        level,
+        bodies=tuple(body for body in level.bodies if body.id not in bodies),
+        particles=tuple(particle for particle in level.particles if particle.id not in particles),
+        springs=tuple(spring for index, spring in enumerate(level.springs) if index not in springs),
+    )
+    gone = bodies | particles
+    if gone:
+        level, _ = rewired(level, lambda reference: None if owner_of(reference) in gone else reference)
+    return Document(level)
 
 
 def break_apart(document: Document) -> Document:
-    raise NotImplementedError
+    """Make loose particles and springs of every selected body, each a group, and select them. Raises EditError."""
+    level = document.level
+    bodies = chosen_bodies(level, document.selection)
+    if not bodies:
+        raise EditError("select a body to break apart")
+    scene = make_scene(level)
+    taken, groups = taken_ids(level) - {body.id for body in bodies}, taken_groups(level)
+    particles, springs = list(level.particles), list(level.springs)
+    names: dict[str, str] = {}
+    for body in bodies:
+        group = body.group if body.group is not None else free_ids(groups, [body.id])[0]
+        made = expansion(body)
+        # An id holds no dot, so "deck.20" becomes "deck 20"; of a very long name less is left.
+        ids = free_ids(taken, [f"{body.id[:240]} {index}" for index in range(len(made.mass))])
+        names |= {f"{body.id}.{index}": name for index, name in enumerate(ids)}
+        names |= {f"{body.id}.{part}": ids[index] for part, index in named_particles(body).items()}
+        first = scene.slot(f"{body.id}.0")
+        particles += _loose(made, scene.position[first : first + len(ids)], ids, group)
+        springs += _loose_springs(made, ids, group, body.material)
+    gone = {body.id for body in bodies}
+    kept = tuple(body for body in level.bodies if body.id not in gone)
+    made = replaced(level, bodies=kept, particles=tuple(particles), springs=tuple(springs))
+    made, _ = rewired(made, lambda reference: names.get(reference, reference))
+    checked(made)
+    selection = {Item("particle", part.id) for part in particles[len(level.particles) :]}
+    selection |= {Item("spring", index) for index in range(len(level.springs), len(springs))}
+    return replace(document, level=made, selection=frozenset(selection))
+
+
+def _loose(made: Expansion, places: Points, ids: list[str], group: str) -> list[ParticleDef]:
+    rows = zip(ids, places.tolist(), made.velocity.tolist(), made.mass.tolist(), made.pinned.tolist(), strict=True)
+    first = ParticleDef(id="-", radius=BODY_RADIUS, group=group)
+    return [
+        replaced(first, id=name, position=(x, y), velocity=tuple(velocity), mass=mass, pinned=pinned)
+        for name, (x, y), velocity, mass, pinned in rows
+    ]
+
+
+def _loose_springs(made: Expansion, ids: list[str], group: str, material: str) -> list[SpringDef]:
+    """Springs of a body as loose ones, of a given rest length where they do not start at theirs."""
+    placed = distances(made.position, made.pairs)
+    given = [
+        None if abs(rest - now) <= SAME_LENGTH * now else rest
+        for rest, now in zip(made.rest_length.tolist(), placed.tolist(), strict=True)
+    ]
+    first = SpringDef(a="-", b="-", material=material, group=group)
+    rows = zip(made.pairs.tolist(), given, strict=True)
+    return [replaced(first, a=ids[a], b=ids[b], rest_length=rest) for (a, b), rest in rows]

@@ -1,6 +1,6 @@
 """Items: what can be selected in a level, and how it is named."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Literal, NamedTuple, TypeVar
 
 from sandbox.level.bodies import AnyBody
@@ -65,3 +65,24 @@ def changed(level: Level, selection: Selection, change: Callable[[Definition], D
     if springs:
         update["springs"] = tuple(change(part) if k in springs else part for k, part in enumerate(level.springs))
     return replaced(level, **update) if update else level
+
+
+def kept_springs(selection: Selection, kept: Iterable[int]) -> Selection:
+    """A selection after loose springs have gone; kept: the old indices of those that stay, in their new order."""
+    places = {old: new for new, old in enumerate(kept)}
+    return frozenset(
+        Item("spring", places[int(item.key)]) if item.kind == "spring" else item
+        for item in selection
+        if item.kind != "spring" or int(item.key) in places
+    )
+
+
+def with_same(level: Level, **parts: tuple[object, ...]) -> Level:
+    """A level with other parts; a part of the very same items as before stays the same object, as does the level."""
+    changes = {
+        name: new
+        for name, new in parts.items()
+        if len(new) != len(getattr(level, name))
+        or any(a is not b for a, b in zip(new, getattr(level, name), strict=True))
+    }
+    return replaced(level, **changes) if changes else level

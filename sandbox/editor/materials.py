@@ -1,31 +1,117 @@
 """Materials and checks of a level."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 
-from sandbox.editor.document import Document
+from pydantic import ValidationError
+
+from sandbox.editor.document import Document, EditError, checked, first_fault
+from sandbox.editor.items import Definition, changed, with_same
 from sandbox.level.checks import CheckDef
-from sandbox.level.model import Material
+from sandbox.level.faults import shown, suggestion
+from sandbox.level.limits import DEFAULT_MATERIAL, VERSION
+from sandbox.level.model import Level, Material, ParticleDef
+from sandbox.level.quantities import replaced
+
+# How many users of a material a message names.
+NAMED_USERS = 3
 
 
 def add_material(document: Document, name: str, material: Material) -> Document:
-    raise NotImplementedError
+    """Add a material. Raises EditError where the name is taken or the level has too many."""
+    level = document.level
+    if name in level.materials:
+        raise EditError(f"there is a material {shown(name)} already")
+    return _with_materials(document, {**level.materials, name: material})
 
 
 def rename_material(document: Document, name: str, new_name: str) -> Document:
-    raise NotImplementedError
+    """Rename a material, for all that are made of it. Raises EditError."""
+    level = document.level
+    _exists(level, name)
+    if new_name == name:
+        return document
+    if new_name in level.materials:
+        raise EditError(f"there is a material {shown(new_name)} already")
+    named = {new_name if key == name else key: value for key, value in level.materials.items()}
+    document = _with_materials(document, named, unchecked=True)
+
+    def follow(part: Definition) -> Definition:
+        same = isinstance(part, ParticleDef) or part.material != name
+        return part if same else replaced(part, material=new_name)
+
+    level = document.level
+    bodies, springs = tuple(map(follow, level.bodies)), tuple(map(follow, level.springs))
+    return replace(document, level=checked(with_same(level, bodies=bodies, springs=springs)))
 
 
 def delete_material(document: Document, name: str) -> Document:
-    raise NotImplementedError
+    """Delete a material. Raises EditError, which says by whom it is used, where it is."""
+    level = document.level
+    _exists(level, name)
+    users = [shown(body.id) for body in level.bodies if body.material == name]
+    users += [f"the spring :{index}" for index, spring in enumerate(level.springs) if spring.material == name]
+    if users:
+        others = f" and {len(users) - NAMED_USERS} more" if len(users) > NAMED_USERS else ""
+        raise EditError(f"{shown(name)} is used by {', '.join(users[:NAMED_USERS])}{others}; give them another first")
+    return _with_materials(document, {key: value for key, value in level.materials.items() if key != name})
 
 
 def set_material(document: Document, name: str, material: Material) -> Document:
-    raise NotImplementedError
+    """Give a material other coefficients, or "default" its first ones. Raises EditError."""
+    level = document.level
+    if name != DEFAULT_MATERIAL:
+        _exists(level, name)
+    return _with_materials(document, {**level.materials, name: material})
 
 
 def assign(document: Document, material: str) -> Document:
-    raise NotImplementedError
+    """Make every selected body and spring of a material. Raises EditError."""
+    if material != DEFAULT_MATERIAL:
+        _exists(document.level, material)
+    if all(item.kind == "particle" for item in document.selection):
+        raise EditError("select a body or a spring to give it a material")
+
+    def assigned(part: Definition) -> Definition:
+        same = isinstance(part, ParticleDef) or part.material == material
+        return part if same else replaced(part, material=material)
+
+    level = changed(document.level, document.selection, assigned)
+    return replace(document, level=with_same(document.level, bodies=level.bodies, springs=level.springs))
 
 
 def set_checks(document: Document, checks: Iterable[CheckDef]) -> Document:
-    raise NotImplementedError
+    """Replace the level's checks. Raises EditError for one that could not be saved."""
+    level = document.level
+    checks = tuple(checks)
+    if checks == level.checks:
+        return document
+    data = {"format": level.format, "version": VERSION, "name": "-", "checks": tuple(dict(c.__dict__) for c in checks)}
+    try:
+        checks = Level.model_validate(data).checks
+    except ValidationError as error:
+        raise EditError(first_fault(error, "a check")) from None
+    return replace(document, level=checked(replaced(level, checks=checks)))
+
+
+def _exists(level: Level, name: str) -> None:
+    if name not in level.materials:
+        raise EditError(f"there is no material {shown(name)}" + suggestion(name, level.materials))
+
+
+def _with_materials(document: Document, materials: dict[str, Material], *, unchecked: bool = False) -> Document:
+    level = document.level
+    if list(materials.items()) == list(level.materials.items()):
+        return document
+    data = {
+        "format": level.format,
+        "version": VERSION,
+        "name": "-",
+        "materials": {name: dict(material.__dict__) for name, material in materials.items()},
+    }
+    try:
+        materials = Level.model_validate(data).materials
+    except ValidationError as error:
+        raise EditError(first_fault(error, "", depth=0)) from None
+    level = replaced(level, materials=materials)
+    return replace(document, level=level if unchecked else checked(level))

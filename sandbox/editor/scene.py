@@ -81,7 +81,7 @@ class Scene:
     position [m] (n, 2), of welded particles that of the first; mass [kg] and radius [m] (n,), each its own; pinned
     (n,), whether it or one it is welded to is held; particle_item (n,), spring_item (m,): indices into items;
     particle_a, particle_b (m,): particles; rest_length [m] (m,); number (m,): the k of the spring's name; material
-    (m,): index into materials; welds (w, 2): particles; welded_to (n,): the first particle of each one's weld.
+    (m,): index into materials; welds (w, 2): particles; first_of_weld (n,): the first particle of each one's weld.
     """
 
     level: Level
@@ -99,7 +99,7 @@ class Scene:
     material: Slots
     materials: tuple[str, ...]
     welds: Slots
-    welded_to: Slots
+    first_of_weld: Slots
     parts: _Parts = field(repr=False)
 
     @cached_property
@@ -163,10 +163,10 @@ def make_scene(level: Level, before: Scene | None = None) -> Scene:
     pinned = np.concatenate([*(made.pinned for made in bodies), loose.pinned])
     layout = names.layout if level.welds else None
     welds = [(layout.slot(a), layout.slot(b)) for a, b in level.welds] if layout else []
-    welded_to = united(len(mass), welds)
+    first_of_weld = united(len(mass), welds)
     if welds:
-        position = position[welded_to]
-        pinned = np.bincount(welded_to, weights=pinned, minlength=len(mass))[welded_to] > 0
+        position = position[first_of_weld]
+        pinned = np.bincount(first_of_weld, weights=pinned, minlength=len(mass))[first_of_weld] > 0
     ends = [made.pairs + first for made, first in zip(bodies, firsts.tolist(), strict=False)]
     pairs = np.concatenate([*ends, parts.ends])
     springs_of_bodies = [len(made.pairs) for made in bodies]
@@ -193,7 +193,7 @@ def make_scene(level: Level, before: Scene | None = None) -> Scene:
         ),
         materials=materials,
         welds=np.array(welds, dtype=np.int64).reshape(-1, 2),
-        welded_to=welded_to,
+        first_of_weld=first_of_weld,
         parts=parts,
     )
 
@@ -203,7 +203,7 @@ def transformed(scene: Scene, selection: Selection, matrix: Floats) -> Scene:
     moved = scene.particles_of(selection)
     position = scene.position.copy()
     position[moved] = position[moved] @ matrix[:, :2].T + matrix[:, 2]
-    return replace(scene, position=position[scene.welded_to] if len(scene.welds) else position)
+    return replace(scene, position=position[scene.first_of_weld] if len(scene.welds) else position)
 
 
 def _parts(level: Level, before: Scene | None) -> _Parts:
