@@ -69,7 +69,7 @@ def connected_parts(scene: Scene) -> Generator[None, None, Slots]:
 
     Roots take over the lowest neighbour's label until no spring joins two labels, which takes few rounds.
     """
-    label = scene.welded_to.copy()
+    label = scene.first_of_weld.copy()
     a, b = scene.particle_a, scene.particle_b
     while True:
         a, b = label[a], label[b]

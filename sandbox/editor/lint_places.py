@@ -27,7 +27,7 @@ EDGE = 1e-6
 def overlapping_particles(scene: Scene) -> Rule:
     """Pairs of items with particles that lie on each other and are not joined."""
     count = len(scene.position)
-    first = scene.welded_to
+    first = scene.first_of_weld
     loose = scene.spring_item >= len(scene.level.bodies)
     joined = _pair_keys(first[scene.particle_a[loose]], first[scene.particle_b[loose]], count)
     yield None
@@ -106,7 +106,7 @@ def crossing_bodies(scene: Scene) -> Rule:
 
 def _joined_bodies(scene: Scene, count: int) -> Generator[None, None, set[tuple[int, int]]]:
     """Pairs of bodies that a weld or a loose spring joins, directly or through one particle of its own."""
-    part = scene.welded_to
+    part = scene.first_of_weld
     ends = [part[scene.welds], part[np.stack([scene.particle_a, scene.particle_b], 1)[scene.spring_item >= count]]]
     yield None
     # Bodies by the particles that joints touch: a weld's, or the ends of a loose spring.

@@ -30,7 +30,7 @@ def _network(level: Level, scene: Scene) -> World:
     """The springs and masses of a scene as a world, as far as limits depend on them."""
     # Without names: to register those of 100,000 springs takes longer than all the rest.
     world = World(WorldSettings(**dict(level.settings)))
-    first, count = scene.welded_to, len(scene.mass)
+    first, count = scene.first_of_weld, len(scene.mass)
     mass = np.bincount(first, scene.mass, count).astype(np.float64)
     world.mass = mass
     world.inverse_mass = np.divide(1.0, mass, out=np.zeros(count), where=~scene.pinned & (mass > 0.0))
