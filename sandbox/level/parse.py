@@ -38,7 +38,7 @@ _PIECE = 500
 _LARGE = 1024 * 1024  # [bytes]
 
 _BODY_LISTS = ("particles", "masses", "velocities", "pinned", "pose")
-_BODY_LIMITS = {"springs": SPRING_LIMIT, "cut": SPRING_LIMIT} | dict.fromkeys(_BODY_LISTS, PARTICLE_LIMIT)
+BODY_LIMITS = {"springs": SPRING_LIMIT, "cut": SPRING_LIMIT} | dict.fromkeys(_BODY_LISTS, PARTICLE_LIMIT)
 LEVEL_LIMITS = {
     "bodies": PARTICLE_LIMIT,
     "particles": PARTICLE_LIMIT,
@@ -170,7 +170,7 @@ def _too_long(raw: dict[str, Any]) -> Iterator[Fault]:
     if not whole and isinstance(bodies, list):
         for index, body in enumerate(bodies):
             if isinstance(body, dict):
-                yield from _long_lists(("bodies", index), body, _BODY_LIMITS)
+                yield from _long_lists(("bodies", index), body, BODY_LIMITS)
 
 
 def _long_lists(path: tuple[Any, ...], holder: dict[str, Any], limits: dict[str, int]) -> Iterator[Fault]:

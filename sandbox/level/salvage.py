@@ -9,11 +9,12 @@ from typing import Any
 from pydantic import ValidationError
 
 from sandbox.level.bodies import AnyBody
+from sandbox.level.checks import CheckDef
 from sandbox.level.faults import Fault, LevelError, json_path, shown
 from sandbox.level.limits import FAULT_LIMIT, FILE_LIMIT, FORMAT, PARTICLE_LIMIT, SPRING_LIMIT, VERSION
 from sandbox.level.migrate import migrated
-from sandbox.level.model import Level
-from sandbox.level.parse import LEVEL_LIMITS
+from sandbox.level.model import Level, ParticleDef, SpringDef
+from sandbox.level.parse import BODY_LIMITS, LEVEL_LIMITS
 from sandbox.level.scan import scan
 from sandbox.level.shapes import count
 from sandbox.level.validate import level_faults
@@ -26,7 +27,14 @@ _LISTS = ("tags", "bodies", "particles", "springs", "welds", "checks")
 _INDEPENDENT = ("springs", "pinned", "cut", "pin")
 # Items that are looked at together while all of them are valid, which is many times faster.
 _BATCH = 500
+# Rounds of taking out one part after another; of a level that is not sound then, whole ends of lists go.
+_ROUNDS = 20
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+# What parts of these lists cannot be without; what a body needs depends on its kind.
+_REQUIRED = {
+    key: frozenset(name for name, field in model.model_fields.items() if field.is_required())
+    for key, model in (("particles", ParticleDef), ("springs", SpringDef), ("checks", CheckDef))
+}
 
 Path = Sequence[Any]
 
@@ -127,12 +135,13 @@ class _Remains:
 
     def level(self) -> Level:
         """The level that is left once nothing refers to what is gone."""
-        while True:
+        for attempt in itertools.count():
             level = Level.model_validate_json(json.dumps(self.parts))
             found = list(level_faults(level))
             if not found:
-                return level
-            self._drop(level, found)
+                break
+            self._drop(level, found, with_rest=attempt >= _ROUNDS)
+        return level
 
     def _take(self, key: str, value: Any) -> None:
         """Take the valid part of one field of the level."""
@@ -153,6 +162,8 @@ class _Remains:
                 self.parts[key] = mended_value
 
     def _valid_items(self, key: str, items: list[Any]) -> Iterator[tuple[int, Any]]:
+        if key == "bodies":
+            items = [self._within_limits([key, index], body) for index, body in enumerate(items)]
         for start in range(0, len(items), _BATCH):
             batch = list(enumerate(items[start : start + _BATCH], start))
             if _errors({key: [item for _, item in batch]}):
@@ -160,25 +171,39 @@ class _Remains:
                 batch = [(index, item) for index, item in mended if item is not None]
             yield from batch
 
-    def _mended(self, path: Path, value: Any) -> Any:
-        """A value of the level, or the item of a list or of the materials, without what is invalid in it, else None."""
-        while True:
+    def _within_limits(self, path: Path, body: Any) -> Any:
+        """A body without lists that no file may hold."""
+        if not isinstance(body, dict):
+            return body
+        long = [
+            name for name, limit in BODY_LIMITS.items() if isinstance(body.get(name), list) and len(body[name]) > limit
+        ]
+        for name in long:
+            text = f"has {len(body[name]):,} items; at most {BODY_LIMITS[name]:,} are allowed"
+            self.faults.append((json_path([*path, name]), text))
+        return {name: value for name, value in body.items() if name not in long}
+
+    def _mended(self, path: Path, value: Any, mended: bool = False) -> Any:
+        """A value of the level, or the item of a list or of the materials, without what is invalid in it, else None.
+
+        mended: whether a field has been taken out already.
+        """
+        for attempt in itertools.count():
             errors = _errors(_inside(path, value))
             if not errors:
-                return value
+                break
             # What is missing once an invalid field is gone has been told already.
-            told = [error for error in errors if error["type"] != "missing" or not self._has_told(path)]
-            self.faults.extend(_told(path, told))
+            if len(self.faults) <= FAULT_LIMIT:
+                told = [error for error in errors if error["type"] != "missing" or (attempt == 0 and not mended)]
+                self.faults.extend(_told(path, told))
             wrong = [(place(error["loc"])[len(path) :], error["type"] == "missing") for error in errors]
-            value = _without(value, wrong)
+            value = _without(value, wrong, _REQUIRED.get(path[0], frozenset()))
             if value is None:
-                return None
+                break
+        return value
 
-    def _has_told(self, path: Path) -> bool:
-        return bool(self.faults) and self.faults[-1][0].startswith(json_path(path))
-
-    def _drop(self, level: Level, found: Iterable[Fault]) -> None:
-        """Take out what faults of the whole level name."""
+    def _drop(self, level: Level, found: Iterable[Fault], with_rest: bool) -> None:
+        """Take out what faults of the whole level name, also the rest of a list from there on if told so."""
         wrong: dict[tuple[str, int], list[tuple[Path, bool]]] = {}
         for where, text in found:
             key, *rest = where.split(".")
@@ -188,13 +213,16 @@ class _Remains:
                 continue
             index = int(rest[0])
             inner = [int(part) if part.isdigit() else part for part in rest[1:]]
-            self.faults.append((json_path([key, self.places[key][index], *inner]), text))
+            if len(self.faults) <= FAULT_LIMIT:
+                self.faults.append((json_path([key, self.places[key][index], *inner]), text))
             if key == "bodies" and not inner and self._unweld(level.bodies[index].id):
                 continue
             wrong.setdefault((key, index), []).append((inner, False))
         for (key, index), paths in wrong.items():
-            item = _without(self.parts[key][index], paths)
-            self.parts[key][index] = None if item is None else self._mended([key, self.places[key][index]], item)
+            item = _without(self.parts[key][index], paths, _REQUIRED.get(key, frozenset()))
+            self.parts[key][index] = None if item is None else self._mended([key, self.places[key][index]], item, True)
+            if with_rest:
+                self.parts[key][index:] = [None] * (len(self.parts[key]) - index)
         for key, places in self.places.items():
             kept = [(index, item) for index, item in zip(places, self.parts[key], strict=True) if item is not None]
             self.places[key] = [index for index, _ in kept]
@@ -245,13 +273,16 @@ def _told(path: Path, errors: list[Any]) -> Iterator[Fault]:
     yield from worded([{**error, "loc": (*path, *error["loc"][len(path) :])} for error in errors])
 
 
-def _without(value: Any, wrong: Iterable[tuple[Path, bool]]) -> dict[str, Any] | None:
-    """A part without the fields or items of fields at these paths, each missing or wrong; None where it falls."""
+def _without(value: Any, wrong: Iterable[tuple[Path, bool]], required: frozenset[str]) -> dict[str, Any] | None:
+    """A part without the fields or items of fields at these paths, each missing or wrong; None where it falls.
+
+    required: fields that it cannot be without, as far as they are known.
+    """
     if not isinstance(value, dict):
         return None
     result, items = dict(value), set()
     for path, is_missing in wrong:
-        if not path or path[0] not in value or (is_missing and len(path) == 1):
+        if not path or path[0] not in value or path[0] in required or (is_missing and len(path) == 1):
             return None
         if path[0] in _INDEPENDENT and len(path) > 1 and isinstance(value[path[0]], list):
             items.add((path[0], path[1]))
