@@ -57,12 +57,11 @@ def break_apart(document: Document) -> Document:
         springs += _loose_springs(made, ids, group, body.material)
     gone = {body.id for body in bodies}
     kept = tuple(body for body in level.bodies if body.id not in gone)
-    made = replaced(level, bodies=kept, particles=tuple(particles), springs=tuple(springs))
-    made, _ = rewired(made, lambda reference: names.get(reference, reference))
-    checked(made)
+    apart = replaced(level, bodies=kept, particles=tuple(particles), springs=tuple(springs))
+    apart, _ = rewired(apart, lambda reference: names.get(reference, reference))
     selection = {Item("particle", part.id) for part in particles[len(level.particles) :]}
     selection |= {Item("spring", index) for index in range(len(level.springs), len(springs))}
-    return replace(document, level=made, selection=frozenset(selection))
+    return replace(document, level=checked(apart), selection=frozenset(selection))
 
 
 def _loose(made: Expansion, places: Points, ids: list[str], group: str) -> list[ParticleDef]:

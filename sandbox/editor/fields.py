@@ -1,23 +1,132 @@
 """Changing fields of items, of the level and of its settings."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any
 
-from sandbox.editor.document import Document
-from sandbox.editor.items import Item
+from pydantic import ValidationError
+
+from sandbox.editor.document import Document, EditError, checked, first_fault, validated
+from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles, with_same
+from sandbox.editor.names import renamed, rewired, taken_ids
+from sandbox.editor.remap import rebuilt
+from sandbox.level.bodies import AnyBody, RopeDef
+from sandbox.level.faults import shown
+from sandbox.level.limits import VERSION
+from sandbox.level.model import Level, ParticleDef
+from sandbox.level.quantities import replaced
+
+# Fields of bodies that their form depends on: what hangs on single particles and springs follows a change of one.
+FORM_FIELDS = frozenset(
+    ("start", "end", "segments", "height", "position", "angle", "radius", "thickness")
+    + ("spokes", "rings", "shape", "spacing", "particles", "springs")
+)
+# Parts of a level that other edits change.
+_NO_FIELDS = frozenset(set(Level.model_fields) - {"name", "description", "author", "licence", "tags", "view", "extras"})
 
 
 def set_field(document: Document, items: Iterable[Item], field: str, value: Any) -> Document:
-    raise NotImplementedError
+    """Give a field of items a value; lists count as the format's lists. Raises EditError.
+
+    Where it alters the form of a body, its pins, cuts, pose and what refers to its particles go to the nearest; a
+    rope of a given rest length keeps its whole length.
+    """
+    chosen = frozenset(items)
+    if field == "id":
+        if len(chosen) != 1:
+            raise EditError("an id is of one thing alone; select one")
+        return rename(document, next(iter(chosen)), value)
+    if field == "type":
+        raise EditError("the kind of a body stays; draw another one")
+    value = _with_tuples(value) if field != "extras" else value
+    read: dict[type, Any] = {}
+
+    def with_value(part: Definition) -> Definition:
+        kind = type(part)
+        if kind not in read:
+            read[kind] = getattr(validated(replaced(part, **{field: value})), field)
+        return part if getattr(part, field) == read[kind] else _with_field(part, field, read[kind])
+
+    if not chosen:
+        return document
+    old = document.level
+    level = changed(old, chosen, with_value)
+    level = with_same(old, bodies=level.bodies, particles=level.particles, springs=level.springs)
+    if level is old:
+        return document
+    if field in FORM_FIELDS and level.bodies is not old.bodies:
+        bodies = {body.id: body for body in chosen_bodies(level, chosen)}
+        return replace(document, level=rebuilt(replaced(level, bodies=old.bodies), bodies))
+    return replace(document, level=checked(level))
 
 
 def rename(document: Document, item: Item, new_id: str) -> Document:
-    raise NotImplementedError
+    """Give a body or loose particle another id, wherever it is named. Raises EditError."""
+    level = document.level
+    part = _named_part(level, item)
+    if new_id == item.key:
+        return document
+    new = validated(replaced(part, id=new_id))
+    if new_id in taken_ids(level):
+        raise EditError(f"{shown(new_id)} is taken; every body and loose particle needs an id of its own")
+
+    def with_id(_: Definition) -> Definition:
+        return new
+
+    level = changed(level, frozenset([item]), with_id)
+    level, _ = rewired(level, renamed({part.id: new_id}))
+    selection = document.selection
+    if item in selection:
+        selection = selection - {item} | {Item(item.kind, new_id)}
+    return Document(checked(level), selection)
 
 
 def set_level_field(document: Document, field: str, value: Any) -> Document:
-    raise NotImplementedError
+    """Give a field of the level itself (name, description, author, licence, tags, view) a value. Raises EditError."""
+    if field in _NO_FIELDS:
+        raise EditError(f"{field} is not changed here")
+    level = document.level
+    data = {"format": level.format, "version": VERSION, "name": level.name, field: _with_tuples(value)}
+    new = getattr(_read(data, 0), field)
+    if new == getattr(level, field):
+        return document
+    return replace(document, level=checked(replaced(level, **{field: new})))
 
 
 def set_setting(document: Document, field: str, value: Any) -> Document:
-    raise NotImplementedError
+    """Give a field of the level's settings a value. Raises EditError."""
+    level = document.level
+    settings = {**level.settings.__dict__, field: _with_tuples(value)}
+    new = _read({"format": level.format, "version": VERSION, "name": "-", "settings": settings}, 1).settings
+    return document if new == level.settings else replace(document, level=replaced(level, settings=new))
+
+
+def _with_tuples(value: Any) -> Any:
+    if isinstance(value, list | tuple):
+        return tuple(_with_tuples(item) for item in value)
+    if isinstance(value, dict):
+        return {key: _with_tuples(item) for key, item in value.items()}
+    return value
+
+
+def _with_field(part: Definition, field: str, value: Any) -> Definition:
+    changes = {field: value}
+    if isinstance(part, RopeDef) and field == "segments" and part.rest_length is not None:
+        changes["rest_length"] = part.rest_length * part.segments / value
+    new = replaced(part, **changes)
+    return validated(new) if len(changes) > 1 else new
+
+
+def _named_part(level: Level, item: Item) -> AnyBody | ParticleDef:
+    selection: Selection = frozenset([item])
+    parts = [*chosen_bodies(level, selection), *chosen_particles(level, selection)]
+    if not parts:
+        raise EditError("a loose spring has no id" if item.kind == "spring" else f"there is no {shown(item.key)}")
+    return parts[0]
+
+
+def _read(data: dict[str, Any], depth: int) -> Level:
+    try:
+        return Level.model_validate(data)
+    except ValidationError as error:
+        raise EditError(first_fault(error, "", depth)) from None
