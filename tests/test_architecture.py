@@ -17,7 +17,7 @@ LIBRARIES = {
     "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},
     "session": {"numpy", "pydantic", "filelock"},
     "tools": {"numpy"},
-    "editor": {"numpy", "pydantic"},
+    "editor": {"numpy", "pydantic", "platformdirs", "filelock"},
     "terminal": {"tqdm"},
     "cli": set(),
     "__main__": set(),

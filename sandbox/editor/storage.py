@@ -187,7 +187,10 @@ class LevelFile:
 
 def _key(path: Path) -> str:
     """The same short text for every name of one file."""
-    real = os.path.normcase(os.path.realpath(path))
+    try:
+        real = os.path.normcase(os.path.realpath(path))
+    except ValueError:  # a null character, which reading and writing refuse in words
+        real = os.path.abspath(path)
     return hashlib.blake2b(os.fsencode(real), digest_size=16).hexdigest()
 
 
