@@ -15,11 +15,13 @@ Slots = NDArray[np.int64]
 
 # Particles nearer than this [m] and than half the smaller radius look like one. Larger: what is only close is named.
 OVERLAP = BODY_RADIUS / 2.0
-# Comparisons of one grid, at most: a heap of 10,000 particles in one place would need millions to say the same.
+# Comparisons of one grid, and pairs of items that are found, at most: a heap of 10,000 particles in one place has
+# millions, which say no more.
 COMPARED = 2_000_000
+PAIRS = 200
 # Springs of two bodies are held against each other in blocks of at most so many: a few milliseconds each.
 BLOCK = 128
-OTHER_BLOCK = 256
+OTHER_BLOCK = 128
 # Springs that meet within this share of their length from an end touch; beyond rounding, below what is seen.
 EDGE = 1e-6
 
@@ -31,19 +33,26 @@ def overlapping_particles(scene: Scene) -> Rule:
     loose = scene.spring_item >= len(scene.level.bodies)
     joined = _pair_keys(first[scene.particle_a[loose]], first[scene.particle_b[loose]], count)
     yield None
-    # By pair of items: the particles of theirs that lie on each other.
-    found: dict[int, set[tuple[int, int]]] = {}
+    # By pair of items: particles of theirs that lie on each other, and whether there are more.
+    found: dict[int, tuple[int, int, bool]] = {}
     for a, b in _near_pairs(scene):
         owner_a, owner_b = scene.particle_item[a], scene.particle_item[b]
         apart = (owner_a != owner_b) & (first[a] != first[b])
         apart &= ~np.isin(_pair_keys(first[a], first[b], count), joined)
         items = _pair_keys(owner_a, owner_b, len(scene.items))
-        for pair, slot, other in zip(items[apart].tolist(), a[apart].tolist(), b[apart].tolist(), strict=True):
-            found.setdefault(pair, set()).add((min(slot, other), max(slot, other)))
+        a, b = np.minimum(a, b)[apart], np.maximum(a, b)[apart]
+        pairs, first_of, counts = np.unique(items[apart], return_index=True, return_counts=True)
+        for pair, index, times in zip(pairs.tolist(), first_of.tolist(), counts.tolist(), strict=True):
+            slot, other, several = found.get(pair, (int(a[index]), int(b[index]), False))
+            several |= times > 1 or (slot, other) != (int(a[index]), int(b[index]))
+            found[pair] = slot, other, several
+            if len(found) == PAIRS:
+                break
         yield None
-    for pair, slots in sorted(found.items()):
-        slot, other = min(slots)
-        more = f", and {len(slots) - 1} more of theirs" if len(slots) > 1 else ""
+        if len(found) == PAIRS:
+            break
+    for pair, (slot, other, several) in sorted(found.items()):
+        more = ", and so do more of theirs" if several else ""
         text = (
             f'"{scene.names(slot)}" lies on "{scene.names(other)}" and is not joined to it{more}; '
             "weld them or move one away"
@@ -174,8 +183,11 @@ def _meeting(segments: Floats, others: Floats) -> NDArray[np.bool_]:
     """Which segments (k,) reach into the box of all others."""
     if not len(others):
         return np.zeros(len(segments), dtype=np.bool_)
-    low, high = others.min(axis=(0, 1)), others.max(axis=(0, 1))
-    return np.all((segments.min(axis=1) <= high) & (segments.max(axis=1) >= low), axis=1)
+    corners = others.reshape(-1, 2)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    a, b = segments[:, 0], segments[:, 1]
+    reaches = (np.minimum(a, b) <= high) & (np.maximum(a, b) >= low)
+    return reaches[:, 0] & reaches[:, 1]
 
 
 def _first_crossing(segments: Floats, others: Floats) -> tuple[float, float] | None:

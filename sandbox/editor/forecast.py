@@ -1,0 +1,141 @@
+"""Forecast: where everything will hang once it has come to rest, found by a damped run of the level.
+
+Kinetic damping (Cundall 1976; Barnes 1999): each part moves freely until its kinetic energy has passed a peak, where
+it is near an equilibrium of most of its motion, and is stopped there. The level's own solver and settings make the
+run, so that where it ends is where playing would end.
+"""
+
+import time
+from collections.abc import Generator, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.editor.finding import called, connected_parts
+from sandbox.editor.items import Selection
+from sandbox.editor.scene import Scene, make_scene
+from sandbox.level.build import build_world
+from sandbox.level.model import Level
+from sandbox.physics.step import step
+from sandbox.physics.world import World
+
+Floats = NDArray[np.float64]
+Slots = NDArray[np.int64]
+
+# At rest is what moves by less than this part of the level's size within a window of this many seconds. Larger: a heavy
+# weight on a long rope stops above its place; smaller: a soft jelly takes minutes.
+STILL = 5e-5
+# Places are shaken by this part of the level's size first, so that nothing balances on its head for want of a push.
+NUDGE = 2e-4
+WINDOW = 0.5  # [s]
+# What has not come to rest after so long [s of the run] is said not to.
+LONGEST = 60.0
+# A part is stopped where its kinetic energy has fallen below this share of its last peak. Nearer to 1: the flutter of
+# single springs stops it too, and it creeps.
+PAST_PEAK = 0.9
+
+
+class Forecast:
+    """A run in work, a slice at a time; it touches nothing but its own world, so a thread of its own may run it.
+
+    position [m] (n, 2) by the particles of the level's Scene: where they are at rest, None until that is known or where
+    they do not come to rest; what falls away stays as drawn. falling: items with particles that nothing holds.
+    at_rest: whether all else came to rest; None until known.
+    """
+
+    def __init__(self, level: Level) -> None:
+        self.position: Floats | None = None
+        self.at_rest: bool | None = None
+        self.falling: Selection = frozenset()
+        self._work = self._run(level)
+
+    @property
+    def text(self) -> str:
+        """One line for the person."""
+        if self.at_rest is None:
+            return "The forecast is being worked out"
+        if not self.at_rest:
+            return f"It does not come to rest within {LONGEST:g} s"
+        if self.falling:
+            return f"Shown is where it hangs at rest; {_counted(self.falling)} falls away, because nothing holds it"
+        return "Shown is where it hangs at rest"
+
+    def advance(self, seconds: float) -> bool:
+        """Work for about that long, at least one step; whether it is done. Building and one tick are not divided."""
+        # The clock says when to pause, never what comes out.
+        end = time.perf_counter() + seconds
+        for _ in self._work:
+            if time.perf_counter() >= end:
+                break
+        return self.at_rest is not None
+
+    def _run(self, level: Level) -> Iterator[None]:
+        scene = make_scene(level)
+        yield None
+        part = yield from connected_parts(scene)
+        is_falling = self._let_fall(level, scene, part)
+        world = build_world(level)
+        yield None
+        # Slots of the world by the particles of the scene: of welded ones the first alone.
+        is_first = scene.first_of_weld == np.arange(len(part))
+        slots = (np.cumsum(is_first) - 1)[scene.first_of_weld]
+        for slot in np.unique(slots[is_falling]).tolist():
+            world.pin(slot)
+        at_rest = yield from _settle(world, part[is_first])
+        if at_rest:
+            self.position = world.position[slots]
+            self.position[is_falling] = scene.position[is_falling]
+        self.at_rest = at_rest
+
+    def _let_fall(self, level: Level, scene: Scene, part: Slots) -> NDArray[np.bool_]:
+        if level.settings.gravity == (0.0, 0.0):
+            return np.zeros(len(part), dtype=np.bool_)
+        held = np.zeros(len(part), dtype=np.bool_)
+        held[part[scene.pinned]] = True
+        is_falling = ~held[part]
+        owners: list[int] = np.unique(scene.particle_item[is_falling]).tolist()
+        self.falling = frozenset(scene.items[index] for index in owners)
+        return is_falling
+
+
+def _counted(items: Selection) -> str:
+    return f"{len(items)} items" if len(items) > 1 else called(next(iter(items)))
+
+
+def _settle(world: World, part: Slots) -> Generator[None, None, bool]:
+    """Run until nothing moves, or too long: whether it came to rest. part (k,): of the first k slots, a label each."""
+    count = len(part)
+    if not count:
+        return True
+    free = world.inverse_mass[:count] > 0.0
+    mass = np.where(free, world.mass[:count], 0.0)
+    tick_rate = world.settings.tick_rate
+    window = max(1, round(WINDOW * tick_rate))
+    size = float(np.max(np.ptp(world.position[:count], axis=0)))
+    shaken = np.random.default_rng(1).uniform(-NUDGE * size, NUDGE * size, (count, 2))
+    world.position[:count] += np.where(free[:, None], shaken, 0.0)
+    _stop(world, np.ones(count, dtype=np.bool_))
+    peak = np.zeros(count)
+    before = world.position[:count].copy()
+    for tick in range(1, round(LONGEST * tick_rate) + 1):
+        step(world)
+        speed = world.velocity[:count]
+        energy = np.bincount(part, mass * (speed[:, 0] ** 2 + speed[:, 1] ** 2), count)
+        past = energy < PAST_PEAK * peak
+        peak = np.where(past, 0.0, np.maximum(peak, energy))
+        if past.any():
+            _stop(world, past[part])
+        if tick % window == 0:
+            now = world.position[:count]
+            if float(np.max(np.abs(now - before))) <= STILL * size:
+                return True
+            before = now.copy()
+        yield None
+    return False
+
+
+def _stop(world: World, chosen: NDArray[np.bool_]) -> None:
+    """Take all speed from particles, of the first slots."""
+    slots = np.flatnonzero(chosen)
+    world.velocity[slots] = 0.0
+    world.slow_velocity[slots] = 0.0
