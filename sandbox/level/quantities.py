@@ -38,7 +38,7 @@ def replaced(item: Described, **changes: Any) -> Described:
     """A copy of a description with other values of some fields, which are NOT validated.
 
     For edits of thousands of items at once by code that has checked types, ranges and field names itself: under 1 us
-    each, less than half of `model_copy`. What the item shares with its copy is immutable, but for `extras`, which nobody changes.
+    each, less than half of `model_copy`. What the two share is immutable, but for `extras`, which nobody changes.
     """
     copy = _new(type(item))
     _set(copy, "__dict__", {**item.__dict__, **changes})

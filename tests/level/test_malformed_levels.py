@@ -3,7 +3,8 @@
 import gc
 
 import pytest
-from malformed_levels import GOOD, changed, encoded, enormous, small
+from enormous_levels import enormous
+from malformed_levels import GOOD, changed, encoded, small
 
 from sandbox.level.files import LevelError, parse_level
 from sandbox.level.limits import FAULT_LIMIT
