@@ -8,15 +8,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sandbox.level.bodies import AnyBody
 from sandbox.level.checks import CheckDef
 from sandbox.level.faults import Fault, LevelError, json_path, shown
-from sandbox.level.limits import FAULT_LIMIT, FILE_LIMIT, FORMAT, PARTICLE_LIMIT, SPRING_LIMIT, VERSION
+from sandbox.level.limits import FAULT_LIMIT, FILE_LIMIT, FORMAT, VERSION
 from sandbox.level.migrate import migrated
 from sandbox.level.model import Level, ParticleDef, SpringDef
 from sandbox.level.parse import BODY_LIMITS, LEVEL_LIMITS
 from sandbox.level.scan import scan
-from sandbox.level.shapes import count
 from sandbox.level.validate import level_faults
 from sandbox.level.wording import place, worded
 
@@ -209,12 +207,17 @@ class _Remains:
             key, *rest = where.split(".")
             if key not in self.places:
                 self.faults.append((where, text))
-                self._drop_whole(level, key)
+                # A fault of the whole is one of numbers, of which bodies have told theirs each.
+                for name in [key] if key else ["particles", "springs"]:
+                    self.parts.pop(name, None)
+                    self.places.pop(name, None)
                 continue
             index = int(rest[0])
             inner = [int(part) if part.isdigit() else part for part in rest[1:]]
-            if len(self.faults) <= FAULT_LIMIT:
-                self.faults.append((json_path([key, self.places[key][index], *inner]), text))
+            told = json_path([key, self.places[key][index], *inner])
+            # A check whose particle is gone would then be told to need one.
+            if len(self.faults) <= FAULT_LIMIT and told not in (place for place, _ in self.faults):
+                self.faults.append((told, text))
             if key == "bodies" and not inner and self._unweld(level.bodies[index].id):
                 continue
             wrong.setdefault((key, index), []).append((inner, False))
@@ -227,17 +230,6 @@ class _Remains:
             kept = [(index, item) for index, item in zip(places, self.parts[key], strict=True) if item is not None]
             self.places[key] = [index for index, _ in kept]
             self.parts[key] = [item for _, item in kept]
-
-    def _drop_whole(self, level: Level, key: str) -> None:
-        if key:
-            self.parts.pop(key, None)
-            return
-        # Nothing but the sum is too large: what is loose gives way to the bodies.
-        for name, limit, of_bodies in zip(
-            ("particles", "springs"), (PARTICLE_LIMIT, SPRING_LIMIT), _sums(level.bodies), strict=True
-        ):
-            for index in range(max(limit - of_bodies, 0), len(self.parts.get(name, ()))):
-                self.parts[name][index] = None
 
     def _unweld(self, body: str) -> bool:
         """Take out the welds that name a body; whether there were any."""
@@ -291,9 +283,3 @@ def _without(value: Any, wrong: Iterable[tuple[Path, bool]], required: frozenset
     for key in {key for key, _ in items} & result.keys():
         result[key] = [item for index, item in enumerate(value[key]) if (key, index) not in items]
     return result
-
-
-def _sums(bodies: Iterable[AnyBody]) -> tuple[int, int]:
-    """Particles and springs of bodies."""
-    counts = [count(body) for body in bodies]
-    return sum(particles for particles, _ in counts), sum(springs for _, springs in counts)
