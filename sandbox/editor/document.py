@@ -73,7 +73,7 @@ def check_bodies(level: Level, bodies: Iterable[AnyBody]) -> None:
 def validated(definition: Described) -> Described:
     """A definition whose fields have been changed unseen, read anew. Raises EditError where one is out of range."""
     data = dict(definition.__dict__)
-    if "shape" in data:
+    if isinstance(data.get("shape"), Description):
         data["shape"] = dict(data["shape"].__dict__)
     part = "bodies" if "type" in data else "particles" if "id" in data else "springs"
     try:

@@ -10,17 +10,15 @@ from sandbox.editor.document import Document, EditError, checked, first_fault, v
 from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles, with_same
 from sandbox.editor.names import renamed, rewired, taken_ids
 from sandbox.editor.remap import rebuilt
-from sandbox.level.bodies import AnyBody, RopeDef
+from sandbox.level.bodies import AnyBody, BodyDef, RopeDef
 from sandbox.level.faults import shown
 from sandbox.level.limits import VERSION
 from sandbox.level.model import Level, ParticleDef
 from sandbox.level.quantities import replaced
 
-# Fields of bodies that their form depends on: what hangs on single particles and springs follows a change of one.
-FORM_FIELDS = frozenset(
-    ("start", "end", "segments", "height", "position", "angle", "radius", "thickness")
-    + ("spokes", "rings", "shape", "spacing", "particles", "springs")
-)
+# Fields of bodies that their form does not depend on; a change of any other may take pins, cuts and references along.
+_FORMLESS = frozenset(BodyDef.model_fields) | {"particle_mass", "end_mass", "hub_mass", "masses", "velocities"}
+_FORMLESS |= {"pin", "rest_length"}
 # Parts of a level that other edits change.
 _NO_FIELDS = frozenset(set(Level.model_fields) - {"name", "description", "author", "licence", "tags", "view", "extras"})
 
@@ -54,7 +52,7 @@ def set_field(document: Document, items: Iterable[Item], field: str, value: Any)
     level = with_same(old, bodies=level.bodies, particles=level.particles, springs=level.springs)
     if level is old:
         return document
-    if field in FORM_FIELDS and level.bodies is not old.bodies:
+    if field not in _FORMLESS and level.bodies is not old.bodies:
         bodies = {body.id: body for body in chosen_bodies(level, chosen)}
         return replace(document, level=rebuilt(replaced(level, bodies=old.bodies), bodies))
     return replace(document, level=checked(level))
