@@ -118,8 +118,9 @@ def _parser() -> argparse.ArgumentParser:
 
     layout = command("format", _format, "rewrite a level file in its canonical form")
     layout.add_argument("file", type=Path, metavar="FILE")
-    edit = command("edit", _edit, "open the level editor (not in this version)")
+    edit = command("edit", _edit, "open the level editor: a level, or an empty sheet")
     edit.add_argument("level", nargs="?", metavar="LEVEL")
+    edit.add_argument("--scale", type=scale, help="size of the widgets, 0.5 to 4; default: the display's own")
     command("schema", _schema, "print the JSON Schema of level files")
     return parser
 
@@ -162,7 +163,9 @@ def _play(options: argparse.Namespace) -> int:
         return _play_headless(level or (replay.level if replay else _level("rope_bridge_jelly")), replay)
     from sandbox.app.app import run_app
 
-    return run_app(level, replay=replay, profile=options.profile, seconds=options.seconds, scale=options.scale)
+    source = Path(options.level) if level and Path(options.level).is_file() else None
+    more = {"profile": options.profile, "seconds": options.seconds, "scale": options.scale}
+    return run_app(level, replay=replay, source=source, **more)
 
 
 def _play_headless(level: "Level", replay: "Replay | None") -> int:
@@ -370,7 +373,12 @@ def _render(options: argparse.Namespace) -> int:
 
 
 def _edit(options: argparse.Namespace) -> int:
-    raise Refused("the editor is not part of this version: edit the level's JSON, then try it with `sandbox check`")
+    from sandbox.app.app import run_app
+    from sandbox.app.display import has_display
+
+    if not has_display():
+        raise Refused("the editor needs a display; without one, edit the level's JSON and try `sandbox check`")
+    return run_app(edit=options.level or "", scale=options.scale)
 
 
 def _format(options: argparse.Namespace) -> int:

@@ -174,7 +174,7 @@ def test_render_draws_a_picture_of_the_size_asked_for(rope, tmp_path):
         ["format", "nowhere.json"], ["run", "rope", "--solver", "magic"], ["run", "rope", "--substeps", "3"],
         ["run", "rope", "--probe", "rope.1"], ["run", "rope", "--probe", "x.1", "-o", "x.csv"],
         ["run", "rope", "--ticks", "1", "--dump", "/nowhere/x"], ["run", "rope", "--commands", "/nowhere/x"],
-        ["run", "rope", "--record", "/nowhere/x"], ["render", "rope", "-o", "x.gif"], ["edit"],
+        ["run", "rope", "--record", "/nowhere/x"], ["render", "rope", "-o", "x.gif"],
         ["render", "nowhere.json", "-o", "x.png"],
     ],
 )  # fmt: skip
@@ -331,3 +331,19 @@ def test_an_interrupted_run_leaves_a_recording_that_is_only_cut_off(rope, tmp_pa
     assert main(["replay", str(replay)]) == 2
     assert main(["replay", "--partial", str(replay)]) == 0
     assert "equal, 90 ticks" in capsys.readouterr().out
+
+
+def test_edit_without_a_display_is_refused_in_one_line(monkeypatch, capsys):
+    monkeypatch.setattr("sandbox.app.display.has_display", lambda: False)
+    assert main(["edit"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_edit_hands_the_level_on_to_the_app(monkeypatch, rope):
+    asked = {}
+    monkeypatch.setattr("sandbox.app.display.has_display", lambda: True)
+    monkeypatch.setattr("sandbox.app.app.run_app", lambda **given: asked.update(given) or 0)
+    assert main(["edit", rope]) == 0
+    assert asked["edit"] == rope
+    assert main(["edit"]) == 0
+    assert asked["edit"] == ""

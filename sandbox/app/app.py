@@ -4,12 +4,14 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
+from pathlib import Path
 
 import pygame
 
 from sandbox.app.colours import BACKGROUND
 from sandbox.app.dialogs import show_lines
 from sandbox.app.display import SCALE_RANGE, Display
+from sandbox.app.edit.documents import Documents
 from sandbox.app.files import FileActions
 from sandbox.app.gallery import Gallery
 from sandbox.app.help import show_help
@@ -35,18 +37,22 @@ FIGURES_EVERY = 0.5
 class App:
     """The app in its window; `frame` is one turn of the loop; `screen` is what the window shows under its pages."""
 
-    def __init__(self, display: Display, level: Level | None = None, replay: Replay | None = None) -> None:
+    def __init__(
+        self, display: Display, level: Level | None = None, replay: Replay | None = None, source: Path | None = None
+    ) -> None:
         self.display = display
         self.scale = display.scale
         self.profile = Profile()
         self._notices: deque[Notice] = deque(maxlen=NOTICES)
         self._description = ""
         self.running = True
+        self._is_quitting = False
         self.ready = False
         self.screen: Screen | None = None
         self.gallery: Gallery | None = None
         self.input = Input(self)
         self.files = FileActions(self)
+        self.documents = Documents(self)
         self._progress = Progress(self)
         self._own_actions = self._actions()
         self._figures = (0.0, 0.0)
@@ -58,7 +64,7 @@ class App:
         if replay is not None:
             self.start(Playback(replay.level, replay))
         elif level is not None:
-            self.start(Playback(level))
+            self.start(Playback(level), source)
         else:
             self.open_gallery()
 
@@ -104,10 +110,16 @@ class App:
         self.screen = screen
         self.rebuild()
 
-    def start(self, playback: Playback) -> None:
-        """Show another run from its beginning."""
-        self.show_screen(PlayScreen(self, playback))
+    def start(self, playback: Playback, source: Path | None = None) -> None:
+        """Show another run from its beginning; source: the file of its level."""
+        self.show_screen(PlayScreen(self, playback, source))
         self._describe("" if playback.replay else playback.level.description)
+
+    def start_document(self, playback: Playback) -> PlayScreen:
+        """Show a run of the level that the editor has open."""
+        screen = PlayScreen(self, playback, of_document=True)
+        self.show_screen(screen)
+        return screen
 
     def _describe(self, description: str) -> None:
         """Say what a level is about, in place of what the one before it was."""
@@ -134,7 +146,7 @@ class App:
 
     # Actions.
 
-    def _actions(self) -> dict[str, Callable[[], None]]:
+    def _actions(self) -> dict[str, Callable[[], object]]:
         return {
             "fullscreen": self.display.toggle_fullscreen,
             "larger": lambda: self._rescale(1.125),
@@ -144,7 +156,7 @@ class App:
         }
 
     @property
-    def actions(self) -> dict[str, Callable[[], None]]:
+    def actions(self) -> dict[str, Callable[[], object]]:
         """What can be done now, by the names of the table of shortcuts."""
         return self._own_actions | (self.screen.actions if self.screen is not None else {})
 
@@ -155,13 +167,21 @@ class App:
             do()
 
     def quit(self) -> None:
-        """Leave after this frame."""
+        """Leave after this frame, once it is clear what becomes of changes that are not saved."""
+        if self._is_quitting and self.ui.has_sheet:
+            return
+        self._is_quitting = True
+        self.documents.if_saved(self._stop)
+
+    def _stop(self) -> None:
+        self.documents.give_up()
         self.running = False
 
     def close(self) -> None:
         """Close the window; whatever ended the loop, a recording gets its last line."""
         if self.screen is not None:
             self.screen.leave()
+        self.documents.close()
         self.display.close()
 
     def _rescale(self, factor: float) -> None:
@@ -241,15 +261,22 @@ def run_app(
     level: Level | None = None,
     *,
     replay: Replay | None = None,
+    source: Path | None = None,
+    edit: str | None = None,
     profile: bool = False,
     seconds: float | None = None,
     scale: float | None = None,
 ) -> int:
     """Open the window and run until it is closed, or for so many seconds; returns the exit code.
 
-    profile: print where a frame's time goes, at the end. scale: size of the widgets; None = the display's.
+    source: the level's file. edit: the file to edit in place of playing, "" = an empty sheet. profile: print where a
+    frame's time goes, at the end. scale: size of the widgets; None = the display's.
     """
-    app = App(Display(scale), level, replay)
+    app = App(Display(scale), level, replay, source)
+    if edit is not None:
+        app.close_gallery()
+        app.documents.begin(edit)
+    app.documents.offer_recovery()
     clock = pygame.time.Clock()
     started = before = time.perf_counter()
     try:
@@ -259,6 +286,7 @@ def run_app(
             before = now
             clock.tick(FRAME_RATE)
     finally:
+        # Whatever ended the loop, a recording gets its last line.
         app.close()
     if profile:
         print(app.profile.table(time.perf_counter() - started))

@@ -12,16 +12,19 @@ Colour = tuple[int, int, int]
 
 BACKGROUND: Colour = (17, 20, 26)
 GRID: Colour = (24, 28, 36)
+GRID_FINE: Colour = (20, 24, 30)
 GRID_AXIS: Colour = (38, 44, 56)
 SURFACE: Colour = (24, 28, 36)
 LINE: Colour = (42, 49, 62)
 TEXT: Colour = (226, 231, 239)
 MUTED: Colour = (139, 149, 166)
+DISABLED: Colour = (70, 78, 92)
 ACCENT: Colour = (94, 208, 178)
 WARNING: Colour = (255, 180, 84)
 DANGER: Colour = (255, 107, 107)
 PARTICLE: Colour = (226, 231, 239)
 PINNED: Colour = (94, 208, 178)
+WELD: Colour = (240, 214, 104)
 
 # Springs by material while a level is edited; the material `default` is grey, then they repeat.
 MATERIAL_COLOURS: tuple[Colour, ...] = (

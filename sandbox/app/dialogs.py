@@ -1,6 +1,7 @@
-"""Dialogs: lines that a person has to see, and a question with a typed answer."""
+"""Dialogs: lines that a person has to see, questions with a typed answer, and choices."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 from sandbox.app.colours import TEXT, WARNING
@@ -15,6 +16,9 @@ MOST_LINES = 14
 # Characters of a fault that fit on a line of the box.
 LINE_CHARACTERS = 74
 
+# A button: its label, and what it does.
+Choice = tuple[str, Callable[[], object]]
+
 
 def _box(ui: Ui, height: float, close: Callable[[], None]) -> tuple[Any, Any, float]:
     """A modal box in the middle: the sheet, the box and its width in layout units."""
@@ -25,8 +29,8 @@ def _box(ui: Ui, height: float, close: Callable[[], None]) -> tuple[Any, Any, fl
     return sheet, box, box_width
 
 
-def show_lines(ui: Ui, title: str, lines: list[str]) -> None:
-    """Show lines until they are closed; more than fit are counted."""
+def show_lines(ui: Ui, title: str, lines: list[str], other: Choice | None = None) -> None:
+    """Show lines until they are closed; more than fit are counted; other: what else can be done, on a second button."""
     shown = lines[:MOST_LINES] + ([f"... and {len(lines) - MOST_LINES} more"] if len(lines) > MOST_LINES else [])
     rows = sum(1 + len(line) // LINE_CHARACTERS for line in shown)
     height = min(MARGIN * 2 + 40 + rows * LINE_HEIGHT + 60, ui.units[1] - 20)
@@ -34,13 +38,19 @@ def show_lines(ui: Ui, title: str, lines: list[str]) -> None:
     def close() -> None:
         ui.close_sheet(sheet)
 
+    def do_other() -> None:
+        close()
+        if other is not None:
+            other[1]()
+
     sheet, box, width = _box(ui, height, close)
     ui.label(ui.rect(MARGIN, MARGIN - 6, width - 2 * MARGIN, 28), title, box, "@title")
     place = ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN, height - MARGIN * 2 - 84)
     TextBlock(ui, place, "\n".join(shown), box, 13.0, TEXT)
-    button = ui.button(
-        ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Close", close, box, style="@primary"
-    )
+    bottom = height - MARGIN - 34
+    button = ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), "Close", close, box, style="@primary")
+    if other is not None:
+        ui.button(ui.rect(width - MARGIN - 310, bottom, 190, 34), other[0], do_other, box)
     ui.focus_on(button)
 
 
@@ -52,10 +62,12 @@ def ask(
     verb: str,
     answer: Callable[[str], str | None],
     other: tuple[str, Callable[[], None]] | None = None,
+    then: Callable[[str], object] | None = None,
 ) -> None:
     """Ask for a line of text; answer gives None where it is taken, else what is wrong with it, and the box stays.
 
     other: the second button and what it does, instead of one that leaves everything as it is, as Escape does.
+    then: what is done with a text that was taken, once the box is closed.
     """
     height = 246.0
 
@@ -73,7 +85,9 @@ def ask(
     def take(typed: str) -> bool:
         fault = answer(typed.strip())
         if fault is None:
-            ui.close_sheet(sheet)
+            close()
+            if then is not None:
+                then(typed.strip())
             return True
         note.show_text(fault)
         return False
@@ -89,3 +103,69 @@ def ask(
     ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="@primary")
     ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), other[0] if other else "Cancel", do_other, box)
     ui.focus_on(field.entry)
+
+
+def choose(ui: Ui, title: str, text: str, choices: Sequence[Choice], columns: int = 1) -> None:
+    """Offer choices, (label, what it does) each, the first of them marked; Escape or Cancel leaves all as it is."""
+    rows = -(-len(choices) // columns)
+    lines = 1 + len(text) // LINE_CHARACTERS if text else 0
+    height = MARGIN * 2 + 38 + lines * LINE_HEIGHT + rows * 42 + 44
+
+    def close() -> None:
+        ui.close_sheet(sheet)
+
+    def do(action: Callable[[], object]) -> None:
+        close()
+        action()
+
+    sheet, box, width = _box(ui, height, close)
+    inside = width - 2 * MARGIN
+    ui.label(ui.rect(MARGIN, MARGIN - 6, inside, 28), title, box, "@title")
+    TextBlock(ui, ui.rect(MARGIN, MARGIN + 32, inside, lines * LINE_HEIGHT + 4), text, box, 13.0, TEXT)
+    top, buttons = MARGIN + 40 + lines * LINE_HEIGHT, []
+    wide = (inside - 10 * (columns - 1)) / columns
+    for index, (label, action) in enumerate(choices):
+        place = ui.rect(MARGIN + index % columns * (wide + 10), top + index // columns * 42, wide, 34)
+        style = "@primary" if index == 0 and columns == 1 else ""
+        buttons.append(ui.button(place, label, partial(do, action), box, style=style))
+    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="@quiet")
+    ui.focus_on(buttons[0])
+
+
+def fill_in(
+    ui: Ui,
+    title: str,
+    hint: str,
+    fields: Sequence[tuple[str, str]],
+    verb: str,
+    answer: Callable[[list[str]], str | None],
+) -> None:
+    """Ask for several lines, (label, text) each; answer gives None where they are taken, else what is wrong."""
+    height = MARGIN * 2 + 62 + len(fields) * 42 + 78
+
+    def close() -> None:
+        ui.close_sheet(sheet)
+
+    def accept(_: object = None) -> None:
+        fault = answer([entry.entry.get_text().strip() for entry in entries])
+        if fault is None:
+            close()
+        else:
+            note.show_text(fault)
+
+    sheet, box, width = _box(ui, height, close)
+    inside = width - 2 * MARGIN
+    ui.label(ui.rect(MARGIN, MARGIN - 6, inside, 28), title, box, "@title")
+    ui.label(ui.rect(MARGIN, MARGIN + 26, inside, 20), hint, box, "@muted")
+    entries = []
+    for index, (label, text) in enumerate(fields):
+        top = MARGIN + 56 + index * 42
+        ui.label(ui.rect(MARGIN, top, inside * 0.5, 34), label, box)
+        entry = ui.field(ui.rect(MARGIN + inside * 0.5, top, inside * 0.5, 34), text, lambda _: True, box, 40)
+        entry.enter = accept
+        entries.append(entry)
+    note = TextBlock(ui, ui.rect(MARGIN, height - MARGIN - 74, inside, 34), "", box, 12.0, WARNING)
+    bottom = height - MARGIN - 34
+    ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="@primary")
+    ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), "Cancel", close, box)
+    ui.focus_on(entries[0].entry)

@@ -35,13 +35,16 @@ class FileActions:
         return self.open_replay(path) if is_replay else self.open_level(path)
 
     def open_level(self, path: str | Path) -> bool:
-        """Open a level file and play it."""
+        """Open a level file: play it, or edit it where a level is edited now."""
+        if self.app.mode == "edit":
+            self.app.documents.open(path)
+            return True
         try:
             playback = Playback(read_level(Path(path)))
         except LevelError as error:
             self._refuse(path, error.faults)
             return False
-        self.app.start(playback)
+        self.app.start(playback, Path(path))
         return True
 
     def open_replay(self, path: str | Path) -> bool:
@@ -73,7 +76,10 @@ class FileActions:
             level = load_level(typed)
         except LevelError as error:
             return error.faults[0]
-        self.app.start(Playback(level))
+        if self.app.mode == "edit":
+            self.app.documents.edit_level(level)
+        else:
+            self.app.start(Playback(level))
         return None
 
     def _refuse(self, path: str | Path, faults: list[str]) -> None:

@@ -1,7 +1,7 @@
 """Gallery: levels as cards with rendered pictures, and saved recordings as a list."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ from sandbox.app.painted import Painted, wrapped
 from sandbox.app.picture import draw_picture, run_ahead
 from sandbox.app.recordings import saved_recordings
 from sandbox.app.widgets import ENTER_KEYS, Ui
+from sandbox.editor.recent import recent_levels
 from sandbox.level.files import LevelError, read_level, shipped_levels
 from sandbox.level.model import Level
 from sandbox.physics.jit import COMPILED
@@ -31,6 +32,7 @@ TOP = 92.0
 MARGIN = 36.0
 ROW_HEIGHT = 52.0
 WHEEL_STEP = 70.0
+NEW_TIP = "Draw a level of your own, from an empty sheet"
 # The pictures show the level after this time [s], or it would hang in mid-air where it was built.
 PICTURE_SECONDS = 0.8
 # Thickness of lines in pictures, which are drawn at twice their size.
@@ -118,26 +120,34 @@ class Gallery:
         self._columns = 1
         self.sheet = ui.open_sheet(close if files.app.screen is not None else lambda: None, "@cover")
         width, height = ui.units
-        ui.label(ui.rect(MARGIN, 26, 400, 40), "Spring Sandbox", self.sheet, "@display")
-        options = [("levels", "Levels", ""), ("recordings", "Replays", "")]
-        tabs = ui.choice(ui.rect(width - MARGIN - 300, 32, 190, 32), options, self._files.app.open_gallery, self.sheet)
+        editing = files.app.mode == "edit"
+        ui.label(ui.rect(MARGIN, 26, 300, 40), "Edit a level" if editing else "Spring Sandbox", self.sheet, "@display")
+        options = [("levels", "Levels", ""), ("mine", "My levels", ""), ("recordings", "Replays", "")]
+        tabs = ui.choice(ui.rect(width - MARGIN - 424, 32, 252, 32), options, self._files.app.open_gallery, self.sheet)
         tabs.show(section)
-        ui.button(ui.rect(width - MARGIN - 100, 32, 100, 32), "Open file", files.ask_to_open, self.sheet)
+        ui.button(ui.rect(width - MARGIN - 162, 32, 58, 32), "New", files.app.documents.new, self.sheet, tip=NEW_TIP)
+        ui.button(ui.rect(width - MARGIN - 98, 32, 98, 32), "Open file", files.ask_to_open, self.sheet)
         place = ui.rect(MARGIN - 6, TOP, width - 2 * MARGIN + 12, height - TOP)
         self.area = ui.area(place, self.sheet)
-        (self._add_levels if section == "levels" else self._add_recordings)()
+        if section == "recordings":
+            self._add_recordings()
+        else:
+            self._add_levels(shipped_levels() if section == "levels" else recent_levels())
 
     def close(self) -> None:
         """Take the page away."""
         self._ui.close_sheet(self.sheet)
 
-    def _add_levels(self) -> None:
+    def _add_levels(self, paths: Sequence[Path]) -> None:
         ui = self._ui
+        if not paths:
+            text = "No levels of yours yet. Draw one in the editor (New, or E in any level) and save it with Ctrl+S."
+            ui.label(ui.rect(6, 6, 760, 30), text, self.area, "@muted")
         width = ui.units[0] - 2 * MARGIN
         columns = self._columns = max(1, int((width + GAP) // (CARD_WIDTH + GAP)))
         card_width = (width - GAP * (columns - 1)) / columns
         card_height = card_width * PICTURE_RATIO + TEXT_HEIGHT
-        for index, path in enumerate(shipped_levels()):
+        for index, path in enumerate(paths):
             x = 6 + index % columns * (card_width + GAP)
             y = 6 + index // columns * (card_height + GAP)
             self._add_level(ui.rect(x, y, card_width, card_height), path)

@@ -48,6 +48,8 @@ class Input:
                 self.app.quit()
             elif event.type == pygame.DROPFILE:
                 self.app.files.open_path(event.file)
+            elif event.type == pygame.WINDOWFOCUSGAINED:
+                self.app.documents.look_at_disk()
             elif self._follows_world(event) or not self.app.ui.process(event):
                 self._to_world(event)
 

@@ -7,10 +7,11 @@ import numpy as np
 import pygame
 
 from sandbox.app.colours import WARNING
+from sandbox.app.fields import Field
 from sandbox.app.painted import TextBlock
 from sandbox.app.playback import Playback
 from sandbox.app.sliders import LogSlider
-from sandbox.app.widgets import Field, Ui
+from sandbox.app.widgets import Ui
 from sandbox.level.limits import GRAVITY_LIMIT, SUBSTEPS
 from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients

@@ -1,12 +1,14 @@
 """PlayScreen: a run on the screen, with the bar of its tools at the top and the panel at the right."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pygame
 
 from sandbox.app.camera import Camera
 from sandbox.app.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colour
+from sandbox.app.edit.keep import ask_to_keep
 from sandbox.app.loop import SPEEDS
 from sandbox.app.panel import PANEL_WIDTH, Panel
 from sandbox.app.playback import Playback
@@ -24,14 +26,14 @@ if TYPE_CHECKING:
 
 
 class PlayScreen:
-    """Plays a level or a replay; `of_document`: what is played is the level that the editor has open."""
+    """Plays a level or a replay; source: the file of the level; of_document: the level is what the editor has open."""
 
     mode: Mode = "play"
 
-    def __init__(self, app: "App", playback: Playback, of_document: bool = False) -> None:
+    def __init__(self, app: "App", playback: Playback, source: Path | None = None, of_document: bool = False) -> None:
         self._app = app
         self._ui = app.ui
-        self.of_document = of_document
+        self.source, self.of_document = source, of_document
         self.show_panel = True
         self.panel: Panel | None = None
         self.stage = Stage(playback, self.viewport, app.scale)
@@ -70,7 +72,7 @@ class PlayScreen:
 
     # Actions.
 
-    def _actions(self) -> dict[str, Callable[[], None]]:
+    def _actions(self) -> dict[str, Callable[[], object]]:
         stage, files = self.stage, self._app.files
         return {
             "tool_drag": lambda: stage.choose_tool("drag"),
@@ -95,7 +97,19 @@ class PlayScreen:
             "gallery": self._app.open_gallery,
             "recordings": lambda: self._app.open_gallery("recordings"),
             "open": files.ask_to_open,
+            "edit": self._edit,
+            "keep": lambda: ask_to_keep(self._app),
         }
+
+    def _edit(self) -> None:
+        """Back to the document that is played, or edit the level of the run."""
+        documents = self._app.documents
+        if self.of_document:
+            documents.back()
+        elif self.source is not None:
+            documents.open(self.source)
+        else:
+            documents.edit_level(self.playback.level)
 
     def _slower(self) -> None:
         clock = self.playback.clock

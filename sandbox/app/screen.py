@@ -19,7 +19,7 @@ class Screen(Protocol):
     """What the app asks of a screen; actions by the names of the table of shortcuts."""
 
     mode: Mode
-    actions: dict[str, Callable[[], None]]
+    actions: dict[str, Callable[[], object]]
 
     @property
     def camera(self) -> Camera:
@@ -47,7 +47,7 @@ class Screen(Protocol):
         ...
 
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
-        """Let frame_time [s] pass; pointer: where the mouse is over the world, if it is; ready: kernels are compiled."""
+        """Let frame_time [s] pass; pointer: where the mouse is over the world, if it is; ready: kernels are there."""
         ...
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:

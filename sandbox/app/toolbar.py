@@ -6,7 +6,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.colours import ACCENT, DANGER, TEXT, Colour
+from sandbox.app.colours import ACCENT, DANGER, DISABLED, TEXT, Colour
 from sandbox.app.icons import icon
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets import Ui, set_icon
@@ -45,7 +45,9 @@ class Toolbar:
         self.back = ui.panel(ui.rect(0, 0, width, BAR_HEIGHT))
         self._icons: dict[tuple[str, Colour], pygame.Surface] = {}
         self._x = 14.0
+        self._button("edit", "edit")
         wide = 22.0 if width >= ROOM_FOR_NAME else 10.0
+        self._x += wide
         self.tools = {name: self._button(f"tool_{name}", name) for name in ("drag", "pin", "cut")}
         self._x += wide
         self.undo = self._button("undo", "undo")
@@ -55,6 +57,8 @@ class Toolbar:
         self.pause = self._button("pause", "pause")
         self.step = self._button("step", "step")
         self.slow = self._text_button("slow", "1x", SLOW_WIDTH)
+        if of_document:
+            self._button("keep", "keep")
         self._x += wide
         self.record = self._button("record", "record")
         self.save = self._button("save", "save")
@@ -85,7 +89,7 @@ class Toolbar:
         (self.undo.enable if state.can_undo else self.undo.disable)()
         (self.redo.enable if state.can_redo else self.redo.disable)()
         for button, name, on in ((self.undo, "undo", state.can_undo), (self.redo, "redo", state.can_redo)):
-            set_icon(button, self._icon(name, TEXT if on else (70, 78, 92)))
+            set_icon(button, self._icon(name, TEXT if on else DISABLED))
         if self.title is not None:
             self.title.set_text(state.name)
 

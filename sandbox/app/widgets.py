@@ -1,10 +1,8 @@
-"""Ui: the widgets of the app. It and painted.py alone know pygame_gui; others get callbacks, not events."""
+"""Ui: the widgets of the app. It, fields.py and painted.py know pygame_gui; others get callbacks, not events."""
 
 import html
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from dataclasses import field as default
 from functools import partial
 from typing import Any
 
@@ -14,6 +12,7 @@ from pygame_gui.core import ObjectID, UIContainer, UIElement
 from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITextEntryLine
 
 from sandbox.app.colours import ACCENT
+from sandbox.app.fields import Choice, Field, Sheet
 from sandbox.app.painted import Painted
 from sandbox.app.theme import plain_font, scaled_theme
 
@@ -25,64 +24,6 @@ SHEET_HEIGHT = 40
 # Delay and interval of a key that is held down [ms].
 KEY_REPEAT = (400, 40)
 ENTER_KEYS = (pygame.K_RETURN, pygame.K_KP_ENTER)
-
-
-@dataclass
-class Field:
-    """A line to type into; commit gets the text and says whether it is taken, else the old text comes back."""
-
-    entry: UITextEntryLine
-    commit: Callable[[str], bool]
-    text: str
-    focused: bool = False
-    enter: Callable[[str], object] | None = None
-
-    def show(self, text: str) -> None:
-        """Show a value, unless the person is typing one."""
-        if text != self.text and not self.entry.is_focused:
-            self.text = text
-            self.entry.set_text(text)
-
-    def finish(self) -> None:
-        """Take what was typed, or bring the old text back; Enter goes to `enter` instead where there is one."""
-        typed = self.entry.get_text()
-        if typed == self.text:
-            return
-        before = self.text
-        self.text = typed
-        if not self.commit(typed):
-            self.text = before
-            self.entry.set_text(before)
-
-    def revert(self) -> None:
-        """Forget what was typed."""
-        self.entry.set_text(self.text)
-
-
-@dataclass
-class Choice:
-    """A row of buttons of which one is chosen."""
-
-    buttons: dict[str, UIButton]
-    chosen: str = ""
-
-    def show(self, chosen: str) -> None:
-        """Mark the chosen one."""
-        if chosen == self.chosen:
-            return
-        self.chosen = chosen
-        for value, button in self.buttons.items():
-            (button.select if value == chosen else button.unselect)()
-
-
-@dataclass
-class Sheet:
-    """A modal page and the widgets on it; close: what Escape does; is_page: it is read, so no notices lie over it."""
-
-    panel: UIPanel
-    close: Callable[[], None]
-    is_page: bool
-    widgets: list[UIElement] = default(default_factory=list)
 
 
 class Ui:
@@ -207,6 +148,20 @@ class Ui:
     def _add_focusable(self, widget: UIElement) -> None:
         (self._sheets[-1].widgets if self._sheets else self._page).append(widget)
 
+    def remove(self, widget: UIElement) -> None:
+        """Take a widget away; one that has the keyboard gives it back."""
+        self._forget(widget)
+        self._page = [other for other in self._page if other is not widget]
+        if self._focus is widget:
+            self._set_focus(None)
+        widget.kill()
+
+    def _forget(self, widget: UIElement) -> None:
+        self._actions.pop(widget, None)
+        self._fields.pop(widget, None)
+        if isinstance(widget, UIDropDownMenu):
+            self._choosers.pop(widget, None)
+
     # Sheets: modal pages on top of all else.
 
     @property
@@ -236,10 +191,7 @@ class Ui:
         """Take a modal page away."""
         for entry in [entry for entry in self._sheets if entry.panel is sheet]:
             for widget in entry.widgets:
-                self._actions.pop(widget, None)
-                if isinstance(widget, UIDropDownMenu):
-                    self._choosers.pop(widget, None)
-                self._fields.pop(widget, None)
+                self._forget(widget)
         self._sheets = [entry for entry in self._sheets if entry.panel is not sheet]
         self._set_focus(None)
         sheet.kill()

@@ -53,6 +53,10 @@ class Driver:
         return self.app.play.panel
 
     @property
+    def editor(self):
+        return self.app.documents.editor
+
+    @property
     def playback(self):
         return self.app.play.playback
 
@@ -120,7 +124,8 @@ class Driver:
 
 @pytest.fixture
 def documents(tmp_path, monkeypatch):
-    """The person's documents, empty."""
+    """The person's documents, empty, and a data folder of their own."""
+    monkeypatch.setattr("sandbox.editor.storage.platformdirs.user_data_dir", lambda *_, **__: str(tmp_path / "data"))
     monkeypatch.setattr("sandbox.app.recordings.platformdirs.user_documents_dir", lambda: str(tmp_path))
     return tmp_path / "Spring Sandbox"
 

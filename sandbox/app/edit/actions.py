@@ -1,0 +1,272 @@
+"""What the keys and buttons of the editor do, by the names of the table of shortcuts."""
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Literal
+
+from sandbox.app.camera import Box
+from sandbox.app.dialogs import choose, fill_in
+from sandbox.app.edit.bar import TOOLS
+from sandbox.app.edit.hands import DrawHand
+from sandbox.editor.copying import array_circle, array_line, duplicate
+from sandbox.editor.deleting import break_apart, delete
+from sandbox.editor.document import Document
+from sandbox.editor.grouping import group, reorder, ungroup
+from sandbox.editor.items import Item, items_of
+from sandbox.editor.moving import align, distribute, mirror
+from sandbox.editor.pick import items_of_material
+from sandbox.editor.placing import unweld
+
+if TYPE_CHECKING:
+    from sandbox.app.edit.screen import EditScreen
+
+# A copy is put this many steps of the grid to the right of and below what it is of.
+COPY_STEPS = 2
+COPY_LIMIT = 1_000
+
+Edge = Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]
+Place = Literal["front", "forward", "backward", "back"]
+
+
+def edit_actions(screen: "EditScreen") -> dict[str, Callable[[], object]]:
+    """The actions of a screen."""
+    documents, clipboard = screen.app.documents, screen.clipboard
+    actions: dict[str, Callable[[], object]] = {f"tool_{name}": partial(screen.choose_tool, name) for name in TOOLS}
+    return actions | {
+        "play": documents.play,
+        "undo": lambda: _step(screen, -1),
+        "redo": lambda: _step(screen, 1),
+        "new": documents.new,
+        "open": screen.app.open_gallery,
+        "open_file": screen.app.files.ask_to_open,
+        "recent": lambda: screen.app.open_gallery("mine"),
+        "save": documents.save,
+        "save_as": documents.save_as,
+        "revert": documents.revert,
+        "copy": clipboard.copy,
+        "cut": clipboard.cut,
+        "paste": clipboard.paste,
+        "copy_level": clipboard.copy_level,
+        "duplicate": lambda: _duplicate(screen),
+        "delete": lambda: _edit_selection(screen, "Delete", delete),
+        "select_all": lambda: screen.select(frozenset(items_of(screen.document.level))),
+        "select_material": lambda: _ask_material(screen),
+        "mirror": lambda: _ask_mirror(screen),
+        "array": lambda: _ask_array(screen),
+        "parts": lambda: _ask_parts(screen),
+        "group": lambda: _edit_selection(screen, "Group", group),
+        "ungroup": lambda: _edit_selection(screen, "Ungroup", ungroup),
+        "break_apart": lambda: _edit_selection(screen, "Break apart", break_apart),
+        "unjoin": lambda: _edit_selection(screen, "Take joints apart", _unjoined),
+        "align": lambda: _ask_align(screen),
+        "order": lambda: _ask_order(screen),
+        "forward": lambda: _reorder(screen, "forward"),
+        "backward": lambda: _reorder(screen, "backward"),
+        "snap": lambda: _toggle_snap(screen),
+        "forecast": screen.watch.toggle_forecast,
+        "numbers": lambda: screen.options.focus(),
+        "next_item": lambda: _visit(screen, 1),
+        "previous_item": lambda: _visit(screen, -1),
+        "press": screen.press_cursor,
+        "finish": lambda: _finish(screen),
+        "cancel": screen.cancel,
+        "zoom_in": lambda: _adjust_or_zoom(screen, 1),
+        "zoom_out": lambda: _adjust_or_zoom(screen, -1),
+        "fit": screen.fit,
+        "panel": screen.toggle_side,
+    }
+
+
+def _has_selection(screen: "EditScreen") -> bool:
+    if not screen.document.selection:
+        screen.say("Nothing is selected.")
+    return bool(screen.document.selection)
+
+
+def _edit_selection(screen: "EditScreen", label: str, function: Callable[[Document], Document]) -> None:
+    if _has_selection(screen):
+        screen.edit(label, function)
+
+
+def _step(screen: "EditScreen", by: int) -> None:
+    history = screen.history
+    if not (history.can_undo if by < 0 else history.can_redo):
+        screen.say(f"There is nothing to {'undo' if by < 0 else 'redo'}.")
+        return
+    screen.step_to(history.index + by)
+
+
+def _duplicate(screen: "EditScreen") -> None:
+    step = COPY_STEPS * screen.grid
+    _edit_selection(screen, "Duplicate", lambda document: duplicate(document, step, -step))
+
+
+def _reorder(screen: "EditScreen", to: Place) -> None:
+    _edit_selection(screen, f"Order: {to}", lambda document: reorder(document, to))
+
+
+def _box(screen: "EditScreen") -> Box | None:
+    box = screen.selection_box
+    if box is None:
+        screen.say("Nothing is selected.")
+    return box
+
+
+def _ask_mirror(screen: "EditScreen") -> None:
+    box = _box(screen)
+    if box is None:
+        return
+    centre = ((box[0] + box[2]) / 2, (box[1] + box[3]) / 2)
+
+    def do(axis: Literal["x", "y"]) -> None:
+        screen.edit("Mirror", lambda document: mirror(document, axis, centre))
+
+    choices = [("Left and right", lambda: do("x")), ("Up and down", lambda: do("y"))]
+    choose(screen.ui, "Mirror", "What changes sides?", choices)
+
+
+def _ask_order(screen: "EditScreen") -> None:
+    if not _has_selection(screen):
+        return
+    places: tuple[tuple[str, Place], ...] = (
+        ("To the front", "front"), ("Forward", "forward"), ("Backward", "backward"), ("To the back", "back"),
+    )  # fmt: skip
+    text = "What comes later in the file is drawn over what comes earlier."
+    choose(screen.ui, "Order", text, [(label, partial(_reorder, screen, to)) for label, to in places])
+
+
+def _ask_align(screen: "EditScreen") -> None:
+    if not _has_selection(screen):
+        return
+    edges: tuple[tuple[str, Edge], ...] = (
+        ("Left edges", "left"), ("Right edges", "right"), ("Top edges", "top"), ("Bottom edges", "bottom"),
+        ("Middles, side by side", "centre_y"), ("Middles, one above another", "centre_x"),
+    )  # fmt: skip
+    choices: list[tuple[str, Callable[[], object]]] = [
+        (label, lambda edge=edge: screen.edit("Align", lambda document: align(document, edge)))  # type: ignore[misc]
+        for label, edge in edges
+    ]
+    choices += [
+        ("Even gaps across", lambda: screen.edit("Distribute", lambda document: distribute(document, "x"))),
+        ("Even gaps upward", lambda: screen.edit("Distribute", lambda document: distribute(document, "y"))),
+    ]
+    choose(screen.ui, "Align", "Bring the selected parts into line.", choices, columns=2)
+
+
+def _ask_parts(screen: "EditScreen") -> None:
+    names = ("group", "ungroup", "break_apart", "unjoin", "select_material")
+    labels = ("Group", "Ungroup", "Break bodies apart", "Take joints apart", "Select by material")
+    choices = [(label, screen.actions[name]) for label, name in zip(labels, names, strict=True)]
+    choose(screen.ui, "Parts", "Groups are selected and moved together. A body that is broken apart "
+           "becomes loose particles and springs.", choices)  # fmt: skip
+
+
+def _ask_material(screen: "EditScreen") -> None:
+    def do(name: str) -> None:
+        screen.select(items_of_material(screen.document.level, name))
+
+    choices = [(name, partial(do, name)) for name in screen.scene.materials[:20]]
+    choose(screen.ui, "Select by material", "Everything of which material?", choices, columns=2)
+
+
+def _unjoined(document: Document) -> Document:
+    """The document without the welds of the selected bodies and particles."""
+    ids = {str(item.key) for item in document.selection if item.kind != "spring"}
+    for pair in document.level.welds:
+        for name in pair:
+            if name.partition(".")[0] in ids:
+                document = unweld(document, name)
+                break
+    return document
+
+
+def _ask_array(screen: "EditScreen") -> None:
+    if _has_selection(screen):
+        choices = [("Along a line", lambda: _ask_line(screen)), ("Along a circle", lambda: _ask_circle(screen))]
+        choose(screen.ui, "Array", "Put several copies of the selection", choices)
+
+
+def _ask_line(screen: "EditScreen") -> None:
+    box = screen.selection_box
+    assert box is not None
+    apart = box[2] - box[0] + 2 * screen.grid
+    fields = [("How many in all", "5"), ("Step to the right [m]", f"{apart:.4g}"), ("Step upward [m]", "0")]
+
+    def make(texts: list[str]) -> str | None:
+        try:
+            count, dx, dy = _count(texts[0]), _number(texts[1]), _number(texts[2])
+        except ValueError as error:
+            return str(error)
+        return None if screen.edit("Array", lambda document: array_line(document, count, dx, dy)) else "Not possible."
+
+    fill_in(screen.ui, "Array along a line", "The selection is the first of them.", fields, "Make", make)
+
+
+def _ask_circle(screen: "EditScreen") -> None:
+    box = screen.selection_box
+    assert box is not None
+    x, y = (box[0] + box[2]) / 2, box[1] - (box[3] - box[1]) - 1.0
+    fields = [
+        ("How many in all", "6"),
+        ("Middle x [m]", f"{x:.4g}"),
+        ("Middle y [m]", f"{y:.4g}"),
+        ("Angle from one to the next [degrees]", "60"),
+    ]
+
+    def make(texts: list[str]) -> str | None:
+        try:
+            count, centre = _count(texts[0]), (_number(texts[1]), _number(texts[2]))
+            angle = math.radians(_number(texts[3]))
+        except ValueError as error:
+            return str(error)
+        done = screen.edit("Array", lambda document: array_circle(document, count, centre, angle))
+        return None if done else "Not possible."
+
+    fill_in(screen.ui, "Array along a circle", "The selection is the first of them.", fields, "Make", make)
+
+
+def _number(text: str) -> float:
+    try:
+        value = float(text.replace(",", "."))
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise ValueError(f"{text or 'nothing'!r} is not a number.")
+    return value
+
+
+def _count(text: str) -> int:
+    value = _number(text)
+    if value != int(value) or not 2 <= value <= COPY_LIMIT:
+        raise ValueError(f"How many: {text!r} is no whole number from 2 to {COPY_LIMIT:,}.")
+    return int(value)
+
+
+def _toggle_snap(screen: "EditScreen") -> None:
+    screen.snapping = not screen.snapping
+    screen.say("Snapping is on." if screen.snapping else "Snapping is off.")
+
+
+def _adjust_or_zoom(screen: "EditScreen", by: int) -> None:
+    """Count the parts of what is drawn up or down, or zoom."""
+    if isinstance(screen.hand, DrawHand) and screen.hand.drawing.under_way:
+        screen.hand.adjust(by)
+    else:
+        screen.zoom(2 * by)
+
+
+def _finish(screen: "EditScreen") -> None:
+    if isinstance(screen.hand, DrawHand):
+        screen.hand.finish()
+
+
+def _visit(screen: "EditScreen", by: int) -> None:
+    """Select the next item of the file, or the one before."""
+    items = items_of(screen.document.level)
+    if not items:
+        return
+    chosen = [index for index, item in enumerate(items) if item in screen.document.selection]
+    start = (chosen[-1] if by > 0 else chosen[0]) if chosen else (-1 if by > 0 else 0)
+    item: Item = items[(start + by) % len(items)]
+    screen.select(frozenset({item}))

@@ -1,0 +1,149 @@
+"""Bar and palette of the editor: a button for everything that is done often, and one for every tool."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import pygame
+
+from sandbox.app.colours import ACCENT, DISABLED, TEXT, Colour
+from sandbox.app.icons import icon
+from sandbox.app.shortcuts import tip_of
+from sandbox.app.toolbar import BAR_HEIGHT, BUTTON, GAP, ICON, ROOM_FOR_NAME
+from sandbox.app.widgets import Ui, set_icon
+
+if TYPE_CHECKING:
+    from sandbox.app.edit.screen import EditScreen
+
+# Tools in the order of the palette; the picture of each has its name.
+TOOLS = (
+    "select", "lasso", "particle", "spring", "rope", "bridge", "girder", "web", "box", "circle", "polygon", "wheel",
+    "pin",
+)  # fmt: skip
+# Groups of actions from the left, and those at the right end, with their pictures.
+LEFT = (
+    (("play", "play"),),
+    (("undo", "undo"), ("redo", "redo")),
+    (("new", "new"), ("open", "open"), ("save", "save")),
+    (
+        ("duplicate", "duplicate"), ("delete", "delete"), ("mirror", "mirror"), ("array", "array"), ("group", "group"),
+        ("align", "align"), ("order", "order"),
+    ),
+    (("snap", "snap"), ("forecast", "forecast")),
+)  # fmt: skip
+RIGHT = (("fit", "fit"), ("panel", "panel"))
+NEEDS_SELECTION = ("duplicate", "delete", "mirror", "array", "group", "align", "order")
+MARGIN = 14.0
+GROUP_GAP = 14.0
+
+
+class _Buttons:
+    """Icon buttons on a panel, by the action that each starts."""
+
+    def __init__(self, ui: Ui, press: Callable[[str], None], back: Any, size: float) -> None:
+        self._ui, self._press, self._back, self._size = ui, press, back, size
+        self.by_action: dict[str, Any] = {}
+        self._pictures: dict[str, str] = {}
+        self._icons: dict[tuple[str, Colour], pygame.Surface] = {}
+        self._shown: dict[str, Colour] = {}
+
+    def add(self, action: str, picture: str, x: float, y: float) -> None:
+        """A button of an action at a place [layout units]."""
+        ui = self._ui
+        self._pictures[action] = picture
+        self.by_action[action] = ui.button(
+            ui.rect(x, y, self._size, self._size),
+            "",
+            lambda: self._press(action),
+            self._back,
+            icon=self._icon(picture, TEXT),
+            tip=tip_of(action, "edit"),
+            style="@quiet",
+        )
+        self._shown[action] = TEXT
+
+    def add_text(self, action: str, text: str, x: float, y: float) -> None:
+        """A button with a letter in place of a picture."""
+        ui, place = self._ui, self._ui.rect(x, y, self._size, self._size)
+        tip = tip_of(action, "edit")
+        self.by_action[action] = ui.button(
+            place, text, lambda: self._press(action), self._back, tip=tip, style="@quiet"
+        )
+
+    def show(self, action: str, enabled: bool = True, on: bool = False) -> None:
+        """Show an action as possible or not, and on or off, changing what differs."""
+        colour = ACCENT if on else TEXT if enabled else DISABLED
+        if self._shown.get(action) == colour:
+            return
+        self._shown[action] = colour
+        button = self.by_action[action]
+        (button.enable if enabled else button.disable)()
+        (button.select if on else button.unselect)()
+        set_icon(button, self._icon(self._pictures[action], colour))
+
+    def _icon(self, name: str, colour: Colour) -> pygame.Surface:
+        key = (name, colour)
+        if key not in self._icons:
+            self._icons[key] = icon(name, self._ui.px(ICON * self._size / BUTTON), colour)
+        return self._icons[key]
+
+
+class Bar:
+    """The bar at the top; `press` starts an action by its name."""
+
+    def __init__(self, ui: Ui, press: Callable[[str], None]) -> None:
+        width = ui.units[0]
+        self.back = ui.panel(ui.rect(0, 0, width, BAR_HEIGHT))
+        count = sum(map(len, LEFT)) + len(RIGHT) + 1
+        gaps = GROUP_GAP * len(LEFT) if width >= ROOM_FOR_NAME else 4.0 * len(LEFT)
+        pitch = min(BUTTON + GAP, (width - 2 * MARGIN - gaps) / count)
+        size = min(BUTTON, pitch - 2)
+        self.buttons = _Buttons(ui, press, self.back, size)
+        x, y = MARGIN, (BAR_HEIGHT - size) / 2
+        for group in LEFT:
+            for action, picture in group:
+                self.buttons.add(action, picture, x, y)
+                x += pitch
+            x += gaps / len(LEFT)
+        right = width - MARGIN - (len(RIGHT) + 1) * pitch
+        self.title = None
+        if width >= ROOM_FOR_NAME:
+            self.title = ui.label(ui.rect(x + 8, 0, right - x - 16, BAR_HEIGHT), "", self.back, "@title")
+        self._name = ""
+        for action, picture in RIGHT:
+            self.buttons.add(action, picture, right, y)
+            right += pitch
+        self.buttons.add_text("help", "?", right, y)
+
+    def show(self, screen: "EditScreen") -> None:
+        """Show what is possible now."""
+        history, show = screen.history, self.buttons.show
+        show("undo", history.can_undo)
+        show("redo", history.can_redo)
+        for action in NEEDS_SELECTION:
+            show(action, bool(screen.document.selection))
+        show("save", not history.is_saved or screen.level_file.path is None)
+        show("snap", on=screen.snapping)
+        show("forecast", on=screen.watch.forecasts)
+        show("panel", on=screen.show_side)
+        name = screen.document.level.name + ("" if history.is_saved else " *")
+        if self.title is not None and name != self._name:
+            self._name = name
+            self.title.set_text(name)
+
+
+class Palette:
+    """The tools, at the left edge below the bar; lower windows have smaller buttons."""
+
+    def __init__(self, ui: Ui, press: Callable[[str], None], top: float, width: float, height: float) -> None:
+        self.back = ui.panel(ui.rect(0, top, width, height))
+        pitch = min(BUTTON + GAP, (height - 8) / len(TOOLS))
+        size = min(BUTTON, pitch - 2)
+        self._buttons = _Buttons(ui, press, self.back, size)
+        for index, name in enumerate(TOOLS):
+            self._buttons.add(f"tool_{name}", name, (width - size) / 2, 6 + index * pitch)
+        self.tools = {name: self._buttons.by_action[f"tool_{name}"] for name in TOOLS}
+
+    def show(self, tool: str) -> None:
+        """Mark the tool in use."""
+        for name in TOOLS:
+            self._buttons.show(f"tool_{name}", on=name == tool)

@@ -1,0 +1,305 @@
+"""Documents: the level that the editor has open: new, opened, saved, played, and found again after a crash."""
+
+import os
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sandbox.app.dialogs import ask, choose, show_lines
+from sandbox.app.edit.screen import EditScreen
+from sandbox.app.playback import Playback
+from sandbox.app.recordings import plain_name, recordings_folder
+from sandbox.editor.autosave import Autosave, Orphan, orphans
+from sandbox.editor.document import Document, empty_level
+from sandbox.editor.history import History
+from sandbox.editor.recent import remember
+from sandbox.editor.storage import ChangedOnDisk, FileExists, LevelFile, LevelInUse, StorageError
+from sandbox.level.faults import LevelError
+from sandbox.level.files import load_level, shipped_folder
+from sandbox.level.model import Level
+
+if TYPE_CHECKING:
+    from sandbox.app.app import App
+
+# Longest name of a level's file [characters].
+NAME_LIMIT = 200
+# Autosaves that are offered at once.
+OFFERED = 5
+
+
+class Documents:
+    """What the app does with the level that is edited; `editor` is its screen, also while it is played."""
+
+    def __init__(self, app: "App") -> None:
+        self.app = app
+        self.editor: EditScreen | None = None
+        self._autosave: Autosave | None = None
+        self._told_of_change = False
+
+    # Opening.
+
+    def begin(self, name: str) -> None:
+        """Edit a level file or a shipped level by its bare name, "" = an empty sheet, as the program starts."""
+        self.new()
+        if name and os.path.lexists(name):
+            self.open(name)
+        elif name:
+            try:
+                self.edit_level(load_level(name))
+            except LevelError as error:
+                show_lines(self.app.ui, f"{name} cannot be opened", error.faults)
+
+    def new(self) -> None:
+        """Begin with an empty sheet."""
+        self.if_saved(lambda: self._show(empty_level(), LevelFile(), "New"))
+
+    def edit_level(self, level: Level, label: str = "Open") -> None:
+        """Edit a level that has no file of its own."""
+        self.if_saved(lambda: self._show(level, LevelFile(), label))
+
+    def open(self, path: str | Path) -> None:
+        """Edit a level file; a shipped level as a copy, which leaves the shipped one as it is."""
+        path = Path(path)
+        if path.resolve().parent == shipped_folder("levels").resolve() and not os.access(path, os.W_OK):
+            self.if_saved(lambda: self._open(path, LevelFile.copy_of))
+        else:
+            self.if_saved(lambda: self._open(path, LevelFile.open))
+
+    def open_copy(self, path: str | Path) -> None:
+        """Edit a level file's content under no name yet."""
+        self.if_saved(lambda: self._open(Path(path), LevelFile.copy_of))
+
+    def _open(self, path: Path, opener: Callable[[Path], tuple[LevelFile, Level]]) -> None:
+        try:
+            level_file, level = opener(path)
+        except LevelInUse as error:
+            choices = [("Open a copy", lambda: self._open(path, LevelFile.copy_of))]
+            choose(self.app.ui, f"{path.name} is in use", str(error), choices)
+            return
+        except LevelError as error:
+            self._offer_salvage(path, error.faults)
+            return
+        self._show(level, level_file, "Open")
+        if level_file.path is None:
+            self.app.say(f"A copy of {path.name}: it is saved under a new name.")
+
+    def _offer_salvage(self, path: Path, faults: list[str]) -> None:
+        title = f"{path.name} cannot be opened"
+        try:
+            level_file, level, _ = LevelFile.salvaged(path)
+        except LevelError:
+            level = None
+        if level is None:
+            show_lines(self.app.ui, title, faults)
+            return
+        found = level
+
+        def open_valid() -> None:
+            self._show(found, level_file, f"Open what is valid of {path.name}")
+            self.app.say(f"{path.name} stays as it is; what was valid of it is saved under a new name.")
+
+        show_lines(self.app.ui, title, faults, ("Open what is valid", open_valid))
+
+    def _show(self, level: Level, level_file: LevelFile, label: str) -> None:
+        if self.editor is not None:
+            self.editor.level_file.close()
+        self.give_up()
+        if self._autosave is None:
+            self._autosave = Autosave()
+        self._told_of_change = False
+        self.editor = EditScreen(self.app, History(Document(level), label), level_file)
+        if level_file.warning:
+            self.app.say(level_file.warning)
+        if level_file.path is not None:
+            remember(level_file.path)
+        self.app.show_screen(self.editor)
+
+    # Saving.
+
+    def save(self) -> None:
+        """Write the level to its file, or ask for a name where it has none."""
+        self._save(lambda: None)
+
+    def save_as(self) -> None:
+        """Write the level to a file whose name is asked for."""
+        self._ask_name(lambda: None)
+
+    def _save(self, then: Callable[[], object]) -> None:
+        editor = self.editor
+        if editor is None:
+            return
+        if editor.level_file.path is None:
+            self._ask_name(then)
+        else:
+            self._write(lambda replace: editor.level_file.save(editor.document.level, replace), then)
+
+    def _write(self, write: Callable[[bool], str | None], then: Callable[[], object], replace: bool = False) -> None:
+        """Write, and go on; where a file is in the way, the person is asked."""
+        editor = self.editor
+        assert editor is not None
+        try:
+            warning = write(replace)
+        except (FileExists, ChangedOnDisk) as error:
+            title = "Replace the file?" if isinstance(error, FileExists) else "The file has changed"
+            choices = [("Replace it", lambda: self._write(write, then, True)), ("Save as …", self.save_as)]
+            choose(self.app.ui, title, f"{error}.", choices)
+            return
+        except StorageError as error:
+            show_lines(self.app.ui, "Not saved", [str(error), "The level is still here, and in the autosave."])
+            return
+        editor.history.mark_saved()
+        self._told_of_change = False
+        path = editor.level_file.path
+        assert path is not None
+        remember(path)
+        self.give_up()
+        self.app.say(warning or f"Saved as {path}")
+        then()
+
+    def _ask_name(self, then: Callable[[], object]) -> None:
+        editor = self.editor
+        if editor is None:
+            return
+        present = editor.level_file.path
+        try:
+            folder = present.parent if present is not None else recordings_folder()
+        except OSError as error:
+            folder = Path.cwd()
+            self.app.say(f"The documents' folder cannot be used: {error.strerror or error}.")
+        suggestion = present.stem if present is not None else plain_name(editor.document.level.name)
+
+        def path_of(typed: str) -> Path:
+            path = folder / Path(typed).expanduser()
+            return path if path.suffix == ".json" else path.with_name(f"{path.name}.json")
+
+        def answer(typed: str) -> str | None:
+            if not typed.strip("./\\ ") or len(typed) > NAME_LIMIT or "\0" in typed:
+                return f"Type a name of 1 to {NAME_LIMIT} characters."
+            return None
+
+        def write(typed: str) -> None:
+            path = path_of(typed)
+            self._write(lambda replace: editor.level_file.save_as(editor.document.level, path, replace), then)
+
+        ask(self.app.ui, "Save the level as", f"In {folder}, or a whole path.", suggestion, "Save", answer, then=write)
+
+    def revert(self) -> None:
+        """Read the level from its file again, as a step that can be undone."""
+        editor = self.editor
+        if editor is None or editor.level_file.path is None:
+            self.app.say("The level has no file yet.")
+            return
+        try:
+            level = editor.level_file.read()
+        except LevelError as error:
+            show_lines(self.app.ui, "Not read again", error.faults)
+            return
+        editor.cancel()
+        editor.apply("Revert to the file", Document(level))
+        editor.history.mark_saved()
+        self._told_of_change = False
+
+    def if_saved(self, then: Callable[[], object]) -> None:
+        """Go on, once the person has said what becomes of changes that are not saved."""
+        editor = self.editor
+        if editor is None or editor.history.is_saved:
+            then()
+            return
+        choices = [("Save", lambda: self._save(then)), ("Discard the changes", then)]
+        choose(self.app.ui, f"Save “{editor.document.level.name}”?", "It has changes that are not saved.", choices)
+
+    def give_up(self) -> None:
+        """Keep nothing in the autosave: the person has saved, or does not want it."""
+        if self._autosave is not None:
+            self._autosave.clear()
+
+    def close(self) -> None:
+        """Let the file go; what was not given up stays in the autosave and is offered at the next start."""
+        if self.editor is not None:
+            self.editor.level_file.close()
+        if self._autosave is not None:
+            self._autosave.close()
+
+    # Safety.
+
+    def note(self, level: Level, path: Path | None, label: str) -> None:
+        """Have the autosave follow a change."""
+        if self._autosave is not None:
+            self._autosave.note(level, path, label)
+
+    def look_at_disk(self) -> None:
+        """Ask what to do where another program has written the file, once for each time."""
+        editor = self.editor
+        if editor is None or self._told_of_change or self.app.ui.has_sheet or not editor.level_file.changed_on_disk():
+            return
+        self._told_of_change = True
+        path = editor.level_file.path
+        choices = [("Read it again", self.revert), ("Keep what is here", lambda: None)]
+        text = "Another program has changed it. Reading it again is a step that can be undone."
+        choose(self.app.ui, f"{path.name if path else 'The file'} has changed", text, choices)
+
+    def offer_recovery(self) -> None:
+        """Offer what a session that ended badly has left in the autosave."""
+        found = orphans()
+        if not found:
+            return
+
+        def discard() -> None:
+            for orphan in found:
+                orphan.dismiss()
+
+        choices: list[tuple[str, Callable[[], object]]] = [
+            (f"Recover {_described(orphan)}", partial(self._recover, orphan)) for orphan in found[:OFFERED]
+        ]
+        more = f" {len(found) - OFFERED} more come at the next start." if len(found) > OFFERED else ""
+        choices.append(("Discard all of them", discard))
+        text = f"The editor was not closed properly, and what was not saved has been kept.{more}"
+        choose(self.app.ui, "Recover your work?", text, choices)
+
+    def _recover(self, orphan: Orphan) -> None:
+        try:
+            level = orphan.salvaged()[0] if orphan.fault else orphan.level()
+        except StorageError as error:
+            show_lines(self.app.ui, "Not recovered", [str(error)])
+            return
+        if level is None:
+            show_lines(self.app.ui, "Not recovered", [orphan.fault or "Nothing of it is valid."])
+            return
+        recovered = level
+        self.if_saved(lambda: self._show_recovered(orphan, recovered))
+
+    def _show_recovered(self, orphan: Orphan, level: Level) -> None:
+        try:
+            level_file, before = LevelFile.open(orphan.edited) if orphan.edited else (LevelFile(), empty_level())
+        except (StorageError, LevelError) as error:
+            level_file, before = LevelFile(), empty_level()
+            self.app.say(f"{error} What is recovered is saved under a new name.")
+        self._show(before, level_file, "Open")
+        assert self.editor is not None and self._autosave is not None
+        self.editor.apply("Recover", Document(level))
+        self.editor.fit()
+        self._autosave.adopt(orphan, level)
+
+    # Playing.
+
+    def play(self) -> None:
+        """Play the document from its beginning."""
+        editor = self.editor
+        if editor is None:
+            return
+        editor.leave()
+        screen = self.app.start_document(Playback(editor.document.level))
+        screen.camera.centre, screen.camera.zoom = editor.camera.centre, editor.camera.zoom
+
+    def back(self) -> None:
+        """Back from playing to the document as it was."""
+        if self.editor is not None:
+            self.app.show_screen(self.editor)
+
+
+def _described(orphan: Orphan) -> str:
+    """An autosave in a few words."""
+    when = f", {orphan.when.astimezone():%d %B, %H:%M}" if orphan.when is not None else ""
+    name = f"“{orphan.name[:40]}”" if orphan.name else "a level"
+    return f"{name}{when}{' (damaged)' if orphan.fault else ''}"
