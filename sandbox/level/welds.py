@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.expansion import expansion
+from sandbox.level.expansion import expansion, masses
 from sandbox.level.faults import Fault
 from sandbox.level.layout import Layout
 from sandbox.level.limits import MASS_RANGE
@@ -47,24 +47,27 @@ def weld_faults(level: Level, layout: Layout) -> Iterator[Fault]:
     firsts = welded(level, layout)
     is_welded = firsts != np.arange(len(firsts))
     is_welded[firsts[is_welded]] = True
-    masses = np.zeros(len(firsts))
+    weight = np.zeros(len(firsts))
     for index, body in enumerate(level.bodies):
         owner = layout.owners[body.id]
         mine = slice(owner.first, owner.first + owner.count)
         if not np.any(is_welded[mine]):
             continue
+        weight[mine] = masses(body, owner.count)
+        # A spring loses its length only where two particles of its own body are one.
+        if len(np.unique(firsts[mine])) == owner.count:
+            continue
         expanded = expansion(body)
-        masses[mine] = expanded.mass
         ends = firsts[owner.first + expanded.pairs]
         for number in expanded.numbers[ends[:, 0] == ends[:, 1]].tolist():
             fault = f'the welds make one particle of both ends of "{body.id}:{number}"; take a weld out or cut {number}'
             yield f"bodies.{index}", fault
     for particle in level.particles:
-        masses[layout.slot(particle.id)] = particle.mass
+        weight[layout.slot(particle.id)] = particle.mass
     for index, spring in enumerate(level.springs):
         if firsts[layout.slot(spring.a)] == firsts[layout.slot(spring.b)]:
             yield f"springs.{index}", "the welds make one particle of both its ends; take a weld or the spring out"
-    sums = np.bincount(firsts, weights=masses, minlength=len(firsts))
+    sums = np.bincount(firsts, weights=weight, minlength=len(firsts))
     for index, (a, _) in enumerate(level.welds):
         if sums[firsts[layout.slot(a)]] > MASS_RANGE[1]:
             yield (
