@@ -1,5 +1,6 @@
 """The drawing tools by name; those of loose particles, springs and pins are here, bodies have files of their own."""
 
+from dataclasses import replace
 from typing import Any
 
 from sandbox.editor.document import Document, EditError, select
@@ -14,7 +15,7 @@ from sandbox.editor.drawing_bodies import (
 )
 from sandbox.editor.drawing_jelly import BoxDrawing, CircleDrawing, PolygonDrawing
 from sandbox.editor.drawing_options import ParticleOptions, PinOptions, SpringOptions
-from sandbox.editor.gesture import Drawing
+from sandbox.editor.gesture import Drawing, staged
 from sandbox.editor.items import Selection
 from sandbox.editor.placing import add_particle, add_spring, set_pinned, weld
 from sandbox.editor.scene import Scene, make_scene
@@ -73,6 +74,9 @@ class SpringDrawing(Drawing[SpringOptions]):
         return direction(points)
 
 
+PIN_HINT = "Click a particle to pin or unpin it"
+
+
 class PinDrawing(Drawing[PinOptions]):
     """A click holds a particle of whatever body where it is, another lets it go."""
 
@@ -82,7 +86,7 @@ class PinDrawing(Drawing[PinOptions]):
     def __init__(self, options: PinOptions | None = None, reach: float = 0.0) -> None:
         super().__init__(options, reach)
         self._scene: Scene | None = None
-        self._offer = "Click a particle to pin or unpin it"
+        self._offer = PIN_HINT
 
     @property
     def hint(self) -> str:
@@ -93,13 +97,26 @@ class PinDrawing(Drawing[PinOptions]):
         """The document with the particle pinned, or no longer. Raises EditError."""
         name = points[0].name
         if name is None:
-            self._offer = "Click a particle to pin or unpin it"
             raise EditError("there is no particle here; click one to pin or unpin it")
+        return set_pinned(document, [name], not self._is_pinned(document, name))
+
+    def ghost(self, document: Document) -> Document | None:
+        """A stand-in of the particle at the pointer, pinned or not as a click would make it, selected."""
+        if self.pointer is None or self.pointer.name is None:
+            self._offer = PIN_HINT
+            return None
+        pinned = self._is_pinned(document, self.pointer.name)
+        self._offer = f"Click to {'unpin' if pinned else 'pin'} {self.pointer.name}"
+        stage, points = staged(document, [replace(self.pointer, name=None)])
+        return new_particle(stage, points[0], 1.0, pinned=not pinned)
+
+    def _is_pinned(self, document: Document, name: str) -> bool:
         if self._scene is None or self._scene.level is not document.level:
             self._scene = make_scene(document.level, self._scene)
-        pinned = bool(self._scene.pinned[self._scene.slot(name)])
-        self._offer = f"Click to {'unpin' if pinned else 'pin'} {name}"
-        return set_pinned(document, [name], not pinned)
+        try:
+            return bool(self._scene.pinned[self._scene.slot(name)])
+        except LookupError as error:
+            raise EditError(str(error.args[0])) from None
 
 
 DRAWINGS: dict[str, type[Drawing[Any]]] = {

@@ -53,7 +53,7 @@ class BodyDrawing(Drawing[BodyOptions], Generic[BodyOptions]):
         except ValidationError as error:
             place, text = next(worded([dict(fault) for fault in error.errors()]))
             raise EditError(f"{place.replace('_', ' ')}: {text}") from None
-        return joined(add_body(document, body), [point for point in points if point.name and self.joins(point)])
+        return joined(add_body(document, body), [point for index, point in enumerate(points) if self.joins(index)])
 
 
 def known_material(document: Document, name: str) -> str:

@@ -58,9 +58,9 @@ class CircleDrawing(JellyDrawing):
     start_hint = "Drag from the centre to the rim, or click both"
     end_hint = "Click or release at the rim; + and - change the number of cells"
 
-    def joins(self, point: Snap) -> bool:
+    def joins(self, index: int) -> bool:
         """Only the centre is sure to have a particle."""
-        return point is self.points[0] if self.points else True
+        return index == 0
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:
         """Centre and radius."""
@@ -86,7 +86,7 @@ class PolygonDrawing(JellyDrawing):
         super().__init__(options, reach)
         self.freehand = False
 
-    def joins(self, point: Snap) -> bool:
+    def joins(self, index: int) -> bool:
         """Corners have no particles of their own."""
         return False
 
@@ -94,7 +94,7 @@ class PolygonDrawing(JellyDrawing):
         """A corner, or the click on the first one that closes the outline."""
         self.pointer, self._pressed, self._fault = snap, True, ""
         self._began = not self.points
-        if len(self.points) >= 3 and self._apart(self.points[0], snap) <= self.reach:
+        if self._closes(snap):
             self._pressed = False
             self._close()
         elif self._began or self._apart(self.points[-1], snap) > 0.0:
@@ -107,9 +107,10 @@ class PolygonDrawing(JellyDrawing):
             return
         if not self._began:
             self.points[-1] = snap
-        elif self._apart(self.points[-1], snap) > self.reach:
+        elif math.dist(self.points[-1].raw, snap.raw) > self.reach:
+            # A hand is freer than a grid.
             self.freehand = True
-            self.points.append(snap)
+            self.points.append(Snap(snap.raw))
 
     def up(self, snap: Snap) -> None:
         """The end of a stroke closes the outline."""
@@ -126,11 +127,6 @@ class PolygonDrawing(JellyDrawing):
         """Close the outline."""
         if self.points:
             self._close()
-
-    def back(self) -> None:
-        """Take the last corner back."""
-        self._fault = ""
-        del self.points[-1:]
 
     def cancel(self) -> None:
         """Give up what is under way."""
@@ -162,8 +158,12 @@ class PolygonDrawing(JellyDrawing):
         pointer = self.pointer
         if pointer is None or self._complete or (self.points and pointer.point == self.points[-1].point):
             return list(self.points)
-        closing = len(self.points) >= 3 and math.dist(pointer.point, self.points[0].point) <= self.reach
-        return list(self.points) if closing else [*self.points, pointer]
+        return list(self.points) if self._closes(pointer) else [*self.points, pointer]
+
+    def _closes(self, snap: Snap) -> bool:
+        """Whether a click here is one on the first corner."""
+        near = min(math.dist(self.points[0].point, place) for place in (snap.point, snap.raw)) if self.points else 0.0
+        return len(self.points) >= 3 and near <= self.reach
 
     def _sound(self, points: list[Snap]) -> bool:
         return len(points) >= 3

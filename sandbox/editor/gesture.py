@@ -5,17 +5,21 @@ points is a drag, or a click at each; Enter takes the pointer for the second, Es
 """
 
 import math
+from dataclasses import replace
 from typing import Any, ClassVar, Generic, cast
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.drawing_options import AnyOptions, Options, changed, described
 from sandbox.editor.snap import Point, Snap
+from sandbox.level.model import ParticleDef
+from sandbox.level.quantities import replaced
 
 
 class Drawing(Generic[AnyOptions]):
     """One gesture at a time of a tool; `options` and what else is set stay for the next.
 
-    reach [m]: a press that moves no farther is a click. The app sets it with the zoom.
+    reach [m]: a press that moves no farther is a click. The app sets it with the zoom. points: those of the gesture so
+    far; pointer: where it goes next.
     """
 
     defaults: ClassVar[Options]
@@ -56,7 +60,7 @@ class Drawing(Generic[AnyOptions]):
         if fault:
             return fault
         hint = self.end_hint if self.points else self.start_hint
-        joined = [point.name for point in self._so_far() if point.name and self.joins(point)]
+        joined = [point.name for index, point in enumerate(self._so_far()) if point.name and self.joins(index)]
         return f"{hint}; joins {' and '.join(joined)}" if joined else hint
 
     @property
@@ -66,13 +70,16 @@ class Drawing(Generic[AnyOptions]):
         return self.sizes(points) if self.points and self._sound(points) else ""
 
     def ghost(self, document: Document) -> Document | None:
-        """What the document would be if the gesture ended at the pointer; None where it cannot end there."""
+        """What the gesture would add if it ended at the pointer, selected; None where it cannot end there.
+
+        It is alone in its document, but for stand-ins of the particles that it joins: large levels need no longer.
+        """
         points = self._so_far()
         self._ghost_fault = ""
         if not self._sound(points):
             return None
         try:
-            return self.placed(document, points)
+            return self.placed(*staged(document, points))
         except EditError as error:
             self._ghost_fault = str(error)
             return None
@@ -104,7 +111,7 @@ class Drawing(Generic[AnyOptions]):
         if not self._pressed:
             return
         self._pressed = False
-        is_click = self._began and self._apart(self.points[0], snap) <= self.reach
+        is_click = self._began and math.dist(self.points[0].raw, snap.raw) <= self.reach
         if self.needs == 1:
             self.points, self._complete = [snap], True
         elif not is_click:
@@ -114,6 +121,11 @@ class Drawing(Generic[AnyOptions]):
         """End the gesture at the pointer, as Enter asks."""
         if self.pointer is not None and (self.points or self.needs == 1):
             self._end_at(self.pointer)
+
+    def back(self) -> None:
+        """Take the last point back, as Backspace asks."""
+        self._fault = ""
+        del self.points[-1:]
 
     def cancel(self) -> None:
         """Give up what is under way, as Escape asks."""
@@ -148,8 +160,8 @@ class Drawing(Generic[AnyOptions]):
         """The number of parts that fits the size drawn."""
         raise NotImplementedError
 
-    def joins(self, point: Snap) -> bool:
-        """Whether the particle that one of the points is on becomes one with what is drawn."""
+    def joins(self, index: int) -> bool:
+        """Whether the particle that the point of that index is on becomes one with what is drawn."""
         return True
 
     # ---- between them
@@ -172,3 +184,13 @@ class Drawing(Generic[AnyOptions]):
     @staticmethod
     def _apart(a: Snap, b: Snap) -> float:
         return math.dist(a.point, b.point)
+
+
+def staged(document: Document, points: list[Snap]) -> tuple[Document, list[Snap]]:
+    """A document with nothing of the level but its materials, settings and stand-ins of the particles points are on."""
+    names = list(dict.fromkeys(point.name for point in points if point.name is not None))
+    stand_ins = {name: f"stand-in {index}" for index, name in enumerate(names)}
+    places = {point.name: point.point for point in points}
+    particles = tuple(ParticleDef(id=stand_in, position=places[name]) for name, stand_in in stand_ins.items())
+    level = replaced(document.level, bodies=(), particles=particles, springs=(), welds=(), checks=(), extras={})
+    return Document(level), [replace(point, name=stand_ins.get(point.name or "")) for point in points]

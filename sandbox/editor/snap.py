@@ -1,7 +1,7 @@
 """Snapping: where a pointer is taken to be, near particles, round angles and a grid, and a word that says why."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -25,12 +25,21 @@ PLACE_DECIMALS = 6
 
 @dataclass(frozen=True)
 class Snap:
-    """Where a pointer is taken to be [m], what drew it there, whose particle that is, and a word for the person."""
+    """Where a pointer is taken to be [m], what drew it there, whose particle that is, and a word for the person.
+
+    pointer [m]: where it really is; None = there.
+    """
 
     point: Point
     kind: Kind = "free"
     name: str | None = None
     hint: str = ""
+    pointer: Point | None = None
+
+    @property
+    def raw(self) -> Point:
+        """Where the pointer really is [m]."""
+        return self.point if self.pointer is None else self.pointer
 
 
 def snap(
@@ -47,6 +56,12 @@ def snap(
     `skip`; then directions of whole 15 degrees from the anchor and the points of a grid of that spacing [m],
     whichever is nearer. Nothing else draws it: within = 0, grid = None is the pointer itself.
     """
+    return replace(_drawn(scene, point, within, grid, anchor, skip), pointer=point)
+
+
+def _drawn(
+    scene: Scene, point: Point, within: float, grid: float | None, anchor: Point | None, skip: Selection
+) -> Snap:
     particle = _particle(scene, point, within, skip)
     if particle is not None:
         return particle
