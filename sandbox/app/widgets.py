@@ -208,6 +208,10 @@ class Ui:
         """The widget that the keyboard works on."""
         return self._focus
 
+    def buttons(self) -> list[UIButton]:
+        """The buttons that Tab reaches now."""
+        return [widget for widget in self._ring() if isinstance(widget, UIButton)]
+
     def process(self, event: pygame.event.Event) -> bool:
         """Let the widgets have an event; True where they use it."""
         if event.type == pygame_gui.UI_BUTTON_PRESSED and event.ui_element in self._actions:
@@ -285,13 +289,17 @@ class Ui:
         self._choosers[menu](options[(options.index(chosen) + by) % len(options)])
 
     def _move_focus(self, by: int) -> None:
-        ring = self._sheets[-1].widgets if self._sheets else self._page
-        ring = [widget for widget in ring if widget.alive() and widget.visible and getattr(widget, "is_enabled", True)]
+        ring = self._ring()
         if not ring:
             return
         here = self._focus or self._left
         start = ring.index(here) if here in ring else (-1 if by > 0 else 0)
         self._set_focus(ring[(start + by) % len(ring)])
+
+    def _ring(self) -> list[UIElement]:
+        """What Tab goes through: the widgets of the topmost page."""
+        ring = self._sheets[-1].widgets if self._sheets else self._page
+        return [widget for widget in ring if widget.alive() and widget.visible and getattr(widget, "is_enabled", True)]
 
     def focus_on(self, widget: UIElement) -> None:
         """Give a widget the keyboard."""

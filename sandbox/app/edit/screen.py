@@ -190,9 +190,12 @@ class EditScreen:
         self.app.rebuild()
 
     def fit(self) -> None:
-        """Show everything, or a first view where there is nothing."""
-        level = self.document.level
-        self.camera.fit(bounds(self.scene.position) if len(self.scene.position) else level.view or FIRST_VIEW)
+        """Show the level's view and everything in it, or a first view where there is nothing."""
+        level, points = self.document.level, self.scene.position
+        boxes = [level.view] if level.view is not None else []
+        boxes += [bounds(points)] if len(points) else []
+        left, bottom, right, top = zip(*(boxes or [FIRST_VIEW]), strict=True)
+        self.camera.fit((min(left), min(bottom), max(right), max(top)))
 
     @property
     def scales_apart(self) -> bool:
