@@ -47,6 +47,7 @@ class Forecast:
         self.position: Floats | None = None
         self.at_rest: bool | None = None
         self.falling: Selection = frozenset()
+        self._trouble = ""
         self._work = self._run(level)
 
     @property
@@ -55,7 +56,7 @@ class Forecast:
         if self.at_rest is None:
             return "The forecast is being worked out"
         if not self.at_rest:
-            return f"It does not come to rest within {LONGEST:g} s"
+            return self._trouble
         if self.falling:
             return f"Shown is where it hangs at rest; {_counted(self.falling)} falls away, because nothing holds it"
         return "Shown is where it hangs at rest"
@@ -81,11 +82,11 @@ class Forecast:
         slots = (np.cumsum(is_first) - 1)[scene.first_of_weld]
         for slot in np.unique(slots[is_falling]).tolist():
             world.pin(slot)
-        at_rest = yield from _settle(world, part[is_first])
-        if at_rest:
+        self._trouble = yield from _settle(world, part[is_first])
+        if not self._trouble:
             self.position = world.position[slots]
             self.position[is_falling] = scene.position[is_falling]
-        self.at_rest = at_rest
+        self.at_rest = not self._trouble
 
     def _let_fall(self, level: Level, scene: Scene, part: Slots) -> NDArray[np.bool_]:
         if level.settings.gravity == (0.0, 0.0):
@@ -102,11 +103,11 @@ def _counted(items: Selection) -> str:
     return f"{len(items)} items" if len(items) > 1 else called(next(iter(items)))
 
 
-def _settle(world: World, part: Slots) -> Generator[None, None, bool]:
-    """Run until nothing moves, or too long: whether it came to rest. part (k,): of the first k slots, a label each."""
+def _settle(world: World, part: Slots) -> Generator[None, None, str]:
+    """Run until nothing moves, or for too long: the trouble, empty at rest. part (k,): labels of the first slots."""
     count = len(part)
     if not count:
-        return True
+        return ""
     free = world.inverse_mass[:count] > 0.0
     mass = np.where(free, world.mass[:count], 0.0)
     tick_rate = world.settings.tick_rate
@@ -119,6 +120,8 @@ def _settle(world: World, part: Slots) -> Generator[None, None, bool]:
     before = world.position[:count].copy()
     for tick in range(1, round(LONGEST * tick_rate) + 1):
         step(world)
+        if world.contained:
+            return "It blows up before it comes to rest; Findings may say which springs are too hard"
         speed = world.velocity[:count]
         energy = np.bincount(part, mass * (speed[:, 0] ** 2 + speed[:, 1] ** 2), count)
         past = energy < PAST_PEAK * peak
@@ -128,10 +131,10 @@ def _settle(world: World, part: Slots) -> Generator[None, None, bool]:
         if tick % window == 0:
             now = world.position[:count]
             if float(np.max(np.abs(now - before))) <= STILL * size:
-                return True
+                return ""
             before = now.copy()
         yield None
-    return False
+    return f"It does not come to rest within {LONGEST:g} s"
 
 
 def _stop(world: World, chosen: NDArray[np.bool_]) -> None:
