@@ -75,10 +75,10 @@ def _read(data: bytes, faults: list[Fault]) -> dict[str, Any] | None:
     if not isinstance(raw, dict):
         faults.append(("", f"a level is an object {{...}}; this is {shown(raw)}"))
         return None
-    if "format" not in raw:
+    if "format" not in raw and raw.keys() & {"bodies", "particles"}:
         faults.append(("format", f'is missing; it is taken for "{FORMAT}"'))
-    elif raw["format"] != FORMAT:
-        faults.append(("format", f'{shown(raw["format"])} is not "{FORMAT}"; this is no level'))
+    elif raw.get("format") != FORMAT:
+        faults.append(("format", f'{shown(raw.get("format"))} is not "{FORMAT}"; this is no level'))
         return None
     return _of_this_version(raw, faults)
 
