@@ -34,17 +34,18 @@ class FileActions:
         is_replay = start[:2] == b"\x1f\x8b" or b"spring-sandbox/replay" in start
         return self.open_replay(path) if is_replay else self.open_level(path)
 
-    def open_level(self, path: str | Path) -> bool:
-        """Open a level file: play it, or edit it where a level is edited now."""
+    def open_level(self, path: str | Path, shipped: bool = False) -> bool:
+        """Open a level file: play it, or edit it where a level is edited now, a shipped one as a copy."""
         if self.app.mode == "edit":
-            self.app.documents.open(path)
+            documents = self.app.documents
+            (documents.open_copy if shipped else documents.open)(path)
             return True
         try:
             playback = Playback(read_level(Path(path)))
         except LevelError as error:
             self._refuse(path, error.faults)
             return False
-        self.app.start(playback, Path(path))
+        self.app.start(playback, None if shipped else Path(path))
         return True
 
     def open_replay(self, path: str | Path) -> bool:

@@ -16,7 +16,7 @@ from sandbox.editor.history import History
 from sandbox.editor.recent import remember
 from sandbox.editor.storage import ChangedOnDisk, FileExists, LevelFile, LevelInUse, StorageError
 from sandbox.level.faults import LevelError
-from sandbox.level.files import load_level, shipped_folder
+from sandbox.level.files import load_level
 from sandbox.level.model import Level
 
 if TYPE_CHECKING:
@@ -59,12 +59,17 @@ class Documents:
         self.if_saved(lambda: self._show(level, LevelFile(), label))
 
     def open(self, path: str | Path) -> None:
-        """Edit a level file; a shipped level as a copy, which leaves the shipped one as it is."""
+        """Edit a level file; the one that is open already is shown as it is."""
         path = Path(path)
-        if path.resolve().parent == shipped_folder("levels").resolve() and not os.access(path, os.W_OK):
-            self.if_saved(lambda: self._open(path, LevelFile.copy_of))
+        if self._has_open(path):
+            self.back()
+            self.look_at_disk()
         else:
             self.if_saved(lambda: self._open(path, LevelFile.open))
+
+    def _has_open(self, path: Path) -> bool:
+        own = self.editor.level_file.path if self.editor is not None else None
+        return own is not None and os.path.realpath(own) == os.path.realpath(path)
 
     def open_copy(self, path: str | Path) -> None:
         """Edit a level file's content under no name yet."""
@@ -290,7 +295,7 @@ class Documents:
             return
         editor.leave()
         screen = self.app.start_document(Playback(editor.document.level))
-        screen.camera.centre, screen.camera.zoom = editor.camera.centre, editor.camera.zoom
+        screen.camera.show_as(editor.camera)
 
     def back(self) -> None:
         """Back from playing to the document as it was."""
