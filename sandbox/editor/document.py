@@ -20,7 +20,7 @@ from sandbox.level.wording import worded
 # Below this many definitions and listed points a level cannot outgrow its file, whose text is then not measured.
 MEASURED_SIZE = 20_000
 
-_PLACE = re.compile(r"(bodies|particles|checks)\.(\d+)(?:\.|: |$)(.*)", re.DOTALL)
+_PLACE = re.compile(r"(bodies|particles|springs|checks)\.(\d+)(?:\.|: |$)(.*)", re.DOTALL)
 
 
 class EditError(ValueError):
@@ -103,7 +103,8 @@ def _named(level: Level, fault: str) -> str:
     if match is None:
         return fault
     about = getattr(level, match[1])[int(match[2])]
-    return f"{shown(about.name if match[1] == 'checks' else about.id)}: {match[3]}"
+    name = f"the spring :{match[2]}" if match[1] == "springs" else shown(getattr(about, "id", None) or about.name)
+    return f"{name}: {match[3]}"
 
 
 def _size(level: Level) -> int:

@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sandbox.editor.document import Document, EditError, checked, first_fault, validated
+from sandbox.editor.document import Document, EditError, checked, first_fault, subject, validated
 from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles, with_same
 from sandbox.editor.names import renamed, rewired, taken_ids
 from sandbox.editor.remap import rebuilt
@@ -41,6 +41,8 @@ def set_field(document: Document, items: Iterable[Item], field: str, value: Any)
 
     def with_value(part: Definition) -> Definition:
         kind = type(part)
+        if field not in kind.model_fields:
+            raise EditError(f"{subject(part)} has no {field}")
         if kind not in read:
             read[kind] = getattr(validated(replaced(part, **{field: value})), field)
         return part if getattr(part, field) == read[kind] else _with_field(part, field, read[kind])
