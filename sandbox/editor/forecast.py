@@ -33,6 +33,8 @@ LONGEST = 60.0
 # A part is stopped where its kinetic energy has fallen below this share of its last peak. Nearer to 1: the flutter of
 # single springs stops it too, and it creeps.
 PAST_PEAK = 0.9
+# Particles that move, at most: one tick of more takes so long that drawing waits for it.
+LARGEST = 4_000
 
 
 class Forecast:
@@ -57,8 +59,10 @@ class Forecast:
             return "The forecast is being worked out"
         if not self.at_rest:
             return self._trouble
+        if len(self.falling) == 1:
+            return f"Shown is where it hangs at rest; {called(*self.falling)} falls away, because nothing holds it"
         if self.falling:
-            return f"Shown is where it hangs at rest; {_counted(self.falling)} falls away, because nothing holds it"
+            return f"Shown is where it hangs at rest; {len(self.falling)} items fall away, because nothing holds them"
         return "Shown is where it hangs at rest"
 
     def advance(self, seconds: float) -> bool:
@@ -75,6 +79,14 @@ class Forecast:
         yield None
         part = yield from connected_parts(scene)
         is_falling = self._let_fall(level, scene, part)
+        moving = int(np.count_nonzero(~(is_falling | scene.pinned)))
+        if not moving:
+            self.position, self.at_rest = scene.position, True
+            return
+        if moving > LARGEST:
+            self._trouble = f"{moving:,} particles move, too many for a forecast ({LARGEST:,}); play it to see"
+            self.at_rest = False
+            return
         world = build_world(level)
         yield None
         # Slots of the world by the particles of the scene: of welded ones the first alone.
@@ -97,10 +109,6 @@ class Forecast:
         owners: list[int] = np.unique(scene.particle_item[is_falling]).tolist()
         self.falling = frozenset(scene.items[index] for index in owners)
         return is_falling
-
-
-def _counted(items: Selection) -> str:
-    return f"{len(items)} items" if len(items) > 1 else called(next(iter(items)))
 
 
 def _settle(world: World, part: Slots) -> Generator[None, None, str]:

@@ -121,3 +121,14 @@ def test_an_empty_level_is_at_rest():
     forecast = finished(level_of())
     assert forecast.at_rest
     assert forecast.position.shape == (0, 2)
+
+
+def test_a_level_of_too_many_moving_particles_is_refused_before_anything_is_built():
+    cube = JellyDef(type="jelly", id="cube", shape=BoxShape(box=(7.0, 7.0)), spacing=0.1, pinned=(0,))
+    forecast = Forecast(level_of(bodies=(cube,)))
+    while not forecast.advance(1.0):
+        pass
+    assert forecast.position is None
+    assert forecast.text == "5,040 particles move, too many for a forecast (4,000); play it to see"
+    falling = finished(level_of(bodies=(cube.model_copy(update={"pinned": ()}), rope())))
+    assert falling.at_rest
