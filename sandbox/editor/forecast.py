@@ -11,9 +11,9 @@ from collections.abc import Generator, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.finding import called, connected_parts
+from sandbox.editor.finding import called, falling_particles
 from sandbox.editor.items import Selection
-from sandbox.editor.scene import Scene, make_scene
+from sandbox.editor.scene import make_scene
 from sandbox.level.build import build_world
 from sandbox.level.model import Level
 from sandbox.physics.step import step
@@ -77,8 +77,9 @@ class Forecast:
     def _run(self, level: Level) -> Iterator[None]:
         scene = make_scene(level)
         yield None
-        part = yield from connected_parts(scene)
-        is_falling = self._let_fall(level, scene, part)
+        part, is_falling = yield from falling_particles(level, scene)
+        owners: list[int] = np.unique(scene.particle_item[is_falling]).tolist()
+        self.falling = frozenset(scene.items[index] for index in owners)
         moving = int(np.count_nonzero(~(is_falling | scene.pinned)))
         if not moving:
             self.position, self.at_rest = scene.position, True
@@ -100,22 +101,10 @@ class Forecast:
             self.position[is_falling] = scene.position[is_falling]
         self.at_rest = not self._trouble
 
-    def _let_fall(self, level: Level, scene: Scene, part: Slots) -> NDArray[np.bool_]:
-        if level.settings.gravity == (0.0, 0.0):
-            return np.zeros(len(part), dtype=np.bool_)
-        held = np.zeros(len(part), dtype=np.bool_)
-        held[part[scene.pinned]] = True
-        is_falling = ~held[part]
-        owners: list[int] = np.unique(scene.particle_item[is_falling]).tolist()
-        self.falling = frozenset(scene.items[index] for index in owners)
-        return is_falling
-
 
 def _settle(world: World, part: Slots) -> Generator[None, None, str]:
     """Run until nothing moves, or for too long: the trouble, empty at rest. part (k,): labels of the first slots."""
     count = len(part)
-    if not count:
-        return ""
     free = world.inverse_mass[:count] > 0.0
     mass = np.where(free, world.mass[:count], 0.0)
     tick_rate = world.settings.tick_rate
