@@ -147,7 +147,8 @@ def test_bodies_that_cross_are_found_where_they_cross_and_joined_or_touching_one
     assert 0.4 <= finding.place[0] <= 0.5
     assert 0.1 <= finding.place[1] <= 0.5
     crossing = cube("a", 0.0, 0.0), cube("b", 0.9, 0.6)
-    assert texts(level_of(bodies=crossing, springs=(SpringDef(a="a.0", b="b.24"),), **still)) == []
+    for order in (crossing, crossing[::-1]):
+        assert texts(level_of(bodies=order, springs=(SpringDef(a="a.0", b="b.24"),), **still)) == []
 
 
 def test_crossing_is_found_in_either_order_and_among_many_bodies():
@@ -173,6 +174,25 @@ def test_springs_past_the_proven_limit_are_found_by_item_with_what_the_meter_say
     assert f"{load.max():.3g} at {world.spring_names[int(np.argmax(load))]}" in finding.text
     assert not report(world).within_limit
     assert texts(level.model_copy(update={"settings": Settings(solver="direct")})) == []
+
+
+@pytest.mark.parametrize(("coefficient", "is_past"), [(0.66, False), (0.67, True)])
+def test_the_limit_is_where_the_meter_has_it(coefficient, is_past):
+    materials = {"default": NissenMaterial(stiffness=coefficient, damping=coefficient)}
+    level = level_of(bodies=(rope(),), materials=materials, settings=Settings(solver="single_pass"))
+    assert bool(texts(level)) == is_past
+    assert report(build_world(level)).within_limit != is_past
+
+
+def test_a_weight_that_is_welded_on_counts_for_the_limit():
+    materials = {"default": NissenMaterial(stiffness=1.0, damping=1.0)}
+    ball = ParticleDef(id="ball", position=(4.0, 0.0), mass=1000.0)
+    level = level_of(bodies=(rope(),), particles=(ball,), welds=(("rope.end", "ball"),), materials=materials,
+                     settings=Settings(solver="single_pass"))  # fmt: skip
+    (finding,) = found(level)
+    load = spring_loads(build_world(level))
+    assert f"add up to {load.max():.3g} at" in finding.text
+    assert finding.text.startswith(f'{int(np.sum(load >= 4.0))} springs of "rope"')
 
 
 @pytest.mark.parametrize("path", LEVELS, ids=lambda path: path.stem)
