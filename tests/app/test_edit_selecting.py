@@ -195,3 +195,12 @@ def test_what_cannot_be_done_is_said_and_changes_nothing(driver):
     driver.fill(driver.editor.options.fields["x"], "1e7")
     assert driver.editor.document.level is before
     assert driver.notices
+
+
+def test_undo_and_redo_keep_the_selection(driver):
+    driver.key(pygame.K_a, CTRL)
+    driver.drag((2, 0), (2, -0.5), (2, -1))
+    assert driver.editor.history.labels[-1] == "Move"
+    for key in (pygame.K_z, pygame.K_y):
+        driver.key(key, CTRL)
+        assert selected(driver) == {ROPE, PAIR}

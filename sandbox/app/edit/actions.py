@@ -13,7 +13,7 @@ from sandbox.editor.copying import array_circle, array_line, duplicate
 from sandbox.editor.deleting import break_apart, delete
 from sandbox.editor.document import Document
 from sandbox.editor.grouping import group, reorder, ungroup
-from sandbox.editor.items import Item, items_of
+from sandbox.editor.items import Item
 from sandbox.editor.moving import align, distribute, mirror
 from sandbox.editor.pick import items_of_material
 from sandbox.editor.placing import unweld
@@ -50,7 +50,7 @@ def edit_actions(screen: "EditScreen") -> dict[str, Callable[[], object]]:
         "copy_level": clipboard.copy_level,
         "duplicate": lambda: _duplicate(screen),
         "delete": lambda: _edit_selection(screen, "Delete", delete),
-        "select_all": lambda: screen.select(frozenset(items_of(screen.document.level))),
+        "select_all": lambda: screen.select(frozenset(screen.scene.items)),
         "select_material": lambda: _ask_material(screen),
         "mirror": lambda: _ask_mirror(screen),
         "array": lambda: _ask_array(screen),
@@ -263,7 +263,7 @@ def _finish(screen: "EditScreen") -> None:
 
 def _visit(screen: "EditScreen", by: int) -> None:
     """Select the next item of the file, or the one before."""
-    items = items_of(screen.document.level)
+    items = screen.scene.items
     if not items:
         return
     chosen = [index for index, item in enumerate(items) if item in screen.document.selection]

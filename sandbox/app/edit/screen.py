@@ -1,7 +1,9 @@
 """EditScreen: a level that is edited: canvas and rulers, palette, bar, tool options, and the panel at the side."""
 
+import gc
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +13,7 @@ from sandbox.app.camera import Box, Camera, Point, bounds, grid_spacing
 from sandbox.app.colours import ACCENT, DANGER, MUTED, SURFACE, TEXT, WARNING, Colour
 from sandbox.app.edit.actions import edit_actions
 from sandbox.app.edit.bar import Bar, Palette
-from sandbox.app.edit.canvas import SNAP_STEP, Part, ScenePainter
+from sandbox.app.edit.canvas import SNAP_STEP, Chosen, Part, ScenePainter
 from sandbox.app.edit.clipboard import Clipboard
 from sandbox.app.edit.hands import DrawHand, Hand, SelectHand
 from sandbox.app.edit.options import OPTIONS_HEIGHT, OptionsRow
@@ -32,7 +34,7 @@ from sandbox.editor.forecast import Forecast
 from sandbox.editor.history import History
 from sandbox.editor.items import Selection
 from sandbox.editor.moving import can_scale_unevenly, move
-from sandbox.editor.scene import Scene, make_scene, transformed
+from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.snap import Snap, snap
 from sandbox.editor.storage import LevelFile
 
@@ -68,6 +70,7 @@ class EditScreen:
         self._scene: Scene | None = None
         self._ghost_scene: Scene | None = None
         self._box: tuple[Scene, Selection, Box | None] | None = None
+        self._chosen: tuple[Scene, Selection, Chosen] | None = None
         self._spot: tuple[Point, float] | None = None
         self.watch = Watch(self)
         self.clipboard = Clipboard(self)
@@ -105,7 +108,8 @@ class EditScreen:
     def edit(self, label: str, function: Callable[[Document], Document], merge: str | None = None) -> bool:
         """Make an edit a step of the history; False, and a line for the person, where it cannot be made."""
         try:
-            document = function(self.document)
+            with _no_collection():
+                document = function(self.document)
         except EditError as error:
             self.say(str(error))
             return False
@@ -126,7 +130,7 @@ class EditScreen:
     def step_to(self, index: int) -> None:
         """Show the state after a step of the history."""
         before = self.document.level
-        self.cancel()
+        self.leave()
         self.history.go_to(index)
         self.level_changed(self.history.labels[index], before)
 
@@ -324,10 +328,12 @@ class EditScreen:
 
     def _draw_scene(self, surface: pygame.Surface) -> None:
         scene, selection, matrix = self.scene, self.document.selection, self.hand.matrix
-        self.painter.draw(surface, self.camera, scene, selection, matrix is not None)
+        if self._chosen is None or self._chosen[0] is not scene or self._chosen[1] is not selection:
+            self._chosen = (scene, selection, Chosen.of(scene, selection))
+        chosen = self._chosen[2]
+        self.painter.draw(surface, self.camera, scene, chosen, matrix is not None)
         if matrix is not None:
-            moved = transformed(scene, selection, matrix)
-            self.painter.paint_moved(surface, self.camera, moved, selection)
+            self.painter.paint_moved(surface, self.camera, scene, chosen, matrix)
         forecast = self.watch.forecast_scene(scene)
         if forecast is not None:
             every = np.ones(len(scene.position), dtype=np.bool_), np.ones(len(scene.particle_a), dtype=np.bool_)
@@ -344,7 +350,7 @@ class EditScreen:
         hand = self.hand
         hand.draw(surface)
         if isinstance(hand, SelectHand) and hand.hovered is not None and hand.matrix is None:
-            self.painter.paint_hovered(surface, self.camera, self.scene, frozenset({hand.hovered}))
+            self.painter.paint_hovered(surface, self.camera, self.scene, hand.hovered)
         if self.cursor is not None:
             draw_cursor(surface, self.camera.to_pixels(self.cursor), self.scale)
         if self._spot is not None:
@@ -389,3 +395,14 @@ class EditScreen:
         if self.hand.matrix is not None or isinstance(self.hand, DrawHand):
             self.hand.cancel()
         self.history.end_merge()
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """No search for garbage among the objects of all states, which takes longer than the edit of a large level."""
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        gc.enable()
