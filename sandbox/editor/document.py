@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sandbox.editor.items import Selection, items_of
+from sandbox.editor.items import Selection
 from sandbox.level.bodies import AnyBody
 from sandbox.level.canonical import level_text
 from sandbox.level.faults import LevelError, shown
@@ -51,7 +51,13 @@ def empty_level() -> Level:
 
 def select(document: Document, selection: Selection) -> Document:
     """Select those of the items that the level has."""
-    return replace(document, selection=selection.intersection(items_of(document.level)))
+    level = document.level
+    known = {
+        "body": {body.id for body in level.bodies},
+        "particle": {particle.id for particle in level.particles},
+        "spring": range(len(level.springs)),
+    }
+    return replace(document, selection=frozenset([item for item in selection if item[1] in known[item[0]]]))
 
 
 def checked(level: Level) -> Level:

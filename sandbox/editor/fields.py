@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from sandbox.editor.document import Document, EditError, checked, first_fault, subject, validated
-from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles, with_same
+from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles
 from sandbox.editor.names import renamed, rewired, taken_ids
 from sandbox.editor.remap import rebuilt
 from sandbox.level.bodies import AnyBody, BodyDef, RopeDef
@@ -51,7 +51,6 @@ def set_field(document: Document, items: Iterable[Item], field: str, value: Any)
         return document
     old = document.level
     level = changed(old, chosen, with_value)
-    level = with_same(old, bodies=level.bodies, particles=level.particles, springs=level.springs)
     if level is old:
         return document
     if field not in _FORMLESS and level.bodies is not old.bodies:

@@ -4,8 +4,12 @@ from collections.abc import Callable, Iterable
 from typing import Literal, NamedTuple, TypeVar
 
 from sandbox.level.bodies import AnyBody
+from sandbox.level.collector import collector_paused
 from sandbox.level.model import Level, ParticleDef, SpringDef
 from sandbox.level.quantities import replaced
+
+# Items that an edit changes at once, above which the collector of cycles is paused for it.
+MANY = 1_000
 
 Kind = Literal["body", "particle", "spring"]
 Definition = AnyBody | ParticleDef | SpringDef
@@ -33,7 +37,7 @@ def items_of(level: Level) -> tuple[Item, ...]:
 
 def keys(selection: Selection, kind: Kind) -> set[str | int]:
     """Keys of the selected items of a kind."""
-    return {item.key for item in selection if item.kind == kind}
+    return {key for its_kind, key in selection if its_kind == kind}
 
 
 def chosen_bodies(level: Level, selection: Selection) -> list[AnyBody]:
@@ -55,16 +59,15 @@ def chosen_springs(level: Level, selection: Selection) -> list[SpringDef]:
 
 
 def changed(level: Level, selection: Selection, change: Callable[[Definition], Definition]) -> Level:
-    """The level with every selected item changed; what is not selected stays the same object."""
+    """The level with every selected item changed; what is not changed stays the same object."""
     bodies, particles, springs = (keys(selection, kind) for kind in ("body", "particle", "spring"))
-    update: dict[str, object] = {}
-    if bodies:
-        update["bodies"] = tuple(change(body) if body.id in bodies else body for body in level.bodies)
-    if particles:
-        update["particles"] = tuple(change(part) if part.id in particles else part for part in level.particles)
-    if springs:
-        update["springs"] = tuple(change(part) if k in springs else part for k, part in enumerate(level.springs))
-    return replaced(level, **update) if update else level
+    with collector_paused(len(selection) > MANY):
+        return with_same(
+            level,
+            bodies=tuple([change(body) if body.id in bodies else body for body in level.bodies]),
+            particles=tuple([change(part) if part.id in particles else part for part in level.particles]),
+            springs=tuple([change(part) if k in springs else part for k, part in enumerate(level.springs)]),
+        )
 
 
 def kept_springs(selection: Selection, kept: Iterable[int]) -> Selection:

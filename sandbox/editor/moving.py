@@ -27,7 +27,7 @@ Axis = Literal["x", "y"]
 def move(document: Document, dx: float, dy: float) -> Document:
     """Move the selection by dx, dy [m]. Raises EditError where it would leave the world."""
     _finite("a move", dx, dy)
-    return document if (dx, dy) == (0.0, 0.0) else _moved(document, lambda _: (dx, dy))
+    return document if (dx, dy) == (0.0, 0.0) else _moved(document, lambda ids: np.full((len(ids), 2), (dx, dy)))
 
 
 def rotate(document: Document, angle: float, centre: Point) -> Document:
@@ -83,24 +83,27 @@ def distribute(document: Document, axis: Axis) -> Document:
     return _moved_along(document, parts, apart, along)
 
 
-def _moved(document: Document, by: Callable[[str], Point]) -> Document:
-    """Move each selected body and loose particle by what is asked for its id [m]."""
+def _moved(document: Document, by: Callable[[list[str]], Points]) -> Document:
+    """Move each selected body and loose particle by what is asked for their ids [m] (k, 2)."""
+    level = document.level
+    bodies = chosen_bodies(level, document.selection)
+    particles = chosen_particles(level, document.selection)
+    places = np.array([particle.position for particle in particles], dtype=np.float64).reshape(-1, 2)
+    places = places + by([particle.id for particle in particles])
+    outside = np.flatnonzero(np.any(np.abs(places) > COORDINATE_LIMIT, axis=1))
+    if len(outside):
+        raise _beyond(particles[outside[0]])
+    goes = dict(zip([particle.id for particle in particles], map(tuple, places.tolist()), strict=True))
+    shifts = zip(bodies, by([body.id for body in bodies]).tolist(), strict=True)
+    moved = {body.id: _within(shifted(body, dx, dy)) for body, (dx, dy) in shifts}
+    check_bodies(level, moved.values())
 
-    def moved(part: Definition) -> Definition:
-        if isinstance(part, SpringDef):
-            return part
-        dx, dy = by(part.id)
-        if not isinstance(part, ParticleDef):
-            return _within(shifted(part, dx, dy))
-        x, y = part.position[0] + dx, part.position[1] + dy
-        if abs(x) > COORDINATE_LIMIT or abs(y) > COORDINATE_LIMIT:
-            raise _beyond(part)
-        return replaced(part, position=(x, y))
+    def placed(part: Definition) -> Definition:
+        if isinstance(part, ParticleDef):
+            return replaced(part, position=goes[part.id])
+        return part if isinstance(part, SpringDef) else moved[part.id]
 
-    level = changed(document.level, _placed(document.selection), moved)
-    if level.bodies is not document.level.bodies:
-        check_bodies(level, chosen_bodies(level, document.selection))
-    return replace(document, level=level)
+    return replace(document, level=changed(level, document.selection, placed))
 
 
 def _finite(what: str, *numbers: float) -> None:
@@ -133,7 +136,7 @@ def _mapped(document: Document, motion: Motion) -> Document:
     for body in chosen_bodies(level, selection):
         new, images[body.id] = mapped_body(body, motion)
         bodies[body.id] = validated(new)
-    inside = selection - {item for item in selection if item.kind == "spring"}
+    inside = _placed(selection)
     springs = _inside_springs(level, inside) if motion.factor != 1.0 or not motion.is_even else frozenset()
     scene = make_scene(level) if springs else None
 
@@ -164,7 +167,7 @@ def _spring_stretch(scene: Scene, spring: SpringDef, motion: Motion) -> float:
 
 
 def _placed(selection: Selection) -> Selection:
-    return frozenset(item for item in selection if item.kind != "spring")
+    return frozenset([item for item in selection if item[0] != "spring"])
 
 
 def _boxes(document: Document) -> tuple[dict[str, int], Points, Points]:
@@ -186,9 +189,12 @@ def _boxes(document: Document) -> tuple[dict[str, int], Points, Points]:
 
 
 def _moved_along(document: Document, parts: dict[str, int], apart: Points, axis: int) -> Document:
-    distances = apart.tolist()
-    if not any(distances):
+    if not np.any(apart):
         return document
-    if axis == 0:
-        return _moved(document, lambda name: (distances[parts[name]], 0.0))
-    return _moved(document, lambda name: (0.0, distances[parts[name]]))
+
+    def by(ids: list[str]) -> Points:
+        shift = np.zeros((len(ids), 2))
+        shift[:, axis] = apart[[parts[name] for name in ids]]
+        return shift
+
+    return _moved(document, by)
