@@ -53,6 +53,21 @@ def test_a_polygon_is_drawn_by_clicks_and_closed_by_enter(edit):
     assert len(body.shape.polygon) == 3
 
 
+def test_backspace_takes_the_last_corner_back_and_deletes_nothing(edit):
+    driver = edit()
+    driver.key(pygame.K_y)
+    for x, y in ((-1, 0), (1, 0), (1, 2), (2, 2)):
+        driver.click_at(x, y)
+    driver.key(pygame.K_BACKSPACE)
+    driver.key(pygame.K_RETURN)
+    (body,) = driver.editor.document.level.bodies
+    assert len(body.shape.polygon) == 3
+    driver.key(pygame.K_ESCAPE)
+    driver.editor.select(frozenset(driver.editor.scene.items))
+    driver.key(pygame.K_BACKSPACE)
+    assert driver.editor.document.level.bodies == ()
+
+
 def test_particles_and_a_spring_between_them_are_drawn_by_clicks(edit):
     driver = edit()
     driver.key(pygame.K_a)

@@ -49,7 +49,7 @@ def edit_actions(screen: "EditScreen") -> dict[str, Callable[[], object]]:
         "paste": clipboard.paste,
         "copy_level": clipboard.copy_level,
         "duplicate": lambda: _duplicate(screen),
-        "delete": lambda: _edit_selection(screen, "Delete", delete),
+        "delete": lambda: _delete_or_back(screen),
         "select_all": lambda: screen.select(frozenset(screen.scene.items)),
         "select_material": lambda: _ask_material(screen),
         "mirror": lambda: _ask_mirror(screen),
@@ -254,6 +254,14 @@ def _adjust_or_zoom(screen: "EditScreen", by: int) -> None:
         screen.hand.adjust(by)
     else:
         screen.zoom(2 * by)
+
+
+def _delete_or_back(screen: "EditScreen") -> None:
+    """Take the last point of what is drawn back, or delete the selection."""
+    if isinstance(screen.hand, DrawHand) and screen.hand.drawing.under_way:
+        screen.hand.drawing.back()
+    else:
+        _edit_selection(screen, "Delete", delete)
 
 
 def _finish(screen: "EditScreen") -> None:
