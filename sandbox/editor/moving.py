@@ -8,12 +8,23 @@ from typing import Literal
 import numpy as np
 
 from sandbox.editor.document import Document, EditError, check_bodies, subject, validated
-from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles, keys
+from sandbox.editor.items import (
+    MANY,
+    Definition,
+    Item,
+    Selection,
+    changed,
+    chosen_bodies,
+    chosen_particles,
+    exchanged,
+    keys,
+)
 from sandbox.editor.names import owner_of
 from sandbox.editor.placement import Motion, can_stretch, mapped_body, mapped_particle, shifted, stretch
 from sandbox.editor.remap import rebuilt
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.level.bodies import AnyBody
+from sandbox.level.collector import collector_paused
 from sandbox.level.limits import COORDINATE_LIMIT
 from sandbox.level.model import Level, ParticleDef, SpringDef
 from sandbox.level.quantities import replaced
@@ -93,17 +104,13 @@ def _moved(document: Document, by: Callable[[list[str]], Points]) -> Document:
     outside = np.flatnonzero(np.any(np.abs(places) > COORDINATE_LIMIT, axis=1))
     if len(outside):
         raise _beyond(particles[outside[0]])
-    goes = dict(zip([particle.id for particle in particles], map(tuple, places.tolist()), strict=True))
     shifts = zip(bodies, by([body.id for body in bodies]).tolist(), strict=True)
-    moved = {body.id: _within(shifted(body, dx, dy)) for body, (dx, dy) in shifts}
-    check_bodies(level, moved.values())
-
-    def placed(part: Definition) -> Definition:
-        if isinstance(part, ParticleDef):
-            return replaced(part, position=goes[part.id])
-        return part if isinstance(part, SpringDef) else moved[part.id]
-
-    return replace(document, level=changed(level, document.selection, placed))
+    moved = [_within(shifted(body, dx, dy)) for body, (dx, dy) in shifts]
+    check_bodies(level, moved)
+    with collector_paused(len(particles) > MANY):
+        rows = zip(particles, places.tolist(), strict=True)
+        placed = [replaced(particle, position=(x, y)) for particle, (x, y) in rows]
+        return replace(document, level=exchanged(level, document.selection, moved, placed))
 
 
 def _finite(what: str, *numbers: float) -> None:
