@@ -11,7 +11,7 @@ from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.measure import cap, extremes
 from sandbox.physics.solvers.network import (
-    HIGHEST_COEFFICIENT,
+    highest_coefficient,
     kinetic,
     largest_misfit,
     linearise,
@@ -28,12 +28,18 @@ from sandbox.physics.world import Floats, World
 
 # Directions are those at x + h AHEAD (v' - s). Lower explodes taut ropes, higher gains nothing.
 AHEAD = 0.75
-# A body of which a spring, after one linear solve, misses the length that was foreseen by more than this share of it
-# times h^2 [1/s^2] (1e-4 at 60 Hz) gets a second: what turns fast, a whipping tip or a dragged end, stretches 5 to 20
+# A body of which a spring, after a linear solve, misses the length that was foreseen by more than this share of it
+# times h^2 [1/s^2] (1e-4 at 60 Hz) gets another: what turns fast, a whipping tip or a dragged end, stretches 5 to 20
 # times less for it. Lower costs time on every swing, higher stretch; with h^2 so that substeps keep their gain.
 MISFIT_RATE = 0.36
+# Linear solves of a step at most. With 2, whipping ropes stretch up to 10 times as much and a hundredth of their steps
+# has to be minimised; a fourth is hardly ever asked for.
+LINEAR_SOLVES = 3
 # s += SLOW_SHARE (v' - s), per step. Higher leaves fast vibration undamped, lower damps slow turning.
 SLOW_SHARE = 0.3
+# The velocities foreseen before a first solve are v + CHANGE_AHEAD (v - s): of an even change, s lags behind by that of
+# 1 / CHANGE_AHEAD steps. Without it, or with less, smooth turning takes two solves where one is enough.
+CHANGE_AHEAD = SLOW_SHARE / (1.0 - SLOW_SHARE)
 # A body's bank holds at most this share of its energy: where every spring has Cs <= Cd, and where one has not (its
 # energy in this measure swings by up to 3 within a period). 0 would reject most steps at Cs = Cd = 1.
 BANK_SHARE = 0.05
@@ -69,8 +75,10 @@ def _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h,
         else:
             rows.moved[r, 0] += velocity[p, 0] * h
             rows.moved[r, 1] += velocity[p, 1] * h
-        rows.trial[r, 0] = rows.start[r, 0]
-        rows.trial[r, 1] = rows.start[r, 1]
+        for axis in range(2):
+            rows.trial[r, axis] = rows.start[r, axis]
+            if r < free_count:
+                rows.trial[r, axis] += CHANGE_AHEAD * (rows.start[r, axis] - rows.slow[r, axis])
 
 
 @inner_kernel
@@ -232,8 +240,10 @@ def _step_body(  # type: ignore[no-untyped-def]
     allowed = before * (1.0 + ENERGY_ROUNDING) + held
     _take_candidate(first_row, last_row, first, last, rows, springs, matrix, h)
     after = _energy(first_row, last_row, first, last, rows, springs, rest_length, h)
-    within = after <= allowed
-    if not within or largest_misfit(first, last, rows, springs, rest_length, h) > MISFIT_RATE * h * h:
+    for _solve in range(LINEAR_SOLVES - 1):
+        within = after <= allowed
+        if within and not largest_misfit(first, last, rows, springs, rest_length, h) > MISFIT_RATE * h * h:
+            break
         _copy(first_row, last_row, rows.trial, rows.best)
         once = after
         _take_candidate(first_row, last_row, first, last, rows, springs, matrix, h)
@@ -242,8 +252,8 @@ def _step_body(  # type: ignore[no-untyped-def]
             _copy(first_row, last_row, rows.best, rows.trial)
             _keep_tension(first, last, rows, springs, h)
             after = once
-        within = after <= allowed
-    if not within:
+            break
+    if not after <= allowed:
         _minimise(first_row, last_row, first, last, rows, springs, matrix, h)
         after = _energy(first_row, last_row, first, last, rows, springs, rest_length, h)
         if not after <= allowed:
@@ -293,7 +303,7 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
             _copy(first_row, last_row, rows.target, rows.trial)
         bouncy, spread = load_springs(
             first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,
-            least, most, parts,
+            least, most, parts, h,
         )  # fmt: skip
         _step_body(
             first_row, last_row, first, last, rows, springs, matrix, rest_length, bodies.lowest[body], energy_bank,
@@ -329,7 +339,7 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
     least, most, parts = NOTHING, NOTHING, 0
     if world.settings.substeps == AUTO:
         parts = round(1.0 / (h * world.settings.tick_rate))
-        stiffness, damping = cap(stiffness, damping, parts)
+        stiffness, damping = cap(stiffness, damping, parts, 1.0 / world.settings.tick_rate)
         least, most = extremes(world)
     gravity_x, gravity_y = world.settings.gravity
     _solve_bodies(
@@ -341,5 +351,6 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
 
 def spring_constant(stiffness: Floats, damping: Floats, mass: Floats, h: float) -> Floats:
     """k [N/m] of springs: Cs m_r / ((1 - Cd) h^2), with both capped as the solver caps them."""
-    capped = np.where(damping > HIGHEST_COEFFICIENT, np.minimum(stiffness, HIGHEST_COEFFICIENT), stiffness)
-    return capped * mass / ((1.0 - np.minimum(damping, HIGHEST_COEFFICIENT)) * h * h)
+    highest = highest_coefficient(h)
+    capped = np.where(damping > highest, np.minimum(stiffness, highest), stiffness)
+    return capped * mass / ((1.0 - np.minimum(damping, highest)) * h * h)
