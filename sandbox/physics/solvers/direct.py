@@ -11,7 +11,7 @@ from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.measure import cap, extremes
 from sandbox.physics.solvers.network import (
-    highest_coefficient,
+    HIGHEST_COEFFICIENT,
     kinetic,
     largest_misfit,
     linearise,
@@ -303,7 +303,7 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
             _copy(first_row, last_row, rows.target, rows.trial)
         bouncy, spread = load_springs(
             first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,
-            least, most, parts, h,
+            least, most, parts,
         )  # fmt: skip
         _step_body(
             first_row, last_row, first, last, rows, springs, matrix, rest_length, bodies.lowest[body], energy_bank,
@@ -339,7 +339,7 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
     least, most, parts = NOTHING, NOTHING, 0
     if world.settings.substeps == AUTO:
         parts = round(1.0 / (h * world.settings.tick_rate))
-        stiffness, damping = cap(stiffness, damping, parts, 1.0 / world.settings.tick_rate)
+        stiffness, damping = cap(stiffness, damping, parts)
         least, most = extremes(world)
     gravity_x, gravity_y = world.settings.gravity
     _solve_bodies(
@@ -351,6 +351,5 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
 
 def spring_constant(stiffness: Floats, damping: Floats, mass: Floats, h: float) -> Floats:
     """k [N/m] of springs: Cs m_r / ((1 - Cd) h^2), with both capped as the solver caps them."""
-    highest = highest_coefficient(h)
-    capped = np.where(damping > highest, np.minimum(stiffness, highest), stiffness)
-    return capped * mass / ((1.0 - np.minimum(damping, highest)) * h * h)
+    capped = np.where(damping > HIGHEST_COEFFICIENT, np.minimum(stiffness, HIGHEST_COEFFICIENT), stiffness)
+    return capped * mass / ((1.0 - np.minimum(damping, HIGHEST_COEFFICIENT)) * h * h)

@@ -11,7 +11,7 @@ import numpy as np
 
 from sandbox.physics.equation import half_step
 from sandbox.physics.jit import kernel
-from sandbox.physics.solvers.network import highest_coefficient
+from sandbox.physics.solvers.network import HIGHEST_COEFFICIENT
 from sandbox.physics.substeps import MOST_AUTO
 from sandbox.physics.world import Floats, World
 
@@ -50,14 +50,13 @@ def _extremes(stiffness, damping, highest, most_parts, least, most):  # type: ig
 def extremes(world: World) -> tuple[Floats, Floats]:
     """Least and most k h^2 / m_r of every spring (m,), h of the tick, over the parts that a tick may have."""
     least, most = np.empty((2, world.spring_count))
-    highest = highest_coefficient(1.0 / world.settings.tick_rate)
-    _extremes(world.stiffness, world.damping, highest, MOST_AUTO, least, most)
+    _extremes(world.stiffness, world.damping, HIGHEST_COEFFICIENT, MOST_AUTO, least, most)
     return least, most
 
 
-def cap(stiffness: Floats, damping: Floats, parts: int, tick: float) -> tuple[Floats, Floats]:
-    """Cs and Cd (m,) of one of `parts` substeps of a tick [s], capped so that a rigid spring has the k of one part."""
+def cap(stiffness: Floats, damping: Floats, parts: int) -> tuple[Floats, Floats]:
+    """Cs and Cd (m,) of one of `parts` substeps, capped so that a rigid spring has the k of one part."""
     if parts == 1:
         return stiffness, damping
-    highest = 1.0 - (1.0 - highest_coefficient(tick)) * (parts * parts)
+    highest = 1.0 - (1.0 - HIGHEST_COEFFICIENT) * (parts * parts)
     return np.where(damping > highest, np.minimum(stiffness, highest), stiffness), np.minimum(damping, highest)

@@ -19,43 +19,32 @@ from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.factor import back_substitute, factorise
 from sandbox.physics.solvers.fronts import add_block, clear_fronts, eliminate_rows, factorise_fronts, substitute_fronts
 
-# Cd stays this far below 1, and Cs with it: nearer, springs stretch less, but steps are rejected more often and damp
-# more. Short steps foresee lengths better, so the gap falls with h, by this rate [1/s], from the widest down to the
-# narrowest: below that, rounding of positions some 100 m from the origin shows as impulses of a whole percent.
-GAP_RATE = 6e-5
-WIDEST_GAP = 1e-6
-NARROWEST_GAP = 1e-8
+# Cd is capped here, and Cs with it: nearer to 1 springs stretch less, but steps are rejected more often and damp more.
+HIGHEST_COEFFICIENT = 1.0 - 1e-7
 # A linear solve is refined once where impulses that cancel are this many times those that are left: a violent step. A
 # higher bound loses the digits of one spring's step at Cd near 1, a lower one costs time on every step.
 CANCELLATION = 300.0
 
 
 @scalar_kernel
-def highest_coefficient(h):  # type: ignore[no-untyped-def]
-    """The highest Cd, and the highest Cs beside it, of a step of h [s]."""
-    return 1.0 - max(NARROWEST_GAP, min(WIDEST_GAP, GAP_RATE * h))
-
-
-@scalar_kernel
-def implicit_masses(stiffness, damping, mass, highest):  # type: ignore[no-untyped-def]
-    """K and K beta [kg] of a spring whose effective mass is `mass` [kg]; Cd is taken as `highest` at most."""
+def implicit_masses(stiffness, damping, mass):  # type: ignore[no-untyped-def]
+    """K and K beta [kg] of a spring whose effective mass is `mass` [kg]."""
     # K = m Cd / (1 - Cd);  K beta = m Cs / (1 - Cd)
-    if damping > highest:
-        damping = highest
-        stiffness = min(stiffness, highest)
+    if damping > HIGHEST_COEFFICIENT:
+        damping = HIGHEST_COEFFICIENT
+        stiffness = min(stiffness, HIGHEST_COEFFICIENT)
     return mass * damping / (1.0 - damping), mass * stiffness / (1.0 - damping)
 
 
 @inner_kernel
 def load_springs(  # type: ignore[no-untyped-def]
     first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs, least,
-    most, parts, h,
+    most, parts,
 ):  # fmt: skip
     """Bring the springs first..last into their scratch; whether any has Cs > Cd, and any a measure that spreads.
 
     parts: 0, or those of a tick that chooses them, with the measures least and most of each spring (measure.py).
     """
-    highest = highest_coefficient(h)
     bouncy = False
     spread = False
     for k in range(first, last):
@@ -67,7 +56,7 @@ def load_springs(  # type: ignore[no-untyped-def]
             mass = body_mass
         else:
             mass = reduced_mass(inverse_mass[rows.particle[a]], inverse_mass[rows.particle[b]])
-        along, pull = implicit_masses(stiffness[s], damping[s], mass, highest)
+        along, pull = implicit_masses(stiffness[s], damping[s], mass)
         springs.along[k] = along
         springs.pull[k] = pull
         if pull > along:
