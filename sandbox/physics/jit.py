@@ -97,3 +97,31 @@ def inner_kernel(function: Function) -> Function:
 def scalar_kernel(function: Function) -> Function:
     """Make `function` a kernel that takes and gives scalars alone, to be called from other kernels."""
     return _compiled(function) if COMPILED else function
+
+
+if COMPILED:
+    from numba.experimental import structref
+
+    @structref.register
+    class _BundleType(structref.types.StructRef):  # type: ignore[misc]
+        pass
+
+    class _Bundle(structref.StructRefProxy):  # type: ignore[misc]
+        pass
+
+    structref.define_proxy(_Bundle, _BundleType, ["items"])
+
+else:
+
+    class _Bundle:
+        def __init__(self, items: tuple[Any, ...]) -> None:
+            self.items = tuple(map(_viewed, items))
+
+
+@kernel
+def bundle(items: tuple[Any, ...]) -> Any:
+    """One argument for kernels in place of many that stay: arrays and named tuples, unpacked there from its `items`.
+
+    A kernel unwraps every array of its arguments at every call: 50 of them take as long as a rope of 80 links.
+    """
+    return _Bundle(items)

@@ -277,8 +277,9 @@ def _brake(first_row, last_row, first, last, rows, springs, rest_length, allowed
 @kernel
 def _solve_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, particle_active, rest_length, stiffness,
-    damping, material, tension, bodies, rows, springs, matrix, least, most, parts, gravity_x, gravity_y, h,
+    damping, material, tension, numbers, least, most, parts, gravity_x, gravity_y, h,
 ):  # fmt: skip
+    bodies, rows, springs, matrix = numbers.items
     _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, matrix.diagonal.shape[0], rows)
     for body in range(bodies.lowest.shape[0]):
         first_row = bodies.row_start[body]
@@ -315,7 +316,7 @@ def pattern_of(world: World) -> Pattern:
     """The pattern of a world's matrix, made anew where topology or pins have changed since the last step."""
     pattern = world.solver_cache
     if pattern is None or not is_current(
-        world.inverse_mass, world.particle_a, world.particle_b, world.spring_active, world.law, *pattern.signature
+        world.inverse_mass, world.particle_a, world.particle_b, world.spring_active, world.law, pattern.signature
     ):
         pattern = world.solver_cache = make_pattern(world)
     return pattern
@@ -334,8 +335,8 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
     gravity_x, gravity_y = world.settings.gravity
     _solve_bodies(
         world.position, world.velocity, world.mass, world.inverse_mass, world.slow_velocity, world.energy_bank,
-        world.particle_active, world.rest_length, stiffness, damping, world.material, world.tension, pattern.bodies,
-        pattern.rows, pattern.springs, pattern.matrix, least, most, parts, gravity_x, gravity_y, h,
+        world.particle_active, world.rest_length, stiffness, damping, world.material, world.tension,
+        pattern.numbers, least, most, parts, gravity_x, gravity_y, h,
     )  # fmt: skip
 
 

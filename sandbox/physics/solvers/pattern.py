@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.jit import kernel
+from sandbox.physics.jit import bundle, kernel
 from sandbox.physics.solvers.dissection import Dissection, dissect_bodies, make_fronts, spring_places
 from sandbox.physics.solvers.fronts import Fronts
 from sandbox.physics.solvers.ordering import label_bodies, minimum_degree, update_targets
@@ -86,20 +86,25 @@ class Bodies(NamedTuple):
 
 @dataclass(frozen=True)
 class Pattern:
-    """Everything about a world's matrix that its topology and pins decide, with the scratch arrays of a step."""
+    """Everything about a world's matrix that its topology and pins decide, with the scratch arrays of a step.
 
-    signature: tuple[NDArray[Any], ...]
+    signature and numbers are bundles for kernels: of what the pattern was made for, and of the four named tuples.
+    """
+
+    signature: Any
     has_hooke: bool
     hooke: NDArray[np.bool_]
     bodies: Bodies
     rows: Rows
     springs: Springs
     matrix: Matrix
+    numbers: Any
 
 
 @kernel
-def is_current(inverse_mass, particle_a, particle_b, spring_active, law, free, kind, end_a, end_b):  # type: ignore[no-untyped-def]
+def is_current(inverse_mass, particle_a, particle_b, spring_active, law, signature):  # type: ignore[no-untyped-def]
     """Whether topology and pins are still those that a pattern was made for."""
+    free, kind, end_a, end_b = signature.items
     if inverse_mass.shape[0] != free.shape[0] or law.shape[0] != kind.shape[0]:
         return False
     for p in range(free.shape[0]):
@@ -155,15 +160,17 @@ def make_pattern(world: World) -> Pattern:
         anchored,
     )
     hooke = kind == LAW_HOOKE
-    particles = np.concatenate([nodes[order], anchors])
+    rows = _scratch_rows(np.concatenate([nodes[order], anchors]))
+    springs = _scratch_springs(chosen[grouped], row_a[grouped], row_b[grouped], blocks)
     return Pattern(
-        signature=(free, kind, a, b),
+        signature=bundle((free, kind, a, b)),
         has_hooke=bool(hooke.any()),
         hooke=hooke,
         bodies=bodies,
-        rows=_scratch_rows(particles),
-        springs=_scratch_springs(chosen[grouped], row_a[grouped], row_b[grouped], blocks),
+        rows=rows,
+        springs=springs,
         matrix=matrix,
+        numbers=bundle((bodies, rows, springs, matrix)),
     )
 
 
