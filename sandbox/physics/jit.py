@@ -103,17 +103,17 @@ if COMPILED:
     from numba.experimental import structref
 
     @structref.register
-    class _BundleType(structref.types.StructRef):  # type: ignore[misc]
+    class _BundleType(structref.types.StructRef):
         pass
 
-    class _Bundle(structref.StructRefProxy):  # type: ignore[misc]
+    class _Bundle(structref.StructRefProxy):
         pass
 
     structref.define_proxy(_Bundle, _BundleType, ["items"])
 
 else:
 
-    class _Bundle:
+    class _Bundle:  # type: ignore[no-redef]
         def __init__(self, items: tuple[Any, ...]) -> None:
             self.items = tuple(map(_viewed, items))
 
