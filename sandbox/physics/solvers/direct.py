@@ -7,7 +7,7 @@ the body's energy stays within what it had plus what its bank holds of earlier l
 
 import numpy as np
 
-from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.jit import bundle_kernel, inner_kernel
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.measure import cap, extremes
 from sandbox.physics.solvers.network import (
@@ -274,7 +274,7 @@ def _brake(first_row, last_row, first, last, rows, springs, rest_length, allowed
     return after
 
 
-@kernel
+@bundle_kernel
 def _solve_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, particle_active, rest_length, stiffness,
     damping, material, tension, numbers, least, most, parts, gravity_x, gravity_y, h,
@@ -316,7 +316,7 @@ def pattern_of(world: World) -> Pattern:
     """The pattern of a world's matrix, made anew where topology or pins have changed since the last step."""
     pattern = world.solver_cache
     if pattern is None or not is_current(
-        world.inverse_mass, world.particle_a, world.particle_b, world.spring_active, world.law, pattern.signature
+        world.inverse_mass, world.particle_a, world.particle_b, world.spring_active, world.law, *pattern.signature
     ):
         pattern = world.solver_cache = make_pattern(world)
     return pattern

@@ -88,10 +88,10 @@ class Bodies(NamedTuple):
 class Pattern:
     """Everything about a world's matrix that its topology and pins decide, with the scratch arrays of a step.
 
-    signature and numbers are bundles for kernels: of what the pattern was made for, and of the four named tuples.
+    signature: what it was made for. numbers: the four named tuples as a bundle for kernels.
     """
 
-    signature: Any
+    signature: tuple[NDArray[Any], ...]
     has_hooke: bool
     hooke: NDArray[np.bool_]
     bodies: Bodies
@@ -102,9 +102,8 @@ class Pattern:
 
 
 @kernel
-def is_current(inverse_mass, particle_a, particle_b, spring_active, law, signature):  # type: ignore[no-untyped-def]
+def is_current(inverse_mass, particle_a, particle_b, spring_active, law, free, kind, end_a, end_b):  # type: ignore[no-untyped-def]
     """Whether topology and pins are still those that a pattern was made for."""
-    free, kind, end_a, end_b = signature.items
     if inverse_mass.shape[0] != free.shape[0] or law.shape[0] != kind.shape[0]:
         return False
     for p in range(free.shape[0]):
@@ -163,7 +162,7 @@ def make_pattern(world: World) -> Pattern:
     rows = _scratch_rows(np.concatenate([nodes[order], anchors]))
     springs = _scratch_springs(chosen[grouped], row_a[grouped], row_b[grouped], blocks)
     return Pattern(
-        signature=bundle((free, kind, a, b)),
+        signature=(free, kind, a, b),
         has_hooke=bool(hooke.any()),
         hooke=hooke,
         bodies=bodies,
