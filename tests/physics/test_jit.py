@@ -5,7 +5,6 @@ import os
 import shutil
 import subprocess
 import sys
-from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -36,22 +35,15 @@ def test_a_compiled_kernel_gives_the_same_bits_as_its_source():
     assert results(jit.kernel(accumulate)).tobytes() == results(jit._interpreted(accumulate)).tobytes()
 
 
-class Pair(NamedTuple):
-    """Two arrays that a kernel takes together."""
-
-    values: np.ndarray
-    total: np.ndarray
-
-
 def test_a_bundle_hands_kernels_the_very_arrays_that_went_into_it():
     def add(items, factor):
-        pair, active = items.items
+        values, active, total = items.items
         for k in range(active.shape[0]):
             if active[k]:
-                pair.total[k, 0] += factor * pair.values[k]
+                total[k, 0] += factor * values[k]
 
     values, total = np.linspace(0.1, 7.7, 9), np.zeros((9, 2))
-    bundle, function = jit.bundle((Pair(values, total), np.arange(9) % 3 > 0)), jit.bundle_kernel(add)
+    bundle, function = jit.bundle((values, np.arange(9) % 3 > 0, total)), jit.bundle_kernel(add)
     first = values.tolist()
     function(bundle, 2.0)
     values[:] = 1.0
