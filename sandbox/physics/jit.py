@@ -130,8 +130,9 @@ else:
 
 @bundle_kernel
 def bundle(items: tuple[Any, ...]) -> Any:
-    """One argument for kernels in place of many that stay: arrays and named tuples, unpacked there from its `items`.
+    """One argument for kernels in place of many that stay: arrays and named tuples, there the bundle's `items`.
 
-    A kernel unwraps every array of its arguments at every call: 50 of them take as long as a rope of 80 links.
+    Otherwise a kernel unwraps each array at every call: 60 of them take 8 us, as long as 80 links of a rope. The types
+    of named tuples belong to this room, since the cache of kernels refers to them.
     """
     return _Bundle(items)
