@@ -11,7 +11,8 @@ from sandbox.app.widgets import Ui
 
 # Sizes in layout units.
 COLUMN_WIDTH = 480.0
-NARROWEST_COLUMN = 420.0
+NARROWEST_COLUMN = 400.0
+MOST_COLUMNS = 3
 ROW = 22.0
 HEADING = 34.0
 TOP = 62.0
@@ -21,7 +22,12 @@ MARGIN = 28.0
 def show_help(ui: Ui, mode: Mode) -> None:
     """Cover the window by the list of a mode's shortcuts, until it is closed."""
     width, height = ui.units
-    columns = _columns(shortcuts(mode), 2 if width >= 2 * NARROWEST_COLUMN + 20 else 1)
+    entries = shortcuts(mode)
+    most = max(1, min(int((width - 20) // NARROWEST_COLUMN), MOST_COLUMNS))
+    # As few columns as the height allows: they are read from top to bottom.
+    layouts = [_columns(entries, count) for count in range(min(2, most), most + 1)]
+    room = height - 16 - TOP - MARGIN
+    columns = next((layout for layout in layouts if max(map(_height, layout)) <= room), layouts[-1])
     box_width = min(len(columns) * COLUMN_WIDTH, width - 16)
     box_height = min(TOP + max(map(_height, columns)) + MARGIN, height - 16)
 

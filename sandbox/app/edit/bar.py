@@ -76,9 +76,9 @@ class _Buttons:
             return
         self._shown[action] = colour
         button = self.by_action[action]
+        set_icon(button, self._icon(self._pictures[action], colour))
         (button.enable if enabled else button.disable)()
         (button.select if on else button.unselect)()
-        set_icon(button, self._icon(self._pictures[action], colour))
 
     def _icon(self, name: str, colour: Colour) -> pygame.Surface:
         key = (name, colour)

@@ -6,19 +6,20 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-import numpy as np
 import pygame
 
 from sandbox.app.camera import Box, Camera, Point, bounds, grid_spacing
 from sandbox.app.colours import ACCENT, DANGER, MUTED, SURFACE, TEXT, WARNING, Colour
 from sandbox.app.edit.actions import edit_actions
 from sandbox.app.edit.bar import Bar, Palette
-from sandbox.app.edit.canvas import SNAP_STEP, Chosen, Part, ScenePainter
+from sandbox.app.edit.canvas import SNAP_STEP
 from sandbox.app.edit.clipboard import Clipboard
 from sandbox.app.edit.hands import DrawHand, Hand, SelectHand
 from sandbox.app.edit.options import OPTIONS_HEIGHT, OptionsRow
-from sandbox.app.edit.overlay import draw_cursor, draw_label, draw_snap, draw_spot
+from sandbox.app.edit.overlay import draw_snap
 from sandbox.app.edit.rulers import RULER, Rulers
+from sandbox.app.edit.side import Side
+from sandbox.app.edit.view import View
 from sandbox.app.edit.watch import Watch
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Pixel, Pointer
@@ -61,17 +62,14 @@ class EditScreen:
         self.history = history
         self.level_file = level_file
         self.camera = Camera(viewport=self._viewport())
-        self.painter = ScenePainter(app.scale)
+        self.view = View(self)
         self.tool = "select"
         self.snapping = True
         self.show_side = True
         self.cursor: Point | None = None
         self.pointer: Pixel | None = None
         self._scene: Scene | None = None
-        self._ghost_scene: Scene | None = None
         self._box: tuple[Scene, Selection, Box | None] | None = None
-        self._chosen: tuple[Scene, Selection, Chosen] | None = None
-        self._spot: tuple[Point, float] | None = None
         self.watch = Watch(self)
         self.clipboard = Clipboard(self)
         self.hands: dict[str, Hand] = {
@@ -160,7 +158,7 @@ class EditScreen:
         pixel = self.camera.to_pixels(place)
         if not pygame.Rect(left, top, width, height).inflate(-width // 5, -height // 5).collidepoint(pixel):
             self.camera.centre = place
-        self._spot = (place, 0.0)
+        self.view.point_out(place)
 
     # Layout.
 
@@ -181,12 +179,16 @@ class EditScreen:
         before = self.camera.viewport
         self.camera.viewport = self._viewport()
         self.camera.zoom *= math.sqrt(self.camera.viewport[2] * self.camera.viewport[3] / max(before[2] * before[3], 1))
-        self.painter.scale = ui.scale
         width, height = ui.units
         self.bar = Bar(ui, self.app.act)
         self.palette = Palette(ui, self.app.act, BAR_HEIGHT, PALETTE_WIDTH, height - BAR_HEIGHT - STATUS_HEIGHT)
         self.options = OptionsRow(self, ui.rect(PALETTE_WIDTH, BAR_HEIGHT, width - PALETTE_WIDTH, OPTIONS_HEIGHT))
         self.rulers = Rulers(ui)
+        self.side = Side(ui, self, self._side_place()) if self.show_side else None
+
+    def _side_place(self) -> pygame.Rect:
+        ui, (width, height), top = self.ui, self.ui.units, BAR_HEIGHT + OPTIONS_HEIGHT
+        return ui.rect(width - SIDE_WIDTH, top, SIDE_WIDTH, height - top - STATUS_HEIGHT)
 
     def toggle_side(self) -> None:
         """Hide or show the panel at the side."""
@@ -302,10 +304,7 @@ class EditScreen:
 
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
         """Follow the pointer, look for faults a little, and show the state in the widgets."""
-        self.painter.compiled = ready
-        if self._spot is not None:
-            place, age = self._spot
-            self._spot = (place, age + frame_time) if age < 1.5 else None
+        self.view.update(frame_time, ready)
         if not pygame.mouse.get_pressed()[0] or pointer is None:
             self.pointer = pointer
             at = self.cursor if self.cursor is not None else None if pointer is None else self.camera.to_world(pointer)
@@ -315,48 +314,17 @@ class EditScreen:
         self.bar.show(self)
         self.palette.show(self.tool)
         self.options.refresh()
+        if self.side is not None:
+            self.side.refresh()
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw canvas and rulers."""
         surface.fill(SURFACE)
         surface.set_clip(self.camera.viewport)
         with profile.part("canvas"):
-            self._draw_scene(surface)
-            self._draw_overlay(surface)
+            self.view.draw(surface)
         surface.set_clip(None)
         self.rulers.draw(surface, self.camera, self.pointer)
-
-    def _draw_scene(self, surface: pygame.Surface) -> None:
-        scene, selection, matrix = self.scene, self.document.selection, self.hand.matrix
-        if self._chosen is None or self._chosen[0] is not scene or self._chosen[1] is not selection:
-            self._chosen = (scene, selection, Chosen.of(scene, selection))
-        chosen = self._chosen[2]
-        self.painter.draw(surface, self.camera, scene, chosen, matrix is not None)
-        if matrix is not None:
-            self.painter.paint_moved(surface, self.camera, scene, chosen, matrix)
-        forecast = self.watch.forecast_scene(scene)
-        if forecast is not None:
-            every = np.ones(len(scene.position), dtype=np.bool_), np.ones(len(scene.particle_a), dtype=np.bool_)
-            self.painter.paint(surface, self.camera, Part(forecast, *every, ghost=True))
-        ghost = self.hand.ghost()
-        if ghost is not None and ghost.level is not self.document.level:
-            if self._ghost_scene is None or self._ghost_scene.level is not ghost.level:
-                self._ghost_scene = make_scene(ghost.level, scene)
-            drawn, new = self._ghost_scene, ghost.selection
-            part = Part(drawn, drawn.particles_of(new), drawn.springs_of(new), ghost=True)
-            self.painter.paint(surface, self.camera, part)
-
-    def _draw_overlay(self, surface: pygame.Surface) -> None:
-        hand = self.hand
-        hand.draw(surface)
-        if isinstance(hand, SelectHand) and hand.hovered is not None and hand.matrix is None:
-            self.painter.paint_hovered(surface, self.camera, self.scene, hand.hovered)
-        if self.cursor is not None:
-            draw_cursor(surface, self.camera.to_pixels(self.cursor), self.scale)
-        if self._spot is not None:
-            draw_spot(surface, self.camera.to_pixels(self._spot[0]), self._spot[1], self.scale)
-        if hand.measure and self.pointer is not None:
-            draw_label(surface, self.ui, self.pointer, hand.measure, self.camera.viewport)
 
     def draw_snap(self, surface: pygame.Surface, snapped: Snap) -> None:
         """Mark what the pointer snaps to, with a word."""
