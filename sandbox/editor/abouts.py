@@ -97,8 +97,9 @@ def _kind(name: str, value: dict[str, Any]) -> Kind:
 
 def _tooltip(about: About, description: str) -> str:
     """The description, and the limits of a number."""
+    text = description.replace("null = ", "empty = ").replace("`", "")
     if about.kind not in ("number", "integer", "point") or (about.low is None and about.high is None):
-        return description
+        return text
     unit = f" {about.unit}" if about.unit else ""
     low = "" if about.low is None else f"{'above ' if about.above else ''}{number_text(about.low)}"
     if about.high is None:
