@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from sandbox.editor.document import Document, EditError, check_bodies, subject, validated
+from sandbox.editor.document import Document, EditError, all_validated, check_bodies, subject, validated
 from sandbox.editor.items import (
     MANY,
     Definition,
@@ -26,7 +26,7 @@ from sandbox.editor.scene import Scene, make_scene
 from sandbox.level.bodies import AnyBody
 from sandbox.level.collector import collector_paused
 from sandbox.level.limits import COORDINATE_LIMIT
-from sandbox.level.model import Level, ParticleDef, SpringDef
+from sandbox.level.model import Level, SpringDef
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import Points
 
@@ -138,24 +138,29 @@ def _mapped(document: Document, motion: Motion) -> Document:
     if (motion.angle, motion.sx, motion.sy) == (0.0, 1.0, 1.0):
         return document
     level, selection = document.level, document.selection
-    images: dict[str, Points] = {}
-    bodies: dict[str, AnyBody] = {}
-    for body in chosen_bodies(level, selection):
-        new, images[body.id] = mapped_body(body, motion)
-        bodies[body.id] = validated(new)
-    inside = _placed(selection)
-    springs = _inside_springs(level, inside) if motion.factor != 1.0 or not motion.is_even else frozenset()
-    scene = make_scene(level) if springs else None
+    chosen = chosen_bodies(level, selection)
+    mapped = [mapped_body(body, motion) for body in chosen]
+    bodies = {body.id: body for body in all_validated([body for body, _ in mapped])}
+    images = {body.id: image for body, image in mapped}
+    with collector_paused(len(selection) > MANY):
+        particles = all_validated([mapped_particle(part, motion) for part in chosen_particles(level, selection)])
+        moved = exchanged(level, selection, chosen, particles)
+    if motion.factor != 1.0 or not motion.is_even:
+        moved = _stretched(level, moved, _placed(selection), motion)
+    return replace(document, level=rebuilt(moved, bodies, images) if bodies else moved)
 
-    def part(old: Definition) -> Definition:
-        if isinstance(old, ParticleDef):
-            return validated(mapped_particle(old, motion))
-        if isinstance(old, SpringDef) and old.rest_length is not None and scene is not None:
-            return validated(replaced(old, rest_length=old.rest_length * _spring_stretch(scene, old, motion)))
-        return old
 
-    level = changed(level, frozenset(item for item in selection if item.kind == "particle") | springs, part)
-    return replace(document, level=rebuilt(level, bodies, images) if bodies else level)
+def _stretched(old: Level, new: Level, selection: Selection, motion: Motion) -> Level:
+    """The new level with what a motion makes of the given rest lengths between selected things of the old."""
+    springs = _inside_springs(old, selection)
+    scene = make_scene(old)
+
+    def part(spring: Definition) -> Definition:
+        if not isinstance(spring, SpringDef) or spring.rest_length is None:
+            return spring
+        return validated(replaced(spring, rest_length=spring.rest_length * _spring_stretch(scene, spring, motion)))
+
+    return changed(new, springs, part)
 
 
 def _inside_springs(level: Level, selection: Selection) -> Selection:
