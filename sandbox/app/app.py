@@ -46,7 +46,6 @@ class App:
         self._notices: deque[Notice] = deque(maxlen=NOTICES)
         self._description = ""
         self.running = True
-        self._is_quitting = False
         self.ready = False
         self.screen: Screen | None = None
         self.gallery: Gallery | None = None
@@ -168,9 +167,6 @@ class App:
 
     def quit(self) -> None:
         """Leave after this frame, once it is clear what becomes of changes that are not saved."""
-        if self._is_quitting and self.ui.has_sheet:
-            return
-        self._is_quitting = True
         self.documents.if_saved(self._stop)
 
     def _stop(self) -> None:
@@ -203,6 +199,7 @@ class App:
             self.screen.update(frame_time, self.input.pointer_over_world(), self.profile, self.ready)
         with self.profile.part("ui"):
             self.status.update(frame_time)
+            self.documents.update()
             if self.gallery is not None:
                 self.gallery.update(self.ready)
             self.ui.update(frame_time)

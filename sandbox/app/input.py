@@ -17,7 +17,9 @@ DOUBLE_SECONDS = 0.4
 # With Ctrl these belong to the line of text: all, copy, paste, cut, undo, redo.
 EDITING_KEYS = (pygame.K_a, pygame.K_c, pygame.K_v, pygame.K_x, pygame.K_z, pygame.K_y)
 # Actions that go on while their key is held down.
-REPEATED = ("step", "zoom_in", "zoom_out", "undo", "redo", "next_particle", "previous_particle")
+REPEATED = (
+    "step", "zoom_in", "zoom_out", "undo", "redo", "next_particle", "previous_particle", "next_item", "previous_item",
+)  # fmt: skip
 ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, 1), pygame.K_DOWN: (0, -1)}
 
 Pixel = tuple[float, float]

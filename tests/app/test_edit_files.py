@@ -221,3 +221,24 @@ def test_every_shipped_level_opens_and_saves_as_it_was(edit, tmp_path):
         target = tmp_path / shipped.name
         driver.editor.level_file.save_as(driver.editor.document.level, target)
         assert target.read_bytes() == shipped.read_bytes(), shipped.name
+
+
+def test_closing_the_window_twice_asks_once_and_also_from_a_page(driver):
+    draw(driver)
+    driver.key(pygame.K_F1)
+    for _ in range(3):
+        driver.post(pygame.QUIT)
+        driver.frames()
+    driver.choose("Cancel")
+    driver.key(pygame.K_ESCAPE)
+    assert not driver.app.ui.has_sheet and driver.app.running
+
+
+def test_a_folder_that_the_autosave_cannot_write_is_said_and_editing_goes_on(edit, tmp_path):
+    (tmp_path / "data").write_text("a file where the folder should be")
+    driver = edit()
+    draw(driver)
+    driver.app.documents._autosave.settle()
+    driver.frames(2)
+    assert any("cannot be kept" in text for text in driver.notices)
+    assert len(driver.editor.document.level.particles) == 1

@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sandbox.app.dialogs import ask, choose, show_lines
 from sandbox.app.edit.screen import EditScreen
@@ -36,6 +36,9 @@ class Documents:
         self.editor: EditScreen | None = None
         self._autosave: Autosave | None = None
         self._told_of_change = False
+        self._told_fault: str | None = None
+        # The box that asks about changes, while it is open: it is not asked twice.
+        self._question: Any = None
 
     # Opening.
 
@@ -211,8 +214,12 @@ class Documents:
         if editor is None or editor.history.is_saved:
             then()
             return
+        if self._question is not None and self._question.alive():
+            return
         choices = [("Save", lambda: self._save(then)), ("Discard the changes", then)]
-        choose(self.app.ui, f"Save “{editor.document.level.name}”?", "It has changes that are not saved.", choices)
+        self._question = choose(
+            self.app.ui, f"Save “{editor.document.level.name}”?", "It has changes that are not saved.", choices
+        )
 
     def give_up(self) -> None:
         """Keep nothing in the autosave: the person has saved, or does not want it."""
@@ -227,6 +234,14 @@ class Documents:
             self._autosave.close()
 
     # Safety.
+
+    def update(self) -> None:
+        """Say once where the autosave cannot be written."""
+        fault = self._autosave.fault if self._autosave is not None else None
+        if fault != self._told_fault:
+            self._told_fault = fault
+            if fault is not None:
+                self.app.say(fault)
 
     def note(self, level: Level, path: Path | None, label: str) -> None:
         """Have the autosave follow a change."""

@@ -133,7 +133,8 @@ class EditScreen:
         self.level_changed(self.history.labels[index], before)
 
     def select(self, selection: Selection) -> None:
-        """Select items; the history has no step for it."""
+        """Select items; the history has no step for it, but what is nudged next is a step of its own."""
+        self.history.end_merge()
         self.history.select(selection)
 
     def say(self, text: str) -> None:
