@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Callable, Iterable
-from typing import Literal, NamedTuple, TypeVar
+from typing import Literal, NamedTuple
 
 from sandbox.level.bodies import AnyBody
 from sandbox.level.collector import collector_paused
@@ -24,7 +24,6 @@ class Item(NamedTuple):
 
 
 Selection = frozenset[Item]
-Part = TypeVar("Part", AnyBody, ParticleDef, SpringDef)
 
 
 def items_of(level: Level) -> tuple[Item, ...]:

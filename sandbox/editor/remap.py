@@ -97,7 +97,9 @@ def _fitted(old: AnyBody, new: AnyBody, image: Points | None, used: list[int]) -
         pinned=tuple(sorted({goes[index] for index in new.pinned})),
         cut=_followed(cut, pairs, goes, image, form),
     )
-    return _posed(fitted, form, None if shift is None else spread(image, shift, form)), goes
+    if shift is not None:
+        shift = shift[np.argsort(order)] if order is not None else spread(image, shift, form)
+    return _posed(fitted, form, shift), goes
 
 
 def _posed(body: AnyBody, form: Points, shift: Points | None) -> AnyBody:

@@ -7,6 +7,7 @@ import pytest
 from zoo import zoo
 
 from sandbox.editor.document import Document, EditError, empty_level
+from sandbox.editor.fields import set_field
 from sandbox.editor.items import Item, items_of
 from sandbox.editor.moving import align, can_scale_unevenly, distribute, mirror, move, rotate, scale
 from sandbox.editor.placing import add_body, add_particle
@@ -117,6 +118,15 @@ def test_references_follow_into_a_mirror_image():
     # A girder's second row lies on its right, so that its image begins where it ended.
     assert after.level.springs[2].b == "beam.start"
     assert after.level.bodies[2].pin == ("end",)
+
+
+def test_a_mirrored_pose_is_the_image_of_the_pose_to_the_last_particle():
+    bent = tuple((0.1 * k, 0.01 * k * k) for k in range(make_scene(alone("cube").level).mass.size))
+    before = set_field(alone("cube"), [Item("body", "cube")], "pose", bent)
+    after = mirror(before, "x", (0.0, 0.0))
+    image = {(round(-x, 9), round(y, 9)) for x, y in bent}
+    assert {(round(x, 9), round(y, 9)) for x, y in after.level.bodies[0].pose} == image
+    assert math.isclose(make_scene(after.level).rest_length.sum(), make_scene(before.level).rest_length.sum())
 
 
 def test_start_velocities_turn_with_their_body_and_stay_in_a_scale():
