@@ -218,7 +218,7 @@ class App:
             self.screen.draw(surface, self.profile)
         with self.profile.part("ui"):
             if self.screen is not None:
-                left = None if self.ui.has_sheet else 16.0
+                left = None if self.ui.has_sheet else self.screen.notices_left
                 legend = self.mode == "play"
                 self.status.draw(surface, self.screen.status(*self._figures), self.ui.units[0], left, legend)
             self.ui.draw(surface)
@@ -256,9 +256,9 @@ def _warm_up_kernels() -> None:
 
 def run_app(
     level: Level | None = None,
-    *,
     replay: Replay | None = None,
     source: Path | None = None,
+    *,
     edit: str | None = None,
     profile: bool = False,
     seconds: float | None = None,

@@ -16,6 +16,9 @@ from sandbox.editor.scene import Scene, make_scene
 if TYPE_CHECKING:
     from sandbox.app.edit.screen import EditScreen
 
+# What will hang nearer than this [pixels] to where it is drawn is not shown again.
+MOVED = 2.0
+
 
 class View:
     """Draws the canvas of a screen, and keeps what is worth keeping from frame to frame."""
@@ -62,9 +65,10 @@ class View:
             return
         if self._hanging is None or self._hanging[0] is not scene or self._hanging[1] is not position:
             self._hanging = (scene, position, replace(scene, position=position))
-        particles = np.ones(len(scene.position), dtype=np.bool_)
-        springs = np.ones(len(scene.particle_a), dtype=np.bool_)
-        self._painter.paint(surface, self._screen.camera, Part(self._hanging[2], particles, springs, ghost=True))
+        # What stays where it is would only lie over itself.
+        moved = np.abs(position - scene.position).max(axis=1) * self._screen.camera.zoom > MOVED
+        springs = moved[scene.particle_a] | moved[scene.particle_b]
+        self._painter.paint(surface, self._screen.camera, Part(self._hanging[2], moved, springs, ghost=True))
 
     def _draw_ghost(self, surface: pygame.Surface) -> None:
         screen = self._screen
