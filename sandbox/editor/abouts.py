@@ -1,5 +1,6 @@
 """Abouts: what the schema of the level format says of each field, for people who change it."""
 
+import re
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Literal
@@ -12,6 +13,8 @@ Kind = Literal[
     "number", "integer", "text", "yes_no", "choice", "flags", "point", "material", "list", "words", "form", "extras"
 ]
 
+# What a description says of null.
+_EMPTY = re.compile(r"empty = ([^.;]+)")
 _TITLES = {
     "a": "End a",
     "b": "End b",
@@ -28,7 +31,8 @@ _TITLES = {
 class About:
     """A field: kind, title, unit, limits (both included but where `above`), tooltip, choices, whether null is a value.
 
-    A `point` is of two numbers; `flags` are any of the choices; a `form` has a table of its own.
+    empty: what null stands for. A `point` is of two numbers; `flags` are any number of the choices; a `form` has
+    a table of its own.
     """
 
     kind: Kind
@@ -40,6 +44,7 @@ class About:
     tooltip: str = ""
     choices: tuple[str, ...] = ()
     optional: bool = False
+    empty: str = ""
 
 
 @cache
@@ -61,17 +66,21 @@ def _about(name: str, schema: dict[str, Any]) -> About:
     value = {**variants[0], **schema} if len(variants) == 1 else schema
     numbers = value.get("prefixItems", [value])[0]
     low = numbers.get("minimum", numbers.get("exclusiveMinimum"))
+    kind = _kind(name, value)
+    text = schema.get("description", "").replace("null = ", "empty = ").replace("`", "")
+    empty = _EMPTY.search(text)
     about = About(
-        kind=_kind(name, value),
-        title=title_of(name),
+        kind=kind,
+        title="Held particles" if name == "pinned" and kind == "list" else title_of(name),
         unit=value.get("unit", value.get("items", {}).get("unit", "")),
         low=low,
         high=numbers.get("maximum"),
         above="exclusiveMinimum" in numbers,
         choices=tuple(map(str, value.get("enum", value.get("items", {}).get("enum", _constant(value))))),
         optional=optional,
+        empty=empty[1].replace("_", " ") if empty and optional else "",
     )
-    return About(**{**about.__dict__, "tooltip": _tooltip(about, schema.get("description", ""))})
+    return About(**{**about.__dict__, "tooltip": _tooltip(about, text)})
 
 
 def _constant(value: dict[str, Any]) -> tuple[str, ...]:
@@ -97,13 +106,12 @@ def _kind(name: str, value: dict[str, Any]) -> Kind:
 
 def _tooltip(about: About, description: str) -> str:
     """The description, and the limits of a number."""
-    text = description.replace("null = ", "empty = ").replace("`", "")
     if about.kind not in ("number", "integer", "point") or (about.low is None and about.high is None):
-        return text
+        return description
     unit = f" {about.unit}" if about.unit else ""
     low = "" if about.low is None else f"{'above ' if about.above else ''}{number_text(about.low)}"
     if about.high is None:
         limits = f"At least {low}{unit}."
     else:
         limits = f"{low[:1].upper()}{low[1:]} to {number_text(about.high)}{unit}."
-    return f"{text} {limits}"
+    return f"{description} {limits}"

@@ -52,7 +52,7 @@ _LEVEL_FIELDS = ("name", "description", "author", "licence", "tags", "view")
 
 @dataclass(frozen=True)
 class Property:
-    """A field with the value that all items have, or MIXED; of a `point`, each axis by itself.
+    """A field with the value that all items have, or MIXED; of a `point`, of each axis; of `flags`, of each by name.
 
     write: makes a document with another value; None where it is only shown. axes: names of the numbers of a point.
     """
@@ -76,7 +76,7 @@ class Property:
         return (MIXED.value if self.value is MIXED else _text(self.about, self.value),)
 
     def set(self, document: Document, value: Any) -> Document:
-        """The document with another value; of a point, None leaves an axis as it is. Raises EditError."""
+        """The document with another value; an axis that is None and a flag that is not given stay. Raises EditError."""
         if self.write is None:
             raise EditError(f"{self.about.title} cannot be changed here")
         return self.write(document, value)
@@ -180,6 +180,10 @@ def _made(selection: Selection, parts: Sequence[Definition], name: str, about: A
         pairs = [part.__dict__[name] for part in parts]
         value: Any = tuple(_same(pair[axis] for pair in pairs) for axis in (0, 1))
         return [Property(name, about, value, partial(_set_axes, selection, name))]
+    if about.kind == "flags":
+        lists = [part.__dict__[name] for part in parts]
+        states = {choice: _same(choice in chosen for chosen in lists) for choice in about.choices}
+        return [Property(name, about, states, partial(_set_flags, selection, name, about.choices))]
     value = _same(part.__dict__[name] for part in parts)
     if about.kind == "extras":
         return [Property(name, about, value)] if value else []
@@ -201,6 +205,15 @@ def _set_axes(selection: Selection, field: str, document: Document, value: Any) 
     return change_field(document, selection, field, partial(_with_axes, value))
 
 
+def _set_flags(
+    selection: Selection, field: str, choices: Sequence[str], document: Document, value: dict[str, bool]
+) -> Document:
+    def change(old: Sequence[str]) -> list[str]:
+        return [choice for choice in choices if value.get(choice, choice in old)]
+
+    return change_field(document, selection, field, change)
+
+
 def _with_axes(value: Sequence[float | None], old: Sequence[float]) -> tuple[float, ...]:
     """A pair of numbers with those of a value that are given."""
     return tuple(before if new is None else new for new, before in zip(value, old, strict=True))
@@ -213,11 +226,22 @@ def _facts(level: Level, item: Item, part: Definition) -> list[Property]:
         facts.append(("name", "Name", f":{item.key}", "Name of the spring."))
     elif not isinstance(part, ParticleDef):
         particles, springs = count(part)
-        facts.append(("size", "Made of", f"{particles:,} particles, {springs:,} springs", "What it expands to."))
+        facts.append(
+            (
+                "size",
+                "Made of",
+                f"{_counted(particles, 'particle')}, {_counted(springs, 'spring')}",
+                "What it expands to.",
+            )
+        )
     joints = [f"{a} = {b}" for a, b in level.welds if item.key in (owner_of(a), owner_of(b))]
     if joints and item.kind != "spring":
         facts.append(("welds", "Joined", ", ".join(joints), "Particles that are one with another's."))
     return [Property(name, About("text", title, tooltip=tip), text) for name, title, text, tip in facts]
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
 
 
 # The shape of a jelly.
