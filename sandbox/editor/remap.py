@@ -6,10 +6,11 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.document import check_bodies, checked
+from sandbox.editor.document import EditError, check_bodies, checked, subject
 from sandbox.editor.names import rewired
 from sandbox.level.bodies import AnyBody
 from sandbox.level.expansion import named_particles
+from sandbox.level.limits import COORDINATE_LIMIT
 from sandbox.level.model import Level
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import Pairs, Points, expand
@@ -103,7 +104,12 @@ def _fitted(old: AnyBody, new: AnyBody, image: Points | None, used: list[int]) -
 
 
 def _posed(body: AnyBody, form: Points, shift: Points | None) -> AnyBody:
-    return body if shift is None else replaced(body, pose=tuple(map(tuple, (form + shift).tolist())))
+    if shift is None:
+        return body
+    pose = form + shift
+    if float(np.max(np.abs(pose))) > COORDINATE_LIMIT:
+        raise EditError(f"{subject(body)} would lie beyond the limit {COORDINATE_LIMIT:.15g}")
+    return replaced(body, pose=tuple(map(tuple, pose.tolist())))
 
 
 def _laid_on(old: Points, new: Points) -> Points:

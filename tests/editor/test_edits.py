@@ -338,3 +338,15 @@ def test_a_bridge_that_is_turned_keeps_its_shape_by_its_pose():
     mine = plain.particles_of(frozenset([body("deck")]))
     x, y = plain.position[mine].T
     assert np.allclose(turned.position[mine], np.stack([-y, x], axis=1), atol=1e-9)
+
+
+def test_a_pose_that_a_field_takes_out_of_the_world_is_refused():
+    document = add_body(Document(empty_level()), rope(1, pose=((0.0, 0.0), (20.0, 0.0))))
+    with pytest.raises(EditError, match='"rope" would lie beyond the limit 1000000'):
+        set_field(document, [body("rope")], "end", [999_990.0, 0.0])
+
+
+def test_a_rest_length_beyond_the_limit_is_not_left_to_a_loose_spring():
+    long = RopeDef(type="rope", id="r", start=(-1e6, 0.0), end=(1e6, 0.0), segments=1, pose=((0.0, 0.0), (1.0, 0.0)))
+    with pytest.raises(EditError, match="too long"):
+        break_apart(add_body(Document(empty_level()), long))
