@@ -30,8 +30,9 @@ NOTE_LINES = 3
 NOTE_LINE = 15.0
 # Characters of a line to type into; what is longer is copied and pasted as a whole.
 TEXT_LENGTH = 600
-# Choices of at most this many letters in all stand side by side, others in a menu.
+# Choices of at most this many letters in all, and so many of them, stand side by side, others in a menu.
 SIDE_BY_SIDE = 14
+MOST_SIDE_BY_SIDE = 4
 SQUARED = {"m/s^2": "m/s²"}
 
 
@@ -248,7 +249,7 @@ class Form:
     def _add_choice(self, each: Property, width: float) -> None:
         assert self.area is not None
         about, content = each.about, self.area.content
-        if about.kind == "choice" and sum(map(len, about.choices)) <= SIDE_BY_SIDE:
+        if len(about.choices) in range(1, MOST_SIDE_BY_SIDE + 1) and sum(map(len, about.choices)) <= SIDE_BY_SIDE:
             options = [(value, value, about.tooltip) for value in about.choices]
             row = self._ui.choice(self._rect(LABEL_WIDTH, width), options, partial(self._choose, each.field), content)
             self.choices[each.field] = row

@@ -5,9 +5,12 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import pygame
 
+from sandbox.app.edit.checks import ChecksPage
 from sandbox.app.edit.findings import FindingsPage
 from sandbox.app.edit.history import HistoryPage
+from sandbox.app.edit.materials import MaterialsPage
 from sandbox.app.edit.properties import PropertiesPage
+from sandbox.app.edit.settings import SettingsPage
 from sandbox.app.widgets import Ui
 
 if TYPE_CHECKING:
@@ -34,6 +37,9 @@ class Page(Protocol):
 
 PAGES: dict[str, tuple[str, str, Callable[["EditScreen", pygame.Rect, Any], Page]]] = {
     "properties": ("Properties", "What is selected", PropertiesPage),
+    "materials": ("Materials", "What springs are made of", MaterialsPage),
+    "level": ("Level", "Name, maker, view, time and solver", SettingsPage),
+    "checks": ("Checks", "What must hold of the level's run", ChecksPage),
     "history": ("History", "Every step so far", HistoryPage),
     "findings": ("Findings", "What you may have overlooked", FindingsPage),
 }
