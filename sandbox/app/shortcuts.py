@@ -55,7 +55,7 @@ SHORTCUTS = (
     Shortcut("copy", ("Ctrl+C",), "Copy", "Edit", "edit"),
     Shortcut("cut", ("Ctrl+X",), "Cut", "Edit", "edit"),
     Shortcut("paste", ("Ctrl+V",), "Paste at the pointer", "Edit", "edit"),
-    Shortcut("copy_level", ("Ctrl+Shift+C",), "Copy the whole level as JSON", "Edit", "edit"),
+    Shortcut("copy_level", ("Ctrl+Shift+C",), "Copy all as JSON", "Edit", "edit"),
     Shortcut("duplicate", ("Ctrl+D",), "Duplicate", "Edit", "edit"),
     Shortcut("array", ("Ctrl+Shift+D",), "Several copies, along a line or a circle", "Edit", "edit"),
     Shortcut("delete", ("Delete", "Backspace"), "Delete", "Edit", "edit"),
@@ -69,6 +69,7 @@ SHORTCUTS = (
     Shortcut("ungroup", ("Ctrl+Shift+G",), "Ungroup", "Edit", "edit"),
     Shortcut("break_apart", ("Ctrl+B",), "Break bodies into particles and springs", "Edit", "edit"),
     Shortcut("unjoin", ("Ctrl+U",), "Take joints apart", "Edit", "edit"),
+    Shortcut("menu", ("F10",), "More: what has no button", "Edit", "edit"),
     Shortcut("", ("Shift+click",), "Add; Ctrl+click: take away", "Select", "edit"),
     Shortcut("", ("Double click",), "Select the whole group", "Select", "edit"),
     Shortcut("select_all", ("Ctrl+A",), "Select everything", "Select", "edit"),
@@ -120,8 +121,8 @@ SHORTCUTS = (
 
 _NAMES = {
     "Escape": pygame.K_ESCAPE, "Space": pygame.K_SPACE, "Enter": pygame.K_RETURN, "Home": pygame.K_HOME,
-    "F1": pygame.K_F1, "F11": pygame.K_F11, ".": pygame.K_PERIOD, "+": pygame.K_PLUS, "-": pygame.K_MINUS,
-    "=": pygame.K_EQUALS, "Delete": pygame.K_DELETE, "Backspace": pygame.K_BACKSPACE,
+    "F1": pygame.K_F1, "F10": pygame.K_F10, "F11": pygame.K_F11, ".": pygame.K_PERIOD, "+": pygame.K_PLUS,
+    "-": pygame.K_MINUS, "=": pygame.K_EQUALS, "Delete": pygame.K_DELETE, "Backspace": pygame.K_BACKSPACE,
     "PageUp": pygame.K_PAGEUP, "PageDown": pygame.K_PAGEDOWN,
 }  # fmt: skip
 _TWINS = {

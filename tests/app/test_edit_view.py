@@ -7,6 +7,7 @@ from conftest import small_level
 
 from sandbox.app.camera import Camera
 from sandbox.app.colours import BACKGROUND
+from sandbox.app.edit.actions import MENU
 from sandbox.app.edit.canvas import PLAIN_FROM, Chosen, ScenePainter
 from sandbox.app.edit.handles import Handles
 from sandbox.app.shortcuts import shortcuts
@@ -142,3 +143,19 @@ def test_no_action_fails_with_nothing_or_something_selected(driver):
                 driver.key(pygame.K_ESCAPE)
             if driver.app.mode == "play":
                 driver.key(pygame.K_e)
+
+
+def test_everything_that_is_done_by_key_is_done_by_a_button_too(driver):
+    by_gesture = {"press", "finish", "cancel", "zoom_in", "zoom_out", "next_item", "previous_item", "numbers"}
+    by_other_means = {"fullscreen", "larger", "smaller", "quit", "recordings"}
+    shown = (
+        set(driver.editor.bar.buttons.by_action) | {f"tool_{name}" for name in driver.editor.palette.tools} | set(MENU)
+    )
+    in_boxes = {"group", "ungroup", "break_apart", "unjoin"}
+    assert set(driver.app.actions) - shown - by_gesture - by_other_means - in_boxes == set()
+
+
+def test_the_menu_offers_what_has_no_button(driver):
+    driver.click_widget(driver.editor.bar.buttons.by_action["menu"])
+    driver.choose("Select everything  [Ctrl+A]")
+    assert len(driver.editor.document.selection) == 2

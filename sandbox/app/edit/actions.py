@@ -9,6 +9,7 @@ from sandbox.app.camera import Box
 from sandbox.app.dialogs import choose, fill_in
 from sandbox.app.edit.bar import TOOLS
 from sandbox.app.edit.hands import DrawHand
+from sandbox.app.shortcuts import shortcuts
 from sandbox.editor.copying import array_circle, array_line, duplicate
 from sandbox.editor.deleting import break_apart, delete
 from sandbox.editor.document import Document
@@ -24,6 +25,12 @@ if TYPE_CHECKING:
 # A copy is put this many steps of the grid to the right of and below what it is of.
 COPY_STEPS = 2
 COPY_LIMIT = 1_000
+
+# Actions that have no button in the bar.
+MENU = (
+    "copy", "cut", "paste", "copy_level", "select_all", "select_material", "forward", "backward", "recent", "open_file",
+    "save_as", "revert",
+)  # fmt: skip
 
 Edge = Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]
 Place = Literal["front", "forward", "backward", "back"]
@@ -55,6 +62,7 @@ def edit_actions(screen: "EditScreen") -> dict[str, Callable[[], object]]:
         "mirror": lambda: _ask_mirror(screen),
         "array": lambda: _ask_array(screen),
         "parts": lambda: _ask_parts(screen),
+        "menu": lambda: _show_menu(screen),
         "group": lambda: _edit_selection(screen, "Group", group),
         "ungroup": lambda: _edit_selection(screen, "Ungroup", ungroup),
         "break_apart": lambda: _edit_selection(screen, "Break apart", break_apart),
@@ -76,6 +84,13 @@ def edit_actions(screen: "EditScreen") -> dict[str, Callable[[], object]]:
         "fit": screen.fit,
         "panel": screen.toggle_side,
     }
+
+
+def _show_menu(screen: "EditScreen") -> None:
+    """Offer what has no button of its own."""
+    entries = [entry for entry in shortcuts("edit") if entry.action in MENU]
+    choices = [(f"{entry.label}  [{entry.keys[0]}]", screen.actions[entry.action]) for entry in entries]
+    choose(screen.ui, "More", "", choices, columns=2)
 
 
 def _has_selection(screen: "EditScreen") -> bool:
@@ -155,8 +170,8 @@ def _ask_align(screen: "EditScreen") -> None:
 
 
 def _ask_parts(screen: "EditScreen") -> None:
-    names = ("group", "ungroup", "break_apart", "unjoin", "select_material")
-    labels = ("Group", "Ungroup", "Break bodies apart", "Take joints apart", "Select by material")
+    names = ("group", "ungroup", "break_apart", "unjoin")
+    labels = ("Group", "Ungroup", "Break bodies apart", "Take joints apart")
     choices = [(label, screen.actions[name]) for label, name in zip(labels, names, strict=True)]
     choose(screen.ui, "Parts", "Groups are selected and moved together. A body that is broken apart "
            "becomes loose particles and springs.", choices)  # fmt: skip

@@ -25,13 +25,13 @@ LEFT = (
     (("undo", "undo"), ("redo", "redo")),
     (("new", "new"), ("open", "open"), ("save", "save")),
     (
-        ("duplicate", "duplicate"), ("delete", "delete"), ("mirror", "mirror"), ("array", "array"), ("group", "group"),
+        ("duplicate", "duplicate"), ("delete", "delete"), ("mirror", "mirror"), ("array", "array"), ("parts", "group"),
         ("align", "align"), ("order", "order"),
     ),
     (("snap", "snap"), ("forecast", "forecast")),
 )  # fmt: skip
-RIGHT = (("fit", "fit"), ("panel", "panel"))
-NEEDS_SELECTION = ("duplicate", "delete", "mirror", "array", "group", "align", "order")
+RIGHT = (("menu", "menu"), ("fit", "fit"), ("panel", "panel"))
+NEEDS_SELECTION = ("duplicate", "delete", "mirror", "array", "parts", "align", "order")
 MARGIN = 14.0
 GROUP_GAP = 14.0
 
