@@ -231,11 +231,20 @@ class Ui:
             return True
         if event.type == pygame.KEYDOWN and self._press_key(event):
             return True
+        if event.type == pygame.MOUSEWHEEL and self._turn_field(event.precise_y or event.y):
+            return True
         if event.type == pygame.MOUSEBUTTONDOWN:
             self._focus = self._left = None
         used = bool(self.manager.process_events(event))
         self._finish_left_fields()
         return used
+
+    def _turn_field(self, notches: float) -> bool:
+        """Step the value of the line under the mouse, where it has steps."""
+        at = self.manager.get_mouse_position()
+        under = (self._fields[widget] for widget in self._ring() if widget in self._fields and widget.hover_point(*at))
+        field = next(under, None)
+        return field is not None and field.step(1 if notches > 0.0 else -1)
 
     def _finish_left_fields(self) -> None:
         for field in list(self._fields.values()):
@@ -253,7 +262,8 @@ class Ui:
         if event.key == pygame.K_ESCAPE:
             return self._escape(typed_into)
         if typed_into is not None:
-            return False
+            by = {pygame.K_UP: 1, pygame.K_DOWN: -1}.get(event.key)
+            return by is not None and typed_into.step(by)
         if self._focus is None:
             return False
         if isinstance(self._focus, Painted):

@@ -9,6 +9,7 @@ import json
 
 import pygame
 import pytest
+from person import VirtualScreen
 
 from sandbox.app.app import App
 from sandbox.app.display import Display
@@ -191,3 +192,11 @@ def edit(open_app):
 def driver(open_app):
     """The app on the small level."""
     return open_app(small_level())
+
+
+@pytest.fixture
+def screen(tmp_path):
+    """A virtual screen of the window's size."""
+    virtual = VirtualScreen(tmp_path)
+    yield virtual
+    virtual.close()

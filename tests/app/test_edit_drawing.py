@@ -135,6 +135,25 @@ def test_options_in_the_row_change_what_is_drawn_next_and_a_wrong_one_is_said(ed
     assert driver.editor.document.level.bodies[1].segments == 7
 
 
+def test_the_wheel_over_an_option_and_the_arrows_in_it_step_its_value(edit):
+    driver = edit()
+    driver.key(pygame.K_a)
+    mass = driver.editor.options.fields["mass"].entry
+    zoom = driver.editor.camera.zoom
+    driver.move(mass.rect.center)
+    for _ in range(4):
+        driver.post(pygame.MOUSEWHEEL, x=0, y=1, precise_x=0.0, precise_y=1.0)
+    driver.frames()
+    assert mass.get_text() == "20" and driver.editor.camera.zoom == zoom
+    driver.app.ui.focus_on(mass)
+    driver.type("70")
+    driver.key(pygame.K_UP)
+    assert mass.get_text() == "100"
+    driver.key(pygame.K_ESCAPE)
+    driver.click_at(0, 0)
+    assert driver.editor.document.level.particles[0].mass == 100.0
+
+
 def test_plus_and_minus_count_the_parts_while_drawing_and_zoom_otherwise(edit):
     driver = edit()
     driver.key(pygame.K_r)

@@ -9,7 +9,7 @@ import pygame
 from sandbox.app.edit.hands import DrawHand
 from sandbox.app.fields import Field
 from sandbox.editor.document import EditError
-from sandbox.editor.drawing_options import About, described
+from sandbox.editor.drawing_options import About, described, stepped
 from sandbox.editor.moving import move, rotate, scale
 from sandbox.level.limits import DEFAULT_MATERIAL
 
@@ -120,7 +120,10 @@ class OptionsRow:
             return
         self._add_label(about.label + unit, "@muted")
         if about.kind != "material":
-            self._add_field(name, partial(self._type_option, hand, name, about), ENTRY_WIDTH, about.text)
+            tip = f"{about.text} The wheel or Up and Down change it."
+            self._add_field(name, partial(self._type_option, hand, name, about), ENTRY_WIDTH, tip)
+            if name in self.fields:
+                self.fields[name].turn = partial(self._turn_option, hand, name, about)
         elif self._room(MENU_WIDTH):
             chosen = getattr(hand.drawing.options, name)
             if chosen not in materials:
@@ -182,6 +185,19 @@ class OptionsRow:
         if about.kind == "count" and value == int(value):
             return self._set(hand, name, int(value))
         return self._set(hand, name, value)
+
+    def _turn_option(self, hand: DrawHand, name: str, about: About, by: int) -> None:
+        """Step a value up or down; a number of parts from the one that fits."""
+        if name == hand.drawing.counted:
+            hand.adjust(by)
+        else:
+            self._set(hand, name, stepped(about, getattr(hand.drawing.options, name), by))
+        self._show_option(name, getattr(hand.drawing.options, name))
+
+    def _show_option(self, name: str, value: float | None) -> None:
+        text = "" if value is None else f"{value:g}"
+        self.fields[name].text = text
+        self.fields[name].entry.set_text(text)
 
     def _number(self, label: str, text: str) -> float | None:
         try:
