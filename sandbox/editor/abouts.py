@@ -10,7 +10,19 @@ from pydantic import BaseModel
 from sandbox.editor.typed import number_text
 
 Kind = Literal[
-    "number", "integer", "text", "yes_no", "choice", "flags", "point", "material", "list", "words", "form", "extras"
+    "number",
+    "integer",
+    "text",
+    "yes_no",
+    "choice",
+    "flags",
+    "point",
+    "material",
+    "list",
+    "pairs",
+    "words",
+    "form",
+    "extras",
 ]
 
 # What a description says of null.
@@ -31,8 +43,8 @@ _TITLES = {
 class About:
     """A field: kind, title, unit, limits (both included but where `above`), tooltip, choices, whether null is a value.
 
-    empty: what null stands for. A `point` is of two numbers; `flags` are any number of the choices; a `form` has
-    a table of its own.
+    empty: what null stands for. A `point` is of two numbers; `flags` are any number of the choices, `pairs`
+    lists of numbers in a list; a `form` has a table of its own.
     """
 
     kind: Kind
@@ -99,7 +111,7 @@ def _kind(name: str, value: dict[str, Any]) -> Kind:
             return "point"
         if "enum" in items or "const" in items:
             return "flags"
-        return "words" if items.get("type") == "string" else "list"
+        return {"string": "words", "array": "pairs"}.get(items.get("type"), "list")  # type: ignore[return-value]
     kinds: dict[str, Kind] = {"number": "number", "integer": "integer", "boolean": "yes_no"}
     return kinds.get(value.get("type", ""), "text")
 

@@ -21,6 +21,7 @@ from sandbox.editor.typed import (
     read_line,
     read_list,
     read_number,
+    read_pairs,
     read_words,
 )
 from sandbox.level.bodies import SHAPES, AnyBody, BoxShape, CircleShape, JellyDef, PolygonShape, Shape, file_order
@@ -90,7 +91,8 @@ class Property:
         if about.optional and not text.strip():
             return None
         read: dict[str, Callable[[str, str], Any]] = {
-            "number": read_number, "integer": read_integer, "list": read_list, "words": read_words,
+            "number": read_number, "integer": read_integer, "list": read_list, "pairs": read_pairs,
+            "words": read_words,
         }  # fmt: skip
         if about.kind in read:
             return read[about.kind](about.title, text)
@@ -110,7 +112,7 @@ def _text(about: About, value: Any) -> str:
         return ""
     if about.kind in ("number", "integer"):
         return number_text(value)
-    if about.kind in ("list", "words"):
+    if about.kind in ("list", "pairs", "words"):
         return list_text(value)
     if about.kind == "extras":
         return json.dumps(value, ensure_ascii=False)

@@ -71,16 +71,24 @@ def read_integer(title: str, text: str) -> int:
 
 
 def read_list(title: str, text: str) -> list[Any]:
-    """A list of numbers, or of lists of them, with or without brackets around. Raises EditError."""
+    """A list of numbers, with or without brackets around. Raises EditError."""
+    values = _read_json(title, text, "a list such as 0, 4, 5")
+    return values[0] if len(values) == 1 and isinstance(values[0], list) else values
+
+
+def read_pairs(title: str, text: str) -> list[Any]:
+    """A list of lists of numbers, with or without brackets around the whole. Raises EditError."""
+    values = _read_json(title, text, "a list such as [0, 1], [2, 3]")
+    is_whole = len(values) == 1 and isinstance(values[0], list) and all(isinstance(part, list) for part in values[0])
+    return values[0] if is_whole else values
+
+
+def _read_json(title: str, text: str, wanted: str) -> list[Any]:
     try:
-        values = json.loads(f"[{text}]", parse_constant=_refuse_constant)
+        values: list[Any] = json.loads(f"[{text}]", parse_constant=_refuse_constant)
     except (ValueError, RecursionError):
-        _refuse(title, text, "a list such as 0, 4, 5 or [0, 1], [2, 3]")
-    # Brackets around the whole: what is inside is meant, unless it is the one pair of numbers of a list of pairs.
-    if len(values) == 1 and isinstance(values[0], list) and (not values[0] or isinstance(values[0][0], list)):
-        inside: list[Any] = values[0]
-        return inside
-    return list(values)
+        _refuse(title, text, wanted)
+    return values
 
 
 def read_words(title: str, text: str) -> list[str]:

@@ -150,7 +150,7 @@ class Form:
         return each.field, about.kind, about.title, about.unit, about.choices, each.axes, lines, self._is_long(each)
 
     def _is_long(self, each: Property) -> bool:
-        return each.about.kind == "list" and len(each.texts[0]) > TEXT_LENGTH
+        return each.about.kind in ("list", "pairs") and len(each.texts[0]) > TEXT_LENGTH
 
     def _lines(self, each: Property) -> int:
         """Lines that a text takes which is only shown."""
