@@ -1,4 +1,4 @@
-"""Person: a real window on a virtual screen, driven by xdotool from outside; its title and its pixels are all it sees."""
+"""Person: drives a real window on a virtual screen from outside by xdotool; sees its title and its pixels alone."""
 
 import os
 import shutil

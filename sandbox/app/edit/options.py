@@ -34,8 +34,8 @@ class OptionsRow:
         self._x = 0.0
         self._made: list[Any] = []
         self.fields: dict[str, Field] = {}
-        self._flags: dict[str, Any] = {}
-        self._menus: dict[str, Any] = {}
+        self.flags: dict[str, Any] = {}
+        self.menus: dict[str, Any] = {}
 
     def refresh(self) -> None:
         """Show the options, or the selection's numbers, as they are now."""
@@ -55,7 +55,7 @@ class OptionsRow:
     def _remake(self, hand: object, materials: tuple[str, ...]) -> None:
         for widget in self._made:
             self._ui.remove(widget)
-        self._made, self.fields, self._flags, self._menus, self._x = [], {}, {}, {}, GAP
+        self._made, self.fields, self.flags, self.menus, self._x = [], {}, {}, {}, GAP
         if isinstance(hand, DrawHand):
             self._add_label(self._screen.tool.capitalize() if self._screen.tool != "box" else "Jelly", "@heading")
             for name, about in described(hand.drawing.options).items():
@@ -114,7 +114,7 @@ class OptionsRow:
                 button = self._ui.button(
                     self._rect(width), about.label, toggle, self.back, style="@segment", tip=about.text
                 )
-                self._flags[name] = button
+                self.flags[name] = button
                 self._made.append(button)
                 self._x += 6
             return
@@ -131,7 +131,7 @@ class OptionsRow:
                 self._set(hand, name, chosen)
             choose = partial(self._choose, hand, name)
             menu = self._ui.menu(self._rect(MENU_WIDTH), materials, chosen, choose, self.back)
-            self._menus[name] = menu
+            self.menus[name] = menu
             self._made.append(menu)
             self._x += GAP
 
@@ -142,11 +142,11 @@ class OptionsRow:
         for name, field in self.fields.items():
             value = getattr(options, name)
             field.show("" if value is None else f"{value:g}")
-        for name, button in self._flags.items():
+        for name, button in self.flags.items():
             if getattr(options, name) != button.is_selected:
                 (button.select if getattr(options, name) else button.unselect)()
 
-        for name, menu in self._menus.items():
+        for name, menu in self.menus.items():
             if menu.selected_option[0] != getattr(options, name):
                 self._ui.replace_menu(menu, getattr(options, name))
 
