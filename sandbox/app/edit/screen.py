@@ -47,6 +47,8 @@ PALETTE_WIDTH = 52.0
 SIDE_WIDTH = 292.0
 # A nudge with Shift is this many steps of the grid.
 NUDGE_LEAP = 10
+# Of more items than this the panel at the side follows a frame later.
+LARGE_SELECTION = 1_000
 # View [m] of a level in which nothing is yet.
 FIRST_VIEW: Box = (-6.0, -3.0, 6.0, 4.0)
 
@@ -71,6 +73,8 @@ class EditScreen:
         self.pointer: Pixel | None = None
         self._scene: Scene | None = None
         self._box: tuple[Scene, Selection, Box | None] | None = None
+        self._seen: Document | None = None
+        self._is_side_late = False
         self.watch = Watch(self)
         self.clipboard = Clipboard(self)
         self.hands: dict[str, Hand] = {
@@ -316,7 +320,14 @@ class EditScreen:
         self.bar.show(self)
         self.palette.show(self.tool)
         self.options.refresh()
-        if self.side is not None:
+        self._refresh_side()
+
+    def _refresh_side(self) -> None:
+        """Refresh the panel; where much is selected, which takes it long, a frame after the canvas has answered."""
+        is_large = len(self.document.selection) > LARGE_SELECTION
+        is_new = is_large and self.document is not self._seen and not self._is_side_late
+        self._seen, self._is_side_late = self.document, is_new
+        if self.side is not None and not is_new:
             self.side.refresh()
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
