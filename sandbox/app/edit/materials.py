@@ -48,6 +48,7 @@ class MaterialsPage:
         self.sliders: dict[str, LogSlider] = {}
         self._made_for: tuple[object, ...] = ()
         self._shown: tuple[object, ...] = ()
+        self._slid: tuple[str, float] | None = None
         self._uses: tuple[object, object, Counter[str], Counter[str]] | None = None
         self._widgets: list[Any] = []
         self._y = 0.0
@@ -113,8 +114,8 @@ class MaterialsPage:
         if name in ("k", "c"):
             return
         place = self._ui.rect(-4, self._y - 4, self._inside + 8, ROW)
-        slide, end = partial(self._slide, name), self._screen.history.end_merge
-        self.sliders[name] = LogSlider(self._ui, place, slide, end, self.area.content)
+        slide = partial(self._slide, name)
+        self.sliders[name] = LogSlider(self._ui, place, slide, self._end_slide, self.area.content)
         self._widgets.append(self.sliders[name])
         self._y += ROW - 2
 
@@ -129,6 +130,7 @@ class MaterialsPage:
 
     def refresh(self) -> None:
         """Show the materials as they are now."""
+        self._take_slide()
         self.area.follow_focus()
         level = self._screen.document.level
         fresh = (level.materials, level.bodies, level.springs, level.settings.tick_rate, self.chosen)
@@ -204,8 +206,18 @@ class MaterialsPage:
         return self._edit(label, lambda document: set_material(document, name, material), merge)
 
     def _slide(self, name: str, value: float) -> None:
-        key = f"{self.chosen} {name}"
-        self._put(SHORT[name][:2], replaced(self._material, **{name: value}), merge=key)
+        # The mouse moves more often than a large level can be changed.
+        self._slid = (name, value)
+
+    def _take_slide(self) -> None:
+        if self._slid is not None:
+            (name, value), self._slid = self._slid, None
+            key = f"{self.chosen} {name}"
+            self._put(SHORT[name][:2], replaced(self._material, **{name: value}), merge=key)
+
+    def _end_slide(self) -> None:
+        self._take_slide()
+        self._screen.history.end_merge()
 
     def _choose_law(self, law: str) -> None:
         is_hooke = isinstance(self._material, HookeMaterial)
