@@ -101,6 +101,8 @@ SHORTCUTS = (
     Shortcut("fit", ("F", "Home"), "Fit to view; again: to all particles", "View"),
     Shortcut("fullscreen", ("F11",), "Full screen", "View"),
     Shortcut("panel", ("H",), "Hide or show the panel", "View"),
+    Shortcut("next_page", ("Ctrl+Tab",), "Next page of the panel", "View", "edit"),
+    Shortcut("previous_page", ("Ctrl+Shift+Tab",), "Previous page of the panel", "View", "edit"),
     Shortcut("larger", ("Ctrl++", "Ctrl+="), "Larger widgets", "View"),
     Shortcut("smaller", ("Ctrl+-",), "Smaller widgets", "View"),
     Shortcut("gallery", ("G",), "Levels", "Files", "play"),
@@ -109,6 +111,7 @@ SHORTCUTS = (
     Shortcut("save", ("Ctrl+S",), "Save the run so far as a replay", "Files", "play"),
     Shortcut("recordings", ("Ctrl+L",), "Saved replays", "Files", "play"),
     Shortcut("help", ("F1",), "This page", "Files"),
+    Shortcut("tour", ("Shift+F1",), "The tour: a first level in six steps", "Files"),
     Shortcut("quit", ("Ctrl+Q",), "Quit", "Files"),
     Shortcut("", ("Arrows",), "Move the keyboard cursor; Shift: faster", "Keyboard", "play"),
     Shortcut("press", ("Enter",), "Press or release the tool at the cursor", "Keyboard", "play"),
@@ -123,7 +126,7 @@ _NAMES = {
     "Escape": pygame.K_ESCAPE, "Space": pygame.K_SPACE, "Enter": pygame.K_RETURN, "Home": pygame.K_HOME,
     "F1": pygame.K_F1, "F10": pygame.K_F10, "F11": pygame.K_F11, ".": pygame.K_PERIOD, "+": pygame.K_PLUS,
     "-": pygame.K_MINUS, "=": pygame.K_EQUALS, "Delete": pygame.K_DELETE, "Backspace": pygame.K_BACKSPACE,
-    "PageUp": pygame.K_PAGEUP, "PageDown": pygame.K_PAGEDOWN,
+    "PageUp": pygame.K_PAGEUP, "PageDown": pygame.K_PAGEDOWN, "Tab": pygame.K_TAB,
 }  # fmt: skip
 _TWINS = {
     pygame.K_KP_ENTER: pygame.K_RETURN, pygame.K_KP_PLUS: pygame.K_PLUS, pygame.K_KP_MINUS: pygame.K_MINUS,

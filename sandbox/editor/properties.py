@@ -44,7 +44,7 @@ _AXES = ("x", "y")
 # Sections of the fields that are not of a body's form, in their order.
 _SECTIONS = {
     "Mass": ("mass", "particle_mass", "end_mass", "hub_mass", "masses"),
-    "Springs": ("material", "a", "b", "rest_length", "cut"),
+    "Springs": ("material", "rest_length", "cut"),
     "Start": ("pin", "pinned", "velocity", "velocities", "pose"),
     "Other": ("group", "extras"),
 }
@@ -133,7 +133,8 @@ def properties(document: Document) -> tuple[Section, ...]:
     kinds = dict.fromkeys(map(type, parts))
     made = [made for name, about in _common(kinds, len(parts)).items() for made in _made(selection, parts, name, about)]
     if len(parts) == 1:
-        made += _facts(level, next(iter(selection)), parts[0])
+        facts = _facts(level, next(iter(selection)), parts[0])
+        made = [*facts, *made] if isinstance(parts[0], SpringDef) else [*made, *facts]
     by_section: dict[str, list[Property]] = {"": [], **{title: [] for title in _SECTIONS}}
     for each in made:
         by_section[_section_of(each.field)].append(each)

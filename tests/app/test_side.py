@@ -251,6 +251,17 @@ def test_every_page_opens_by_mouse_and_by_keyboard(driver):
         assert driver.editor.side.tab == tab
 
 
+def test_ctrl_and_tab_turn_the_pages_also_while_typing(driver):
+    choose(driver, ROPE)
+    driver.app.ui.focus_on(entry(driver, "particle_mass").entry)
+    driver.type("7")
+    driver.key(pygame.K_TAB, pygame.KMOD_CTRL)
+    assert driver.editor.side.tab == "materials" and body(driver).particle_mass == 7.0
+    driver.key(pygame.K_TAB, pygame.KMOD_CTRL | pygame.KMOD_SHIFT)
+    driver.key(pygame.K_TAB, pygame.KMOD_CTRL | pygame.KMOD_SHIFT)
+    assert driver.editor.side.tab == "findings"
+
+
 def test_the_page_stays_when_the_window_is_laid_out_anew(driver):
     open_tab(driver, "level")
     driver.app.rebuild()
@@ -429,6 +440,14 @@ def test_a_list_too_long_for_a_line_is_counted(edit):
 
 # A window hands no null character on, and its font cannot draw one.
 TYPED = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=20)
+
+
+def test_many_tags_are_not_lost_by_leaving_their_field(edit):
+    driver = edit(small_level(tags=[f"a word of some length {k}" for k in range(60)]))
+    open_tab(driver, "level")
+    for _ in range(12):
+        driver.key(pygame.K_TAB)
+    assert len(level(driver).tags) == 60 and len(driver.editor.history.labels) == 1
 
 
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -83,6 +83,8 @@ def edit_actions(screen: "EditScreen") -> dict[str, Callable[[], object]]:
         "zoom_out": lambda: _adjust_or_zoom(screen, -1),
         "fit": screen.fit,
         "panel": screen.toggle_side,
+        "next_page": lambda: _turn_page(screen, 1),
+        "previous_page": lambda: _turn_page(screen, -1),
     }
 
 
@@ -91,6 +93,11 @@ def _show_menu(screen: "EditScreen") -> None:
     entries = [entry for entry in shortcuts("edit") if entry.action in MENU]
     choices = [(f"{entry.label}  [{entry.keys[0]}]", screen.actions[entry.action]) for entry in entries]
     choose(screen.ui, "More", "", choices, columns=2)
+
+
+def _turn_page(screen: "EditScreen", by: int) -> None:
+    if screen.side is not None:
+        screen.side.turn(by)
 
 
 def _has_selection(screen: "EditScreen") -> bool:

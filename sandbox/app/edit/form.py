@@ -150,7 +150,7 @@ class Form:
         return each.field, about.kind, about.title, about.unit, about.choices, each.axes, lines, self._is_long(each)
 
     def _is_long(self, each: Property) -> bool:
-        return each.about.kind in ("list", "pairs") and len(each.texts[0]) > TEXT_LENGTH
+        return each.about.kind in ("list", "pairs", "words") and len(each.texts[0]) > TEXT_LENGTH
 
     def _lines(self, each: Property) -> int:
         """Lines that a text takes which is only shown."""
@@ -230,7 +230,9 @@ class Form:
         assert self.area is not None
         commit = partial(self._type, each.field, axis)
         field = self._ui.field(self._rect(x, width), "", commit, self.area.content, TEXT_LENGTH)
-        field.entry.placeholder_text = each.about.empty
+        if each.about.empty:
+            field.entry.placeholder_text = f"({each.about.empty})"
+            field.entry.set_text("")
         axis_name = f"{each.axes[axis]}. " if each.about.kind == "point" else ""
         field.entry.set_tooltip(escape(axis_name + each.about.tooltip, quote=False))
         self._keep(field.entry, f"{each.field} {axis}")

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 import pygame
+from pygame_gui.elements import UIButton
 
 from sandbox.app.edit.checks import ChecksPage
 from sandbox.app.edit.findings import FindingsPage
@@ -72,6 +73,15 @@ class Side:
             self.tab = tab
             self.page = self._made()
 
+    def turn(self, by: int) -> None:
+        """Show the page that many tabs further, and give its tab the keyboard."""
+        names = list(PAGES)
+        self.choose(names[(names.index(self.tab) + by) % len(names)])
+        self._ui.focus_on(self._tab_button(self.tab))
+
+    def _tab_button(self, tab: str) -> UIButton:
+        return next(row.buttons[tab] for row in self._rows if tab in row.buttons)
+
     def _made(self) -> Page:
         for row in self._rows:
             row.show(self.tab if self.tab in row.buttons else "")
@@ -86,7 +96,7 @@ class Side:
 
     def _count_findings(self) -> None:
         count = len(self._screen.findings)
-        button = next(row.buttons["findings"] for row in self._rows if "findings" in row.buttons)
+        button = self._tab_button("findings")
         text = f"Findings {count}" if count else "Findings"
         if button.text != text:
             button.set_text(text)
