@@ -12,6 +12,7 @@ from sandbox.app.colours import BACKGROUND
 from sandbox.app.dialogs import show_lines
 from sandbox.app.display import SCALE_RANGE, Display
 from sandbox.app.edit.documents import Documents
+from sandbox.app.edit.tour import Guide
 from sandbox.app.files import FileActions
 from sandbox.app.gallery import Gallery
 from sandbox.app.help import show_help
@@ -52,6 +53,7 @@ class App:
         self.input = Input(self)
         self.files = FileActions(self)
         self.documents = Documents(self)
+        self.guide = Guide(self)
         self._progress = Progress(self)
         self._own_actions = self._actions()
         self._figures = (0.0, 0.0)
@@ -84,6 +86,7 @@ class App:
         self.status = StatusLine(self.ui, self._notices)
         if self.screen is not None:
             self.screen.build(self.ui)
+        self.guide.build()
 
     def rebuild(self) -> None:
         """Lay everything out anew, after the window or the scale changed."""
@@ -150,7 +153,8 @@ class App:
             "fullscreen": self.display.toggle_fullscreen,
             "larger": lambda: self._rescale(1.125),
             "smaller": lambda: self._rescale(1 / 1.125),
-            "help": lambda: show_help(self.ui, self.mode),
+            "help": lambda: show_help(self.ui, self.mode, self.guide.begin),
+            "tour": self.guide.begin,
             "quit": self.quit,
         }
 
@@ -202,6 +206,7 @@ class App:
             self.documents.update()
             if self.gallery is not None:
                 self.gallery.update(self.ready)
+            self.guide.update(frame_time)
             self.ui.update(frame_time)
         self._draw()
         with self.profile.part("flip"):
@@ -222,6 +227,7 @@ class App:
                 legend = self.mode == "play"
                 self.status.draw(surface, self.screen.status(*self._figures), self.ui.units[0], left, legend)
             self.ui.draw(surface)
+            self.guide.draw(surface)
             if (self.screen is None or self.ui.has_sheet) and not self.ui.shows_page:
                 self.status.draw_notices(surface, 16.0)
             if not self.ready:
@@ -270,6 +276,7 @@ def run_app(
     frame's time goes, at the end. scale: size of the widgets; None = the display's.
     """
     app = App(Display(scale), level, replay, source)
+    app.guide.may_offer = True
     if edit is not None:
         app.close_gallery()
         app.documents.begin(edit)

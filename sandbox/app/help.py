@@ -1,5 +1,6 @@
 """Help: the page of all shortcuts."""
 
+from collections.abc import Callable
 from typing import Any
 
 import pygame
@@ -19,8 +20,8 @@ TOP = 62.0
 MARGIN = 28.0
 
 
-def show_help(ui: Ui, mode: Mode) -> None:
-    """Cover the window by the list of a mode's shortcuts, until it is closed."""
+def show_help(ui: Ui, mode: Mode, tour: Callable[[], object]) -> None:
+    """Cover the window by the list of a mode's shortcuts, until it is closed; tour: what begins the tour."""
     width, height = ui.units
     entries = shortcuts(mode)
     most = max(1, min(int((width - 20) // NARROWEST_COLUMN), MOST_COLUMNS))
@@ -34,10 +35,15 @@ def show_help(ui: Ui, mode: Mode) -> None:
     def close() -> None:
         ui.close_sheet(sheet)
 
+    def begin_tour() -> None:
+        close()
+        tour()
+
     sheet = ui.open_sheet(close, is_page=True)
     place = ui.rect((width - box_width) / 2, (height - box_height) / 2, box_width, box_height)
     box = ui.panel(place, sheet, "@dialog")
     ui.label(ui.rect(MARGIN, 18, 300, 28), "Shortcuts", box, "@title")
+    ui.button(ui.rect(box_width - MARGIN - 218, 16, 120, 32), "Take the tour", begin_tour, box, style="@quiet")
     button = ui.button(ui.rect(box_width - MARGIN - 90, 16, 90, 32), "Close", close, box)
     ShortcutTable(ui, ui.rect(MARGIN, TOP, box_width - 2 * MARGIN, box_height - TOP - 12), columns, box).repaint()
     ui.focus_on(button)

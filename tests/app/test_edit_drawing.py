@@ -154,6 +154,20 @@ def test_the_wheel_over_an_option_and_the_arrows_in_it_step_its_value(edit):
     assert driver.editor.document.level.particles[0].mass == 100.0
 
 
+def test_the_material_of_what_is_drawn_is_chosen_from_a_menu(edit):
+    driver = edit()
+    driver.key(pygame.K_r)
+    picker = driver.editor.options.menus["material"]
+    assert picker.shown.text == "steel"
+    driver.click_widget(picker)
+    driver.key(pygame.K_DOWN)
+    driver.key(pygame.K_RETURN)
+    driver.frames()
+    assert picker.shown.text == "rubber"
+    driver.drag((-2, 1), (0, 1), (2, 1))
+    assert driver.editor.document.level.bodies[0].material == "rubber"
+
+
 def test_plus_and_minus_count_the_parts_while_drawing_and_zoom_otherwise(edit):
     driver = edit()
     driver.key(pygame.K_r)

@@ -53,9 +53,14 @@ class Documents:
             except LevelError as error:
                 show_lines(self.app.ui, f"{name} cannot be opened", error.faults)
 
-    def new(self) -> None:
-        """Begin with an empty sheet."""
-        self.if_saved(lambda: self._show(empty_level(), LevelFile(), "New"))
+    def new(self, then: Callable[[], object] = lambda: None) -> None:
+        """Begin with an empty sheet; then: what is done once it is there."""
+
+        def begin() -> None:
+            self._show(empty_level(), LevelFile(), "New")
+            then()
+
+        self.if_saved(begin)
 
     def edit_level(self, level: Level, label: str = "Open") -> None:
         """Edit a level that has no file of its own."""
@@ -122,6 +127,7 @@ class Documents:
         if level_file.path is not None:
             remember(level_file.path)
         self.app.show_screen(self.editor)
+        self.app.guide.offer()
 
     # Saving.
 

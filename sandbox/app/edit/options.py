@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import pygame
 
+from sandbox.app.colours import material_colours
 from sandbox.app.edit.hands import DrawHand
+from sandbox.app.edit.rows import Picker, Row
 from sandbox.app.fields import Field
 from sandbox.editor.document import EditError
 from sandbox.editor.drawing_options import About, described, stepped
@@ -35,7 +37,7 @@ class OptionsRow:
         self._made: list[Any] = []
         self.fields: dict[str, Field] = {}
         self.flags: dict[str, Any] = {}
-        self.menus: dict[str, Any] = {}
+        self.menus: dict[str, Picker] = {}
 
     def refresh(self) -> None:
         """Show the options, or the selection's numbers, as they are now."""
@@ -129,10 +131,10 @@ class OptionsRow:
             if chosen not in materials:
                 chosen = materials[-1] if len(materials) > 1 else DEFAULT_MATERIAL
                 self._set(hand, name, chosen)
-            choose = partial(self._choose, hand, name)
-            menu = self._ui.menu(self._rect(MENU_WIDTH), materials, chosen, choose, self.back)
-            self.menus[name] = menu
-            self._made.append(menu)
+            picker = Picker(self._ui, self._rect(MENU_WIDTH), partial(self._choose, hand, name), self.back)
+            picker.set_tooltip(about.text)
+            self.menus[name] = picker
+            self._made.append(picker)
             self._x += GAP
 
     # Showing.
@@ -146,9 +148,10 @@ class OptionsRow:
             if getattr(options, name) != button.is_selected:
                 (button.select if getattr(options, name) else button.unselect)()
 
-        for name, menu in self.menus.items():
-            if menu.selected_option[0] != getattr(options, name):
-                self._ui.replace_menu(menu, getattr(options, name))
+        for name, picker in self.menus.items():
+            colours = material_colours(self._screen.scene.materials)
+            rows = tuple(Row(material, swatch=colour) for material, colour in colours.items())
+            picker.show_value(rows, Row(getattr(options, name), swatch=colours[getattr(options, name)]))
 
     def _show_selection(self) -> None:
         box = self._screen.selection_box
@@ -170,8 +173,8 @@ class OptionsRow:
             return False
         return True
 
-    def _choose(self, hand: DrawHand, name: str, chosen: str) -> None:
-        self._set(hand, name, chosen)
+    def _choose(self, hand: DrawHand, name: str, index: int) -> None:
+        self._set(hand, name, self.menus[name].rows[index].text)
 
     def _toggle(self, hand: DrawHand, name: str) -> None:
         self._set(hand, name, not getattr(hand.drawing.options, name))
