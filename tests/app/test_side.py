@@ -262,6 +262,15 @@ def test_ctrl_and_tab_turn_the_pages_also_while_typing(driver):
     assert driver.editor.side.tab == "findings"
 
 
+def test_what_is_being_typed_survives_that_the_window_is_laid_out_anew(driver):
+    choose(driver, ROPE)
+    driver.app.ui.focus_on(entry(driver, "particle_mass").entry)
+    driver.type("7")
+    driver.app.rebuild()
+    driver.frames(2)
+    assert body(driver).particle_mass == 7.0 and entry(driver, "particle_mass").text == "7"
+
+
 def test_the_page_stays_when_the_window_is_laid_out_anew(driver):
     open_tab(driver, "level")
     driver.app.rebuild()

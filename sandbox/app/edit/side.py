@@ -55,6 +55,9 @@ class Side:
         before: Side | None = getattr(screen, "side", None)
         self.back = ui.panel(place)
         self.tab: str = "properties" if before is None else before.tab
+        if before is not None:
+            # The window is laid out anew: what is being typed in the old panel is not lost.
+            before.close()
         names = list(PAGES)
         width = place.width / ui.scale - 2 * MARGIN
         self._rows = []
