@@ -99,7 +99,7 @@ STEPS = (
     ),
     Step(
         "Some slack",
-        "A bridge sags. Turn the wheel over “slack” up to 0.2, or type it there and press Enter.",
+        "A bridge sags. Turn the wheel over “slack” to 0.1 or more, or type it there and press Enter.",
         lambda situation: "slack" if situation.tool == "rope" else "tool_rope",
         lambda situation: _is_slack(situation) or _slack_rope(situation) is not None,
     ),
@@ -117,7 +117,7 @@ STEPS = (
     ),
     Step(
         "A weight",
-        "Take the particle tool (A), turn the wheel over “mass” up to 20 kg, and click the middle of the rope.",
+        "Take the particle tool (A), turn the wheel over “mass” to 10 kg or more, and click the middle of the rope.",
         _to_load,
         _carries,
     ),

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 # Name of the preference, and sizes in layout units.
 SEEN = "tour_seen"
 WIDTH, HEIGHT = 330.0, 138.0
+# Where the canvas is narrower, the card is too, and higher by this.
+EXTRA_HEIGHT = 36.0
 PADDING = 14.0
+COUNT_SIZE = 11.5
 GAP = 18.0
 BUTTON_WIDTH, BUTTON_HEIGHT = 74.0, 28.0
 RING = 5.0
@@ -100,7 +103,7 @@ class Guide:
         if self.tour is not None:
             self.tour.follow(situation)
         place = self._card_place(self._spot(situation))
-        wanted = (place.topleft, self._offers, self.tour and (self.tour.index, self.tour.stays))
+        wanted = (*place, self._offers, self.tour and (self.tour.index, self.tour.stays))
         if wanted != self._made_for:
             self._take_away()
             self._made_for, self._card = wanted, place
@@ -109,7 +112,8 @@ class Guide:
     def _make(self, ui: Ui, place: pygame.Rect) -> None:
         tour = self.tour
         self._panel = panel = ui.panel(place, style="@dialog")
-        inside = WIDTH - 2 * PADDING
+        width, height = place.width / ui.scale, place.height / ui.scale
+        inside = width - 2 * PADDING
         if tour is None:
             title, count = "New here?", f"{len(STEPS)} steps"
             text = "A short tour: you build a rope bridge that carries a weight, and play it."
@@ -117,9 +121,10 @@ class Guide:
             title, text = tour.step.title, tour.step.text
             count = "" if tour.is_over else f"{tour.index + 1} of {len(STEPS)}"
         ui.label(ui.rect(PADDING, 10, inside - 60, 22), title, panel, "@title")
-        TextBlock(ui, ui.rect(WIDTH - PADDING - 54, 15, 54, 18), count, panel, 11.5, MUTED)
-        TextBlock(ui, ui.rect(PADDING, 38, inside, 56), text, panel, 12.5, TEXT)
-        x, y = WIDTH - PADDING - BUTTON_WIDTH, HEIGHT - PADDING - BUTTON_HEIGHT + 4
+        wide = ui.font(COUNT_SIZE).size(count)[0] / ui.scale + 2
+        TextBlock(ui, ui.rect(width - PADDING - wide, 15, wide, 18), count, panel, COUNT_SIZE, MUTED)
+        TextBlock(ui, ui.rect(PADDING, 38, inside, height - 82), text, panel, 12.5, TEXT)
+        x, y = width - PADDING - BUTTON_WIDTH, height - PADDING - BUTTON_HEIGHT + 4
         for name, label, action, style in self._offered():
             button = ui.button(ui.rect(x, y, BUTTON_WIDTH, BUTTON_HEIGHT), label, action, panel, style=style)
             self.buttons[name] = button
@@ -160,15 +165,18 @@ class Guide:
         return pygame.Rect(screen.camera.viewport)
 
     def _card_place(self, spot: pygame.Rect | None) -> pygame.Rect:
-        """Beside what it points at, inside the canvas; away from a place in the level."""
+        """Beside what it points at, inside the canvas; away from a place in the level, and from the bar's tooltips."""
         ui, view = self._app.ui, self._viewport()
-        card = ui.rect(0, 0, WIDTH, HEIGHT)
         gap = ui.px(GAP)
+        card = ui.rect(0, 0, WIDTH, HEIGHT)
+        if card.width > view.width - 2 * gap:
+            card.width, card.height = view.width - 2 * gap, ui.px(HEIGHT + EXTRA_HEIGHT)
         card.topleft = view.left + gap, view.top + gap
         if spot is not None and not view.colliderect(spot):
             card.center = spot.center
         card.clamp_ip(view.inflate(-2 * gap, -2 * gap))
-        if spot is not None and card.inflate(4 * gap, 4 * gap).colliderect(spot) and view.colliderect(spot):
+        hides_spot = spot is not None and view.colliderect(spot) and card.inflate(4 * gap, 4 * gap).colliderect(spot)
+        if hides_spot or self._app.mode == "play":
             card.right = view.right - gap
         return card
 
