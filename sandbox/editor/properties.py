@@ -1,13 +1,14 @@
 """Properties: what can be changed of the selected items, of the level and of its checks, field by field."""
 
 import json
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import partial
 from typing import Any, Final
 
-from sandbox.editor.abouts import About, abouts, title_of
+from sandbox.editor.abouts import About, abouts
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.fields import change_field, set_field, set_level_field, set_setting
 from sandbox.editor.items import Definition, Item, Selection, chosen_bodies, chosen_particles, chosen_springs
@@ -149,7 +150,7 @@ def _section_of(field: str) -> str:
 
 def _summary(kinds: Iterable[type], parts: Sequence[Definition]) -> str:
     """What is selected, in words."""
-    counts = {kind: sum(type(part) is kind for part in parts) for kind in kinds}
+    counts = Counter(map(type, parts))
     words = []
     for kind, number in counts.items():
         noun = TITLES[kind.__name__]
@@ -180,14 +181,13 @@ def _made(selection: Selection, parts: Sequence[Definition], name: str, about: A
     if about.kind == "form":
         return _shape_properties(selection, [part.shape for part in parts if isinstance(part, JellyDef)])
     if about.kind == "point":
-        pairs = [part.__dict__[name] for part in parts]
-        value: Any = tuple(_same(pair[axis] for pair in pairs) for axis in (0, 1))
+        value: Any = tuple(map(_same, zip(*[part.__dict__[name] for part in parts], strict=True)))
         return [Property(name, about, value, partial(_set_axes, selection, name))]
     if about.kind == "flags":
         lists = [part.__dict__[name] for part in parts]
         states = {choice: _same(choice in chosen for chosen in lists) for choice in about.choices}
         return [Property(name, about, states, partial(_set_flags, selection, name, about.choices))]
-    value = _same(part.__dict__[name] for part in parts)
+    value = _same([part.__dict__[name] for part in parts])
     if about.kind == "extras":
         return [Property(name, about, value)] if value else []
 
@@ -199,9 +199,8 @@ def _made(selection: Selection, parts: Sequence[Definition], name: str, about: A
 
 def _same(values: Iterable[Any]) -> Any:
     """The value that all of them are, else MIXED."""
-    values = iter(values)
-    first = next(values)
-    return first if all(value is first or value == first for value in values) else MIXED
+    found = list(values)
+    return found[0] if found.count(found[0]) == len(found) else MIXED
 
 
 def _set_axes(selection: Selection, field: str, document: Document, value: Any) -> Document:
@@ -377,8 +376,3 @@ def add_check(document: Document) -> Document:
 def delete_check(document: Document, index: int) -> Document:
     """Delete a check by its index."""
     return set_checks(document, [check for k, check in enumerate(document.level.checks) if k != index])
-
-
-def titled(field: str) -> str:
-    """A field as the labels of steps name it."""
-    return title_of(field.partition(".")[0])
