@@ -210,10 +210,11 @@ class ScenePainter:
         canvas.discs(centres, radii + rim, np.full(len(shown), packed(part.tint or BACKGROUND)))
         canvas.discs(centres, radii, np.full(len(shown), packed(colour)))
         held = scene.pinned[shown]
-        self._paint_rings(canvas, centres[held], radii[held], mixed(PINNED, BACKGROUND, 0.4) if part.ghost else PINNED)
+        fade = GHOST_SHARE if part.ghost else 0.0
+        self._paint_rings(canvas, centres[held], radii[held], mixed(PINNED, BACKGROUND, fade))
         if len(scene.welds):
             welded = np.isin(shown, scene.welds) & ~held
-            self._paint_rings(canvas, centres[welded], radii[welded], WELD)
+            self._paint_rings(canvas, centres[welded], radii[welded], mixed(WELD, BACKGROUND, fade))
 
     def _paint_rings(
         self, canvas: Canvas, centres: NDArray[np.float64], radii: NDArray[np.float64], colour: Colour

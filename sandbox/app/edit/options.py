@@ -13,6 +13,7 @@ from sandbox.app.fields import Field
 from sandbox.editor.document import EditError
 from sandbox.editor.drawing_options import About, described, stepped
 from sandbox.editor.moving import move, rotate, scale
+from sandbox.editor.snap import PLACE_DECIMALS
 from sandbox.level.limits import DEFAULT_MATERIAL
 
 if TYPE_CHECKING:
@@ -161,7 +162,7 @@ class OptionsRow:
         values = {"x": (left + right) / 2, "y": (bottom + top) / 2, "width": right - left, "height": top - bottom}
         for name, value in values.items():
             if name in self.fields:
-                self.fields[name].show(f"{value:.6g}")
+                self.fields[name].show(f"{round(value, PLACE_DECIMALS) + 0.0:.6g}")
 
     # Changing.
 
