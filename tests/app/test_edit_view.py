@@ -151,7 +151,7 @@ def test_everything_that_is_done_by_key_is_done_by_a_button_too(driver):
     shown = (
         set(driver.editor.bar.buttons.by_action) | {f"tool_{name}" for name in driver.editor.palette.tools} | set(MENU)
     )
-    in_boxes = {"group", "ungroup", "break_apart", "unjoin"}
+    in_boxes = {"group", "ungroup", "break_apart", "unjoin", "tour"}
     assert set(driver.app.actions) - shown - by_gesture - by_other_means - in_boxes == set()
 
 
