@@ -1,13 +1,13 @@
 """Document: a level in work, and what of it is selected."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass, replace
 from typing import Any
 
 from pydantic import ValidationError
 
-from sandbox.editor.items import Selection
+from sandbox.editor.items import Kind, Selection, keys
 from sandbox.level.bodies import AnyBody
 from sandbox.level.canonical import level_text
 from sandbox.level.faults import LevelError, shown
@@ -52,12 +52,14 @@ def empty_level() -> Level:
 def select(document: Document, selection: Selection) -> Document:
     """Select those of the items that the level has."""
     level = document.level
-    known = {
+    known: dict[Kind, Set[str | int]] = {
         "body": {body.id for body in level.bodies},
         "particle": {particle.id for particle in level.particles},
-        "spring": range(len(level.springs)),
+        "spring": set(range(len(level.springs))),
     }
-    return replace(document, selection=frozenset([item for item in selection if item[1] in known[item[0]]]))
+    if not all(keys(selection, kind) <= known[kind] for kind in known):
+        selection = frozenset([item for item in selection if item[1] in known[item[0]]])
+    return replace(document, selection=selection)
 
 
 def checked(level: Level) -> Level:

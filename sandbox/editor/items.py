@@ -37,12 +37,13 @@ def items_of(level: Level) -> tuple[Item, ...]:
 
 def keys(selection: Selection, kind: Kind) -> frozenset[str | int]:
     """Keys of the selected items of a kind."""
-    return _keys(selection)[kind]
+    return _keys(id(selection), selection)[kind]
 
 
-# A selection is asked many times, by every edit of it, and sorting 20,000 items out takes a fifth of a frame.
+# A selection is asked many times, by every edit of it, and sorting 20,000 items out takes a fifth of a frame. So does
+# comparing it with an equal one, hence the identity, which is compared first.
 @functools.lru_cache(maxsize=4)
-def _keys(selection: Selection) -> dict[Kind, frozenset[str | int]]:
+def _keys(_identity: int, selection: Selection) -> dict[Kind, frozenset[str | int]]:
     found: dict[Kind, list[str | int]] = {"body": [], "particle": [], "spring": []}
     for kind, key in selection:
         found[kind].append(key)

@@ -39,7 +39,7 @@ def keep_pose(document: Document, world: World) -> Document:
     if not np.all(np.abs(now) <= COORDINATE_LIMIT):
         raise EditError("something has flown out of the world; go back to before it did")
     moved = np.any(now != scene.position, axis=1)
-    firsts = np.cumsum([0, *(len(made.mass) for made in scene.parts.bodies)]).tolist()
+    firsts = np.cumsum([0, *scene.parts.bodies.counts]).tolist()
 
     def posed(index: int, body: AnyBody) -> AnyBody:
         mine = slice(firsts[index], firsts[index + 1])
