@@ -103,7 +103,7 @@ class FileActions:
             return
         path = self._record_now()
         if path is not None:
-            self.app.say(f"Recording to {path}, from the beginning of the run.")
+            self.app.say(_recording(path))
 
     def save_run(self) -> None:
         """Save the run so far as a replay, under a name that is asked for."""
@@ -130,7 +130,8 @@ class FileActions:
         path = self.app.play.playback.session.stop_recording()
         if path is None:
             return
-        self.app.say(f"Saved as {path}")
+        self.app.status.take_back(_recording(path))
+        self.app.say(_saved(path))
         suggestion = path.name.removesuffix(SUFFIX)
         ask(
             self.app.ui,
@@ -152,7 +153,8 @@ class FileActions:
             return str(error)
         except OSError as error:
             return f"It stays {path.name}: {error.strerror or error}."
-        self.app.say(f"Saved as {wanted}")
+        self.app.status.take_back(_saved(path))
+        self.app.say(_saved(wanted))
         return None
 
     def _discard(self, path: Path) -> None:
@@ -161,7 +163,16 @@ class FileActions:
         except OSError as error:
             self.app.say(f"{path} cannot be removed: {error.strerror or error}.")
         else:
+            self.app.status.take_back(_saved(path))
             self.app.say(f"Removed {path.name}.")
+
+
+def _recording(path: Path) -> str:
+    return f"Recording to {path}, from the beginning of the run."
+
+
+def _saved(path: Path) -> str:
+    return f"Saved as {path}"
 
 
 def _move(path: Path, wanted: Path) -> None:
