@@ -1,0 +1,159 @@
+"""The fronts of a large body in two halves, which one thread works through, or two: the same bits either way.
+
+The second half is one subtree, the first all that comes before it; neither reads what the other writes, and what lies
+above both is done after them. Where they part follows from the level alone. A helping thread waits for the second half
+to be offered; whoever takes the offer works it through, and on a busy machine that may be the one who made it.
+"""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import Thread
+
+import numpy as np
+
+from sandbox.physics.jit import LOCKS, Lock, give, inner_kernel, take, waiting_kernel
+from sandbox.physics.solvers.fronts import Fronts, eliminate_rows, factorise_fronts, substitute_fronts
+from sandbox.physics.world import Floats, Slots
+
+# Multiplications that a second thread must take off a body's factorisation to be worth the word to it (some 0.1 ms a
+# step). The halves are part of a tick's last bits. Lower, bodies of 40x40 take longer; higher, large ones do.
+WORTH_HALVING = 3_000_000
+# Places in Fronts.call: two locks, what is wanted, and for which body.
+OFFERED, DONE, WANTED, BODY, CALL_LENGTH = 0, 1, 2, 3, 4
+NOTHING, FACTOR, ELIMINATE, SUBSTITUTE = 0, 1, 2, 3
+
+
+def find_fork(first: Slots, last: Slots, child: Slots, border_start: Slots) -> tuple[int, int]:
+    """The fronts between which the second half of one body lies, as it has the least to do in turn; equal: nowhere."""
+    width, border = 2 * (last - first + np.diff(border_start)), 2 * np.diff(border_start)
+    # n pivots of a front of width w and border b: a sixth of w^3 - b^3 multiplications
+    before = np.append(0, np.cumsum((width**3 - border**3) // 6))
+    left, right = child[np.all(child >= 0, axis=1)].T
+    if not len(left):
+        return 0, 0
+    begin, end = before[left + 1], before[right + 1]
+    in_turn = np.maximum(begin, end - begin) + before[-1] - end
+    best = int(np.argmin(in_turn))
+    if before[-1] - in_turn[best] < WORTH_HALVING:
+        return 0, 0
+    return int(left[best]) + 1, int(right[best]) + 1
+
+
+@inner_kernel
+def _work_aside(wanted, body, fronts, change):  # type: ignore[no-untyped-def]
+    # The second half of a body, given by its last front.
+    first_front = fronts.fork[body, 0]
+    last_front = fronts.fork[body, 1]
+    if wanted == SUBSTITUTE:
+        substitute_fronts(first_front, last_front, fronts, fronts.aside, change)
+        return
+    first_row = fronts.first[first_front]
+    last_row = fronts.last[last_front - 1]
+    for row in range(first_row, last_row):
+        fronts.apart[row, 0] = change[row, 0]
+        fronts.apart[row, 1] = change[row, 1]
+    for row in range(last_row, fronts.last[body]):
+        fronts.apart[row, 0] = 0.0
+        fronts.apart[row, 1] = 0.0
+    if wanted == FACTOR:
+        factorise_fronts(first_front, last_front, fronts, fronts.aside, fronts.apart)
+    else:
+        eliminate_rows(first_front, last_front, fronts, fronts.aside, fronts.apart)
+    for row in range(first_row, last_row):
+        change[row, 0] = fronts.apart[row, 0]
+        change[row, 1] = fronts.apart[row, 1]
+
+
+@inner_kernel
+def _work_here(wanted, first_front, last_front, fronts, change):  # type: ignore[no-untyped-def]
+    if wanted == SUBSTITUTE:
+        substitute_fronts(first_front, last_front, fronts, fronts.here, change)
+    elif wanted == FACTOR:
+        factorise_fronts(first_front, last_front, fronts, fronts.here, change)
+    else:
+        eliminate_rows(first_front, last_front, fronts, fronts.here, change)
+
+
+@inner_kernel
+def _work_both(wanted, first_front, body, fronts, change):  # type: ignore[no-untyped-def]
+    call = fronts.call
+    helped = call[DONE] != 0
+    if helped:
+        call[WANTED] = wanted
+        call[BODY] = body
+        give(call[OFFERED])
+    _work_here(wanted, first_front, fronts.fork[body, 0], fronts, change)
+    if helped and not take(call[OFFERED], 0):
+        take(call[DONE], 1)
+    else:
+        _work_aside(wanted, body, fronts, change)
+
+
+@inner_kernel
+def begin_to_solve(factored, first_row, last_row, fronts, change):  # type: ignore[no-untyped-def]
+    """Factor the fronts of the rows of one body, unless they are, and begin to solve for those of change (n, 2)."""
+    first_front = fronts.of_row[first_row]
+    body = fronts.of_row[last_row - 1]
+    wanted = ELIMINATE if factored else FACTOR
+    if fronts.fork[body, 0] == fronts.fork[body, 1]:
+        _work_here(wanted, first_front, body + 1, fronts, change)
+        return
+    _work_both(wanted, first_front, body, fronts, change)
+    for row in range(fronts.first[fronts.fork[body, 1]], last_row):
+        change[row, 0] += fronts.apart[row, 0]
+        change[row, 1] += fronts.apart[row, 1]
+    _work_here(wanted, fronts.fork[body, 1], body + 1, fronts, change)
+
+
+@inner_kernel
+def finish_solving(first_row, last_row, fronts, change):  # type: ignore[no-untyped-def]
+    """Finish solving for the rows of one body of change (n, 2), in place."""
+    first_front = fronts.of_row[first_row]
+    body = fronts.of_row[last_row - 1]
+    if fronts.fork[body, 0] == fronts.fork[body, 1]:
+        _work_here(SUBSTITUTE, first_front, body + 1, fronts, change)
+        return
+    _work_here(SUBSTITUTE, fronts.fork[body, 1], body + 1, fronts, change)
+    _work_both(SUBSTITUTE, first_front, body, fronts, change)
+
+
+@waiting_kernel
+def _help(fronts, change):  # type: ignore[no-untyped-def]
+    call = fronts.call
+    give(call[DONE])
+    while True:
+        take(call[OFFERED], 1)
+        if call[WANTED] == NOTHING:
+            return
+        _work_aside(call[WANTED], call[BODY], fronts, change)
+        give(call[DONE])
+
+
+@waiting_kernel
+def _await(call):  # type: ignore[no-untyped-def]
+    take(call[DONE], 1)
+
+
+@contextmanager
+def helping_thread(fronts: Fronts, change: Floats) -> Iterator[None]:
+    """While it lasts, a second thread takes second halves of what kernels do with fronts and change (n, 2)."""
+    offered, done = Lock(), Lock()
+    fronts.call[:] = offered.handle, done.handle, NOTHING, 0
+    # The thread holds the locks too: they must not go while it still gives one.
+    thread = Thread(target=lambda locks: _help(fronts, change), args=((offered, done),), daemon=True)
+    thread.start()
+    try:
+        # Kernels keep the interpreter to themselves: the thread has to be in its own before one of them begins.
+        _await(fronts.call)
+        yield
+    finally:
+        fronts.call[WANTED] = NOTHING
+        offered.give()
+        thread.join()
+        fronts.call[:] = 0
+
+
+def wants_help(fronts: Fronts) -> bool:
+    """Whether a body has halves, and this machine the means to work on both at once."""
+    return LOCKS and len(fronts.fork) > 0 and bool(fronts.fork.any()) and (os.cpu_count() or 1) > 1
