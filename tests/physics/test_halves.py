@@ -1,7 +1,9 @@
 """Large bodies in two halves: one thread or two, the same bits."""
 
+import copy
 import multiprocessing
 import os
+import pickle
 import subprocess
 import sys
 import threading
@@ -9,19 +11,38 @@ import threading
 import numpy as np
 import pytest
 
-from sandbox.physics.jit import COMPILED, LOCKS
+from sandbox.physics.jit import COMPILED, LOCKS, give, take, waiting_kernel
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers import direct, dissection, halves
 from sandbox.physics.solvers.direct import pattern_of
-from sandbox.physics.step import step
 from tests.bench import scenes
 from tests.physics.test_large import mesh, play, run
+
+
+@waiting_kernel
+def give_offer(call):
+    # Not taken back: only the second thread can take it.
+    give(call[halves.OFFERED])
+    take(call[halves.DONE], 1)
 
 
 @pytest.fixture(autouse=True)
 def small_bodies_have_halves(monkeypatch):
     monkeypatch.setattr(halves, "WORTH_HALVING", 1)
-    monkeypatch.setattr(os, "cpu_count", lambda: 2)
+    monkeypatch.setattr(halves, "_processor_count", lambda: 2)
+
+
+@pytest.fixture
+def hired(monkeypatch):
+    """The second threads that a test brings about."""
+    threads, hire = [], halves.hire
+
+    def hire_and_tell(*arguments):
+        threads.append(hire(*arguments))
+        return threads[-1]
+
+    monkeypatch.setattr(direct, "hire", hire_and_tell)
+    return threads
 
 
 def hash_after_play(seed):
@@ -68,7 +89,7 @@ def test_a_body_that_gains_too_little_has_one_half_only(monkeypatch):
 @pytest.mark.parametrize("seed", [11, 12])
 def test_one_thread_and_two_give_the_same_bits(seed, monkeypatch):
     helped = hash_after_play(seed)
-    monkeypatch.setattr(os, "cpu_count", lambda: 1)
+    monkeypatch.setattr(halves, "_processor_count", lambda: 1)
     assert hash_after_play(seed) == helped
 
 
@@ -88,29 +109,34 @@ def test_a_fresh_process_computes_the_same_bits_of_halves(interpreted):
 
 
 @pytest.mark.skipif(not LOCKS, reason="there is one thread only")
-def test_a_tick_leaves_no_thread_and_no_lock_behind(monkeypatch):
-    threads = []
-    monkeypatch.setattr(halves, "Thread", lambda **how: threads.append(threading.Thread(**how)) or threads[-1])
+def test_the_second_thread_ends_with_the_pattern_that_it_serves(hired):
     world = mesh(13)
-    run(world, 3)
-    assert len(threads) == 3
-    assert not any(thread.is_alive() for thread in threads)
-    assert not pattern_of(world).matrix.fronts.call.any()
+    run(world, 2)
+    assert [thread.is_alive() for thread in hired] == [True]
+    world.cut([10])
+    run(world, 2)
+    hired[0].join()
+    assert [thread.is_alive() for thread in hired] == [False, True]
+    del world
+    hired[1].join()
+    assert not hired[1].is_alive()
 
 
 @pytest.mark.skipif(not LOCKS, reason="there is one thread only")
-def test_the_helping_thread_ends_when_a_step_fails(monkeypatch):
-    def fail(*arguments):
-        raise ArithmeticError
-
-    world = mesh(14)
-    before = threading.active_count()
-    with monkeypatch.context() as broken:
-        broken.setattr(direct, "_solve_bodies", fail)
-        with pytest.raises(ArithmeticError):
-            step(world)
-    assert threading.active_count() == before
-    run(world, 2)
+def test_the_second_thread_takes_the_half_that_is_offered_and_touches_no_other_row():
+    world, alone = mesh(14), mesh(14)
+    fronts = pattern_of(world).matrix.fronts
+    change = pattern_of(world).rows.change
+    run(world, 1)
+    run(alone, 1)
+    body = len(fronts.first) - 1
+    rows = slice(fronts.first[fronts.fork[body, 0]], fronts.last[fronts.fork[body, 1] - 1])
+    change[:] = 1.0
+    fronts.call[[halves.WANTED, halves.BODY]] = halves.SUBSTITUTE, body
+    give_offer(fronts.call)
+    assert (change[rows] != 1.0).any()
+    assert (change[: rows.start] == 1.0).all() and (change[rows.stop :] == 1.0).all()
+    assert state_hash(run(world, 3)) == state_hash(run(alone, 3))
 
 
 @pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
@@ -140,3 +166,10 @@ def test_a_forked_process_goes_on_with_the_same_bits():
     reached = receiver.recv()
     child.join()
     assert reached == (state_hash(run(world, 5)), 1)
+
+
+def test_a_copy_of_a_world_goes_on_with_the_same_bits():
+    world = play(mesh(19), 3)
+    copies = [copy.deepcopy(world), pickle.loads(pickle.dumps(world))]
+    ticks = 5 if COMPILED else 1
+    assert {state_hash(run(other, ticks)) for other in copies} == {state_hash(run(world, ticks))}

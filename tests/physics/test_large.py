@@ -189,7 +189,7 @@ def test_energy_of_violent_random_graphs_stays_bounded_under_fronts(kind, monkey
     monkeypatch.setattr(dissection, "SMALLEST_BODY", 1)
     monkeypatch.setattr(dissection, "NARROWEST_BORDER", 0.0)
     monkeypatch.setattr(halves, "WORTH_HALVING", 1)
-    monkeypatch.setattr(os, "cpu_count", lambda: 1)
+    monkeypatch.setattr(halves, "_processor_count", lambda: 1)
     count, steps = (10, 1000) if COMPILED else (2, 20)
     for span in energy_gate.MASS_SPANS:
         graphs = energy_gate.random_graphs(kind, span, count, seed=17)

@@ -5,13 +5,11 @@ ones, less the slow part of the velocity: that damps fast vibration and leaves s
 the body's energy stays within what it had plus what its bank holds of earlier losses; else f itself is minimised.
 """
 
-from contextlib import nullcontext
-
 import numpy as np
 
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.settings import AUTO
-from sandbox.physics.solvers.halves import helping_thread, wants_help
+from sandbox.physics.solvers.halves import hire
 from sandbox.physics.solvers.measure import cap, extremes
 from sandbox.physics.solvers.network import (
     HIGHEST_COEFFICIENT,
@@ -53,7 +51,6 @@ NEWTON_TOLERANCE = 1e-6
 LAST_HALVINGS = 60
 # The measures of springs where the number of parts is fixed: none.
 NOTHING = np.zeros(0)
-NO_HELP = nullcontext()
 
 
 @inner_kernel
@@ -322,6 +319,7 @@ def pattern_of(world: World) -> Pattern:
         world.inverse_mass, world.particle_a, world.particle_b, world.spring_active, world.law, *pattern.signature
     ):
         pattern = world.solver_cache = make_pattern(world)
+        hire(pattern, pattern.matrix.fronts, pattern.rows.change)
     return pattern
 
 
@@ -336,13 +334,11 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
         stiffness, damping = cap(stiffness, damping, parts)
         least, most = extremes(world)
     gravity_x, gravity_y = world.settings.gravity
-    fronts, change = pattern.matrix.fronts, pattern.rows.change
-    with helping_thread(fronts, change) if wants_help(fronts) else NO_HELP:
-        _solve_bodies(
-            world.position, world.velocity, world.mass, world.inverse_mass, world.slow_velocity, world.energy_bank,
-            world.particle_active, world.rest_length, stiffness, damping, world.material, world.tension, pattern.bodies,
-            pattern.rows, pattern.springs, pattern.matrix, least, most, parts, gravity_x, gravity_y, h,
-        )  # fmt: skip
+    _solve_bodies(
+        world.position, world.velocity, world.mass, world.inverse_mass, world.slow_velocity, world.energy_bank,
+        world.particle_active, world.rest_length, stiffness, damping, world.material, world.tension, pattern.bodies,
+        pattern.rows, pattern.springs, pattern.matrix, least, most, parts, gravity_x, gravity_y, h,
+    )  # fmt: skip
 
 
 def spring_constant(stiffness: Floats, damping: Floats, mass: Floats, h: float) -> Floats:

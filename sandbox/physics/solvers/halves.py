@@ -6,8 +6,7 @@ to be offered; whoever takes the offer works it through, and on a busy machine t
 """
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
+import weakref
 from threading import Thread
 
 import numpy as np
@@ -121,7 +120,6 @@ def finish_solving(first_row, last_row, fronts, change):  # type: ignore[no-unty
 @waiting_kernel
 def _help(fronts, change):  # type: ignore[no-untyped-def]
     call = fronts.call
-    give(call[DONE])
     while True:
         take(call[OFFERED], 1)
         if call[WANTED] == NOTHING:
@@ -130,33 +128,38 @@ def _help(fronts, change):  # type: ignore[no-untyped-def]
         give(call[DONE])
 
 
-@waiting_kernel
-def _await(call):  # type: ignore[no-untyped-def]
-    take(call[DONE], 1)
+def _dismiss(call: Slots, offered: Lock, done: Lock) -> None:
+    call[WANTED] = NOTHING
+    offered.give()
 
 
-@contextmanager
-def helping_thread(fronts: Fronts, change: Floats) -> Iterator[None]:
-    """While it lasts, a second thread takes second halves of what kernels do with fronts and change (n, 2)."""
-    if not LOCKS:
-        yield
-        return
+def hire(owner: object, fronts: Fronts, change: Floats) -> Thread | None:
+    """Start a thread that takes second halves of what kernels do with fronts and change (n, 2).
+
+    It ends with `owner`, which must hold both while kernels use them. None where a thread would be of no use, or has
+    nowhere to run; nothing else depends on it, and a process forked from this one does without.
+    """
+    if not LOCKS or not fronts.fork.any() or _processor_count() < 2:
+        return None
     offered, done = Lock(), Lock()
     fronts.call[:] = offered.handle, done.handle, NOTHING, 0
-    # The thread holds the locks too: they must not go while it still gives one.
-    thread = Thread(target=lambda locks: _help(fronts, change), args=((offered, done),), daemon=True)
+    # The thread holds the locks too: they must not go before it ends.
+    thread = Thread(target=lambda *_: _help(fronts, change), args=(offered, done), daemon=True)
     thread.start()
-    try:
-        # Kernels keep the interpreter to themselves: the thread has to be in its own before one of them begins.
-        _await(fronts.call)
-        yield
-    finally:
-        fronts.call[WANTED] = NOTHING
+    weakref.finalize(owner, _dismiss, fronts.call, offered, done)
+    return thread
+
+
+def _processor_count() -> int:
+    allowed = getattr(os, "sched_getaffinity", None)
+    return len(allowed(0)) if allowed else os.cpu_count() or 1
+
+
+def warm_up(fronts: Fronts, change: Floats) -> None:
+    """Compile what a second thread runs."""
+    if LOCKS:
+        offered = Lock()
+        fronts.call[OFFERED] = offered.handle
         offered.give()
-        thread.join()
-        fronts.call[:] = 0
-
-
-def wants_help(fronts: Fronts) -> bool:
-    """Whether a body has halves, and this machine processors to work on both at once."""
-    return len(fronts.fork) > 0 and bool(fronts.fork.any()) and (os.cpu_count() or 1) > 1
+        _help(fronts, change)
+        fronts.call[OFFERED] = 0
