@@ -4,7 +4,6 @@ Kernels are compiled with a disk cache, uncached where none can be written, and 
 does not work with this Python or numpy.
 """
 
-import ctypes
 import functools
 import hashlib
 import os
@@ -53,11 +52,12 @@ _CACHE_FOLDER = _cache_folder() if COMPILED else ""
 # it counts from the end. Never mix the two in one sum: that makes a float.
 unsigned: Any = np.uint64 if COMPILED else int
 
-# Whether kernels can wait for one another: by the interpreter's own locks, which every platform has.
-LOCKS = COMPILED and all(
-    hasattr(ctypes.pythonapi, f"PyThread_{name}")
-    for name in ("allocate_lock", "free_lock", "acquire_lock", "release_lock")
-)
+
+def interpreter_function(name: str, result: str, *arguments: str) -> Any:
+    """A function of Python's own C interface for compiled kernels, given the numba names of its types."""
+    # By name, so that a cached kernel finds it again in the next process; its address would not last.
+    kinds = _numba.types
+    return kinds.ExternalFunction(name, getattr(kinds, result)(*(getattr(kinds, kind) for kind in arguments)))
 
 
 def _viewed(item: Any) -> Any:
@@ -109,47 +109,3 @@ def scalar_kernel(function: Function) -> Function:
 def waiting_kernel(function: Function) -> Function:
     """Make `function` a kernel for a thread of its own: others run meanwhile, and may be waited for."""
     return _compiled(function, nogil=True) if COMPILED else _interpreted(function)
-
-
-def _of_interpreter(name: str, result: str, *arguments: str) -> Any:
-    # By name, so that a cached kernel finds it again in the next process; its address would not last.
-    if not LOCKS:
-        return None
-    kinds = _numba.types
-    return kinds.ExternalFunction(name, getattr(kinds, result)(*(getattr(kinds, kind) for kind in arguments)))
-
-
-_acquire = _of_interpreter("PyThread_acquire_lock", "intc", "voidptr", "intc")
-_release = _of_interpreter("PyThread_release_lock", "void", "voidptr")
-
-
-@inner_kernel
-def take(lock, wait):  # type: ignore[no-untyped-def]
-    """Take a lock, waiting for it where `wait` is 1; whether it was had."""
-    return _acquire(lock, wait) == 1
-
-
-@inner_kernel
-def give(lock):  # type: ignore[no-untyped-def]
-    """Give a lock that is taken to whoever takes it next, in whatever thread."""
-    _release(lock)
-
-
-class Lock:
-    """A lock for `take` and `give`, taken at first.
-
-    handle: its address, for kernels. It lasts as long as this object.
-    """
-
-    def __init__(self) -> None:
-        allocate, acquire = ctypes.pythonapi.PyThread_allocate_lock, ctypes.pythonapi.PyThread_acquire_lock
-        allocate.restype = ctypes.c_void_p
-        self.handle: int = allocate()
-        acquire(ctypes.c_void_p(self.handle), 0)
-
-    def give(self) -> None:
-        """As `give` in kernels."""
-        ctypes.pythonapi.PyThread_release_lock(ctypes.c_void_p(self.handle))
-
-    def __del__(self) -> None:
-        ctypes.pythonapi.PyThread_free_lock(ctypes.c_void_p(self.handle))

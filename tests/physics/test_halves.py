@@ -11,7 +11,8 @@ import threading
 import numpy as np
 import pytest
 
-from sandbox.physics.jit import COMPILED, LOCKS, give, take, waiting_kernel
+from sandbox.physics.jit import COMPILED, waiting_kernel
+from sandbox.physics.locks import LOCKS, give, take
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers import direct, dissection, halves
 from sandbox.physics.solvers.direct import pattern_of

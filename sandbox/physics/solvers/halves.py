@@ -11,12 +11,14 @@ from threading import Thread
 
 import numpy as np
 
-from sandbox.physics.jit import LOCKS, Lock, give, inner_kernel, take, waiting_kernel
+from sandbox.physics.jit import inner_kernel, waiting_kernel
+from sandbox.physics.locks import LOCKS, Lock, give, take
 from sandbox.physics.solvers.fronts import Fronts, eliminate_rows, factorise_fronts, substitute_fronts
 from sandbox.physics.world import Floats, Slots
 
-# Multiplications that a second thread must take off a body's factorisation to be worth the word to it (some 0.1 ms a
-# step). The halves are part of a tick's last bits. Lower, bodies of 40x40 take longer; higher, large ones do.
+# Multiplications that a second thread must take off a body's factorisation: each word to it takes some 0.02 ms, and on
+# a busy machine a half that it has begun may be waited for. Lattices from 48x48 on have halves. The halves are part of
+# a tick's last bits. Lower, small bodies stutter on a busy machine; higher, those of 48x48 take a third longer.
 WORTH_HALVING = 3_000_000
 # Places in Fronts.call: two locks, what is wanted, and for which body.
 OFFERED, DONE, WANTED, BODY, CALL_LENGTH = 0, 1, 2, 3, 4
