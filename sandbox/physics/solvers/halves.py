@@ -42,38 +42,31 @@ def find_fork(first: Slots, last: Slots, child: Slots, border_start: Slots) -> t
 
 
 @inner_kernel
-def _work_aside(wanted, body, fronts, change):  # type: ignore[no-untyped-def]
-    # The second half of a body, given by its last front.
-    first_front = fronts.fork[body, 0]
-    last_front = fronts.fork[body, 1]
+def _work(wanted, first_front, last_front, fronts, scratch, change):  # type: ignore[no-untyped-def]
     if wanted == SUBSTITUTE:
-        substitute_fronts(first_front, last_front, fronts, fronts.aside, change)
-        return
-    first_row = fronts.first[first_front]
-    last_row = fronts.last[last_front - 1]
-    for row in range(first_row, last_row):
-        fronts.apart[row, 0] = change[row, 0]
-        fronts.apart[row, 1] = change[row, 1]
-    for row in range(last_row, fronts.last[body]):
-        fronts.apart[row, 0] = 0.0
-        fronts.apart[row, 1] = 0.0
-    if wanted == FACTOR:
-        factorise_fronts(first_front, last_front, fronts, fronts.aside, fronts.apart)
+        substitute_fronts(first_front, last_front, fronts, scratch, change)
+    elif wanted == FACTOR:
+        factorise_fronts(first_front, last_front, fronts, scratch, change)
     else:
-        eliminate_rows(first_front, last_front, fronts, fronts.aside, fronts.apart)
-    for row in range(first_row, last_row):
-        change[row, 0] = fronts.apart[row, 0]
-        change[row, 1] = fronts.apart[row, 1]
+        eliminate_rows(first_front, last_front, fronts, scratch, change)
 
 
 @inner_kernel
-def _work_here(wanted, first_front, last_front, fronts, change):  # type: ignore[no-untyped-def]
-    if wanted == SUBSTITUTE:
-        substitute_fronts(first_front, last_front, fronts, fronts.here, change)
-    elif wanted == FACTOR:
-        factorise_fronts(first_front, last_front, fronts, fronts.here, change)
-    else:
-        eliminate_rows(first_front, last_front, fronts, fronts.here, change)
+def _work_aside(wanted, body, fronts, change):  # type: ignore[no-untyped-def]
+    # The second half of a body, given by its last front. What it makes of rows above both halves is kept apart.
+    first_front = fronts.fork[body, 0]
+    last_front = fronts.fork[body, 1]
+    first_row = fronts.first[first_front]
+    last_row = fronts.last[last_front - 1]
+    above = wanted == SUBSTITUTE
+    for row in range(first_row, fronts.last[body]):
+        inside = row < last_row or above
+        fronts.apart[row, 0] = change[row, 0] if inside else 0.0
+        fronts.apart[row, 1] = change[row, 1] if inside else 0.0
+    _work(wanted, first_front, last_front, fronts, fronts.aside, fronts.apart)
+    for row in range(first_row, last_row):
+        change[row, 0] = fronts.apart[row, 0]
+        change[row, 1] = fronts.apart[row, 1]
 
 
 @inner_kernel
@@ -84,7 +77,7 @@ def _work_both(wanted, first_front, body, fronts, change):  # type: ignore[no-un
         call[WANTED] = wanted
         call[BODY] = body
         give(call[OFFERED])
-    _work_here(wanted, first_front, fronts.fork[body, 0], fronts, change)
+    _work(wanted, first_front, fronts.fork[body, 0], fronts, fronts.here, change)
     if helped and not take(call[OFFERED], 0):
         take(call[DONE], 1)
     else:
@@ -92,31 +85,22 @@ def _work_both(wanted, first_front, body, fronts, change):  # type: ignore[no-un
 
 
 @inner_kernel
-def begin_to_solve(factored, first_row, last_row, fronts, change):  # type: ignore[no-untyped-def]
-    """Factor the fronts of the rows of one body, unless they are, and begin to solve for those of change (n, 2)."""
+def solve_fronts(factored, first_row, last_row, fronts, change):  # type: ignore[no-untyped-def]
+    """Solve for the rows of one body of change (n, 2), in place; its fronts are factored first, unless they are."""
     first_front = fronts.of_row[first_row]
     body = fronts.of_row[last_row - 1]
     wanted = ELIMINATE if factored else FACTOR
-    if fronts.fork[body, 0] == fronts.fork[body, 1]:
-        _work_here(wanted, first_front, body + 1, fronts, change)
-        return
-    _work_both(wanted, first_front, body, fronts, change)
-    for row in range(fronts.first[fronts.fork[body, 1]], last_row):
-        change[row, 0] += fronts.apart[row, 0]
-        change[row, 1] += fronts.apart[row, 1]
-    _work_here(wanted, fronts.fork[body, 1], body + 1, fronts, change)
-
-
-@inner_kernel
-def finish_solving(first_row, last_row, fronts, change):  # type: ignore[no-untyped-def]
-    """Finish solving for the rows of one body of change (n, 2), in place."""
-    first_front = fronts.of_row[first_row]
-    body = fronts.of_row[last_row - 1]
-    if fronts.fork[body, 0] == fronts.fork[body, 1]:
-        _work_here(SUBSTITUTE, first_front, body + 1, fronts, change)
-        return
-    _work_here(SUBSTITUTE, fronts.fork[body, 1], body + 1, fronts, change)
-    _work_both(SUBSTITUTE, first_front, body, fronts, change)
+    halved = fronts.fork[body, 0] < fronts.fork[body, 1]
+    above = fronts.fork[body, 1] if halved else first_front
+    if halved:
+        _work_both(wanted, first_front, body, fronts, change)
+        for row in range(fronts.first[above], last_row):
+            change[row, 0] += fronts.apart[row, 0]
+            change[row, 1] += fronts.apart[row, 1]
+    _work(wanted, above, body + 1, fronts, fronts.here, change)
+    _work(SUBSTITUTE, above, body + 1, fronts, fronts.here, change)
+    if halved:
+        _work_both(SUBSTITUTE, first_front, body, fronts, change)
 
 
 @waiting_kernel

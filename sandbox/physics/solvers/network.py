@@ -18,7 +18,7 @@ from sandbox.physics.equation import SHORTEST, direction, reduced_mass
 from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.factor import back_substitute, factorise
 from sandbox.physics.solvers.fronts import add_block, clear_fronts
-from sandbox.physics.solvers.halves import begin_to_solve, finish_solving
+from sandbox.physics.solvers.halves import solve_fronts
 
 # Cd is capped here, and Cs with it: nearer to 1 the solution stretches less, but is rejected more often and damps more.
 HIGHEST_COEFFICIENT = 1.0 - 1e-6
@@ -219,8 +219,7 @@ def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # ty
     fronts = matrix.fronts
     if fronts.of_row[first_row] >= 0:
         assemble_fronts(first_row, last_row, first, last, rows, springs, matrix)
-        begin_to_solve(False, first_row, last_row, fronts, rows.change)
-        finish_solving(first_row, last_row, fronts, rows.change)
+        solve_fronts(False, first_row, last_row, fronts, rows.change)
         return
     assemble(first_row, last_row, first, last, rows, springs, matrix)
     factorise(
@@ -266,8 +265,7 @@ def refine(first_row, last_row, first, last, rows, springs, matrix):  # type: ig
     load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
     fronts = matrix.fronts
     if fronts.of_row[first_row] >= 0:
-        begin_to_solve(True, first_row, last_row, fronts, rows.change)
-        finish_solving(first_row, last_row, fronts, rows.change)
+        solve_fronts(True, first_row, last_row, fronts, rows.change)
         return
     back_substitute(
         first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
