@@ -23,8 +23,8 @@ def number_text(value: float) -> str:
 def list_text(values: Sequence[Any]) -> str:
     """A list as in a file without its outer brackets; words are set apart by commas alone where that can be undone."""
     if values and all(isinstance(value, str) for value in values):
-        text = ", ".join(values)
-        return text if read_words("", text) == list(values) else json.dumps(list(values), ensure_ascii=False)[1:-1]
+        is_plain = all(word and word == word.strip() and not set(word) & {",", '"'} for word in values)
+        return ", ".join(values) if is_plain else json.dumps(list(values), ensure_ascii=False)[1:-1]
     return ", ".join(_entry(value) for value in values)
 
 
