@@ -16,6 +16,7 @@ from sandbox.app.edit.tour import Guide
 from sandbox.app.files import FileActions
 from sandbox.app.gallery import Gallery
 from sandbox.app.help import show_help
+from sandbox.app.idle import IdleCollector
 from sandbox.app.input import Input
 from sandbox.app.lines import warm_up_lines
 from sandbox.app.play import PlayScreen
@@ -44,6 +45,7 @@ class App:
         self.display = display
         self.scale = display.scale
         self.profile = Profile()
+        self._collector = IdleCollector()
         self._notices: deque[Notice] = deque(maxlen=NOTICES)
         self._description = ""
         self.running = True
@@ -183,6 +185,7 @@ class App:
             self.screen.leave()
         self.documents.close()
         self.display.close()
+        self._collector.close()
 
     def _rescale(self, factor: float) -> None:
         self.scale = min(max(self.scale * factor, SCALE_RANGE[0]), SCALE_RANGE[1])
@@ -195,7 +198,9 @@ class App:
         started = time.perf_counter()
         self._seconds += frame_time
         with self.profile.part("events"):
-            self.input.process(pygame.event.get())
+            events = pygame.event.get()
+            self._collector.update(frame_time, bool(events))
+            self.input.process(events)
             if self.display.refresh():
                 self.rebuild()
         self.ready = self.ready or not self.warming.is_alive()

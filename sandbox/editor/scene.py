@@ -1,9 +1,10 @@
 """Scene: a level as arrays to draw, pick from and measure, made anew after every edit from what did not change."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain
-from operator import is_
+from operator import is_, itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from sandbox.level.bodies import AnyBody, JellyDef, WebDef, WheelDef
 from sandbox.level.expansion import Expansion, expansion
 from sandbox.level.layout import Layout
 from sandbox.level.limits import BODY_RADIUS, DEFAULT_MATERIAL
-from sandbox.level.model import Level
+from sandbox.level.model import Level, ParticleDef
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import distances
 from sandbox.level.welds import united
@@ -26,7 +27,7 @@ Box = tuple[float, float, float, float]
 
 
 class _Joined(NamedTuple):
-    """What bodies expand to, and its arrays one after the other; particles of a body that has an origin are about it."""
+    """What bodies expand to, and its arrays one after the other; of a body that has an origin, about that."""
 
     made: list[Expansion]
     counts: list[int]
@@ -267,13 +268,18 @@ def _joined(made: list[Expansion]) -> _Joined:
 
 def _loose(level: Level) -> _Loose:
     rows = [particle.__dict__ for particle in level.particles]
-    places = chain.from_iterable([row["position"] for row in rows])
     return _Loose(
-        position=np.fromiter(places, np.float64, 2 * len(rows)).reshape(-1, 2),
-        mass=np.array([row["mass"] for row in rows], dtype=np.float64),
-        radius=np.array([row["radius"] for row in rows], dtype=np.float64),
-        pinned=np.array([row["pinned"] for row in rows], dtype=np.bool_),
+        position=positions(level.particles),
+        mass=np.fromiter(map(itemgetter("mass"), rows), np.float64, len(rows)),
+        radius=np.fromiter(map(itemgetter("radius"), rows), np.float64, len(rows)),
+        pinned=np.fromiter(map(itemgetter("pinned"), rows), np.bool_, len(rows)),
     )
+
+
+def positions(particles: Sequence[ParticleDef]) -> Floats:
+    """Places of loose particles [m] (n, 2)."""
+    places = chain.from_iterable([particle.__dict__["position"] for particle in particles])
+    return np.fromiter(places, np.float64, 2 * len(particles)).reshape(-1, 2)
 
 
 def _links(level: Level, names: _Names) -> _Links:
