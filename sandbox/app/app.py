@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pygame
 
-from sandbox.app.colours import BACKGROUND
+from sandbox.app.colours import BACKGROUND, WARNING
 from sandbox.app.dialogs import show_lines
 from sandbox.app.display import SCALE_RANGE, Display
 from sandbox.app.edit.documents import Documents
@@ -230,12 +230,16 @@ class App:
             if self.screen is not None:
                 left = None if self.ui.has_sheet else self.screen.notices_left
                 legend = self.mode == "play"
-                self.status.draw(surface, self.screen.status(*self._figures), self.ui.units[0], left, legend)
+                parts = self.screen.status(*self._figures)
+                if not self.ready and self.mode == "edit":
+                    parts.append(("preparing the physics", WARNING))
+                self.status.draw(surface, parts, self.ui.units[0], left, legend)
             self.ui.draw(surface)
             self.guide.draw(surface)
             if (self.screen is None or self.ui.has_sheet) and not self.ui.shows_page:
                 self.status.draw_notices(surface, 16.0)
-            if not self.ready:
+            # A level can be drawn before the physics is there.
+            if not self.ready and self.mode == "play":
                 detail = "Only the first start takes some seconds."
                 draw_spinner(surface, self.ui, self._seconds, "Preparing the physics", detail)
 
