@@ -261,6 +261,7 @@ class App:
         if self.screen is None or self.gallery is not None:
             return "Levels - Spring Sandbox"
         words = [*self.screen.title(), *(["dialog"] if self.ui.has_sheet else [])]
+        words += [] if self.ready else ["preparing"]
         return " - ".join([*words, "Spring Sandbox"])
 
 
