@@ -95,7 +95,8 @@ class Forecast:
         slots = (np.cumsum(is_first) - 1)[scene.first_of_weld]
         for slot in np.unique(slots[is_falling]).tolist():
             world.pin(slot)
-        self._trouble = yield from _settle(world, part[is_first])
+        part = np.unique(part[is_first], return_inverse=True)[1]
+        self._trouble = yield from _settle(world, part)
         if not self._trouble:
             self.position = world.position[slots]
             self.position[is_falling] = scene.position[is_falling]
@@ -103,7 +104,7 @@ class Forecast:
 
 
 def _settle(world: World, part: Slots) -> Generator[None, None, str]:
-    """Run until nothing moves, or for too long: the trouble, empty at rest. part (k,): labels of the first slots."""
+    """Run until nothing moves, or for too long: the trouble, empty at rest. part (k,): labels of the first slots, below k."""
     count = len(part)
     free = world.inverse_mass[:count] > 0.0
     mass = np.where(free, world.mass[:count], 0.0)
