@@ -70,7 +70,7 @@ class FileActions:
 
     def _fault_of(self, typed: str) -> str | None:
         """Why nothing can be opened by that name; a file's own faults are shown when it is opened."""
-        if Path(typed).expanduser().is_file():
+        if os.path.isfile(os.path.expanduser(typed)):
             return None
         try:
             load_level(typed)
@@ -79,8 +79,8 @@ class FileActions:
         return None
 
     def _open_typed(self, typed: str) -> None:
-        path = Path(typed).expanduser()
-        if path.is_file():
+        path = os.path.expanduser(typed)
+        if os.path.isfile(path):
             self.open_path(path)
         elif self.app.mode == "edit":
             self.app.documents.edit_level(load_level(typed))
