@@ -104,7 +104,7 @@ class Forecast:
 
 
 def _settle(world: World, part: Slots) -> Generator[None, None, str]:
-    """Run until nothing moves, or for too long: the trouble, empty at rest. part (k,): label of each first slot, < k."""
+    """Run until nothing moves, or for too long: the trouble, empty at rest. part (k,): labels of the first slots."""
     count = len(part)
     free = world.inverse_mass[:count] > 0.0
     mass = np.where(free, world.mass[:count], 0.0)
