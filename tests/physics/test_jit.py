@@ -35,11 +35,27 @@ def test_a_compiled_kernel_gives_the_same_bits_as_its_source():
     assert results(jit.kernel(accumulate)).tobytes() == results(jit._interpreted(accumulate)).tobytes()
 
 
+def test_a_bundle_hands_kernels_the_very_arrays_that_went_into_it():
+    def add(items, factor):
+        values, active, total = items.items
+        for k in range(active.shape[0]):
+            if active[k]:
+                total[k, 0] += factor * values[k]
+
+    values, total = np.linspace(0.1, 7.7, 9), np.zeros((9, 2))
+    bundle, function = jit.bundle((values, np.arange(9) % 3 > 0, total)), jit.bundle_kernel(add)
+    first = values.tolist()
+    function(bundle, 2.0)
+    values[:] = 1.0
+    function(bundle, 0.5)
+    assert total[:, 0].tolist() == [2.0 * value + 0.5 if k % 3 else 0.0 for k, value in enumerate(first)]
+
+
 @pytest.mark.skipif(not jit.COMPILED, reason="nothing is compiled here")
 def test_a_kernel_is_compiled_uncached_where_the_cache_refuses(monkeypatch):
     asked = []
 
-    def njit_without_cache(*, cache=False, error_model):
+    def njit_without_cache(*, cache=False, error_model, **options):
         asked.append((cache, error_model))
         if cache:
             raise RuntimeError("cannot cache function: no locator available")

@@ -7,7 +7,7 @@ the body's energy stays within what it had plus what its bank holds of earlier l
 
 import numpy as np
 
-from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.jit import bundle_kernel, inner_kernel
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.measure import cap, extremes
 from sandbox.physics.solvers.network import (
@@ -274,11 +274,12 @@ def _brake(first_row, last_row, first, last, rows, springs, rest_length, allowed
     return after
 
 
-@kernel
+@bundle_kernel
 def _solve_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, particle_active, rest_length, stiffness,
-    damping, material, tension, bodies, rows, springs, matrix, least, most, parts, gravity_x, gravity_y, h,
+    damping, material, tension, numbers, least, most, parts, gravity_x, gravity_y, h,
 ):  # fmt: skip
+    bodies, rows, springs, matrix = numbers.items
     _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, matrix.diagonal.shape[0], rows)
     for body in range(bodies.lowest.shape[0]):
         first_row = bodies.row_start[body]
@@ -334,8 +335,8 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
     gravity_x, gravity_y = world.settings.gravity
     _solve_bodies(
         world.position, world.velocity, world.mass, world.inverse_mass, world.slow_velocity, world.energy_bank,
-        world.particle_active, world.rest_length, stiffness, damping, world.material, world.tension, pattern.bodies,
-        pattern.rows, pattern.springs, pattern.matrix, least, most, parts, gravity_x, gravity_y, h,
+        world.particle_active, world.rest_length, stiffness, damping, world.material, world.tension,
+        pattern.numbers, least, most, parts, gravity_x, gravity_y, h,
     )  # fmt: skip
 
 

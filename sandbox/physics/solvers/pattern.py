@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.jit import kernel
+from sandbox.physics.jit import bundle, kernel
 from sandbox.physics.solvers.dissection import Dissection, dissect_bodies, make_fronts, spring_places
 from sandbox.physics.solvers.fronts import Fronts
 from sandbox.physics.solvers.ordering import label_bodies, minimum_degree, update_targets
@@ -86,7 +86,10 @@ class Bodies(NamedTuple):
 
 @dataclass(frozen=True)
 class Pattern:
-    """Everything about a world's matrix that its topology and pins decide, with the scratch arrays of a step."""
+    """Everything about a world's matrix that its topology and pins decide, with the scratch arrays of a step.
+
+    signature: what it was made for. numbers: the four named tuples as a bundle for kernels.
+    """
 
     signature: tuple[NDArray[Any], ...]
     has_hooke: bool
@@ -95,6 +98,7 @@ class Pattern:
     rows: Rows
     springs: Springs
     matrix: Matrix
+    numbers: Any
 
 
 @kernel
@@ -155,15 +159,17 @@ def make_pattern(world: World) -> Pattern:
         anchored,
     )
     hooke = kind == LAW_HOOKE
-    particles = np.concatenate([nodes[order], anchors])
+    rows = _scratch_rows(np.concatenate([nodes[order], anchors]))
+    springs = _scratch_springs(chosen[grouped], row_a[grouped], row_b[grouped], blocks)
     return Pattern(
         signature=(free, kind, a, b),
         has_hooke=bool(hooke.any()),
         hooke=hooke,
         bodies=bodies,
-        rows=_scratch_rows(particles),
-        springs=_scratch_springs(chosen[grouped], row_a[grouped], row_b[grouped], blocks),
+        rows=rows,
+        springs=springs,
         matrix=matrix,
+        numbers=bundle((bodies, rows, springs, matrix)),
     )
 
 
