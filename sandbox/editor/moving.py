@@ -16,6 +16,7 @@ from sandbox.editor.scene import Scene, make_scene
 from sandbox.level.bodies import AnyBody
 from sandbox.level.limits import COORDINATE_LIMIT
 from sandbox.level.model import Level, ParticleDef, SpringDef
+from sandbox.level.parts import given_length
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import Points
 
@@ -140,8 +141,8 @@ def _mapped(document: Document, motion: Motion) -> Document:
     def part(old: Definition) -> Definition:
         if isinstance(old, ParticleDef):
             return validated(mapped_particle(old, motion))
-        if isinstance(old, SpringDef) and old.rest_length is not None and scene is not None:
-            return validated(replaced(old, rest_length=old.rest_length * _spring_stretch(scene, old, motion)))
+        if isinstance(old, SpringDef) and scene is not None:
+            return validated(_scaled(old, _spring_stretch(scene, old, motion)))
         return old
 
     level = changed(level, frozenset(item for item in selection if item.kind == "particle") | springs, part)
@@ -149,13 +150,23 @@ def _mapped(document: Document, motion: Motion) -> Document:
 
 
 def _inside_springs(level: Level, selection: Selection) -> Selection:
-    """Loose springs of a given rest length between two selected things."""
+    """Loose springs of a given rest length, or hydraulics, between two selected things."""
     owners = keys(selection, "body") | keys(selection, "particle")
     return frozenset(
         Item("spring", index)
         for index, spring in enumerate(level.springs)
-        if spring.rest_length is not None and owner_of(spring.a) in owners and owner_of(spring.b) in owners
+        if given_length(spring) is not None and owner_of(spring.a) in owners and owner_of(spring.b) in owners
     )
+
+
+def _scaled(spring: SpringDef, factor: float) -> SpringDef:
+    """A loose spring with the lengths that it is given times a factor."""
+    if spring.rest_length is not None:
+        spring = replaced(spring, rest_length=spring.rest_length * factor)
+    if spring.hydraulic is not None:
+        longest, shortest = spring.hydraulic.longest * factor, spring.hydraulic.shortest * factor
+        spring = replaced(spring, hydraulic=replaced(spring.hydraulic, shortest=shortest, longest=longest))
+    return spring
 
 
 def _spring_stretch(scene: Scene, spring: SpringDef, motion: Motion) -> float:

@@ -13,6 +13,7 @@ from sandbox.level.expansion import Expansion, expansion
 from sandbox.level.layout import Layout
 from sandbox.level.limits import BODY_RADIUS, DEFAULT_MATERIAL
 from sandbox.level.model import Level
+from sandbox.level.parts import given_length
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import distances
 from sandbox.level.welds import united
@@ -238,7 +239,8 @@ def _loose(level: Level) -> _Loose:
 
 
 def _loose_lengths(level: Level, position: Floats, parts: _Parts) -> Floats:
-    given = np.array([np.nan if s.rest_length is None else s.rest_length for s in level.springs], dtype=np.float64)
+    lengths = [given_length(spring) for spring in level.springs]
+    given = np.array([np.nan if length is None else length for length in lengths], dtype=np.float64)
     return np.where(np.isnan(given), distances(position, parts.ends), given)
 
 

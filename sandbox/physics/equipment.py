@@ -1,4 +1,4 @@
-"""Equipment of a world: limits of its materials and its driven parts, as tables. Constant while it runs, so no state."""
+"""Equipment of a world: limits of its materials and its driven parts. Constant while it runs, so no state."""
 
 from dataclasses import dataclass, field
 

@@ -1,4 +1,4 @@
-"""What acts on particles before the springs do: gravity, the air, motors. All of it is work from outside the springs."""
+"""What acts on particles before the springs do: gravity, the air, motors. To the springs it is work from outside."""
 
 from dataclasses import dataclass
 

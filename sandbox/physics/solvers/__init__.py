@@ -13,9 +13,9 @@ class Solver:
     """One schedule of the equation.
 
     solve(world, stiffness, damping, h, before): brings world.velocity from after the forces to the end of a step of
-    h [s], with Cs and Cd (m,) of that step; before: what the step began with. spring_constant(stiffness, damping, reduced_mass [kg], h): k [N/m] of the energy
-    k/2 x^2. proven_limit: whether the limits of `stability` hold for it. bounded: whether it needs none, because it
-    tests the energy of every step.
+    h [s], with Cs and Cd (m,) of that step; before: what the step began with.
+    spring_constant(stiffness, damping, reduced_mass [kg], h): k [N/m] of the energy k/2 x^2. proven_limit: whether the
+    limits of `stability` hold for it. bounded: whether it needs none, because it tests the energy of every step.
     """
 
     solve: Callable[[World, Floats, Floats, float, Before], None]
