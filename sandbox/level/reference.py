@@ -114,8 +114,8 @@ _DRIVEN = """\
   `-16 (u - 1/2) (1 - u)` after. It repeats exactly. A body's `drive` makes muscles of all its springs. What is driven
   does not yield, but breaks.
 - A hydraulic and a motor are driven by a value of -1..1: 1 while the `key` is held down, -1 while the `reverse_key`
-  is, 0 otherwise; the command `set_drive` gives any value between. A hydraulic's rest length changes by `rate` times the
-  value a second, within `shortest` and `longest`. A motor without keys has the value 1 from the start.
+  is, 0 otherwise; the command `set_drive` gives any value between. A hydraulic's rest length changes by `rate` times
+  the value a second, within `shortest` and `longest`. A motor without keys has the value 1 from the start.
 - A motor brings the wheel's turning rate, against that of its mount, to `speed` times the value, with at most `torque`;
   at the value 0 the wheel turns freely. The mount is the hub with everything that springs join to it from outside the
   wheel; it gets the reaction, so that momentum and angular momentum are kept. Where the hub or part of its mount is
