@@ -11,7 +11,8 @@ from sandbox.physics.forces import Before, apply_forces
 from sandbox.physics.jit import kernel
 from sandbox.physics.quarantine import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
-from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.solvers import SOLVERS, halves
+from sandbox.physics.solvers.direct import pattern_of
 from sandbox.physics.solvers.dissection import dissect
 from sandbox.physics.substeps import halve, substep_count
 from sandbox.physics.world import Floats, World
@@ -84,5 +85,7 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS)) -> None:
         world.fit(Driven(("a",), muscles, hydraulics, motors), [1.0])
         step(world)
     if "direct" in solvers:
-        # That is too small a body to be dissected by itself.
+        # That is too small a body to be dissected by itself, or to need a second thread.
         dissect(np.array([0]), np.array([1]), world.position)
+        pattern = pattern_of(world)
+        halves.warm_up(pattern.matrix.fronts, pattern.rows.change)
