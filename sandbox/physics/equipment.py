@@ -1,6 +1,7 @@
 """Equipment of a world: limits of its materials and its driven parts. Constant while it runs, so no state."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,12 +24,12 @@ class StrainLimits:
     yielding: Floats
     yield_share: Floats
 
-    @property
+    @cached_property
     def exist(self) -> bool:
         """Whether any spring can break or yield."""
         return bool(np.isfinite(self.tension).any() or np.isfinite(self.compression).any() or self.yields)
 
-    @property
+    @cached_property
     def yields(self) -> bool:
         """Whether any spring can yield."""
         return bool(np.isfinite(self.yielding).any())

@@ -1,6 +1,6 @@
 """What acts on particles before the springs do: gravity, the air, motors. To the springs it is work from outside."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,8 +11,7 @@ from sandbox.physics.world import Floats, World
 LEAST_INERTIA = 1e-150
 
 
-@dataclass(frozen=True, eq=False)
-class Before:
+class Before(NamedTuple):
     """What a step begins with, before forces and drives: velocity [m/s] (n, 2) and rest_length [m] (m,).
 
     A solver that tests energies measures by it what forces and drives have done.
