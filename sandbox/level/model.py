@@ -96,7 +96,7 @@ class Settings(Description):
         raise ValueError("there is no such solver; use one of " + ", ".join(sorted(SOLVERS)))
 
 
-class _MaterialDef(Description):
+class MaterialDef(Description):
     """What springs of every law have: limits of strain, (length - rest length) / rest length, at the end of a tick."""
 
     tension_limit: Tension | None = Field(
@@ -113,7 +113,7 @@ class _MaterialDef(Description):
     )
 
 
-class NissenMaterial(_MaterialDef):
+class NissenMaterial(MaterialDef):
     """The impulse-based spring (Nissen 2019): Cs and Cd per tick, the same behaviour for every mass."""
 
     stiffness: Coefficient = Field(
@@ -124,7 +124,7 @@ class NissenMaterial(_MaterialDef):
     )
 
 
-class HookeMaterial(_MaterialDef):
+class HookeMaterial(MaterialDef):
     """The classic spring, F = -k x - c u, for comparison: it explodes where k or c is too large for mass and step."""
 
     law: Literal["hooke"] = Field(description='"hooke"; without `law` a material is the impulse-based spring.')
