@@ -76,6 +76,8 @@ class Input:
     def _to_world(self, event: pygame.event.Event) -> None:
         if event.type == pygame.KEYUP:
             self._held_keys.discard(event.key)
+            if self.app.screen is not None:
+                self.app.screen.release_key(event.key)
         if event.type == pygame.KEYDOWN:
             self._key(event)
         elif event.type == pygame.KEYUP and event.key == pygame.K_SPACE:
@@ -100,6 +102,8 @@ class Input:
         if app.ui.typing and not _works_while_typing(event):
             return
         if app.gallery is not None and app.gallery.press_key(event.key):
+            return
+        if app.screen is not None and not app.ui.has_sheet and app.screen.press_key(event.key, event.mod):
             return
         if event.key in ARROWS and app.screen is not None and not app.ui.has_sheet:
             app.screen.press_arrow(*ARROWS[event.key], event.mod)

@@ -8,6 +8,7 @@ import pygame
 
 from sandbox.app.camera import Camera
 from sandbox.app.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colour
+from sandbox.app.drive_keys import DriveKeys
 from sandbox.app.edit.keep import ask_to_keep
 from sandbox.app.loop import SPEEDS
 from sandbox.app.panel import PANEL_WIDTH, Panel
@@ -38,6 +39,7 @@ class PlayScreen:
         self.show_panel = True
         self.panel: Panel | None = None
         self.stage = Stage(playback, self.viewport, app.scale)
+        self._keys = DriveKeys(playback)
         self.actions = self._actions()
         app.follow(playback)
 
@@ -148,6 +150,17 @@ class PlayScreen:
     def wheel(self, pixel: Pixel, notches: float) -> None:
         """Zoom about a pixel."""
         self.stage.wheel(pixel, notches)
+
+    def press_key(self, key: int, modifiers: int) -> bool:
+        """Drive what the level lets a key drive."""
+        if self._keys.playback is not self.playback:
+            self._keys = DriveKeys(self.playback)
+        return self._keys.press(key, modifiers)
+
+    def release_key(self, key: int) -> None:
+        """Stop driving."""
+        if self._keys.playback is self.playback:
+            self._keys.release(key)
 
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
         """Move the keyboard cursor."""

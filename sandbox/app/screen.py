@@ -48,6 +48,14 @@ class Screen(Protocol):
         """React to an arrow key; dy is upward."""
         ...
 
+    def press_key(self, key: int, modifiers: int) -> bool:
+        """React to a key that the level itself gives a meaning; whether it has one."""
+        ...
+
+    def release_key(self, key: int) -> None:
+        """React to a key that is let go."""
+        ...
+
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
         """Let frame_time [s] pass; pointer: where the mouse is over the world, if it is; ready: kernels are there."""
         ...

@@ -16,6 +16,7 @@ from sandbox.level.expansion import Expansion, expansion
 from sandbox.level.layout import Layout
 from sandbox.level.limits import BODY_RADIUS, DEFAULT_MATERIAL
 from sandbox.level.model import Level, ParticleDef
+from sandbox.level.parts import given_length
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import distances
 from sandbox.level.welds import united
@@ -286,7 +287,8 @@ def _links(level: Level, names: _Names) -> _Links:
     materials = tuple({DEFAULT_MATERIAL: None} | dict.fromkeys(level.materials))
     index = {name: number for number, name in enumerate(materials)}
     slots = [(names.layout.slot(spring.a), names.layout.slot(spring.b)) for spring in level.springs]
-    given = [np.nan if spring.rest_length is None else spring.rest_length for spring in level.springs]
+    lengths = map(given_length, level.springs)
+    given = [np.nan if length is None else length for length in lengths]
     return _Links(
         ends=np.array(slots, dtype=np.int64).reshape(-1, 2),
         rest_length=np.array(given, dtype=np.float64),

@@ -18,6 +18,7 @@ from sandbox.level.bodies import (
     WheelDef,
 )
 from sandbox.level.checks import PARTICLE_METRICS, CheckDef
+from sandbox.level.driven_faults import driven_faults
 from sandbox.level.faults import Fault, LevelError, json_path, shown, suggestion
 from sandbox.level.layout import Layout
 from sandbox.level.limits import (
@@ -116,6 +117,7 @@ def _all_faults(level: Level, counts: list[tuple[int, int]], layout: Layout) -> 
         else:
             yield from _changes(path, body, *counts[index])
     yield from _springs(level, layout)
+    yield from driven_faults(level)
     for index, (a, b) in enumerate(level.welds):
         yield from _pair(f"welds.{index}", layout, {"0": a, "1": b})
     for index, check in enumerate(level.checks):

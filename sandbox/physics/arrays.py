@@ -1,6 +1,10 @@
 """The arrays of a world's state: their names, their types, and their order."""
 
 import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Slots = NDArray[np.int64]
 
 PARTICLE_ARRAYS = {
     "position": np.float64,
@@ -9,6 +13,7 @@ PARTICLE_ARRAYS = {
     "mass": np.float64,
     "inverse_mass": np.float64,
     "radius": np.float64,
+    "gravity_scale": np.float64,
     "particle_active": np.bool_,
     "slow_velocity": np.float64,
     "energy_bank": np.float64,
@@ -17,6 +22,7 @@ SPRING_ARRAYS = {
     "particle_a": np.int32,
     "particle_b": np.int32,
     "rest_length": np.float64,
+    "natural_length": np.float64,
     "stiffness": np.float64,
     "damping": np.float64,
     "law": np.int8,
@@ -27,9 +33,58 @@ SPRING_ARRAYS = {
     "impulse": np.float64,
     "tension": np.float64,
 }
+PART_ARRAYS = {"part_value": np.float64}
+# Arrays that go together: one row for each particle, each spring, each driven part.
+FAMILIES = (PARTICLE_ARRAYS, SPRING_ARRAYS, PART_ARRAYS)
+KINDS = PARTICLE_ARRAYS | SPRING_ARRAYS | PART_ARRAYS
 # Every array of a world's state, in the order in which it is hashed and stored: part of the replay contract.
-STATE_ARRAYS = (*PARTICLE_ARRAYS, *SPRING_ARRAYS)
+STATE_ARRAYS = tuple(KINDS)
 # Constants of springs that the quarantine can take back.
 GUARDED_CONSTANTS = ("rest_length", "stiffness", "damping", "hooke_stiffness", "hooke_damping")
 GUARDED = ("position", "velocity", "mass", *GUARDED_CONSTANTS)
 VECTOR_ARRAYS = frozenset({"position", "velocity", "origin", "slow_velocity", "impulse"})
+
+
+class StateArrays:
+    """The state of n particles, m springs and k driven parts as a struct of arrays, float64 unless said.
+
+    position [m] (n, 2), velocity [m/s] (n, 2), origin [m] (n, 2) = where each was created, which orders the direct
+    solver's elimination, mass [kg], inverse_mass [1/kg] (0 = pinned), radius [m], gravity_scale = how many times the
+    world's gravity pulls at it, particle_active (bool); particle_a, particle_b (int32 slots), rest_length [m],
+    natural_length [m] = the rest length that it was made with, before it yielded or was driven, stiffness, damping
+    (Cs, Cd per tick), law (int8), hooke_stiffness [N/m], hooke_damping [N s/m], material (int32 index into
+    material_names, -1 = a hand's), spring_active (bool), impulse [N s] (m, 2) = what the iterative solver keeps for its
+    warm start. The direct solver keeps slow_velocity [m/s] (n, 2) = the slow part of the velocity, energy_bank [J] (n,)
+    = what a body's earlier losses still allow it, at its free particle of lowest slot (-1: to be begun anew), tension
+    [N s] (m,) = the impulse by which a spring pulled in the last step, of a whole tick where substeps are "auto", as
+    impulse then is. part_value (k,) = how a driven part is driven, -1..1.
+    """
+
+    position: Floats
+    velocity: Floats
+    origin: Floats
+    mass: Floats
+    inverse_mass: Floats
+    radius: Floats
+    gravity_scale: Floats
+    particle_active: NDArray[np.bool_]
+    slow_velocity: Floats
+    energy_bank: Floats
+    particle_a: NDArray[np.int32]
+    particle_b: NDArray[np.int32]
+    rest_length: Floats
+    natural_length: Floats
+    stiffness: Floats
+    damping: Floats
+    law: NDArray[np.int8]
+    hooke_stiffness: Floats
+    hooke_damping: Floats
+    material: NDArray[np.int32]
+    spring_active: NDArray[np.bool_]
+    impulse: Floats
+    tension: Floats
+    part_value: Floats
+
+    def __init__(self) -> None:
+        for name, kind in KINDS.items():
+            setattr(self, name, np.zeros((0, 2) if name in VECTOR_ARRAYS else 0, dtype=kind))

@@ -23,12 +23,14 @@ class Snapshot:
     mass: Floats
     inverse_mass: Floats
     radius: Floats
+    gravity_scale: Floats
     particle_active: NDArray[np.bool_]
     slow_velocity: Floats
     energy_bank: Floats
     particle_a: NDArray[np.int32]
     particle_b: NDArray[np.int32]
     rest_length: Floats
+    natural_length: Floats
     stiffness: Floats
     damping: Floats
     law: NDArray[np.int8]
@@ -38,6 +40,7 @@ class Snapshot:
     spring_active: NDArray[np.bool_]
     impulse: Floats
     tension: Floats
+    part_value: Floats
     settings: WorldSettings
     tick: int
     hand_particle: int
@@ -100,6 +103,8 @@ def state_hash(world: World | Snapshot, arrays: Mapping[str, str] | None = None)
         state.solver,
         str(state.iterations),
         float(state.warm_start).hex(),
+        *((component + 0.0).hex() for component in state.wind),
+        float(state.drag).hex(),
     )
     text = "\n".join([*(by_array[name] for name in STATE_ARRAYS), str(world.tick), *settings])
     return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()

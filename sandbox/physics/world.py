@@ -6,11 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sandbox.physics.arrays import GUARDED, PARTICLE_ARRAYS, SPRING_ARRAYS, VECTOR_ARRAYS
+from sandbox.physics.arrays import GUARDED, Floats, Slots, StateArrays
+from sandbox.physics.equipment import Driven, StrainLimits, unlimited
 from sandbox.physics.settings import AUTO, WorldSettings
-
-Floats = NDArray[np.float64]
-Slots = NDArray[np.int64]
 
 LAW_NISSEN = 0
 LAW_HOOKE = 1
@@ -29,49 +27,19 @@ HAND_DAMPING = 0.3
 BANK_UNOPENED = -1.0
 
 
-class World:
-    """Particles and springs as a struct of arrays, plus the settings of a tick.
-
-    Arrays, n particles and m springs, float64 unless said: position [m] (n, 2), velocity [m/s] (n, 2), origin [m]
-    (n, 2) = where each was created, which orders the direct solver's elimination, mass [kg], inverse_mass [1/kg]
-    (0 = pinned), radius [m], particle_active (bool); particle_a, particle_b (int32 slots), rest_length [m], stiffness,
-    damping (Cs, Cd per tick), law (int8), hooke_stiffness [N/m], hooke_damping [N s/m],
-    material (int32 index into material_names, -1 = a hand's), spring_active (bool), impulse [N s] (m, 2) = what the
-    iterative solver keeps for its warm start. The direct solver keeps slow_velocity [m/s] (n, 2) = the slow part of the
-    velocity, energy_bank [J] (n,) = what a body's earlier losses still allow it, at its free particle of lowest slot
-    (-1: to be begun anew), tension [N s] (m,) = the impulse by which a spring pulled in the last step, of a whole tick
-    where substeps are "auto", as impulse then is.
+class World(StateArrays):
+    """Particles and springs as a struct of arrays, see StateArrays, plus the settings of a tick.
 
     Slots are append-only: an index stays a particle's or spring's handle for ever; removing clears the active flag.
-    Pinned particles have velocity 0, except a hand's cursor while it moves.
+    Pinned particles have velocity 0, except a hand's cursor while it moves. limits and driven: equipment, see there.
     """
-
-    position: Floats
-    velocity: Floats
-    origin: Floats
-    mass: Floats
-    inverse_mass: Floats
-    radius: Floats
-    particle_active: NDArray[np.bool_]
-    slow_velocity: Floats
-    energy_bank: Floats
-    particle_a: NDArray[np.int32]
-    particle_b: NDArray[np.int32]
-    rest_length: Floats
-    stiffness: Floats
-    damping: Floats
-    law: NDArray[np.int8]
-    hooke_stiffness: Floats
-    hooke_damping: Floats
-    material: NDArray[np.int32]
-    spring_active: NDArray[np.bool_]
-    impulse: Floats
-    tension: Floats
 
     def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
         self._settings = settings or WorldSettings()
         self.tick = 0
         self.material_names = tuple(material_names)
+        self.limits: StrainLimits = unlimited(len(self.material_names))
+        self.driven = Driven()
         self.particle_names: list[str] = []
         self.spring_names: list[str] = []
         self._particle_slots: dict[str, int] = {}
@@ -83,8 +51,9 @@ class World:
         # What the quarantine has taken back since somebody last looked, and, in `good`, the last good values by array;
         # never state.
         self.contained: list[Any] = []
-        for name, kind in (PARTICLE_ARRAYS | SPRING_ARRAYS).items():
-            setattr(self, name, np.zeros((0, 2) if name in VECTOR_ARRAYS else 0, dtype=kind))
+        # The springs that broke in the last tick; never state.
+        self.broken: Slots = np.zeros(0, dtype=np.int64)
+        super().__init__()
         self.good: dict[str, Floats] = {}
         self.trust()
 
@@ -156,10 +125,12 @@ class World:
         mass: ArrayLike = 1.0,
         radius: ArrayLike = 0.05,
         pinned: ArrayLike = False,
+        gravity_scale: ArrayLike = 1.0,
     ) -> int:
         """Append particles, one per name, and return the first slot.
 
-        position [m] (k, 2); velocity [m/s] (k, 2) or one for all; mass [kg], radius [m] and pinned (k,) or one for all.
+        position [m] (k, 2); velocity [m/s] (k, 2) or one for all; mass [kg], radius [m], pinned and gravity_scale (k,)
+        or one for all.
         A pinned particle starts at rest. Raises ValueError for a name that is taken or a mass that is not above 0.
         """
         count, first = len(names), self.particle_count
@@ -178,6 +149,7 @@ class World:
             mass=masses,
             inverse_mass=np.where(is_pinned, 0.0, 1.0 / masses),
             radius=np.broadcast_to(np.asarray(radius, dtype=np.float64), count),
+            gravity_scale=np.broadcast_to(np.asarray(gravity_scale, dtype=np.float64), count),
             particle_active=np.ones(count, dtype=np.bool_),
         )
         return first
@@ -212,10 +184,12 @@ class World:
         separation = self.position[b] - self.position[a]
         placed = np.sqrt(separation[:, 0] * separation[:, 0] + separation[:, 1] * separation[:, 1])
         given = np.broadcast_to(np.asarray(np.nan if rest_length is None else rest_length, dtype=np.float64), count)
+        rest = np.where(np.isnan(given), placed, given)
         self._append(
             particle_a=a,
             particle_b=b,
-            rest_length=np.where(np.isnan(given), placed, given),
+            rest_length=rest,
+            natural_length=rest,
             stiffness=np.broadcast_to(stiffness, count),
             damping=np.broadcast_to(damping, count),
             law=np.broadcast_to(law, count),
@@ -275,6 +249,27 @@ class World:
             self.impulse[slot] = 0.0
             self.tension[slot] = 0.0
             self._disturb(self.particle_a[slot], self.particle_b[slot])
+
+    def break_springs(self, springs: Slots) -> None:
+        """Take springs out that broke by themselves: what is left of a body goes on with the energy that it has."""
+        self.spring_active[springs] = False
+        self.impulse[springs] = 0.0
+        self.tension[springs] = 0.0
+        self.broken = springs
+
+    def fit(self, driven: Driven, values: ArrayLike) -> None:
+        """Give the world its driven parts, with the value (k,) of each, -1..1; done once, when the world is built."""
+        self.driven = driven
+        self.part_value = np.array(values, dtype=np.float64)
+
+    def drive(self, part: int, value: float) -> None:
+        """Drive a part, -1..1: a motor at that share of its speed, a hydraulic at that share of its rate."""
+        self.part_value[part] = value
+
+    def set_rest_lengths(self, springs: Slots, lengths: Floats) -> None:
+        """Give springs other rest lengths [m]; what they yielded by stays what it was."""
+        self.rest_length[springs] = lengths
+        self.good["rest_length"][springs] = lengths
 
     def hold(self, hand: int, particle: int, target: tuple[float, float]) -> None:
         """Join a particle to a hand's cursor at target [m] by a spring of rest length 0."""

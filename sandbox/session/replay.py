@@ -1,6 +1,6 @@
 """Replay: a recorded run read back, and verify, which runs it again and names the first bit that differs."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.level.model import Level
-from sandbox.physics.arrays import PARTICLE_ARRAYS, STATE_ARRAYS
+from sandbox.level.parts import parts
+from sandbox.physics.arrays import PARTICLE_ARRAYS, SPRING_ARRAYS, STATE_ARRAYS
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, canonical_bytes, hash_by_array, state_hash
 from sandbox.physics.world import World
@@ -71,6 +72,12 @@ class Replay:
             snapshot = decode_state(tick, stored.arrays, stored.settings)
         except ValueError as error:
             raise ReplayError(f"{self.source}: line {stored.line}: {error}") from None
+        driven = len(parts(self.level))
+        if len(snapshot.part_value) != driven:
+            raise ReplayError(
+                f"{self.source}: line {stored.line}: state.part_value: has {len(snapshot.part_value)} values, "
+                f"where the level has {driven} driven parts"
+            )
         if state_hash(snapshot) != self.hashes[tick].whole:
             raise ReplayError(
                 f"{self.source}: line {stored.line}: state: is not the one whose hash stands at tick {tick}"
@@ -204,6 +211,10 @@ def _first_difference(tick: int, array: str, expected: NDArray[Any], world: Worl
     if flat is None:
         return Divergence(tick, array, None, "equal", "equal", note="the two runs agree here")
     place = tuple(int(part) for part in np.unravel_index(flat, actual.shape))
-    names = world.particle_names if array in PARTICLE_ARRAYS else world.spring_names
+    names: Sequence[str] = world.driven.part_names
+    if array in PARTICLE_ARRAYS:
+        names = world.particle_names
+    elif array in SPRING_ARRAYS:
+        names = world.spring_names
     index = place[0] if len(place) == 1 else (place[0], place[1])
     return Divergence(tick, array, index, expected[place].item(), actual[place].item(), names[place[0]])

@@ -21,7 +21,7 @@ import numpy as np
 
 from sandbox.level.files import level_data
 from sandbox.level.model import Level
-from sandbox.physics.arrays import PARTICLE_ARRAYS, SPRING_ARRAYS, STATE_ARRAYS, VECTOR_ARRAYS
+from sandbox.physics.arrays import FAMILIES, KINDS, STATE_ARRAYS, VECTOR_ARRAYS
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.world import HAND_COUNT, HAND_MATERIAL, World, WorldSettings
@@ -89,7 +89,7 @@ def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> S
     if set(state) != set(STATE_ARRAYS):
         raise ValueError(f"state: the arrays are {', '.join(STATE_ARRAYS)}")
     arrays = {name: _decode_array(name, text) for name, text in state.items()}
-    for group in (PARTICLE_ARRAYS, SPRING_ARRAYS):
+    for group in FAMILIES:
         if len({len(arrays[name]) for name in group}) != 1:
             raise ValueError(f"state: {', '.join(group)} are not equally long")
     for name in ("particle_a", "particle_b"):
@@ -108,7 +108,7 @@ def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> S
 
 
 def _decode_array(name: str, text: str) -> Any:
-    kind = np.dtype((PARTICLE_ARRAYS | SPRING_ARRAYS)[name])
+    kind = np.dtype(KINDS[name])
     try:
         inflater = zlib.decompressobj()
         data = inflater.decompress(base64.b64decode(text, validate=True), ARRAY_LIMIT)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from physics_scenes import STILL, grid_with_diagonals, network, rope, run, scaled
 
-from sandbox.physics.arrays import STATE_ARRAYS
+from sandbox.physics.arrays import PARTICLE_ARRAYS, SPRING_ARRAYS, STATE_ARRAYS
 from sandbox.physics.energy import kinetic_energy, spring_energy
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
@@ -34,8 +34,9 @@ def test_every_array_keeps_its_type_and_one_item_per_slot():
     for name in STATE_ARRAYS:
         array = getattr(world, name)
         assert array.flags.c_contiguous
-        springs = len(array) == world.spring_count == 4 + HAND_COUNT
-        assert springs or len(array) == world.particle_count == 5 + HAND_COUNT
+        counts = {**dict.fromkeys(PARTICLE_ARRAYS, 5 + HAND_COUNT), **dict.fromkeys(SPRING_ARRAYS, 4 + HAND_COUNT)}
+        assert len(array) == counts.get(name, 0)
+    assert (world.particle_count, world.spring_count) == (5 + HAND_COUNT, 4 + HAND_COUNT)
     assert world.particle_a.dtype == np.int32 and world.position.dtype == np.float64
 
 

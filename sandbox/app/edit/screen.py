@@ -287,6 +287,13 @@ class EditScreen:
         middle = (left + width / 2, top + height / 2)
         self.wheel(middle if self.cursor is None else self.camera.to_pixels(self.cursor), notches)
 
+    def press_key(self, key: int, modifiers: int) -> bool:
+        """No key of a level works while it is edited."""
+        return False
+
+    def release_key(self, key: int) -> None:
+        """Nothing was held."""
+
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
         """Nudge the selection by a step of the grid, ten with Shift; without one, move the keyboard cursor."""
         step = self.grid * (NUDGE_LEAP if modifiers & pygame.KMOD_SHIFT else 1)

@@ -7,6 +7,7 @@ the body's energy stays within what it had plus what its bank holds of earlier l
 
 import numpy as np
 
+from sandbox.physics.forces import Before
 from sandbox.physics.jit import bundle_kernel, inner_kernel
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.halves import hire
@@ -59,7 +60,7 @@ NOTHING = np.zeros(0)
 
 
 @inner_kernel
-def _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, free_count, rows):  # type: ignore[no-untyped-def]
+def _load_rows(position, velocity, mass, slow_velocity, before, h, free_count, rows):  # type: ignore[no-untyped-def]
     for r in range(rows.particle.shape[0]):
         p = rows.particle[r]
         rows.mass[r] = mass[p]
@@ -67,12 +68,9 @@ def _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h,
             rows.position[r, axis] = position[p, axis]
             rows.moved[r, axis] = position[p, axis]
             rows.target[r, axis] = velocity[p, axis]
-            rows.start[r, axis] = velocity[p, axis]
+            rows.start[r, axis] = before[p, axis]
             rows.slow[r, axis] = slow_velocity[p, axis]
-        if r < free_count:
-            rows.start[r, 0] -= gravity_x * h
-            rows.start[r, 1] -= gravity_y * h
-        else:
+        if r >= free_count:
             rows.moved[r, 0] += velocity[p, 0] * h
             rows.moved[r, 1] += velocity[p, 1] * h
         for axis in range(2):
@@ -205,19 +203,22 @@ def _energy(first_row, last_row, first, last, rows, springs, rest_length, h):  #
 
 @inner_kernel
 def _open_bank(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, spread, kinetic_after, moved, rest_length, h
-):
+    first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, spread, kinetic_after, moved, rest_length,
+    rest_before, h,
+):  # fmt: skip
     # The body's bank before the step. It is begun anew where a particle says so (-1): after any change from outside.
+    # A body that broke off begins with none: what is saved stays with the particle that was the lowest, once.
     begun = True
     for r in range(first_row, last_row):
         p = rows.particle[r]
         if bank[p] < 0.0:
             begun = False
+        if p != lowest:
             bank[p] = 0.0
     held = bank[lowest] if begun else 0.0
     if spread:
-        # What the most k adds to the measure: of the start, and of the work of hands.
-        hidden = potential(first, last, rows.position, rows.start, springs, springs.hidden, rest_length, 0.0, h)
+        # What the most k adds to the measure: of the start, and of the work of hands and drives.
+        hidden = potential(first, last, rows.position, rows.start, springs, springs.hidden, rest_before, 0.0, h)
         hidden_moved = potential(first, last, rows.moved, rows.moved, springs, springs.hidden, rest_length, 0.0, h)
         held += max(0.0, hidden_moved - hidden)
         if not begun:
@@ -225,22 +226,23 @@ def _open_bank(  # type: ignore[no-untyped-def]
     if not bouncy:
         return held
     before = kinetic(first_row, last_row, rows.mass, rows.start)
-    present = potential(first, last, rows.position, rows.start, springs, springs.measured, rest_length, 0.0, h)
+    present = potential(first, last, rows.position, rows.start, springs, springs.measured, rest_before, 0.0, h)
     if not begun:
         held += BOUNCY_BANK_SHARE * (before + present)
-    # Work done by gravity and by hands since then counts as energy of the start.
+    # Work done by forces, hands and drives since then counts as energy of the start.
     return max(0.0, held + BOUNCY_BANK_SHARE * (kinetic_after - before + moved - present))
 
 
 @inner_kernel
 def _step_body(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, rows, springs, matrix, rest_length, lowest, bank, bouncy, spread, moved, h
-):
+    first_row, last_row, first, last, rows, springs, matrix, rest_length, rest_before, lowest, bank, bouncy, spread,
+    moved, h,
+):  # fmt: skip
     kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
     before = kinetic_after + moved
     held = _open_bank(
         first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, spread, kinetic_after, moved,
-        rest_length, h,
+        rest_length, rest_before, h,
     )  # fmt: skip
     allowed = before * (1.0 + ENERGY_ROUNDING) + held
     after, misfit = _take_candidate(first_row, last_row, first, last, rows, springs, matrix, rest_length, h)
@@ -290,10 +292,10 @@ def _brake(first_row, last_row, first, last, rows, springs, rest_length, allowed
 @bundle_kernel
 def _solve_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, particle_active, rest_length, stiffness,
-    damping, material, tension, numbers, least, most, parts, gravity_x, gravity_y, h,
+    damping, material, tension, numbers, least, most, parts, before, rest_before, h,
 ):  # fmt: skip
     bodies, rows, springs, matrix = numbers.items
-    _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, matrix.diagonal.shape[0], rows)
+    _load_rows(position, velocity, mass, slow_velocity, before, h, matrix.diagonal.shape[0], rows)
     for body in range(bodies.lowest.shape[0]):
         first_row = bodies.row_start[body]
         last_row = bodies.row_start[body + 1]
@@ -310,8 +312,8 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
             least, most, parts, h, matrix.diagonal.shape[0],
         )  # fmt: skip
         _step_body(
-            first_row, last_row, first, last, rows, springs, matrix, rest_length, bodies.lowest[body], energy_bank,
-            bouncy, spread, moved, h,
+            first_row, last_row, first, last, rows, springs, matrix, rest_length, rest_before, bodies.lowest[body],
+            energy_bank, bouncy, spread, moved, h,
         )  # fmt: skip
         for r in range(first_row, last_row):
             velocity[rows.particle[r], 0] = rows.trial[r, 0]
@@ -336,7 +338,7 @@ def pattern_of(world: World) -> Pattern:
     return pattern
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
+def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Before) -> None:
     """Bring the velocities to the end of a step of h [s]; slow_velocity, energy_bank and tension go with them."""
     pattern = pattern_of(world)
     if pattern.has_hooke:
@@ -346,11 +348,10 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
         parts = round(1.0 / (h * world.settings.tick_rate))
         stiffness, damping = cap(stiffness, damping, parts)
         least, most = extremes(world)
-    gravity_x, gravity_y = world.settings.gravity
     _solve_bodies(
         world.position, world.velocity, world.mass, world.inverse_mass, world.slow_velocity, world.energy_bank,
         world.particle_active, world.rest_length, stiffness, damping, world.material, world.tension,
-        pattern.numbers, least, most, parts, gravity_x, gravity_y, h,
+        pattern.numbers, least, most, parts, before.velocity, before.rest_length, h,
     )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.equation import direction, reduced_mass, spring_impulse
+from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
 from sandbox.physics.world import Floats, World
 
@@ -56,7 +57,7 @@ def apply_explicit(world: World, chosen: NDArray[np.bool_], stiffness: Floats, d
     )  # fmt: skip
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
+def solve(world: World, stiffness: Floats, damping: Floats, h: float, _: Before) -> None:
     """Bring the velocities to the end of a step of h [s]."""
     apply_explicit(world, world.spring_active, stiffness, damping, h)
 
