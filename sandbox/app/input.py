@@ -147,10 +147,6 @@ class Input:
         self._last_press = None if is_second else (now, pixel)
         return 2 if is_second else 1
 
-    def forget_clicks(self) -> None:
-        """Let the next press be the first of its kind, whenever it comes."""
-        self._last_press = None
-
     def _motion(self, event: pygame.event.Event) -> None:
         screen, ratio = self.app.screen, self.app.display.pixel_ratio
         if screen is None:

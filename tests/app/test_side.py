@@ -61,7 +61,8 @@ def press(driver, widget):
 
 
 def click_row(driver, rows: RowList, index):
-    driver.click(rows.rect_of(index).center)
+    middle = (rows._tops[index] + rows._tops[index + 1]) / 2
+    driver.click((rows.rect.centerx, rows.rect.top + middle - rows._offset))
     driver.frames(2)
 
 
