@@ -275,7 +275,7 @@ def _adjust_or_zoom(screen: "EditScreen", by: int) -> None:
     if isinstance(screen.hand, DrawHand) and screen.hand.drawing.under_way:
         screen.hand.adjust(by)
     else:
-        screen.zoom(2 * by)
+        screen.camera.zoom_at(screen.cursor, 2 * by)
 
 
 def _delete_or_back(screen: "EditScreen") -> None:
