@@ -154,6 +154,7 @@ class Documents:
         """Write, and go on; where a file is in the way, the person is asked."""
         editor = self.editor
         assert editor is not None
+        before = editor.level_file.path
         try:
             warning = write(replace)
         except (FileExists, ChangedOnDisk) as error:
@@ -174,6 +175,8 @@ class Documents:
         remember(path)
         self.give_up()
         self.app.say(one_line(warning or f"Saved as {path}"))
+        if path != before and editor.level_file.warning:
+            self.app.say(editor.level_file.warning)
         then()
 
     def _ask_name(self, then: Callable[[], object]) -> None:
