@@ -120,7 +120,8 @@ class Gallery:
         self._scroll = 0.0
         self._columns = 1
         self._open = partial(files.open_level, shipped=section == "levels")
-        self.sheet = ui.open_sheet(close if files.app.screen is not None else lambda: None, "@cover")
+        end = close if files.app.screen is not None else lambda: None
+        self.sheet = ui.open_sheet(end, "@cover", again=lambda _: files.app.open_gallery(section))
         width, height = ui.units
         editing = files.app.mode == "edit"
         ui.label(ui.rect(MARGIN, 26, 300, 40), "Edit a level" if editing else "Spring Sandbox", self.sheet, "@display")
