@@ -1,10 +1,11 @@
-"""Dialogs: lines that a person has to see, questions with a typed answer, and choices."""
+"""Dialogs: lines that a person has to see, questions with a typed answer, choices, and long lists to choose from."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
 from sandbox.app.colours import TEXT, WARNING
+from sandbox.app.edit.rows import MENU_ROWS, Row, RowList
 from sandbox.app.fields import Again
 from sandbox.app.painted import TextBlock
 from sandbox.app.widgets import Ui
@@ -16,6 +17,8 @@ LINE_HEIGHT = 21.0
 MOST_LINES = 14
 # Characters of a fault that fit on a line of the box.
 LINE_CHARACTERS = 74
+# Height of a row of a list.
+ROW_HEIGHT = 29.0
 
 # A button: its label, and what it does.
 Choice = tuple[str, Callable[[], object]]
@@ -147,6 +150,29 @@ def choose(
         buttons.append(ui.button(place, label, partial(do, action), box, style=style))
     ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="@quiet")
     ui.focus_on(buttons[0])
+
+
+def choose_row(ui: Ui, title: str, rows: Sequence[Row], take: Callable[[int], object]) -> None:
+    """Offer a list of any length, which scrolls; take(index) is called once a row is chosen."""
+    tall = min(min(len(rows), MENU_ROWS) * ROW_HEIGHT, ui.units[1] - 20 - 2 * MARGIN - 84)
+    height = MARGIN * 2 + 84 + tall
+
+    def close() -> None:
+        ui.close_sheet(sheet)
+
+    def do(index: int) -> None:
+        close()
+        take(index)
+
+    def again(other_ui: Ui) -> None:
+        choose_row(other_ui, title, rows, take)
+
+    sheet, box, width = _box(ui, height, close, again)
+    ui.label(ui.rect(MARGIN, MARGIN - 6, width - 2 * MARGIN, 28), title, box, "@title")
+    listed = RowList(ui, ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN, tall), do, box, at_once=False)
+    listed.show_rows(rows, None)
+    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="@quiet")
+    ui.focus_on(listed)
 
 
 def fill_in(
