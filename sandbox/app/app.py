@@ -51,7 +51,6 @@ class App:
         self.running = True
         self.ready = False
         self.screen: Screen | None = None
-        self.gallery: Gallery | None = None
         self.input = Input(self)
         self.files = FileActions(self)
         self.documents = Documents(self)
@@ -84,6 +83,7 @@ class App:
         return "play" if self.screen is None else self.screen.mode
 
     def _build_ui(self) -> None:
+        self.gallery: Gallery | None = None
         self.ui = Ui(self.display.size, self.scale, self.display.pixel_ratio)
         self.status = StatusLine(self.ui, self._notices)
         if self.screen is not None:
@@ -92,11 +92,9 @@ class App:
 
     def rebuild(self) -> None:
         """Lay everything out anew, after the window or the scale changed."""
-        section = self.gallery.section if self.gallery is not None else None
-        self.gallery = None
+        before = self.ui
         self._build_ui()
-        if section is not None:
-            self.open_gallery(section)
+        self.ui.take_over(before)
 
     def say(self, text: str) -> None:
         """Show a line to the person for some seconds."""
@@ -112,7 +110,9 @@ class App:
         if self.screen is not None and self.screen is not screen:
             self.screen.leave()
         self.screen = screen
-        self.rebuild()
+        before = self.ui
+        self._build_ui()
+        self.ui.take_over(before, questions_alone=True)
 
     def start(self, playback: Playback, source: Path | None = None) -> None:
         """Show another run from its beginning; source: the file of its level."""

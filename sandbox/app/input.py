@@ -95,7 +95,7 @@ class Input:
         elif event.type == pygame.MOUSEWHEEL:
             pixel = self.pointer_over_world()
             if pixel is not None:
-                self.app.screen.wheel(pixel, event.precise_y or event.y)
+                self.app.screen.camera.turn_wheel(pixel, event.precise_y or event.y)
 
     def _key(self, event: pygame.event.Event) -> None:
         app = self.app
@@ -150,10 +150,6 @@ class Input:
         is_second = before is not None and now - before[0] <= 1000 * DOUBLE_SECONDS and math.dist(before[1], pixel) <= 6
         self._last_press = None if is_second else (now, pixel)
         return 2 if is_second else 1
-
-    def forget_clicks(self) -> None:
-        """Let the next press be the first of its kind, whenever it comes."""
-        self._last_press = None
 
     def _motion(self, event: pygame.event.Event) -> None:
         screen, ratio = self.app.screen, self.app.display.pixel_ratio

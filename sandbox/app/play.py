@@ -88,8 +88,8 @@ class PlayScreen:
             "step": lambda: self.playback.clock.step_once(),
             "slow": self._slower,
             "reset": self._reset,
-            "zoom_in": lambda: stage.zoom(2),
-            "zoom_out": lambda: stage.zoom(-2),
+            "zoom_in": lambda: stage.camera.zoom_at(stage.cursor, 2),
+            "zoom_out": lambda: stage.camera.zoom_at(stage.cursor, -2),
             "fit": stage.fit,
             "record": files.toggle_recording,
             "save": files.save_run,
@@ -146,10 +146,6 @@ class PlayScreen:
         if kind == "down":
             self.stage.cursor = None
         self.stage.point(kind, pixel, modifiers)
-
-    def wheel(self, pixel: Pixel, notches: float) -> None:
-        """Zoom about a pixel."""
-        self.stage.wheel(pixel, notches)
 
     def press_key(self, key: int, modifiers: int) -> bool:
         """Drive what the level lets a key drive."""

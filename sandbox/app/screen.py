@@ -40,10 +40,6 @@ class Screen(Protocol):
         """React to the pointer; clicks: 2 for the second press of a double click."""
         ...
 
-    def wheel(self, pixel: Pixel, notches: float) -> None:
-        """React to the wheel over the world."""
-        ...
-
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
         """React to an arrow key; dy is upward."""
         ...

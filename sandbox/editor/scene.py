@@ -1,7 +1,7 @@
 """Scene: a level as arrays to draw, pick from and measure, made anew after every edit from what did not change."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain
 from operator import is_, itemgetter
@@ -220,14 +220,6 @@ def make_scene(level: Level, before: Scene | None = None) -> Scene:
         first_of_weld=first_of_weld,
         parts=parts,
     )
-
-
-def transformed(scene: Scene, selection: Selection, matrix: Floats) -> Scene:
-    """The scene with the particles of a selection mapped by matrix (2, 3), as a preview: rest lengths stay."""
-    moved = scene.particles_of(selection)
-    position = scene.position.copy()
-    position[moved] = position[moved] @ matrix[:, :2].T + matrix[:, 2]
-    return replace(scene, position=position[scene.first_of_weld] if len(scene.welds) else position)
 
 
 def _parts(level: Level, before: Scene | None) -> _Parts:

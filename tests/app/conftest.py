@@ -137,7 +137,7 @@ class Driver:
         pygame.key.set_mods(mods)
         self.click(self.at(x, y))
         pygame.key.set_mods(0)
-        self.app.input.forget_clicks()
+        self.app.input._last_press = None
 
     def choose(self, label):
         """Press the button of that label on the page that is open."""

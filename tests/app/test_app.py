@@ -102,7 +102,7 @@ def test_the_wheel_zooms_about_the_pointer_and_f_fits_again(driver):
     pixel = (300.0, 400.0)
     driver.move(pixel)
     before, zoom = camera.to_world(pixel), camera.zoom
-    driver.stage.wheel(pixel, 3)
+    driver.stage.camera.turn_wheel(pixel, 3)
     assert camera.zoom > zoom
     assert camera.to_world(pixel) == pytest.approx(before, abs=1e-9)
     driver.key(pygame.K_f)
@@ -345,7 +345,7 @@ def test_the_window_can_be_resized_and_rescaled(driver):
 
 def test_a_window_made_smaller_and_larger_again_shows_what_it_showed(driver):
     size = driver.app.display.size
-    driver.stage.wheel((300.0, 300.0), 2)
+    driver.stage.camera.turn_wheel((300.0, 300.0), 2)
     camera = driver.stage.camera
     centre, zoom = camera.centre, camera.zoom
     for other in ((900, 600), (900, 700), (700, 500), size):
