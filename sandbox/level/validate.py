@@ -266,7 +266,5 @@ def _kept(path: list[Any], value: Any) -> Iterator[Fault]:
     elif isinstance(value, str):
         if len(value) > TEXT_LIMIT:
             yield json_path(path), f"has {len(value)} characters; at most {TEXT_LIMIT} are allowed"
-    elif (isinstance(value, float) and not math.isfinite(value)) or (
-        isinstance(value, int) and value.bit_length() > 1024
-    ):
+    elif not _is_finite(value):
         yield json_path(path), f"{shown(value)} is not a finite number"
