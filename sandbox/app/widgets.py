@@ -238,6 +238,9 @@ class Ui:
 
     def process(self, event: pygame.event.Event) -> bool:
         """Let the widgets have an event; True where they use it."""
+        if event.type == pygame.MOUSEMOTION:
+            # The wheel turns what it points at now, not what it pointed at when the last frame was drawn.
+            self.manager.mouse_position = self.manager.calculate_scaled_mouse_position(event.pos)
         if event.type == pygame_gui.UI_BUTTON_PRESSED and event.ui_element in self._actions:
             self._actions[event.ui_element]()
             return True

@@ -177,6 +177,19 @@ def test_the_wheel_over_an_option_and_the_arrows_in_it_step_its_value(edit):
     assert driver.editor.document.level.particles[0].mass == 100.0
 
 
+def test_the_wheel_turned_before_the_next_frame_steps_the_option_that_the_mouse_has_reached(edit):
+    driver = edit()
+    driver.key(pygame.K_a)
+    fields = driver.editor.options.fields
+    mass, radius = fields["mass"].entry, fields["radius"].entry
+    driver.move(mass.rect.center)
+    before = mass.get_text(), radius.get_text()
+    driver.post(pygame.MOUSEMOTION, pos=radius.rect.center, rel=(0, 0), buttons=(0, 0, 0))
+    driver.post(pygame.MOUSEWHEEL, x=0, y=1, precise_x=0.0, precise_y=1.0)
+    driver.frames()
+    assert mass.get_text() == before[0] and float(radius.get_text()) > float(before[1])
+
+
 def test_the_material_of_what_is_drawn_is_chosen_from_a_menu(edit):
     driver = edit()
     driver.key(pygame.K_r)
