@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.jit import COMPILED
-from sandbox.physics.settings import WorldSettings
+from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS, pattern
 from sandbox.physics.stability import coefficient_limits, report
@@ -89,9 +89,9 @@ def test_energy_of_violent_random_graphs_stays_bounded(kind, span):
 FIGURES = [
     # scene, RMS stretch in seconds 5..7, seconds, largest share of the swing's energy lost by then
     (scenes.rope(100), 5e-5, 2, 0.06),
-    (scenes.rope(50, 1000.0), 2e-4, 7, 0.04),
-    (scenes.bridge(), 1e-5, 7, 1e-4),
-    (scenes.rope(1000), 2e-4, 7, 0.03),
+    (scenes.rope(50, 1000.0), 5e-5, 7, 0.04),
+    (scenes.bridge(), 1e-6, 7, 1e-4),
+    (scenes.rope(1000), 2e-5, 7, 0.03),
     (scenes.lattice(32), 1e-5, 7, 0.01),
 ]
 
@@ -109,16 +109,26 @@ def test_bodies_at_full_stiffness_barely_stretch_and_keep_swinging(scene, stretc
 
 
 @pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes for seven seconds")
-@pytest.mark.parametrize("scene", [scenes.rope(100), scenes.rope(50, 1000.0)], ids=lambda scene: scene.name)
-def test_four_substeps_bring_swinging_ropes_below_a_hundred_thousandth(scene):
-    world = run(scene.world(substeps=4), 300)
+@pytest.mark.parametrize(
+    ("scene", "substeps", "stretch"),
+    [
+        (scenes.rope(100), 4, 5e-6),
+        (scenes.rope(50, 1000.0), 4, 5e-6),
+        (scenes.rope(100), 32, 2.1e-8),
+        (scenes.rope(50, 1000.0), 32, 7.8e-8),
+    ],
+    ids=lambda value: getattr(value, "name", value),
+)
+def test_substeps_leave_swinging_ropes_next_to_no_stretch(scene, substeps, stretch):
+    world = run(scene.world(substeps=substeps), 300)
     squares = [scenes.square_strains(run(world, 1)) for _ in range(120)]
-    assert np.sqrt(np.mean(squares)) <= 1e-5
+    assert np.sqrt(np.mean(squares)) <= stretch
 
 
 @pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
-def test_a_rope_dragged_to_and_fro_at_twenty_metres_a_second_stays_short():
-    world = scenes.rope(100).world(substeps=8)
+@pytest.mark.parametrize("substeps", [8, AUTO])
+def test_a_rope_dragged_to_and_fro_at_twenty_metres_a_second_stays_short(substeps):
+    world = scenes.rope(100).world(substeps=substeps)
     squares = []
     for tick in range(180):
         world.velocity[0] = 20.0 * np.array([(1, 0), (-1, 0), (0, 1), (0, -1)][tick // 15 % 4])
@@ -276,7 +286,8 @@ def test_a_dragged_body_gains_at_most_the_work_that_hand_and_gravity_do(stiffnes
     world.reserve_hands()
     generator = np.random.default_rng(4)
     world.hold(0, 5, (0.2, 0.2))
-    allowed = 0.0
+    # What the hand's spring holds at the start is there before any work.
+    allowed = energy_and_work(world)[0]
     for _ in range(300):
         world.move_hand(0, tuple(world.position[world.hand_particle] + generator.uniform(-0.3, 0.3, 2)))
         before, after = energy_and_work(world)

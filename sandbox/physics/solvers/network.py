@@ -19,11 +19,14 @@ from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.factor import back_substitute, factorise
 from sandbox.physics.solvers.fronts import add_block, clear_fronts, eliminate_rows, factorise_fronts, substitute_fronts
 
-# Cd is capped here, and Cs with it: nearer to 1 the solution stretches less, but is rejected more often and damps more.
-HIGHEST_COEFFICIENT = 1.0 - 1e-6
+# Cd is capped here, and Cs with it: nearer to 1 springs stretch less, but steps are rejected more often and damp more.
+HIGHEST_COEFFICIENT = 1.0 - 1e-7
 # A linear solve is refined once where impulses that cancel are this many times those that are left: a violent step. A
 # higher bound loses the digits of one spring's step at Cd near 1, a lower one costs time on every step.
 CANCELLATION = 300.0
+# Refined only where lengths miss what was foreseen by no more than this share: what turns has larger errors than those
+# of rounding. Higher costs swinging ropes a tenth of their time, 0 loses one spring's digits.
+ROUNDING_MISFIT = 1e-10
 
 
 @scalar_kernel
@@ -39,14 +42,16 @@ def implicit_masses(stiffness, damping, mass):  # type: ignore[no-untyped-def]
 @inner_kernel
 def load_springs(  # type: ignore[no-untyped-def]
     first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs, least,
-    most, parts,
+    most, parts, h, free_count,
 ):  # fmt: skip
     """Bring the springs first..last into their scratch; whether any has Cs > Cd, and any a measure that spreads.
 
-    parts: 0, or those of a tick that chooses them, with the measures least and most of each spring (measure.py).
+    Also their energy [J] once pinned particles have moved. parts: 0, or those of a tick that chooses them, with the
+    measures least and most of each spring (measure.py).
     """
     bouncy = False
     spread = False
+    moved = 0.0
     for k in range(first, last):
         s = springs.slot[k]
         a = springs.row_a[k]
@@ -73,7 +78,13 @@ def load_springs(  # type: ignore[no-untyped-def]
         springs.length[k] = length
         springs.error[k] = length - rest_length[s]
         springs.tension[k] = tension[s]
-    return bouncy, spread
+        if a >= free_count or b >= free_count:
+            dx = rows.moved[b, 0] - rows.moved[a, 0]
+            dy = rows.moved[b, 1] - rows.moved[a, 1]
+            length = math.sqrt(dx * dx + dy * dy)
+        error = (length - rest_length[s]) / h
+        moved += 0.5 * springs.measured[k] * error * error
+    return bouncy, spread, moved
 
 
 @inner_kernel
@@ -232,10 +243,16 @@ def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # ty
 
 
 @inner_kernel
-def update_impulses(first, last, rows, springs, h, free_count):  # type: ignore[no-untyped-def]
-    """J = q - K n.(D_b - D_a) of one body's springs, the like across them, and x' so far; whether D wants refining."""
+def update_impulses(first, last, rows, springs, rest_length, h, free_count):  # type: ignore[no-untyped-def]
+    """Bring one body's springs to `trial`, which D has been added to: J = q - K n.(D_b - D_a), the like across, x'.
+
+    Returned are their energy [J] after the step, the largest difference between a length then and the length foreseen,
+    as a share of its length, and whether D wants refining.
+    """
     before = 0.0
     after = 0.0
+    energy = 0.0
+    misfit = 0.0
     for k in range(first, last):
         a = springs.row_a[k]
         b = springs.row_b[k]
@@ -250,13 +267,25 @@ def update_impulses(first, last, rows, springs, h, free_count):  # type: ignore[
         nx = springs.normal[k, 0]
         ny = springs.normal[k, 1]
         u = nx * ux + ny * uy
-        springs.foreseen[k] += h * u
+        foreseen = springs.foreseen[k] + h * u
+        springs.foreseen[k] = foreseen
         taken = springs.along[k] * u
         springs.impulse[k] -= taken
         springs.sideways[k] -= springs.across[k] * (nx * uy - ny * ux)
         before += abs(taken)
         after += abs(springs.impulse[k])
-    return before > CANCELLATION * after
+        dx = rows.position[b, 0] - rows.position[a, 0] + h * (rows.trial[b, 0] - rows.trial[a, 0])
+        dy = rows.position[b, 1] - rows.position[a, 1] + h * (rows.trial[b, 1] - rows.trial[a, 1])
+        rest = rest_length[springs.slot[k]]
+        error = math.sqrt(dx * dx + dy * dy) - rest
+        missed = abs(error - foreseen)
+        error /= h
+        energy += 0.5 * springs.measured[k] * error * error
+        extent = rest + springs.length[k]
+        # One of rest length 0, such as a hand's, has no strain to be spared.
+        if rest > 0.0 and extent > SHORTEST and missed > misfit * extent:
+            misfit = missed / extent
+    return energy, 2.0 * misfit, before > CANCELLATION * after and 2.0 * misfit < ROUNDING_MISFIT
 
 
 @inner_kernel
@@ -316,21 +345,3 @@ def potential(first, last, position, velocity, springs, weight, rest_length, tim
         error = (math.sqrt(dx * dx + dy * dy) - rest_length[springs.slot[k]]) / h
         total += 0.5 * weight[k] * error * error
     return total
-
-
-@inner_kernel
-def largest_misfit(first, last, rows, springs, rest_length, h):  # type: ignore[no-untyped-def]
-    """Largest difference between a spring's length after the step and the length foreseen, as a share of its length."""
-    largest = 0.0
-    for k in range(first, last):
-        a = springs.row_a[k]
-        b = springs.row_b[k]
-        dx = rows.position[b, 0] - rows.position[a, 0] + h * (rows.trial[b, 0] - rows.trial[a, 0])
-        dy = rows.position[b, 1] - rows.position[a, 1] + h * (rows.trial[b, 1] - rows.trial[a, 1])
-        rest = rest_length[springs.slot[k]]
-        extent = rest + springs.length[k]
-        misfit = abs(math.sqrt(dx * dx + dy * dy) - rest - springs.foreseen[k])
-        # One of rest length 0, such as a hand's, has no strain to be spared.
-        if rest > 0.0 and extent > SHORTEST and misfit > largest * extent:
-            largest = misfit / extent
-    return 2.0 * largest
