@@ -12,6 +12,11 @@ PARTICLE_ARRAYS = {
     "particle_active": np.bool_,
     "slow_velocity": np.float64,
     "energy_bank": np.float64,
+    "friction": np.float64,
+    "restitution": np.float64,
+    "owner": np.int32,
+    "group": np.int64,
+    "collides": np.int64,
 }
 SPRING_ARRAYS = {
     "particle_a": np.int32,
@@ -26,10 +31,19 @@ SPRING_ARRAYS = {
     "spring_active": np.bool_,
     "impulse": np.float64,
     "tension": np.float64,
+    "edge": np.int8,
 }
+CONTACT_ARRAYS = {
+    "contact_particle": np.int32,
+    "contact_feature": np.int64,
+    "contact_impulse": np.float64,
+}
+# Arrays that go together: one row for each particle, each spring, each contact.
+FAMILIES = (PARTICLE_ARRAYS, SPRING_ARRAYS, CONTACT_ARRAYS)
+KINDS = PARTICLE_ARRAYS | SPRING_ARRAYS | CONTACT_ARRAYS
 # Every array of a world's state, in the order in which it is hashed and stored: part of the replay contract.
-STATE_ARRAYS = (*PARTICLE_ARRAYS, *SPRING_ARRAYS)
+STATE_ARRAYS = tuple(KINDS)
 # Constants of springs that the quarantine can take back.
 GUARDED_CONSTANTS = ("rest_length", "stiffness", "damping", "hooke_stiffness", "hooke_damping")
 GUARDED = ("position", "velocity", "mass", *GUARDED_CONSTANTS)
-VECTOR_ARRAYS = frozenset({"position", "velocity", "origin", "slow_velocity", "impulse"})
+VECTOR_ARRAYS = frozenset({"position", "velocity", "origin", "slow_velocity", "impulse", "contact_impulse"})

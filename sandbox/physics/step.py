@@ -4,10 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sandbox.physics.contacts import find_contacts, stop_at_terrain
 from sandbox.physics.jit import kernel
 from sandbox.physics.quarantine import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.solvers.contact_sweep import keep_impulses
 from sandbox.physics.solvers.dissection import dissect
 from sandbox.physics.substeps import halve, substep_count
 from sandbox.physics.world import Floats, World
@@ -63,7 +65,11 @@ def step(world: World) -> None:
     world.scale_impulses(settings.fewest_substeps / parts)
     for _ in range(parts):
         _add_gravity(world.velocity, world.inverse_mass, world.particle_active, *settings.gravity, h)
+        world.contacts = find_contacts(world, h) if world.has_contacts else None
         solver.solve(world, stiffness, damping, h)
+        if world.contacts is not None:
+            keep_impulses(world, world.contacts)
+            stop_at_terrain(world, h)
         _integrate(world.position, world.velocity, world.particle_active, h)
     world.scale_impulses(parts / settings.fewest_substeps)
     world.rest_hands()

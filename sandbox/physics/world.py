@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sandbox.physics.arrays import GUARDED, PARTICLE_ARRAYS, SPRING_ARRAYS, VECTOR_ARRAYS
+from sandbox.physics.arrays import GUARDED, KINDS, VECTOR_ARRAYS
 from sandbox.physics.settings import AUTO, WorldSettings
+from sandbox.physics.terrain import NO_TERRAIN, Terrain
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
@@ -42,6 +43,12 @@ class World:
     (-1: to be begun anew), tension [N s] (m,) = the impulse by which a spring pulled in the last step, of a whole tick
     where substeps are "auto", as impulse then is.
 
+    For contacts: friction and restitution (n,), owner (int32) = the body that a particle belongs to, negative: its own,
+    group (int64) = one bit, collides (int64) = the bits of the groups that it touches, TERRAIN_GROUP for terrain, 0 =
+    nothing; edge (int8) of a spring = no line that others meet, one with two sides, or the outline of a solid body on
+    its left or right. Of the k contacts of the last step: contact_particle (int32), contact_feature (int64, see
+    contacts.py), contact_impulse [N s] (k, 2), along and across. terrain never changes and is no part of the state.
+
     Slots are append-only: an index stays a particle's or spring's handle for ever; removing clears the active flag.
     Pinned particles have velocity 0, except a hand's cursor while it moves.
     """
@@ -67,6 +74,15 @@ class World:
     spring_active: NDArray[np.bool_]
     impulse: Floats
     tension: Floats
+    friction: Floats
+    restitution: Floats
+    owner: NDArray[np.int32]
+    group: Slots
+    collides: Slots
+    edge: NDArray[np.int8]
+    contact_particle: NDArray[np.int32]
+    contact_feature: Slots
+    contact_impulse: Floats
 
     def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
         self._settings = settings or WorldSettings()
@@ -80,10 +96,15 @@ class World:
         self.hand_spring = -1
         # What a solver derives from topology and pins alone; never state.
         self.solver_cache: Any = None
+        self.terrain: Terrain = NO_TERRAIN
+        # The contacts of the present step, and what finding them derives from topology alone; never state.
+        self.contacts: Any = None
+        self.contact_cache: Any = None
         # What the quarantine has taken back since somebody last looked, and, in `good`, the last good values by array;
         # never state.
         self.contained: list[Any] = []
-        for name, kind in (PARTICLE_ARRAYS | SPRING_ARRAYS).items():
+        self._touching = False
+        for name, kind in KINDS.items():
             setattr(self, name, np.zeros((0, 2) if name in VECTOR_ARRAYS else 0, dtype=kind))
         self.good: dict[str, Floats] = {}
         self.trust()
@@ -100,6 +121,7 @@ class World:
             self.energy_bank[:] = BANK_UNOPENED
             self.impulse[:] = 0.0
             self.tension[:] = 0.0
+            self.contact_impulse[:] = 0.0
         if (settings.substeps == AUTO) != (self._settings.substeps == AUTO):
             self.energy_bank[:] = BANK_UNOPENED
             self.scale_impulses(self._settings.fewest_substeps / settings.fewest_substeps)
@@ -110,6 +132,16 @@ class World:
         if factor != 1.0:
             self.impulse *= factor
             self.tension *= factor
+            self.contact_impulse *= factor
+
+    @property
+    def has_contacts(self) -> bool:
+        """Whether anything in the world can touch anything."""
+        return self._touching
+
+    def keep_contacts(self, particle: NDArray[np.int32], feature: Slots, impulse: Floats) -> None:
+        """Keep the contacts of a step and their impulses [N s] for the next."""
+        self.contact_particle, self.contact_feature, self.contact_impulse = particle, feature, impulse
 
     @property
     def particle_count(self) -> int:
@@ -152,10 +184,16 @@ class World:
         mass: ArrayLike = 1.0,
         radius: ArrayLike = 0.05,
         pinned: ArrayLike = False,
+        friction: ArrayLike = 0.0,
+        restitution: ArrayLike = 0.0,
+        owner: ArrayLike | None = None,
+        group: ArrayLike = 0,
+        collides: ArrayLike = 0,
     ) -> int:
         """Append particles, one per name, and return the first slot.
 
-        position [m] (k, 2); velocity [m/s] (k, 2) or one for all; mass [kg], radius [m] and pinned (k,) or one for all.
+        position [m] (k, 2); velocity [m/s] (k, 2) or one for all; the others (k,) or one for all; owner: None = each
+        its own.
         A pinned particle starts at rest. Raises ValueError for a name that is taken or a mass that is not above 0.
         """
         count, first = len(names), self.particle_count
@@ -175,7 +213,13 @@ class World:
             inverse_mass=np.where(is_pinned, 0.0, 1.0 / masses),
             radius=np.broadcast_to(np.asarray(radius, dtype=np.float64), count),
             particle_active=np.ones(count, dtype=np.bool_),
+            friction=np.broadcast_to(np.asarray(friction, dtype=np.float64), count),
+            restitution=np.broadcast_to(np.asarray(restitution, dtype=np.float64), count),
+            owner=np.broadcast_to(-1 - first - np.arange(count) if owner is None else np.asarray(owner), count),
+            group=np.broadcast_to(group, count),
+            collides=np.broadcast_to(collides, count),
         )
+        self._touching = bool(self.collides.any())
         return first
 
     def add_springs(
@@ -191,6 +235,7 @@ class World:
         hooke_stiffness: ArrayLike = 0.0,
         hooke_damping: ArrayLike = 0.0,
         material: ArrayLike = 0,
+        edge: ArrayLike = 0,
     ) -> int:
         """Append springs, one per name, and return the first slot.
 
@@ -221,6 +266,7 @@ class World:
             spring_active=np.ones(count, dtype=np.bool_),
             impulse=np.zeros((count, 2)),
             tension=np.zeros(count),
+            edge=np.broadcast_to(edge, count),
         )
         self._disturb(a, b)
         return first
@@ -331,6 +377,7 @@ class World:
     def trust(self) -> None:
         """Take everything as it is now for good."""
         self.good = {name: getattr(self, name).copy() for name in GUARDED}
+        self._touching = bool(self.collides.any())
 
     def name_slots(self, particles: Sequence[str], springs: Sequence[str]) -> None:
         """Name the slots that a restored state brought along, from the first one without a name on."""

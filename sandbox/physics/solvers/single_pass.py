@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.equation import direction, reduced_mass, spring_impulse
 from sandbox.physics.jit import kernel
+from sandbox.physics.solvers.contact_sweep import load_biases, loose_blocks, new_push, sweep_masses
 from sandbox.physics.world import Floats, World
 
 
@@ -57,8 +58,18 @@ def apply_explicit(world: World, chosen: NDArray[np.bool_], stiffness: Floats, d
 
 
 def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
-    """Bring the velocities to the end of a step of h [s]."""
+    """Bring the velocities to the end of a step of h [s]; contacts are swept after the springs."""
+    contacts = world.contacts
+    if contacts is None:
+        apply_explicit(world, world.spring_active, stiffness, damping, h)
+        return
+    push = new_push(len(contacts.particle))
+    load_biases(contacts, push, world.velocity, world.inverse_mass, *world.settings.gravity, h)
     apply_explicit(world, world.spring_active, stiffness, damping, h)
+    sweep_masses(
+        contacts, push, world.velocity, np.zeros((world.particle_count, 2)), world.inverse_mass,
+        loose_blocks(world.particle_count), world.settings.iterations,
+    )  # fmt: skip
 
 
 def spring_constant(stiffness: Any, damping: Any, mass: Any, h: float) -> Any:

@@ -1,0 +1,254 @@
+"""Contacts as springs that only push: sweeps of the one equation with accumulated, clamped impulses.
+
+Along the normal a contact is the spring of Cs and Cd below whose impulse cannot pull; across it is one that stops the
+surfaces, whose impulse is at most friction times the push (Coulomb). Both answer to the effective mass of what they
+push, 1 / (J W J^T): W of a loose particle is 1 / m, of a body that the direct solver has factored its response. What is
+kept of the last step starts the next, so that what rests is at rest from the first sweep on.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.narrow_phase import Contacts
+from sandbox.physics.world import Floats, Slots, World
+
+# Cs / Cd of a contact that overlaps: the part of the overlap that a step removes. Higher shakes what rests, lower
+# leaves heaps soft.
+OVERLAP_SHARE = 0.1
+# What overlaps parts at this speed [m/s] at most: a body is not thrown out of another that it was put into.
+FASTEST_PUSH = 3.0
+# 1 - Cd of a contact. 0 would leave contacts that carry the same load without a definite share; a larger value lets
+# heaps sink into each other.
+SOFTNESS = 1e-3
+# Bodies that meet more slowly [m/s] do not bounce. Lower makes what rests tremble, higher cuts off a last bounce.
+SLOWEST_BOUNCE = 0.5
+# Sweeps end where no contact changed its velocity by more [m/s].
+SETTLED = 1e-7
+
+
+class Blocks(NamedTuple):
+    """Responses of bodies: block and place in it of each particle (n,), -1: loose, it answers by its own mass.
+
+    Points of block k: point[start[k]:start[k + 1]]; its response [1/kg], a square of two rows for each point, at base[k]
+    in numbers.
+    """
+
+    block: Slots
+    place: Slots
+    start: Slots
+    point: Slots
+    base: Slots
+    numbers: Floats
+
+
+class Push(NamedTuple):
+    """By contact: the velocity [m/s] that it adds to its own, and its response [1/kg] along, between and across."""
+
+    bias: Floats
+    along: Floats
+    between: Floats
+    across: Floats
+
+
+def loose_blocks(particle_count: int) -> Blocks:
+    """The responses of particles that all answer by their own mass."""
+    none = np.zeros(0, dtype=np.int64)
+    return Blocks(np.full(particle_count, -1, dtype=np.int64), none, np.zeros(1, np.int64), none, none, np.zeros(0))
+
+
+@inner_kernel
+def weight_of(contacts, c, end):  # type: ignore[no-untyped-def]
+    """Particle of an end of a contact (-1: none) and the share of the impulse that it takes, with its sign."""
+    if end == 0:
+        return contacts.particle[c], 1.0
+    a = contacts.end_a[c]
+    if end == 1:
+        return a, -1.0 if contacts.end_b[c] < 0 else -(1.0 - contacts.share[c])
+    return contacts.end_b[c], -contacts.share[c]
+
+
+@inner_kernel
+def relative_velocity(contacts, c, velocity, change):  # type: ignore[no-untyped-def]
+    """Velocity of the particle against what it touches, from velocity + change."""
+    ux = 0.0
+    uy = 0.0
+    for end in range(3):
+        p, weight = weight_of(contacts, c, end)
+        if p >= 0:
+            ux += weight * (velocity[p, 0] + change[p, 0])
+            uy += weight * (velocity[p, 1] + change[p, 1])
+    return ux, uy
+
+
+@inner_kernel
+def _push_particle(p, jx, jy, change, inverse_mass, blocks):  # type: ignore[no-untyped-def]
+    # v += W J
+    k = blocks.block[p]
+    if k < 0:
+        change[p, 0] += jx * inverse_mass[p]
+        change[p, 1] += jy * inverse_mass[p]
+        return
+    first = blocks.start[k]
+    points = blocks.start[k + 1] - first
+    row = blocks.base[k] + blocks.place[p] * 4 * points
+    lower = row + 2 * points
+    for i in range(points):
+        q = blocks.point[first + i]
+        j = 2 * i
+        change[q, 0] += blocks.numbers[row + j] * jx + blocks.numbers[lower + j] * jy
+        change[q, 1] += blocks.numbers[row + j + 1] * jx + blocks.numbers[lower + j + 1] * jy
+
+
+@inner_kernel
+def _apply(contacts, c, jn, jt, change, inverse_mass, blocks):  # type: ignore[no-untyped-def]
+    nx = contacts.normal[c, 0]
+    ny = contacts.normal[c, 1]
+    jx = jn * nx - jt * ny
+    jy = jn * ny + jt * nx
+    for end in range(3):
+        p, weight = weight_of(contacts, c, end)
+        if p >= 0 and inverse_mass[p] > 0.0:
+            _push_particle(p, weight * jx, weight * jy, change, inverse_mass, blocks)
+
+
+@inner_kernel
+def _response(p, q, inverse_mass, blocks):  # type: ignore[no-untyped-def]
+    # The block xx, xy, yx, yy of W between two particles.
+    if p < 0 or q < 0 or inverse_mass[p] == 0.0 or inverse_mass[q] == 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    k = blocks.block[p]
+    if k < 0:
+        w = inverse_mass[p] if p == q else 0.0
+        return w, 0.0, 0.0, w
+    if blocks.block[q] != k:
+        return 0.0, 0.0, 0.0, 0.0
+    points = blocks.start[k + 1] - blocks.start[k]
+    at = blocks.base[k] + blocks.place[p] * 4 * points + 2 * blocks.place[q]
+    below = at + 2 * points
+    return blocks.numbers[at], blocks.numbers[at + 1], blocks.numbers[below], blocks.numbers[below + 1]
+
+
+@inner_kernel
+def load_responses(contacts, push, inverse_mass, blocks):  # type: ignore[no-untyped-def]
+    """Response of every contact: J W J^T along, between and across."""
+    for c in range(contacts.particle.shape[0]):
+        nx = contacts.normal[c, 0]
+        ny = contacts.normal[c, 1]
+        along = 0.0
+        between = 0.0
+        across = 0.0
+        for end in range(3):
+            p, weight = weight_of(contacts, c, end)
+            for other in range(3):
+                q, share = weight_of(contacts, c, other)
+                xx, xy, yx, yy = _response(p, q, inverse_mass, blocks)
+                both = weight * share
+                ax = both * (xx * nx + xy * ny)
+                ay = both * (yx * nx + yy * ny)
+                along += nx * ax + ny * ay
+                between += nx * ay - ny * ax
+                across += both * (nx * (yy * nx - yx * ny) - ny * (xy * nx - xx * ny))
+        push.along[c] = along
+        push.between[c] = between
+        push.across[c] = across
+
+
+@kernel
+def load_biases(contacts, push, velocity, inverse_mass, gravity_x, gravity_y, h):  # type: ignore[no-untyped-def]
+    """What each contact adds to its velocity: its gap, its overlap or its bounce; velocity: after gravity."""
+    for c in range(contacts.particle.shape[0]):
+        nx = contacts.normal[c, 0]
+        ny = contacts.normal[c, 1]
+        gap = contacts.gap[c]
+        push.bias[c] = gap / h if gap >= 0.0 else max(OVERLAP_SHARE * gap / h, -FASTEST_PUSH)
+        if contacts.restitution[c] == 0.0:
+            continue
+        ux = 0.0
+        uy = 0.0
+        fall = 0.0
+        for end in range(3):
+            p, weight = weight_of(contacts, c, end)
+            if p >= 0:
+                ux += weight * velocity[p, 0]
+                uy += weight * velocity[p, 1]
+                if inverse_mass[p] > 0.0:
+                    fall -= weight * (gravity_x * nx + gravity_y * ny)
+        u = ux * nx + uy * ny
+        if u < -SLOWEST_BOUNCE and gap + h * u < 0.0:
+            push.bias[c] = -_bounce(contacts.restitution[c], -u - fall * h, fall, gap, h)
+
+
+@inner_kernel
+def _bounce(restitution, speed, fall, gap, h):  # type: ignore[no-untyped-def]
+    # The velocity after a step in which what approaches at `speed` bounces off at the height of the surface, not where
+    # the step begins: symplectic Euler keeps v^2/2 + g x - g h v/2 exactly in free fall, of which restitution^2 is left.
+    energy = 0.5 * speed * speed + fall * gap + 0.5 * fall * h * speed
+    left = 2.0 * (restitution * restitution * energy - fall * gap) + 0.25 * fall * fall * h * h
+    return max(0.0, math.sqrt(max(0.0, left)) - 0.5 * fall * h)
+
+
+@inner_kernel
+def start_impulses(contacts, change, inverse_mass, blocks):  # type: ignore[no-untyped-def]
+    """Apply the impulses that contacts bring along."""
+    for c in range(contacts.particle.shape[0]):
+        if contacts.impulse[c, 0] != 0.0 or contacts.impulse[c, 1] != 0.0:
+            _apply(contacts, c, contacts.impulse[c, 0], contacts.impulse[c, 1], change, inverse_mass, blocks)
+
+
+@inner_kernel
+def sweep(contacts, push, velocity, change, inverse_mass, blocks, backwards):  # type: ignore[no-untyped-def]
+    """One sweep over all contacts; the largest change of a contact's velocity [m/s]."""
+    # J = max(0, J - (u + b + J / K) / (W + 1 / K)), 1 / K = W (1 - Cd) / Cd;  |J_t| <= friction J
+    largest = 0.0
+    count = contacts.particle.shape[0]
+    for i in range(count):
+        c = count - 1 - i if backwards else i
+        along = push.along[c]
+        if not along > 0.0:
+            continue
+        ux, uy = relative_velocity(contacts, c, velocity, change)
+        nx = contacts.normal[c, 0]
+        ny = contacts.normal[c, 1]
+        soft = SOFTNESS * along
+        old = contacts.impulse[c, 0]
+        new = max(0.0, old - (nx * ux + ny * uy + push.bias[c] + soft * old) / (along + soft))
+        jn = new - old
+        contacts.impulse[c, 0] = new
+        jt = 0.0
+        if push.across[c] > 0.0:
+            slip = nx * uy - ny * ux + push.between[c] * jn
+            most = contacts.friction[c] * new
+            held = contacts.impulse[c, 1]
+            jt = min(most, max(-most, held - slip / push.across[c])) - held
+            contacts.impulse[c, 1] = held + jt
+        if jn != 0.0 or jt != 0.0:
+            _apply(contacts, c, jn, jt, change, inverse_mass, blocks)
+            largest = max(largest, max(abs(jn) * along, abs(jt) * push.across[c]))
+    return largest
+
+
+def new_push(count: int) -> Push:
+    """What so many contacts need for a step."""
+    return Push(*np.zeros((4, count)))
+
+
+def keep_impulses(world: World, contacts: Contacts) -> None:
+    """Keep a step's contacts and impulses as part of the world's state."""
+    world.keep_contacts(contacts.particle.astype(np.int32), contacts.feature, contacts.impulse)
+
+
+@kernel
+def sweep_masses(contacts, push, velocity, change, inverse_mass, blocks, sweeps):  # type: ignore[no-untyped-def]
+    """Solve contacts of particles that answer by their own mass, and bring the velocities to the end of the step."""
+    load_responses(contacts, push, inverse_mass, blocks)
+    start_impulses(contacts, change, inverse_mass, blocks)
+    for k in range(sweeps):
+        if sweep(contacts, push, velocity, change, inverse_mass, blocks, k % 2 == 1) < SETTLED:
+            break
+    for p in range(inverse_mass.shape[0]):
+        if inverse_mass[p] > 0.0:
+            velocity[p, 0] += change[p, 0]
+            velocity[p, 1] += change[p, 1]
