@@ -1,0 +1,395 @@
+"""Bodies that touch, in the direct solver: each is solved as ever, and pushed through the response of its factor.
+
+A v' = b + J^T lambda is what the minimum of network.py's f becomes where contacts push. The factor of A gives the
+response W = P A^-1 P^T of the particles P of a body that something touches; contact_sweep.py finds lambda with it, and
+one more substitution brings the impulses to the whole body. The energy test is that of direct.py for all bodies
+together that touch each other, so that one may take what another gives.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.physics.jit import bundle_kernel, inner_kernel, kernel
+from sandbox.physics.narrow_phase import Contacts
+from sandbox.physics.solvers import direct
+from sandbox.physics.solvers.contact_sweep import (
+    SETTLED,
+    Blocks,
+    load_biases,
+    load_responses,
+    new_push,
+    start_impulses,
+    sweep,
+    weight_of,
+)
+from sandbox.physics.solvers.direct import (
+    AHEAD,
+    BANK_SHARE,
+    BOUNCY_BANK_SHARE,
+    ENERGY_ROUNDING,
+    LAST_HALVINGS,
+    LINEAR_SOLVES,
+    MISFIT_RATE,
+    body_energy,
+    copy_rows,
+    keep_tension,
+    load_rows,
+    open_bank,
+)
+from sandbox.physics.solvers.network import kinetic, linearise, load_springs, potential, solve_linear, update_impulses
+from sandbox.physics.solvers.pattern import Pattern
+from sandbox.physics.solvers.response import load_block, respond
+from sandbox.physics.world import Floats, Slots, World
+
+# Sweeps over the contacts for each linear solve. More costs time, fewer leaves piles soft and restless.
+SWEEPS = 20
+# Newton rounds on f for bodies whose energy the linear solves leave too high; after them they are braked.
+NEWTON_ROUNDS = 4
+
+
+class Touching(NamedTuple):
+    """The bodies that something touches, by block: body, cluster; the loose particles, their cluster; and scratch.
+
+    row: of each particle (n,), -1: none. before, held, after [J] and misfit by block; due: to be solved again; spread,
+    bouncy: of its springs. total, allowed [J], fails by cluster. free, pushed [m/s] by row. given, change [m/s] by
+    particle: velocities without contacts, and what those add.
+    """
+
+    body: Slots
+    cluster: Slots
+    loose: Slots
+    loose_cluster: Slots
+    row: Slots
+    before: Floats
+    held: Floats
+    after: Floats
+    misfit: Floats
+    due: NDArray[np.bool_]
+    bouncy: NDArray[np.bool_]
+    spread: NDArray[np.bool_]
+    total: Floats
+    allowed: Floats
+    fails: NDArray[np.bool_]
+    free: Floats
+    pushed: Floats
+    given: Floats
+    change: Floats
+
+
+@inner_kernel
+def _root(label, node):  # type: ignore[no-untyped-def]
+    while label[node] != node:
+        label[node] = label[label[node]]
+        node = label[node]
+    return node
+
+
+@kernel
+def _join(contacts, block, inverse_mass, label):  # type: ignore[no-untyped-def]
+    # Label the nodes that touch each other alike: particles (n,), then blocks; what cannot move joins nothing.
+    count = block.shape[0]
+    for c in range(contacts.particle.shape[0]):
+        first = -1
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p < 0 or inverse_mass[p] == 0.0:
+                continue
+            node = _root(label, p if block[p] < 0 else count + block[p])
+            if first < 0:
+                first = node
+            elif node < first:
+                label[first] = node
+                first = node
+            else:
+                label[node] = first
+    for node in range(label.shape[0]):
+        label[node] = _root(label, node)
+
+
+def _touching(world: World, pattern: Pattern, contacts: Contacts) -> tuple[Touching, Blocks]:
+    """What contacts touch, and the room for the responses of bodies."""
+    rows, bodies, count = pattern.rows, pattern.bodies, world.particle_count
+    free_count = int(bodies.row_start[-1])
+    row = np.full(count, -1, dtype=np.int64)
+    row[rows.particle[:free_count]] = np.arange(free_count)
+    ends = np.concatenate([contacts.particle, contacts.end_a, contacts.end_b])
+    ends = np.unique(ends[ends >= 0])
+    ends = ends[world.inverse_mass[ends] > 0.0]
+    points = np.sort(row[ends[row[ends] >= 0]])
+    loose = ends[row[ends] < 0]
+    body_of_point = np.searchsorted(bodies.row_start, points, side="right") - 1
+    body, first, sizes = np.unique(body_of_point, return_index=True, return_counts=True)
+    block, place = np.full((2, count), -1, dtype=np.int64)
+    particles = rows.particle[points]
+    block[particles] = np.repeat(np.arange(len(body)), sizes)
+    place[particles] = np.arange(len(points)) - np.repeat(first, sizes)
+    base = np.append(0, np.cumsum(4 * sizes * sizes)).astype(np.int64)
+    blocks = Blocks(block, place, np.append(first, len(points)), particles, base, np.zeros(base[-1]))
+    label = np.arange(count + len(body))
+    _join(contacts, block, world.inverse_mass, label)
+    _, cluster = np.unique(label[np.append(count + np.arange(len(body)), loose)], return_inverse=True)
+    clusters = int(cluster.max()) + 1 if len(cluster) else 0
+    size = len(body)
+    touching = Touching(
+        body, cluster[:size].astype(np.int64), loose, cluster[size:].astype(np.int64), row, *np.zeros((4, size)),
+        *np.zeros((3, size), dtype=np.bool_), *np.zeros((2, clusters)), np.zeros(clusters, dtype=np.bool_),
+        *np.zeros((2, free_count, 2)), world.velocity.copy(), np.zeros((count, 2)),
+    )  # fmt: skip
+    return touching, blocks
+
+
+@inner_kernel
+def _begin(  # type: ignore[no-untyped-def]
+    touching, items, energy_bank, inverse_mass, rest_length, stiffness, damping, material, tension, least, most, parts,
+    h,
+):  # fmt: skip
+    # Load the springs and the energies of every body that is touched.
+    bodies, rows, springs, matrix = items
+    for k in range(touching.body.shape[0]):
+        body = touching.body[k]
+        first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
+        first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
+        body_mass = 0.0
+        for r in range(first_row, last_row):
+            body_mass += rows.mass[r]
+        if not bodies.anchored[body]:
+            copy_rows(first_row, last_row, rows.target, rows.trial)
+        bouncy, spread, moved = load_springs(
+            first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,
+            least, most, parts, h, matrix.diagonal.shape[0],
+        )  # fmt: skip
+        kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
+        touching.bouncy[k] = bouncy
+        touching.spread[k] = spread
+        touching.before[k] = kinetic_after + moved
+        touching.held[k] = open_bank(
+            first_row, last_row, first, last, rows, springs, energy_bank, bodies.lowest[body], bouncy, spread,
+            kinetic_after, moved, rest_length, h,
+        )  # fmt: skip
+        touching.due[k] = True
+
+
+@inner_kernel
+def _solve_due(touching, items, blocks, columns, h, ahead, behind):  # type: ignore[no-untyped-def]
+    # Linearise and factor the bodies that are due: their velocities without contacts, and their responses.
+    bodies, rows, springs, matrix = items
+    for k in range(touching.body.shape[0]):
+        if not touching.due[k]:
+            continue
+        body = touching.body[k]
+        first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
+        first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
+        linearise(first, last, rows, springs, h, ahead, behind)
+        solve_linear(first_row, last_row, first, last, rows, springs, matrix)
+        for r in range(first_row, last_row):
+            touching.free[r, 0] = rows.trial[r, 0] + rows.change[r, 0]
+            touching.free[r, 1] = rows.trial[r, 1] + rows.change[r, 1]
+        load_block(k, first_row, last_row, touching.row, blocks, columns, matrix, touching.pushed)
+        for i in range(blocks.start[k], blocks.start[k + 1]):
+            p = blocks.point[i]
+            touching.given[p, 0] = touching.free[touching.row[p], 0]
+            touching.given[p, 1] = touching.free[touching.row[p], 1]
+
+
+@inner_kernel
+def _push_all(touching, contacts, push, blocks, inverse_mass):  # type: ignore[no-untyped-def]
+    # Sweep all contacts; the impulses of bodies are left in `pushed`.
+    load_responses(contacts, push, inverse_mass, blocks)
+    touching.change[:, :] = 0.0
+    start_impulses(contacts, touching.change, inverse_mass, blocks)
+    for k in range(SWEEPS):
+        if sweep(contacts, push, touching.given, touching.change, inverse_mass, blocks, k % 2 == 1) < SETTLED:
+            break
+    touching.pushed[:, :] = 0.0
+    for c in range(contacts.particle.shape[0]):
+        jn = contacts.impulse[c, 0]
+        jt = contacts.impulse[c, 1]
+        jx = jn * contacts.normal[c, 0] - jt * contacts.normal[c, 1]
+        jy = jn * contacts.normal[c, 1] + jt * contacts.normal[c, 0]
+        for end in range(3):
+            p, weight = weight_of(contacts, c, end)
+            if p >= 0 and touching.row[p] >= 0:
+                touching.pushed[touching.row[p], 0] += weight * jx
+                touching.pushed[touching.row[p], 1] += weight * jy
+
+
+@inner_kernel
+def _answer(touching, items, rest_length, h):  # type: ignore[no-untyped-def]
+    # v' = free + A^-1 J^T lambda of every body; its energy and misfit.
+    bodies, rows, springs, matrix = items
+    for k in range(touching.body.shape[0]):
+        body = touching.body[k]
+        first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
+        first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
+        respond(first_row, last_row, matrix, touching.pushed)
+        for r in range(first_row, last_row):
+            for axis in range(2):
+                v = touching.free[r, axis] + touching.pushed[r, axis]
+                rows.change[r, axis] = v - rows.trial[r, axis]
+                rows.trial[r, axis] = v
+        held, misfit, _ = update_impulses(first, last, rows, springs, rest_length, h, matrix.diagonal.shape[0])
+        for s in range(first, last):
+            springs.tension[s] = max(0.0, -springs.impulse[s])
+        touching.after[k] = kinetic(first_row, last_row, rows.mass, rows.trial) + held
+        touching.misfit[k] = misfit
+
+
+@inner_kernel
+def _judge(touching, contacts, push, blocks, mass, inverse_mass):  # type: ignore[no-untyped-def]
+    # Energy test of every cluster; whether any fails.
+    touching.total[:] = 0.0
+    touching.allowed[:] = 0.0
+    for k in range(touching.body.shape[0]):
+        touching.total[touching.cluster[k]] += touching.after[k]
+        touching.allowed[touching.cluster[k]] += touching.before[k] * (1.0 + ENERGY_ROUNDING) + touching.held[k]
+    for i in range(touching.loose.shape[0]):
+        p = touching.loose[i]
+        ux, uy = touching.given[p, 0], touching.given[p, 1]
+        vx, vy = ux + touching.change[p, 0], uy + touching.change[p, 1]
+        touching.total[touching.loose_cluster[i]] += 0.5 * mass[p] * (vx * vx + vy * vy)
+        touching.allowed[touching.loose_cluster[i]] += 0.5 * mass[p] * (ux * ux + uy * uy) * (1.0 + ENERGY_ROUNDING)
+    # What overlaps is pushed apart by work that a contact does.
+    for c in range(contacts.particle.shape[0]):
+        if push.bias[c] < 0.0 and contacts.gap[c] < 0.0:
+            cluster = _cluster_of(contacts, c, touching, blocks, inverse_mass)
+            if cluster >= 0:
+                touching.allowed[cluster] -= contacts.impulse[c, 0] * push.bias[c]
+    failing = False
+    for cluster in range(touching.total.shape[0]):
+        touching.fails[cluster] = not touching.total[cluster] <= touching.allowed[cluster]
+        failing = failing or touching.fails[cluster]
+    return failing
+
+
+@inner_kernel
+def _cluster_of(contacts, c, touching, blocks, inverse_mass):  # type: ignore[no-untyped-def]
+    for end in range(3):
+        p, _ = weight_of(contacts, c, end)
+        if p >= 0 and inverse_mass[p] > 0.0:
+            if blocks.block[p] >= 0:
+                return touching.cluster[blocks.block[p]]
+            low = 0
+            high = touching.loose.shape[0] - 1
+            while low < high:
+                middle = (low + high) // 2
+                if touching.loose[middle] < p:
+                    low = middle + 1
+                else:
+                    high = middle
+            return touching.loose_cluster[low]
+    return -1
+
+
+@inner_kernel
+def _brake(touching, items, contacts, push, blocks, mass, inverse_mass, rest_length, h):  # type: ignore[no-untyped-def]
+    # Halve the velocities of clusters that fail until they pass; at rest they do.
+    bodies, rows, springs, _ = items
+    for halving in range(LAST_HALVINGS + 1):
+        factor = 0.5 if halving < LAST_HALVINGS else 0.0
+        for k in range(touching.body.shape[0]):
+            if touching.fails[touching.cluster[k]]:
+                body = touching.body[k]
+                first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
+                first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
+                for r in range(first_row, last_row):
+                    rows.trial[r, 0] *= factor
+                    rows.trial[r, 1] *= factor
+                touching.after[k] = body_energy(first_row, last_row, first, last, rows, springs, rest_length, h)
+                keep_tension(first, last, rows, springs, h)
+        for i in range(touching.loose.shape[0]):
+            if touching.fails[touching.loose_cluster[i]]:
+                p = touching.loose[i]
+                for axis in range(2):
+                    v = touching.given[p, axis] + touching.change[p, axis]
+                    touching.change[p, axis] = factor * v - touching.given[p, axis]
+        if not _judge(touching, contacts, push, blocks, mass, inverse_mass):
+            break
+
+
+@inner_kernel
+def _finish(touching, items, velocity, energy_bank, tension, rest_length, h):  # type: ignore[no-untyped-def]
+    # Velocities, tensions, and banks, which together hold no more than the cluster has lost.
+    bodies, rows, springs, _ = items
+    for k in range(touching.body.shape[0]):
+        body = touching.body[k]
+        first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
+        first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
+        limit = (BOUNCY_BANK_SHARE if touching.bouncy[k] else BANK_SHARE) * touching.before[k]
+        if touching.spread[k]:
+            limit += potential(first, last, rows.position, rows.trial, springs, springs.hidden, rest_length, h, h)
+        left = max(0.0, touching.allowed[touching.cluster[k]] - touching.total[touching.cluster[k]])
+        saved = min(min(touching.held[k] + touching.before[k] - touching.after[k], limit), left)
+        energy_bank[bodies.lowest[body]] = saved if saved > 0.0 else 0.0
+        touching.allowed[touching.cluster[k]] -= max(0.0, saved)
+        for r in range(first_row, last_row):
+            velocity[rows.particle[r], 0] = rows.trial[r, 0]
+            velocity[rows.particle[r], 1] = rows.trial[r, 1]
+        for s in range(first, last):
+            tension[springs.slot[s]] = springs.tension[s]
+    for i in range(touching.loose.shape[0]):
+        p = touching.loose[i]
+        velocity[p, 0] = touching.given[p, 0] + touching.change[p, 0]
+        velocity[p, 1] = touching.given[p, 1] + touching.change[p, 1]
+
+
+@bundle_kernel
+def _push_bodies(  # type: ignore[no-untyped-def]
+    position, velocity, mass, inverse_mass, slow_velocity, energy_bank, rest_length, stiffness, damping, material,
+    tension, numbers, least, most, parts, gravity_x, gravity_y, h, touching, blocks, columns, contacts, push,
+):  # fmt: skip
+    items = numbers.items
+    _, rows, _, matrix = items
+    load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, matrix.diagonal.shape[0], rows)
+    _begin(
+        touching, items, energy_bank, inverse_mass, rest_length, stiffness, damping, material, tension, least, most,
+        parts, h,
+    )  # fmt: skip
+    failing = False
+    for solve in range(LINEAR_SOLVES + NEWTON_ROUNDS):
+        if solve < LINEAR_SOLVES:
+            _solve_due(touching, items, blocks, columns, h, AHEAD, AHEAD)
+        else:
+            _solve_due(touching, items, blocks, columns, h, 1.0, 0.0)
+        _push_all(touching, contacts, push, blocks, inverse_mass)
+        _answer(touching, items, rest_length, h)
+        failing = _judge(touching, contacts, push, blocks, mass, inverse_mass)
+        again = False
+        for k in range(touching.body.shape[0]):
+            inexact = solve < LINEAR_SOLVES - 1 and touching.misfit[k] > MISFIT_RATE * h * h
+            touching.due[k] = inexact or touching.fails[touching.cluster[k]]
+            again = again or touching.due[k]
+        if not again:
+            break
+    if failing:
+        _brake(touching, items, contacts, push, blocks, mass, inverse_mass, rest_length, h)
+    _finish(touching, items, velocity, energy_bank, tension, rest_length, h)
+
+
+def _push(
+    world: World, pattern: Pattern, stiffness: Floats, damping: Floats, least: Floats, most: Floats, parts: int, h: float
+) -> NDArray[np.bool_]:
+    """Solve the bodies and loose particles that touch something; which bodies those are."""
+    contacts = world.contacts
+    touched = np.zeros(len(pattern.bodies.lowest), dtype=np.bool_)
+    if not len(contacts.particle):
+        return touched
+    touching, blocks = _touching(world, pattern, contacts)
+    push = new_push(len(contacts.particle))
+    load_biases(contacts, push, world.velocity, world.inverse_mass, *world.settings.gravity, h)
+    touched[touching.body] = True
+    sizes = np.diff(pattern.bodies.row_start)[touching.body] * np.diff(blocks.start)
+    columns = np.zeros(4 * int(sizes.max(initial=0)))
+    gravity_x, gravity_y = world.settings.gravity
+    _push_bodies(
+        world.position, world.velocity, world.mass, world.inverse_mass, world.slow_velocity, world.energy_bank,
+        world.rest_length, stiffness, damping, world.material, world.tension, pattern.numbers, least, most, parts,
+        gravity_x, gravity_y, h, touching, blocks, columns, contacts, push,
+    )  # fmt: skip
+    return touched
+
+
+def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
+    """Bring the velocities to the end of a step of h [s], contacts included; what nothing touches goes its own way."""
+    direct.solve(world, stiffness, damping, h, None if world.contacts is None else _push)
