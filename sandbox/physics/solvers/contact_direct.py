@@ -15,13 +15,11 @@ from sandbox.physics.jit import bundle_kernel, inner_kernel, kernel
 from sandbox.physics.narrow_phase import Contacts
 from sandbox.physics.solvers import direct
 from sandbox.physics.solvers.contact_sweep import (
-    SETTLED,
     Blocks,
     load_biases,
     load_responses,
     new_push,
-    start_impulses,
-    sweep,
+    solve_contacts,
     weight_of,
 )
 from sandbox.physics.solvers.direct import (
@@ -194,15 +192,19 @@ def _solve_due(touching, items, blocks, columns, h, ahead, behind):  # type: ign
 
 
 @inner_kernel
+def _clear(vector):  # type: ignore[no-untyped-def]
+    for r in range(vector.shape[0]):
+        vector[r, 0] = 0.0
+        vector[r, 1] = 0.0
+
+
+@inner_kernel
 def _push_all(touching, contacts, push, blocks, inverse_mass):  # type: ignore[no-untyped-def]
     # Sweep all contacts; the impulses of bodies are left in `pushed`.
     load_responses(contacts, push, inverse_mass, blocks)
-    touching.change[:, :] = 0.0
-    start_impulses(contacts, touching.change, inverse_mass, blocks)
-    for k in range(SWEEPS):
-        if sweep(contacts, push, touching.given, touching.change, inverse_mass, blocks, k % 2 == 1) < SETTLED:
-            break
-    touching.pushed[:, :] = 0.0
+    _clear(touching.change)
+    solve_contacts(contacts, push, touching.given, touching.change, inverse_mass, blocks, SWEEPS)
+    _clear(touching.pushed)
     for c in range(contacts.particle.shape[0]):
         jn = contacts.impulse[c, 0]
         jt = contacts.impulse[c, 1]
@@ -239,8 +241,9 @@ def _answer(touching, items, rest_length, h):  # type: ignore[no-untyped-def]
 @inner_kernel
 def _judge(touching, contacts, push, blocks, mass, inverse_mass):  # type: ignore[no-untyped-def]
     # Energy test of every cluster; whether any fails.
-    touching.total[:] = 0.0
-    touching.allowed[:] = 0.0
+    for cluster in range(touching.total.shape[0]):
+        touching.total[cluster] = 0.0
+        touching.allowed[cluster] = 0.0
     for k in range(touching.body.shape[0]):
         touching.total[touching.cluster[k]] += touching.after[k]
         touching.allowed[touching.cluster[k]] += touching.before[k] * (1.0 + ENERGY_ROUNDING) + touching.held[k]

@@ -61,7 +61,7 @@ def _iterate(  # type: ignore[no-untyped-def]
     load_responses(contacts, push, inverse_mass, blocks)
     start_impulses(contacts, change, inverse_mass, blocks)
     # j = -(n . (dv_b - dv_a) - r) m_r, applied at once to the velocity change dv.
-    for iteration in range(iterations):
+    for _ in range(iterations):
         for c in range(count):
             a = end_a[c]
             b = end_b[c]
@@ -79,7 +79,7 @@ def _iterate(  # type: ignore[no-untyped-def]
             s = slot[c]
             accumulated[s, 0] += jx
             accumulated[s, 1] += jy
-        sweep(contacts, push, velocity, change, inverse_mass, blocks, iteration % 2 == 1)
+        sweep(contacts, push, velocity, change, inverse_mass, blocks)
     for i in range(inverse_mass.shape[0]):
         if inverse_mass[i] > 0.0:
             velocity[i, 0] += change[i, 0]
