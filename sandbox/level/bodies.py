@@ -8,8 +8,11 @@ from pydantic import Discriminator, Field, Tag
 from sandbox.level.limits import DEFAULT_MATERIAL
 from sandbox.level.quantities import (
     Angle,
+    Collides,
+    CollisionGroup,
     Description,
     Extras,
+    Friction,
     Group,
     Id,
     Index,
@@ -17,6 +20,7 @@ from sandbox.level.quantities import (
     Mass,
     Name,
     Point,
+    Restitution,
     Size,
     Spacing,
     Velocity,
@@ -42,6 +46,13 @@ class BodyDef(Description):
         description="Start place of each particle where the body does not start in its own form; "
         "rest lengths stay those of its form. null = its form.",
     )
+    particle_radius: Length | None = Field(
+        default=None, description="Radius of its particles, where things touch; null = 0.05."
+    )
+    friction: Friction = None
+    restitution: Restitution = None
+    collides: Collides = True
+    collision_group: CollisionGroup = None
     group: Group = None
     extras: Extras = Field(default={})
 
