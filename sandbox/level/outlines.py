@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from sandbox.level.bodies import AnyBody, BoxShape, JellyDef
 from sandbox.level.shapes import Pairs, box_grid, jelly_cells
-from sandbox.physics.contacts import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
+from sandbox.physics.outline import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 
 
 def edges(body: AnyBody, pairs: Pairs) -> NDArray[np.int8]:
@@ -38,7 +38,7 @@ def _numbers(body: JellyDef) -> Pairs:
 
 
 def _sides(numbers: Pairs) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Keys a n + b of the sides a to b of all squares and triangles, each counter-clockwise; of whole squares' diagonals."""
+    """Keys a n + b of the sides a to b of squares and triangles, counter-clockwise, and of whole squares' diagonals."""
     count = int(numbers.max(initial=0)) + 1
     # Corners counter-clockwise from the bottom left.
     corners = np.stack([numbers[:-1, :-1], numbers[:-1, 1:], numbers[1:, 1:], numbers[1:, :-1]], axis=-1).reshape(-1, 4)

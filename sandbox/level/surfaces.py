@@ -2,6 +2,7 @@
 
 import itertools
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from sandbox.level.faults import Fault, shown, suggestion
 from sandbox.level.limits import BODY_RADIUS, COLLISION_GROUP_LIMIT, CORNER_LIMIT
 from sandbox.level.model import ContactsDef, Level, ParticleDef, TerrainDef
 from sandbox.level.polygon import is_simple
-from sandbox.physics.contacts import ALL_GROUPS, TERRAIN_GROUP
+from sandbox.physics.outline import ALL_GROUPS, TERRAIN_GROUP
 from sandbox.physics.terrain import NO_TERRAIN, Chain, Terrain, make_terrain
 
 # Names of the groups that exist in every level: that of terrain and walls, and that of bodies which name none.
@@ -99,7 +100,7 @@ def terrain_of(level: Level) -> Terrain:
     return make_terrain(chains) if chains else NO_TERRAIN
 
 
-def surfaces_of(level: Level, counts: Sequence[int]) -> dict[str, NDArray[np.generic]]:
+def surfaces_of(level: Level, counts: Sequence[int]) -> dict[str, NDArray[Any]]:
     """Radius, friction, restitution, owner, group and collides of every particle (n,), by argument of add_particles.
 
     counts: particles of each body. Where the level has no contacts, nothing collides.

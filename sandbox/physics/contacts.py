@@ -5,148 +5,28 @@ the order within a particle is one of positions. The impulses of the last step a
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sandbox.physics.broad_phase import Grid, bucket_of, is_large, make_grid
+from sandbox.physics.broad_phase import bucket_of, is_large, make_grid
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.narrow_phase import (
     MARGIN,
-    MOST_NEAR,
     Contacts,
-    Near,
-    Shapes,
     closest,
     look_at,
     push_out,
     room_for,
+    room_near,
     touch_disc,
     touch_edges,
 )
-from sandbox.physics.terrain import Terrain
-from sandbox.physics.world import Slots, World
+from sandbox.physics.outline import TERRAIN_OWNER, outline_of, shapes_of
+from sandbox.physics.world import World
 
-# The group of terrain, and the bits of every group.
-TERRAIN_GROUP = 1
-ALL_GROUPS = (1 << 62) - 1
-# Owner of the first chain of terrain, the others below it; particles and bodies are above.
-TERRAIN_OWNER = -2_000_000_000
 # A particle that is near no edge of a solid body is looked for deep inside it once in so many ticks: the most that it
 # takes before one is pushed out.
 DEEP_TICKS = 8
-# Kinds of edge of a spring: none, a line with two sides, an outline with what is solid on its left, or right.
-NO_EDGE, LINE, SOLID_LEFT, SOLID_RIGHT = 0, 1, 2, 3
-# A particle that would cross a line of terrain is stopped this far in front of it, in units of its distance.
-STOP_SHARE = 0.01
-STOPS = 3
-
-
-@dataclass(frozen=True)
-class Outline:
-    """What the edges of a world's springs are, which topology alone decides; signature: what it was made for.
-
-    solid (k, 2): first edge and one past the last of each owner's edges where any is solid, terrain included.
-    """
-
-    signature: tuple[NDArray[np.generic], ...]
-    edge_a: Slots
-    edge_b: Slots
-    side: Slots
-    number: Slots
-    edge_start: Slots
-    edge_of: Slots
-    near_start: Slots
-    near_of: Slots
-    solid: Slots
-    owner: Slots
-    dynamic: int
-
-
-def outline_of(world: World) -> Outline:
-    """The outline of a world's bodies, made anew where springs have changed."""
-    signature = world.spring_active, world.edge, world.particle_a, world.particle_b, world.owner
-    kept: Outline | None = world.contact_cache
-    if kept is None or not all(map(np.array_equal, kept.signature, signature)):
-        kept = world.contact_cache = _make_outline(world, tuple(array.copy() for array in signature))
-    return kept
-
-
-def _make_outline(world: World, signature: tuple[NDArray[np.generic], ...]) -> Outline:
-    terrain, count = world.terrain, world.particle_count
-    chosen = np.flatnonzero(world.spring_active & (world.edge != NO_EDGE))
-    # Edges of one owner lie together, so that a whole outline can be walked through.
-    chosen = chosen[np.argsort(world.owner[world.particle_a[chosen]], kind="stable")]
-    a, b = world.particle_a[chosen].astype(np.int64), world.particle_b[chosen].astype(np.int64)
-    swapped = world.edge[chosen] == SOLID_RIGHT
-    a, b = np.where(swapped, b, a), np.where(swapped, a, b)
-    edge_a, edge_b = np.append(a, count + terrain.edge_a), np.append(b, count + terrain.edge_b)
-    side = np.append((world.edge[chosen] != LINE).astype(np.int64), terrain.solid)
-    owner = np.append(world.owner.astype(np.int64), _owners(terrain))
-    joined = np.flatnonzero(world.spring_active)
-    ends = world.particle_a[joined].astype(np.int64), world.particle_b[joined].astype(np.int64)
-    edges = np.arange(len(edge_a))
-    return Outline(
-        signature,
-        edge_a,
-        edge_b,
-        side,
-        np.append(chosen, np.arange(len(terrain.edge_a))),
-        *_listed(np.append(edge_a, edge_b), np.append(edges, edges), len(owner)),
-        *_listed(np.append(*ends), np.append(*ends[::-1]), count),
-        _solid(owner[edge_a] if len(edge_a) else edge_a, side),
-        owner,
-        len(chosen),
-    )
-
-
-def _owners(terrain: Terrain) -> Slots:
-    owner = np.zeros(len(terrain.vertex), dtype=np.int64)
-    owner[terrain.edge_a] = TERRAIN_OWNER - terrain.chain
-    owner[terrain.edge_b] = TERRAIN_OWNER - terrain.chain
-    return owner
-
-
-def _listed(keys: Slots, values: Slots, count: int) -> tuple[Slots, Slots]:
-    """Where the values of each of `count` keys begin, and the values by key."""
-    order = np.lexsort((values, keys))
-    return np.append(0, np.cumsum(np.bincount(keys, minlength=count))).astype(np.int64), values[order]
-
-
-def _solid(owner: Slots, side: Slots) -> Slots:
-    starts = np.flatnonzero(np.diff(owner, prepend=owner[:1] - 1))
-    spans = np.stack([starts, np.append(starts[1:], len(owner))], axis=1) if len(owner) else np.zeros((0, 2), np.int64)
-    return spans[[bool(side[first:last].any()) for first, last in spans.tolist()]] if len(spans) else spans
-
-
-def _shapes(world: World, outline: Outline) -> Shapes:
-    terrain = world.terrain
-    size = len(terrain.vertex)
-    friction, restitution = np.zeros((2, size))
-    friction[terrain.edge_a], restitution[terrain.edge_a] = terrain.friction, terrain.restitution
-    friction[terrain.edge_b], restitution[terrain.edge_b] = terrain.friction, terrain.restitution
-    still = np.zeros((size, 2))
-    return Shapes(
-        np.concatenate([world.position, terrain.vertex]),
-        np.concatenate([world.velocity, still]),
-        np.concatenate([world.origin, terrain.vertex]),
-        np.append(world.radius, np.zeros(size)),
-        np.append(world.friction, friction),
-        np.append(world.restitution, restitution),
-        outline.owner,
-        np.append(world.group, np.full(size, TERRAIN_GROUP)),
-        np.append(np.where(world.particle_active, world.collides, 0), np.full(size, ALL_GROUPS)),
-        np.append(world.inverse_mass, np.zeros(size)),
-        outline.edge_a,
-        outline.edge_b,
-        outline.side,
-        outline.number,
-        outline.edge_start,
-        outline.edge_of,
-        outline.near_start,
-        outline.near_of,
-    )
 
 
 @kernel
@@ -232,8 +112,8 @@ def _meet_grid(p, particles, h, shapes, grid, near, contacts, count):  # type: i
 def _meet_terrain(p, dynamic, shapes, terrain, box, near, edges):  # type: ignore[no-untyped-def]
     # Note the edges of terrain in the cells that a particle's box covers.
     cell = terrain.cell[0]
-    left, right = _span(box[p, 0], box[p, 2], terrain.corner[0], cell, terrain.size[0])
-    bottom, top = _span(box[p, 1], box[p, 3], terrain.corner[1], cell, terrain.size[1])
+    left, right = span(box[p, 0], box[p, 2], terrain.corner[0], cell, terrain.size[0])
+    bottom, top = span(box[p, 1], box[p, 3], terrain.corner[1], cell, terrain.size[1])
     for row in range(bottom, top + 1):
         for column in range(left, right + 1):
             at = row * terrain.size[0] + column
@@ -250,8 +130,8 @@ def _meet_terrain(p, dynamic, shapes, terrain, box, near, edges):  # type: ignor
 
 
 @inner_kernel
-def _span(low, high, corner, cell, size):  # type: ignore[no-untyped-def]
-    # First and last of `size` cells that an interval covers; none: the last is before the first.
+def span(low, high, corner, cell, size):  # type: ignore[no-untyped-def]
+    """First and last of `size` cells that an interval covers; none: the last is before the first."""
     first = (low - corner) / cell
     last = (high - corner) / cell
     if not (last >= 0.0 and first < size):
@@ -262,7 +142,6 @@ def _span(low, high, corner, cell, size):  # type: ignore[no-untyped-def]
 @inner_kernel
 def _look_deep(p, shapes, solid, near, edges, dynamic, contacts, count):  # type: ignore[no-untyped-def]
     # A particle that is near no edge of a solid body, yet inside it, is pushed out at the nearest edge.
-    x = shapes.place[p, 0]
     y = shapes.place[p, 1]
     for k in range(solid.shape[0]):
         owner = shapes.owner[shapes.edge_a[solid[k, 0]]]
@@ -351,12 +230,12 @@ def _carry_over(contacts, old_particle, old_feature, old_impulse):  # type: igno
 def find_contacts(world: World, h: float) -> Contacts:
     """All contacts of a step of h [s] that begins with the velocities which gravity and all else have left."""
     outline = outline_of(world)
-    shapes = _shapes(world, outline)
+    shapes = shapes_of(world, outline)
     particles = world.particle_count
     box, is_target = np.zeros((particles + outline.dynamic, 4)), np.zeros(particles + outline.dynamic, dtype=np.bool_)
     _boxes(shapes, particles, outline.dynamic, h, box, is_target)
     grid = make_grid(box, is_target)
-    near = Near(np.zeros(MOST_NEAR, np.int64), *np.zeros((3, MOST_NEAR)), np.zeros(MOST_NEAR, np.int64))
+    near = room_near()
     room = 64 + 2 * len(world.contact_particle)
     while True:
         contacts = room_for(room)
@@ -366,81 +245,6 @@ def find_contacts(world: World, h: float) -> Contacts:
         if count <= room:
             break
         room = count
-    contacts = Contacts(*(np.ascontiguousarray(array[:count]) for array in contacts))
+    contacts = Contacts._make(array[:count] for array in contacts)
     _carry_over(contacts, world.contact_particle.astype(np.int64), world.contact_feature, world.contact_impulse)
     return contacts
-
-
-@kernel
-def _stop(position, velocity, collides, active, inverse_mass, terrain, h):  # type: ignore[no-untyped-def]
-    # No particle crosses an edge of terrain: its velocity towards the first in its way is cut.
-    for p in range(position.shape[0]):
-        if not active[p] or inverse_mass[p] == 0.0 or not collides[p] & TERRAIN_GROUP:
-            continue
-        for stop in range(STOPS + 1):
-            e, signed, nx, ny = _crossing(p, position, velocity, terrain, h)
-            if e < 0:
-                break
-            if stop == STOPS:
-                velocity[p, 0] = 0.0
-                velocity[p, 1] = 0.0
-                break
-            after = signed + h * (velocity[p, 0] * nx + velocity[p, 1] * ny)
-            missing = (STOP_SHARE * signed - after) / h
-            velocity[p, 0] += missing * nx
-            velocity[p, 1] += missing * ny
-
-
-@inner_kernel
-def _crossing(p, position, velocity, terrain, h):  # type: ignore[no-untyped-def]
-    # The first edge that the way of a particle's centre crosses (-1: none), distance from it, normal towards it.
-    x = position[p, 0]
-    y = position[p, 1]
-    wx = h * velocity[p, 0]
-    wy = h * velocity[p, 1]
-    cell = terrain.cell[0]
-    left, right = _span(x + min(0.0, wx), x + max(0.0, wx), terrain.corner[0], cell, terrain.size[0])
-    bottom, top = _span(y + min(0.0, wy), y + max(0.0, wy), terrain.corner[1], cell, terrain.size[1])
-    soonest = 2.0
-    found = -1
-    distance = 0.0
-    nx = 0.0
-    ny = 0.0
-    for row in range(bottom, top + 1):
-        for column in range(left, right + 1):
-            at = row * terrain.size[0] + column
-            for entry in range(terrain.cell_start[at], terrain.cell_start[at + 1]):
-                e = terrain.cell_edge[entry]
-                a = terrain.edge_a[e]
-                dx = terrain.vertex[terrain.edge_b[e], 0] - terrain.vertex[a, 0]
-                dy = terrain.vertex[terrain.edge_b[e], 1] - terrain.vertex[a, 1]
-                px = x - terrain.vertex[a, 0]
-                py = y - terrain.vertex[a, 1]
-                # Signed area, above 0 on the right of the edge; it changes by `change` on the way.
-                before = px * dy - py * dx
-                change = wx * dy - wy * dx
-                if before < 0.0 and terrain.solid[e] == 0:
-                    before, change, dx, dy = -before, -change, -dx, -dy
-                    px = x - terrain.vertex[terrain.edge_b[e], 0]
-                    py = y - terrain.vertex[terrain.edge_b[e], 1]
-                if not (before > 0.0 and before + change < 0.0):
-                    continue
-                when = before / -change
-                squared = dx * dx + dy * dy
-                share = ((px + when * wx) * dx + (py + when * wy) * dy) / squared
-                if when < soonest and -1e-9 <= share <= 1.0 + 1e-9:
-                    length = math.sqrt(squared)
-                    soonest = when
-                    found = e
-                    distance = before / length
-                    nx = dy / length
-                    ny = -dx / length
-    return found, distance, nx, ny
-
-
-def stop_at_terrain(world: World, h: float) -> None:
-    """Last of all in a step: whatever the solver has left, no particle's centre crosses terrain in the step."""
-    if len(world.terrain.edge_a):
-        _stop(
-            world.position, world.velocity, world.collides, world.particle_active, world.inverse_mass, world.terrain, h
-        )

@@ -87,7 +87,15 @@ class Contacts(NamedTuple):
 def room_for(count: int) -> Contacts:
     """Contacts to be filled in."""
     slots, numbers, pairs = np.zeros((4, count), dtype=np.int64), np.zeros((4, count)), np.zeros((2, count, 2))
-    return Contacts(*slots, numbers[0], pairs[0], numbers[1], numbers[2], numbers[3], pairs[1])
+    return Contacts(
+        slots[0], slots[1], slots[2], slots[3], numbers[0], pairs[0], numbers[1], numbers[2], numbers[3], pairs[1]
+    )
+
+
+def room_near() -> Near:
+    """Edges near a particle, to be filled in."""
+    slots, numbers = np.zeros((2, MOST_NEAR), dtype=np.int64), np.zeros((3, MOST_NEAR))
+    return Near(slots[0], numbers[0], numbers[1], numbers[2], slots[1])
 
 
 NO_CONTACTS = room_for(0)
@@ -95,19 +103,18 @@ NO_CONTACTS = room_for(0)
 
 @inner_kernel
 def may_touch(p, v, shapes):  # type: ignore[no-untyped-def]
-    """Whether their groups let two vertices touch, and one of them can move."""
-    if shapes.collides[p] & shapes.group[v] == 0 or shapes.collides[v] & shapes.group[p] == 0:
-        return False
-    return True
+    """Whether the groups of two vertices let them touch."""
+    return shapes.collides[p] & shapes.group[v] != 0 and shapes.collides[v] & shapes.group[p] != 0
 
 
 @inner_kernel
 def are_joined(p, v, shapes):  # type: ignore[no-untyped-def]
     """Whether a spring joins two particles."""
+    found = False
     for at in range(shapes.near_start[p], shapes.near_start[p + 1]):
         if shapes.near_of[at] == v:
-            return True
-    return False
+            found = True
+    return found
 
 
 @inner_kernel

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sandbox.physics.contacts import find_contacts, stop_at_terrain
+from sandbox.physics.contacts import find_contacts
+from sandbox.physics.guard import stop_at_terrain
 from sandbox.physics.jit import kernel
 from sandbox.physics.quarantine import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings

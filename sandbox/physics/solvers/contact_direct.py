@@ -371,7 +371,14 @@ def _push_bodies(  # type: ignore[no-untyped-def]
 
 
 def _push(
-    world: World, pattern: Pattern, stiffness: Floats, damping: Floats, least: Floats, most: Floats, parts: int, h: float
+    world: World,
+    pattern: Pattern,
+    stiffness: Floats,
+    damping: Floats,
+    least: Floats,
+    most: Floats,
+    parts: int,
+    h: float,
 ) -> NDArray[np.bool_]:
     """Solve the bodies and loose particles that touch something; which bodies those are."""
     contacts = world.contacts

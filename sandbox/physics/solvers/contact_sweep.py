@@ -32,8 +32,8 @@ SETTLED = 1e-7
 class Blocks(NamedTuple):
     """Responses of bodies: block and place in it of each particle (n,), -1: loose, it answers by its own mass.
 
-    Points of block k: point[start[k]:start[k + 1]]; its response [1/kg], a square of two rows for each point, at base[k]
-    in numbers.
+    Points of block k: point[start[k]:start[k + 1]]; its response [1/kg], two rows of a square for each point, at
+    base[k] in numbers.
     """
 
     block: Slots
@@ -189,7 +189,7 @@ def load_biases(contacts, push, velocity, inverse_mass, gravity_x, gravity_y, h)
 @inner_kernel
 def _bounce(restitution, speed, fall, gap, h):  # type: ignore[no-untyped-def]
     # The velocity after a step in which what approaches at `speed` bounces off at the height of the surface, not where
-    # the step begins: symplectic Euler keeps v^2/2 + g x - g h v/2 exactly in free fall, of which restitution^2 is left.
+    # the step begins: symplectic Euler keeps v^2/2 + g x - g h v/2 in free fall, and restitution^2 is left.
     energy = 0.5 * speed * speed + fall * gap + 0.5 * fall * h * speed
     left = 2.0 * (restitution * restitution * energy - fall * gap) + 0.25 * fall * fall * h * h
     return max(0.0, math.sqrt(max(0.0, left)) - 0.5 * fall * h)

@@ -92,6 +92,7 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
     if hooke.any():
         apply_explicit(world, hooke, stiffness, damping, h)
     springs, contacts = world.spring_count, world.contacts or NO_CONTACTS
+    blocks = loose_blocks(world.particle_count if world.contacts else 0)
     push = new_push(len(contacts.particle))
     load_biases(contacts, push, world.velocity, world.inverse_mass, *world.settings.gravity, h)
     _iterate(
@@ -99,5 +100,5 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
         stiffness, damping, world.law, world.spring_active, h, world.settings.iterations, world.settings.warm_start,
         world.impulse, np.zeros(springs, dtype=np.int64), np.zeros(springs, dtype=np.int64),
         np.zeros(springs, dtype=np.int64), np.zeros((springs, 2)), np.zeros(springs), np.zeros(springs),
-        np.zeros((world.particle_count, 2)), contacts, push, loose_blocks(world.particle_count if len(push.bias) else 0),
+        np.zeros((world.particle_count, 2)), contacts, push, blocks,
     )  # fmt: skip
