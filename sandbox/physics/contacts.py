@@ -42,7 +42,7 @@ def _boxes(shapes, particles, dynamic, h, box, is_target):  # type: ignore[no-un
             way = h * shapes.motion[p, axis]
             box[p, axis] = x + min(0.0, way) - reach
             box[p, 2 + axis] = x + max(0.0, way) + reach
-        is_target[p] = shapes.edge_start[p] == shapes.edge_start[p + 1]
+        is_target[p] = shapes.edge_start[p] == shapes.edge_start[p + 1] and not shapes.shielded[p]
     for e in range(dynamic):
         a = shapes.edge_a[e]
         b = shapes.edge_b[e]
@@ -70,6 +70,8 @@ def _meet(p, k, particles, h, shapes, grid, near, edges, contacts, count):  # ty
         return edges, count
     if k >= particles:
         return look_at(p, k - particles, shapes, near, edges), count
+    if shapes.shielded[p]:
+        return edges, count
     # Two discs that are both looked for meet once.
     if k != p and (k < p or shapes.edge_start[p] != shapes.edge_start[p + 1]):
         count = touch_disc(p, k, h, shapes, contacts, count)
@@ -84,7 +86,9 @@ def _meet_grid(p, particles, h, shapes, grid, near, contacts, count):  # type: i
     box = grid.box
     if is_large(box[p, 0], box[p, 1], box[p, 2], box[p, 3], cell):
         for k in range(box.shape[0]):
-            if box[k, 0] <= box[k, 2] and (k >= particles or shapes.edge_start[k] == shapes.edge_start[k + 1]):
+            if box[k, 0] <= box[k, 2] and (
+                k >= particles or (shapes.edge_start[k] == shapes.edge_start[k + 1] and not shapes.shielded[k])
+            ):
                 edges, count = _meet(p, k, particles, h, shapes, grid, near, edges, contacts, count)
         return edges, count
     for at in range(grid.large.shape[0]):

@@ -8,6 +8,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inner_kernel
@@ -33,6 +34,7 @@ class Shapes(NamedTuple):
     By vertex: place [m], motion [m/s], origin [m], radius [m], friction, restitution, owner, group, collides, inverse
     [1/kg]. By edge: edge_a, edge_b, side (1: solid on the left, 0: two sides), number = its spring, or of terrain.
     Edges of vertex v: edge_of[edge_start[v]:edge_start[v + 1]]; particles that a spring joins to p: near_of likewise.
+    shielded (n,): see outline.py.
     """
 
     place: Floats
@@ -53,6 +55,7 @@ class Shapes(NamedTuple):
     edge_of: Slots
     near_start: Slots
     near_of: Slots
+    shielded: NDArray[np.bool_]
 
 
 class Near(NamedTuple):

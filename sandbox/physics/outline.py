@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.narrow_phase import Shapes
 from sandbox.physics.terrain import Terrain
-from sandbox.physics.world import Slots, World
+from sandbox.physics.world import HAND_MATERIAL, Slots, World
 
 # The group of terrain, and the bits of every group.
 TERRAIN_GROUP = 1
@@ -22,6 +22,7 @@ NO_EDGE, LINE, SOLID_LEFT, SOLID_RIGHT = 0, 1, 2, 3
 class Outline:
     """What the edges of a world's springs are, which topology alone decides; signature: what it was made for.
 
+    shielded: particles inside a solid body that no torn spring lays bare; discs do not meet them.
     solid (k, 2): first edge and one past the last of each owner's edges where any is solid, terrain included.
     """
 
@@ -36,6 +37,7 @@ class Outline:
     near_of: Slots
     solid: Slots
     owner: Slots
+    shielded: NDArray[np.bool_]
     dynamic: int
 
 
@@ -72,8 +74,19 @@ def _make_outline(world: World, signature: tuple[NDArray[np.generic], ...]) -> O
         *_listed(np.append(*ends), np.append(*ends[::-1]), count),
         _solid(owner[edge_a] if len(edge_a) else edge_a, side),
         owner,
+        _shielded(world, chosen),
         len(chosen),
     )
+
+
+def _shielded(world: World, edges: Slots) -> NDArray[np.bool_]:
+    solid = edges[world.edge[edges] != LINE]
+    shielded = np.isin(world.owner, world.owner[world.particle_a[solid]])
+    for bare in (edges, np.flatnonzero(~world.spring_active)):
+        # A hand that holds nothing tears nothing.
+        bare = bare[world.material[bare] != HAND_MATERIAL]
+        shielded[world.particle_a[bare]] = shielded[world.particle_b[bare]] = False
+    return shielded
 
 
 def _owners(terrain: Terrain) -> Slots:
@@ -122,4 +135,5 @@ def shapes_of(world: World, outline: Outline) -> Shapes:
         outline.edge_of,
         outline.near_start,
         outline.near_of,
+        outline.shielded,
     )

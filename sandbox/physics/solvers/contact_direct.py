@@ -130,10 +130,12 @@ def _touching(world: World, pattern: Pattern, contacts: Contacts) -> tuple[Touch
     _, cluster = np.unique(label[np.append(count + np.arange(len(body)), loose)], return_inverse=True)
     clusters = int(cluster.max()) + 1 if len(cluster) else 0
     size = len(body)
+    numbers, flags, sums = np.zeros((4, size)), np.zeros((3, size), dtype=np.bool_), np.zeros((2, clusters))
     touching = Touching(
-        body, cluster[:size].astype(np.int64), loose, cluster[size:].astype(np.int64), row, *np.zeros((4, size)),
-        *np.zeros((3, size), dtype=np.bool_), *np.zeros((2, clusters)), np.zeros(clusters, dtype=np.bool_),
-        *np.zeros((2, free_count, 2)), world.velocity.copy(), np.zeros((count, 2)),
+        body, cluster[:size].astype(np.int64), loose, cluster[size:].astype(np.int64), row,
+        numbers[0], numbers[1], numbers[2], numbers[3], flags[0], flags[1], flags[2],
+        sums[0], sums[1], np.zeros(clusters, dtype=np.bool_), np.zeros((free_count, 2)), np.zeros((free_count, 2)),
+        world.velocity.copy(), np.zeros((count, 2)),
     )  # fmt: skip
     return touching, blocks
 
