@@ -1,6 +1,10 @@
 """The arrays of a world's state: their names, their types, and their order."""
 
 import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Slots = NDArray[np.int64]
 
 PARTICLE_ARRAYS = {
     "position": np.float64,
@@ -47,3 +51,59 @@ STATE_ARRAYS = tuple(KINDS)
 GUARDED_CONSTANTS = ("rest_length", "stiffness", "damping", "hooke_stiffness", "hooke_damping")
 GUARDED = ("position", "velocity", "mass", *GUARDED_CONSTANTS)
 VECTOR_ARRAYS = frozenset({"position", "velocity", "origin", "slow_velocity", "impulse", "contact_impulse"})
+
+
+class StateArrays:
+    """The state of n particles, m springs and k contacts as a struct of arrays, float64 unless said.
+
+    position [m] (n, 2), velocity [m/s] (n, 2), origin [m]
+    (n, 2) = where each was created, which orders the direct solver's elimination, mass [kg], inverse_mass [1/kg]
+    (0 = pinned), radius [m], particle_active (bool); particle_a, particle_b (int32 slots), rest_length [m], stiffness,
+    damping (Cs, Cd per tick), law (int8), hooke_stiffness [N/m], hooke_damping [N s/m],
+    material (int32 index into material_names, -1 = a hand's), spring_active (bool), impulse [N s] (m, 2) = what the
+    iterative solver keeps for its warm start. The direct solver keeps slow_velocity [m/s] (n, 2) = the slow part of the
+    velocity, energy_bank [J] (n,) = what a body's earlier losses still allow it, at its free particle of lowest slot
+    (-1: to be begun anew), tension [N s] (m,) = the impulse by which a spring pulled in the last step, of a whole tick
+    where substeps are "auto", as impulse then is.
+
+    For contacts: friction and restitution (n,), owner (int32) = the body that a particle belongs to, negative: its own,
+    group (int64) = one bit, collides (int64) = the bits of the groups that it touches, TERRAIN_GROUP for terrain, 0 =
+    nothing; edge (int8) of a spring = no line that others meet, one with two sides, or the outline of a solid body on
+    its left or right. Of the k contacts of the last step: contact_particle (int32), contact_feature (int64, see
+    contacts.py), contact_impulse [N s] (k, 2), along and across.
+    """
+
+    position: Floats
+    velocity: Floats
+    origin: Floats
+    mass: Floats
+    inverse_mass: Floats
+    radius: Floats
+    particle_active: NDArray[np.bool_]
+    slow_velocity: Floats
+    energy_bank: Floats
+    particle_a: NDArray[np.int32]
+    particle_b: NDArray[np.int32]
+    rest_length: Floats
+    stiffness: Floats
+    damping: Floats
+    law: NDArray[np.int8]
+    hooke_stiffness: Floats
+    hooke_damping: Floats
+    material: NDArray[np.int32]
+    spring_active: NDArray[np.bool_]
+    impulse: Floats
+    tension: Floats
+    friction: Floats
+    restitution: Floats
+    owner: NDArray[np.int32]
+    group: Slots
+    collides: Slots
+    edge: NDArray[np.int8]
+    contact_particle: NDArray[np.int32]
+    contact_feature: Slots
+    contact_impulse: Floats
+
+    def __init__(self) -> None:
+        for name, kind in KINDS.items():
+            setattr(self, name, np.zeros((0, 2) if name in VECTOR_ARRAYS else 0, dtype=kind))

@@ -12,16 +12,14 @@ from sandbox.physics.broad_phase import bucket_of, is_large, make_grid
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.narrow_phase import (
     MARGIN,
-    Contacts,
     closest,
     look_at,
     push_out,
-    room_for,
-    room_near,
     touch_disc,
     touch_edges,
 )
 from sandbox.physics.outline import TERRAIN_OWNER, outline_of, shapes_of
+from sandbox.physics.shapes import Contacts, room_for, room_near
 from sandbox.physics.world import World
 
 # A particle that is near no edge of a solid body is looked for deep inside it once in so many ticks: the most that it

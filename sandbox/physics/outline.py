@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.narrow_phase import Shapes
+from sandbox.physics.shapes import Shapes
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.world import HAND_MATERIAL, Slots, World
 

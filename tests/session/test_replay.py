@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.physics.arrays import STATE_ARRAYS, VECTOR_ARRAYS
+from sandbox.physics.arrays import CONTACT_ARRAYS, STATE_ARRAYS, VECTOR_ARRAYS
 from sandbox.session.commands import AddParticle, AddSpring, CutSprings, Grab, MoveGrab, Pin, Release
 from sandbox.session.reading import read_replay
 from sandbox.session.replay import Divergence, ReplayError, verify
@@ -75,7 +75,11 @@ def _outcome(replay, start: int) -> str | None:
     return None
 
 
-@pytest.mark.parametrize("array", [name for name in STATE_ARRAYS if name not in ("particle_a", "particle_b", "law")])
+# Of ends and laws other values are refused, and the recorded level has no contacts.
+SPARED = {"particle_a", "particle_b", "law", *CONTACT_ARRAYS}
+
+
+@pytest.mark.parametrize("array", [name for name in STATE_ARRAYS if name not in SPARED])
 def test_a_fault_of_one_unit_in_the_last_place_is_named(recorded, array):
     replay = read_replay(recorded)
     tick, slot = 137, 7

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.narrow_phase import Contacts
+from sandbox.physics.shapes import Contacts
 from sandbox.physics.world import Floats, Slots, World
 
 # Cs / Cd of a contact that overlaps: the part of the overlap that a step removes. Higher shakes what rests, lower
@@ -26,7 +26,7 @@ SOFTNESS = 1e-3
 # Bodies that meet more slowly [m/s] do not bounce. Lower makes what rests tremble, higher cuts off a last bounce.
 SLOWEST_BOUNCE = 0.5
 # Sweeps end where no contact changed its velocity by more [m/s].
-SETTLED = 1e-7
+SETTLED = 1e-5
 
 
 class Blocks(NamedTuple):
@@ -78,13 +78,18 @@ def weight_of(contacts, c, end):  # type: ignore[no-untyped-def]
 @inner_kernel
 def relative_velocity(contacts, c, velocity, change):  # type: ignore[no-untyped-def]
     """Velocity of the particle against what it touches, from velocity + change."""
-    ux = 0.0
-    uy = 0.0
-    for end in range(3):
-        p, weight = weight_of(contacts, c, end)
-        if p >= 0:
-            ux += weight * (velocity[p, 0] + change[p, 0])
-            uy += weight * (velocity[p, 1] + change[p, 1])
+    p = contacts.particle[c]
+    ux = velocity[p, 0] + change[p, 0]
+    uy = velocity[p, 1] + change[p, 1]
+    a = contacts.end_a[c]
+    if a >= 0:
+        b = contacts.end_b[c]
+        share = contacts.share[c] if b >= 0 else 0.0
+        ux -= (1.0 - share) * (velocity[a, 0] + change[a, 0])
+        uy -= (1.0 - share) * (velocity[a, 1] + change[a, 1])
+        if b >= 0:
+            ux -= share * (velocity[b, 0] + change[b, 0])
+            uy -= share * (velocity[b, 1] + change[b, 1])
     return ux, uy
 
 
@@ -113,10 +118,14 @@ def _apply(contacts, c, jn, jt, change, inverse_mass, blocks):  # type: ignore[n
     ny = contacts.normal[c, 1]
     jx = jn * nx - jt * ny
     jy = jn * ny + jt * nx
-    for end in range(3):
-        p, weight = weight_of(contacts, c, end)
-        if p >= 0 and inverse_mass[p] > 0.0:
-            _push_particle(p, weight * jx, weight * jy, change, inverse_mass, blocks)
+    _push_particle(contacts.particle[c], jx, jy, change, inverse_mass, blocks)
+    a = contacts.end_a[c]
+    if a >= 0:
+        b = contacts.end_b[c]
+        share = contacts.share[c] if b >= 0 else 0.0
+        _push_particle(a, -(1.0 - share) * jx, -(1.0 - share) * jy, change, inverse_mass, blocks)
+        if b >= 0:
+            _push_particle(b, -share * jx, -share * jy, change, inverse_mass, blocks)
 
 
 @inner_kernel
@@ -284,12 +293,18 @@ def keep_impulses(world: World, contacts: Contacts) -> None:
     world.keep_contacts(contacts.particle.astype(np.int32), contacts.feature, contacts.impulse)
 
 
+@inner_kernel
+def add_change(velocity, change, inverse_mass):  # type: ignore[no-untyped-def]
+    """Add what a step changes to the velocities of particles that can move."""
+    for p in range(inverse_mass.shape[0]):
+        if inverse_mass[p] > 0.0:
+            velocity[p, 0] += change[p, 0]
+            velocity[p, 1] += change[p, 1]
+
+
 @kernel
 def sweep_masses(contacts, push, velocity, change, inverse_mass, blocks, sweeps):  # type: ignore[no-untyped-def]
     """Solve contacts of particles that answer by their own mass, and bring the velocities to the end of the step."""
     load_responses(contacts, push, inverse_mass, blocks)
     solve_contacts(contacts, push, velocity, change, inverse_mass, blocks, sweeps)
-    for p in range(inverse_mass.shape[0]):
-        if inverse_mass[p] > 0.0:
-            velocity[p, 0] += change[p, 0]
-            velocity[p, 1] += change[p, 1]
+    add_change(velocity, change, inverse_mass)

@@ -7,8 +7,9 @@ import numpy as np
 
 from sandbox.physics.equation import direction, reduced_mass
 from sandbox.physics.jit import kernel
-from sandbox.physics.narrow_phase import NO_CONTACTS
+from sandbox.physics.shapes import NO_CONTACTS
 from sandbox.physics.solvers.contact_sweep import (
+    add_change,
     load_biases,
     load_responses,
     loose_blocks,
@@ -80,10 +81,7 @@ def _iterate(  # type: ignore[no-untyped-def]
             accumulated[s, 0] += jx
             accumulated[s, 1] += jy
         sweep(contacts, push, velocity, change, inverse_mass, blocks)
-    for i in range(inverse_mass.shape[0]):
-        if inverse_mass[i] > 0.0:
-            velocity[i, 0] += change[i, 0]
-            velocity[i, 1] += change[i, 1]
+    add_change(velocity, change, inverse_mass)
 
 
 def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
