@@ -14,7 +14,7 @@ from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.world import Floats, Slots
 
 # Cell in units of the mean box: smaller puts an object into many cells, larger many objects into a cell.
-CELL_SIZE = 1.5
+CELL_SIZE = 1.0
 # Boxes of more cells, or beyond so many cells from the origin, are looked at by everybody: a box swept at 1e9 m/s
 # covers millions. Products of hashes stay inside 64 bits up to 1e10 cells.
 MOST_CELLS = 1024.0
