@@ -9,8 +9,9 @@ from sandbox.physics.guard import stop_at_terrain
 from sandbox.physics.jit import kernel
 from sandbox.physics.quarantine import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
-from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.solvers import SOLVERS, halves
 from sandbox.physics.solvers.contact_sweep import keep_impulses
+from sandbox.physics.solvers.direct import pattern_of
 from sandbox.physics.solvers.dissection import dissect
 from sandbox.physics.substeps import halve, substep_count
 from sandbox.physics.world import Floats, World
@@ -86,5 +87,7 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS)) -> None:
         world.add_springs(["s", "t"], [0, 0], [1, 1], law=[0, 1])
         step(world)
     if "direct" in solvers:
-        # That is too small a body to be dissected by itself.
+        # That is too small a body to be dissected by itself, or to need a second thread.
         dissect(np.array([0]), np.array([1]), world.position)
+        pattern = pattern_of(world)
+        halves.warm_up(pattern.matrix.fronts, pattern.rows.change)

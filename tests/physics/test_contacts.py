@@ -200,3 +200,12 @@ def test_a_run_goes_on_from_a_snapshot_with_the_same_bits(solver, substeps):
     run(w, 15)
     assert len(w.contact_particle) > 2
     assert state_hash(w) == expected
+
+
+def test_a_large_jelly_rests_on_the_ground_by_the_same_contacts():
+    w = world(GROUND)
+    jelly = add_jelly(w, (0.0, 1.08), size=(2.0, 2.0), stiffness=0.99, damping=0.999)
+    assert jelly.stop - jelly.start > 400
+    run(w, scaled(90, 4))
+    assert 0.0 < w.position[:, 1].min() < 0.1
+    assert np.abs(w.velocity).max() < 2.0

@@ -92,7 +92,7 @@ def _solve_due(touching, items, blocks, columns, h, ahead, behind):  # type: ign
         for r in range(first_row, last_row):
             touching.free[r, 0] = rows.trial[r, 0] + rows.change[r, 0]
             touching.free[r, 1] = rows.trial[r, 1] + rows.change[r, 1]
-        load_block(k, first_row, last_row, touching.row, blocks, columns, matrix, touching.pushed)
+        load_block(k, first_row, last_row, touching.row, blocks, columns, rows, matrix, touching.pushed)
         for i in range(blocks.start[k], blocks.start[k + 1]):
             p = blocks.point[i]
             touching.given[p, 0] = touching.free[touching.row[p], 0]
@@ -134,7 +134,7 @@ def _answer(touching, items, rest_length, h):  # type: ignore[no-untyped-def]
         body = touching.body[k]
         first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
         first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
-        respond(first_row, last_row, matrix, touching.pushed)
+        respond(first_row, last_row, rows, matrix, touching.pushed)
         for r in range(first_row, last_row):
             for axis in range(2):
                 v = touching.free[r, axis] + touching.pushed[r, axis]

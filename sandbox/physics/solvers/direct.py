@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.jit import bundle_kernel, inner_kernel
 from sandbox.physics.settings import AUTO
+from sandbox.physics.solvers.halves import hire
 from sandbox.physics.solvers.measure import cap, extremes
 from sandbox.physics.solvers.network import (
     HIGHEST_COEFFICIENT,
@@ -345,6 +346,7 @@ def pattern_of(world: World) -> Pattern:
         world.inverse_mass, world.particle_a, world.particle_b, world.spring_active, world.law, *pattern.signature
     ):
         pattern = world.solver_cache = make_pattern(world)
+        hire(pattern, pattern.matrix.fronts, pattern.rows.change)
     return pattern
 
 

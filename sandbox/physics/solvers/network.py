@@ -17,7 +17,8 @@ import math
 from sandbox.physics.equation import SHORTEST, direction, reduced_mass
 from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.factor import back_substitute, factorise
-from sandbox.physics.solvers.fronts import add_block, clear_fronts, eliminate_rows, factorise_fronts, substitute_fronts
+from sandbox.physics.solvers.fronts import add_block, clear_fronts
+from sandbox.physics.solvers.halves import solve_fronts
 
 # Cd is capped here, and Cs with it: nearer to 1 springs stretch less, but steps are rejected more often and damp more.
 HIGHEST_COEFFICIENT = 1.0 - 1e-7
@@ -229,8 +230,7 @@ def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # ty
     fronts = matrix.fronts
     if fronts.of_row[first_row] >= 0:
         assemble_fronts(first_row, last_row, first, last, rows, springs, matrix)
-        factorise_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
-        substitute_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
+        solve_fronts(False, first_row, last_row, fronts, rows.change)
         return
     assemble(first_row, last_row, first, last, rows, springs, matrix)
     factorise(
@@ -294,8 +294,7 @@ def refine(first_row, last_row, first, last, rows, springs, matrix):  # type: ig
     load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
     fronts = matrix.fronts
     if fronts.of_row[first_row] >= 0:
-        eliminate_rows(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
-        substitute_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
+        solve_fronts(True, first_row, last_row, fronts, rows.change)
         return
     back_substitute(
         first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change

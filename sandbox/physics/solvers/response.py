@@ -1,28 +1,33 @@
 """Response of a factored body: how its particles answer to impulses at some of them."""
 
 from sandbox.physics.jit import inner_kernel, unsigned
+from sandbox.physics.solvers.direct import copy_rows
 from sandbox.physics.solvers.factor import back_substitute
-from sandbox.physics.solvers.fronts import ONE, TWO, ZERO, eliminate_rows, substitute_fronts, subtract_pair
+from sandbox.physics.solvers.fronts import ONE, TWO, ZERO, subtract_pair
+from sandbox.physics.solvers.halves import solve_fronts
 
 
 @inner_kernel
-def respond(first_row, last_row, matrix, vector):  # type: ignore[no-untyped-def]
-    """Solve A x = vector for the rows of one body, in place, with the factor that a linear solve has left."""
-    fronts = matrix.fronts
-    if fronts.of_row[first_row] >= 0:
-        eliminate_rows(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, vector)
-        substitute_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, vector)
+def respond(first_row, last_row, rows, matrix, vector):  # type: ignore[no-untyped-def]
+    """Solve A x = vector for the rows of one body, in place, with the factor that a linear solve has left.
+
+    Of a large body it takes `change`, the one array that a helping thread knows.
+    """
+    if matrix.fronts.of_row[first_row] >= 0:
+        copy_rows(first_row, last_row, vector, rows.change)
+        solve_fronts(True, first_row, last_row, matrix.fronts, rows.change)
+        copy_rows(first_row, last_row, rows.change, vector)
         return
     back_substitute(first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, vector)
 
 
 @inner_kernel
-def load_block(k, first_row, last_row, row, blocks, columns, matrix, vector):  # type: ignore[no-untyped-def]
+def load_block(k, first_row, last_row, row, blocks, columns, rows, matrix, vector):  # type: ignore[no-untyped-def]
     """The response W = P A^-1 P^T of block k, whose points are in the order of their rows; columns, vector: scratch."""
     first = blocks.start[k]
     points = blocks.start[k + 1] - first
     if matrix.fronts.of_row[first_row] >= 0:
-        _load_column_wise(blocks, first, points, blocks.base[k], first_row, last_row, row, matrix, vector)
+        _load_column_wise(blocks, first, points, blocks.base[k], first_row, last_row, row, rows, matrix, vector)
         return
     width = 2 * points
     for at in range((last_row - first_row) * 2 * width):
@@ -82,7 +87,7 @@ def _gather(k, first_row, last_row, first, points, row, blocks, columns, matrix)
 
 
 @inner_kernel
-def _load_column_wise(blocks, first, points, base, first_row, last_row, row, matrix, vector):  # type: ignore[no-untyped-def]
+def _load_column_wise(blocks, first, points, base, first_row, last_row, row, rows, matrix, vector):  # type: ignore[no-untyped-def]
     # A large body has its factor in fronts: one solution for each column.
     for i in range(points):
         for axis in range(2):
@@ -90,7 +95,7 @@ def _load_column_wise(blocks, first, points, base, first_row, last_row, row, mat
                 vector[r, 0] = 0.0
                 vector[r, 1] = 0.0
             vector[row[blocks.point[first + i]], axis] = 1.0
-            respond(first_row, last_row, matrix, vector)
+            respond(first_row, last_row, rows, matrix, vector)
             for j in range(points):
                 at = base + (2 * j) * 2 * points + 2 * i + axis
                 r = row[blocks.point[first + j]]
