@@ -91,7 +91,7 @@ def _groups(value: Any) -> Any:
         return value
     if isinstance(value, list | tuple) and all(isinstance(name, str) for name in value):
         return tuple(value)
-    raise ValueError("is true, false or a list of groups")
+    raise ValueError("use true, false or a list of groups")
 
 
 Collides = Annotated[
