@@ -3,6 +3,7 @@
 Run by hand: python -m tests.bench.contacts. Times are of the process, in milliseconds a tick; prints Markdown.
 """
 
+import itertools
 import statistics
 import time
 from collections.abc import Callable
@@ -59,9 +60,7 @@ def pymunk_heap(count: int, columns: int) -> pymunk.Space:
     space, half = pymunk.Space(), 0.15 * columns
     space.gravity = (0.0, -9.81)
     corners = [(-half, 15.0), (-half, 0.0), (half, 0.0), (half, 15.0)]
-    shapes: list[pymunk.Shape] = [
-        pymunk.Segment(space.static_body, a, b, 0.0) for a, b in zip(corners, corners[1:], strict=False)
-    ]
+    shapes: list[pymunk.Shape] = [pymunk.Segment(space.static_body, a, b, 0.0) for a, b in itertools.pairwise(corners)]
     places, radii = disc_places(count, columns)
     for place, radius in zip(places.tolist(), radii.tolist(), strict=True):
         body = pymunk.Body(100.0 * radius**2, float("inf"))

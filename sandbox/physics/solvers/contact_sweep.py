@@ -22,11 +22,11 @@ OVERLAP_SHARE = 0.1
 FASTEST_PUSH = 3.0
 # 1 - Cd of a contact. 0 would leave contacts that carry the same load without a definite share; a larger value lets
 # heaps sink into each other.
-SOFTNESS = 1e-3
+SOFTNESS = 7e-4
 # Bodies that meet more slowly [m/s] do not bounce. Lower makes what rests tremble, higher cuts off a last bounce.
 SLOWEST_BOUNCE = 0.5
 # Sweeps end where no contact changed its velocity by more [m/s].
-SETTLED = 1e-5
+SETTLED = 1e-6
 
 
 class Blocks(NamedTuple):
