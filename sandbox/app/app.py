@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pygame
 
-from sandbox.app.colours import BACKGROUND
+from sandbox.app.colours import BACKGROUND, WARNING
 from sandbox.app.dialogs import show_lines
 from sandbox.app.display import SCALE_RANGE, Display
 from sandbox.app.edit.documents import Documents
@@ -16,6 +16,7 @@ from sandbox.app.edit.tour import Guide
 from sandbox.app.files import FileActions
 from sandbox.app.gallery import Gallery
 from sandbox.app.help import show_help
+from sandbox.app.idle import IdleCollector
 from sandbox.app.input import Input
 from sandbox.app.lines import warm_up_lines
 from sandbox.app.play import PlayScreen
@@ -44,6 +45,7 @@ class App:
         self.display = display
         self.scale = display.scale
         self.profile = Profile()
+        self._collector = IdleCollector()
         self._notices: deque[Notice] = deque(maxlen=NOTICES)
         self._description = ""
         self.running = True
@@ -183,6 +185,7 @@ class App:
             self.screen.leave()
         self.documents.close()
         self.display.close()
+        self._collector.close()
 
     def _rescale(self, factor: float) -> None:
         self.scale = min(max(self.scale * factor, SCALE_RANGE[0]), SCALE_RANGE[1])
@@ -195,7 +198,9 @@ class App:
         started = time.perf_counter()
         self._seconds += frame_time
         with self.profile.part("events"):
-            self.input.process(pygame.event.get())
+            events = pygame.event.get()
+            self._collector.update(frame_time, bool(events))
+            self.input.process(events)
             if self.display.refresh():
                 self.rebuild()
         self.ready = self.ready or not self.warming.is_alive()
@@ -225,12 +230,16 @@ class App:
             if self.screen is not None:
                 left = None if self.ui.has_sheet else self.screen.notices_left
                 legend = self.mode == "play"
-                self.status.draw(surface, self.screen.status(*self._figures), self.ui.units[0], left, legend)
+                parts = self.screen.status(*self._figures)
+                if not self.ready and self.mode == "edit":
+                    parts.append(("preparing the physics", WARNING))
+                self.status.draw(surface, parts, self.ui.units[0], left, legend)
             self.ui.draw(surface)
             self.guide.draw(surface)
             if (self.screen is None or self.ui.has_sheet) and not self.ui.shows_page:
                 self.status.draw_notices(surface, 16.0)
-            if not self.ready:
+            # A level can be drawn before the physics is there.
+            if not self.ready and self.mode == "play":
                 detail = "Only the first start takes some seconds."
                 draw_spinner(surface, self.ui, self._seconds, "Preparing the physics", detail)
 
@@ -252,6 +261,7 @@ class App:
         if self.screen is None or self.gallery is not None:
             return "Levels - Spring Sandbox"
         words = [*self.screen.title(), *(["dialog"] if self.ui.has_sheet else [])]
+        words += [] if self.ready else ["preparing"]
         return " - ".join([*words, "Spring Sandbox"])
 
 

@@ -161,7 +161,9 @@ class Gallery:
             card.broken = True
             card.repaint()
             return
-        card = self._add_card(rect, level.name, level.description, partial(self._open, path))
+        # Levels of one's own are often still without a name.
+        text = level.description if self.section == "levels" else f"{path.name}  {level.description}".strip()
+        card = self._add_card(rect, level.name, text, partial(self._open, path))
         self._unpainted.append((card, level))
 
     def _add_recordings(self) -> None:

@@ -20,6 +20,8 @@ EDITING_KEYS = (pygame.K_a, pygame.K_c, pygame.K_v, pygame.K_x, pygame.K_z, pyga
 REPEATED = (
     "step", "zoom_in", "zoom_out", "undo", "redo", "next_particle", "previous_particle", "next_item", "previous_item",
 )  # fmt: skip
+# Actions that lay the widgets out anew, which keeps what is being typed; they work over a page, too.
+LAYOUT = ("fullscreen", "larger", "smaller")
 ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, 1), pygame.K_DOWN: (0, -1)}
 
 Pixel = tuple[float, float]
@@ -111,8 +113,12 @@ class Input:
         self._held_keys.add(event.key)
         if is_repeated and action not in REPEATED:
             return
-        if action is not None and (not app.ui.has_sheet or action in ("quit", "fullscreen", "larger", "smaller")):
-            app.act(action)
+        if action is None or (app.ui.has_sheet and action not in ("quit", *LAYOUT)):
+            return
+        if app.ui.typing and action not in LAYOUT:
+            # What is being typed counts: it is not saved without it.
+            app.ui.blur()
+        app.act(action)
 
     def _space_up(self) -> None:
         pressed, self._space_down = self._space_down, None

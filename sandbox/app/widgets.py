@@ -1,4 +1,4 @@
-"""Ui: the widgets of the app. It, fields.py and painted.py know pygame_gui; others get callbacks, not events."""
+"""Ui: the widgets of the app. It, theme.py, fields.py and painted.py know pygame_gui; others get callbacks."""
 
 import html
 import warnings
@@ -14,7 +14,7 @@ from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITe
 from sandbox.app.colours import ACCENT
 from sandbox.app.fields import Choice, Field, Sheet
 from sandbox.app.painted import Painted
-from sandbox.app.theme import plain_font, scaled_theme
+from sandbox.app.theme import Manager, plain_font, scaled_theme
 
 # It warns of every label that is a pixel lower than its font: only people who lay out can do something about that.
 warnings.filterwarnings("ignore", message="Label Rect is too small", module="pygame_gui")
@@ -32,7 +32,7 @@ class Ui:
     def __init__(self, size: tuple[int, int], scale: float, pixel_ratio: tuple[float, float] = (1.0, 1.0)) -> None:
         self.size = size
         self.scale = scale
-        self.manager = pygame_gui.UIManager(size, scaled_theme(scale), enable_live_theme_updates=False)
+        self.manager = Manager(size, scaled_theme(scale), enable_live_theme_updates=False)
         self.manager.mouse_pos_scale_factor = list(pixel_ratio)
         self.root = self.manager.get_root_container()
         self._actions: dict[UIElement, Callable[[], None]] = {}

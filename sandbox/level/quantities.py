@@ -33,7 +33,11 @@ class Description(BaseModel):
 Described = TypeVar("Described", bound=Description)
 
 # Looked up once: a copy costs little more than these calls.
-_new, _set = object.__new__, object.__setattr__
+_new = object.__new__
+_set_fields, _set_given, _set_extra, _set_private = (
+    BaseModel.__dict__[name].__set__
+    for name in ("__dict__", "__pydantic_fields_set__", "__pydantic_extra__", "__pydantic_private__")
+)
 
 
 def replaced(item: Described, **changes: Any) -> Described:
@@ -43,11 +47,11 @@ def replaced(item: Described, **changes: Any) -> Described:
     each, less than half of `model_copy`. What the two share is immutable, but for `extras`, which nobody changes.
     """
     copy = _new(type(item))
-    _set(copy, "__dict__", {**item.__dict__, **changes})
+    _set_fields(copy, item.__dict__ | changes)
     # Which fields were given is of no interest anywhere, so the copy shares the item's.
-    _set(copy, "__pydantic_fields_set__", item.__pydantic_fields_set__)
-    _set(copy, "__pydantic_extra__", None)
-    _set(copy, "__pydantic_private__", None)
+    _set_given(copy, item.__pydantic_fields_set__)
+    _set_extra(copy, None)
+    _set_private(copy, None)
     return copy
 
 

@@ -111,7 +111,7 @@ def _all_faults(level: Level, counts: list[tuple[int, int]], layout: Layout) -> 
     for index, body in enumerate(level.bodies):
         path = f"bodies.{index}"
         yield from _material(level, path, body.material)
-        yield from _mesh(path, body) if isinstance(body, MeshDef) else _outline(path, body)
+        yield from _mesh(path, body) if isinstance(body, MeshDef) else outline_faults(path, body)
         if counts[index][0] == 0:
             yield f"{path}.spacing", "no point of the grid lies inside the polygon; make it smaller"
         else:
@@ -158,7 +158,7 @@ def _changes(path: str, body: AnyBody, particles: int, springs: int) -> Iterator
         yield f"{path}.pose", f"has {len(body.pose)} items for {particles} particles; give one each"
 
 
-def _outline(path: str, body: AnyBody) -> Iterator[Fault]:
+def outline_faults(path: str, body: AnyBody) -> Iterator[Fault]:
     """Whether what a body expands to stays inside the world."""
     if isinstance(body, BridgeDef):
         if min(body.start[1], body.end[1]) - body.height < -COORDINATE_LIMIT:

@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import os
 import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -105,6 +106,13 @@ class _Gathered:
     def once(self, text: str) -> str:
         """The text itself, or the equal one that is kept already."""
         return self.texts.setdefault(text, text)
+
+
+def begins_as_replay(path: str | os.PathLike[str]) -> bool:
+    """Whether a file's first bytes are a replay's, plain or compressed. Raises OSError."""
+    with open(path, "rb") as file:
+        start = file.read(64)
+    return start.startswith(GZIP_MAGIC) or FORMAT.encode() in start
 
 
 def read_replay(path: str | Path, partial: bool = False) -> Replay:

@@ -1,5 +1,7 @@
 """Drawing in the editor: what the mouse or the keyboard draws is in the level, and undo takes it back."""
 
+import math
+
 import pygame
 import pytest
 
@@ -51,6 +53,26 @@ def test_a_polygon_is_drawn_by_clicks_and_closed_by_enter(edit):
     driver.key(pygame.K_RETURN)
     (body,) = driver.editor.document.level.bodies
     assert len(body.shape.polygon) == 3
+
+
+def stroke(overlap):
+    """A circle by hand of radius 1 m about (0.13, 1.21), which goes on over its beginning and a little inward."""
+    turns = [k / 40 for k in range(round(40 * (1 + overlap)) + 1)]
+    return [
+        (0.13 + (1 - 0.1 * turn) * math.cos(math.tau * turn), 1.21 + (1 - 0.1 * turn) * math.sin(math.tau * turn))
+        for turn in turns
+    ]
+
+
+@pytest.mark.parametrize("overlap", [-0.02, 0.0, 0.1])
+def test_a_stroke_by_hand_is_closed_where_it_meets_or_runs_over_its_beginning(edit, overlap):
+    driver = edit()
+    driver.key(pygame.K_y)
+    driver.drag(*stroke(overlap))
+    (body,) = driver.editor.document.level.bodies
+    x, y = zip(*body.shape.polygon, strict=True)
+    assert len(x) > 8
+    assert (max(x) - min(x), max(y) - min(y)) == pytest.approx((2, 2), abs=0.2)
 
 
 def test_backspace_takes_the_last_corner_back_and_deletes_nothing(edit):

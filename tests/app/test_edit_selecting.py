@@ -204,3 +204,16 @@ def test_undo_and_redo_keep_the_selection(driver):
     for key in (pygame.K_z, pygame.K_y):
         driver.key(key, CTRL)
         assert selected(driver) == {ROPE, PAIR}
+
+
+def test_a_body_that_is_taken_anywhere_moves_by_whole_steps_of_the_grid(edit):
+    driver = edit()
+    driver.key(pygame.K_q)
+    driver.drag((-1, 0), (0, 0), (0.5, 0))
+    driver.key(pygame.K_v)
+    rim = driver.editor.scene.position[5].tolist()
+    grid = driver.editor.grid
+    driver.click_at(*rim)
+    driver.drag(rim, (rim[0], rim[1] + grid), (rim[0] + 1.9 * grid, rim[1] + 1.1 * grid))
+    (wheel,) = driver.editor.document.level.bodies
+    assert wheel.position == pytest.approx((-1 + 2 * grid, grid), abs=1e-9)

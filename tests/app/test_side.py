@@ -10,7 +10,7 @@ from sandbox.app.edit.rows import RowList
 from sandbox.app.edit.side import PAGES
 from sandbox.editor.items import Item
 from sandbox.level.canonical import level_text
-from sandbox.level.files import parse_level
+from sandbox.level.files import parse_level, read_level
 
 ROPE, PAIR = Item("body", "rope"), Item("body", "pair")
 LOOSE = {
@@ -137,6 +137,21 @@ def test_another_page_takes_what_was_typed(driver):
     driver.type("7")
     open_tab(driver, "history")
     assert body(driver).particle_mass == 7.0
+
+
+def test_saving_and_leaving_count_what_is_being_typed(driver, documents):
+    documents.mkdir()
+    driver.editor.level_file.save_as(level(driver), documents / "x.json")
+    choose(driver, ROPE)
+    driver.app.ui.focus_on(entry(driver, "segments").entry)
+    driver.type("8")
+    driver.key(pygame.K_s, pygame.KMOD_CTRL)
+    assert read_level(documents / "x.json").bodies[0].segments == 8
+    driver.app.ui.focus_on(entry(driver, "segments").entry)
+    driver.type("9")
+    driver.key(pygame.K_q, pygame.KMOD_CTRL)
+    assert driver.app.ui.has_sheet and driver.app.running
+    assert body(driver).segments == 9
 
 
 def test_a_box_is_ticked_by_mouse_and_by_key(driver):

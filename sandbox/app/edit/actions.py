@@ -180,7 +180,7 @@ def _ask_parts(screen: "EditScreen") -> None:
     names = ("group", "ungroup", "break_apart", "unjoin")
     labels = ("Group", "Ungroup", "Break bodies apart", "Take joints apart")
     choices = [(label, screen.actions[name]) for label, name in zip(labels, names, strict=True)]
-    choose(screen.ui, "Parts", "Groups are selected and moved together. A body that is broken apart "
+    choose(screen.ui, "Parts", "A double click selects a whole group. A body that is broken apart "
            "becomes loose particles and springs.", choices)  # fmt: skip
 
 
