@@ -27,9 +27,28 @@ SPRING_ARRAYS = {
     "impulse": np.float64,
     "tension": np.float64,
 }
+ELEMENT_ARRAYS = {
+    "element_kind": np.int8,
+    "element_first": np.int32,
+    "element_corners": np.int32,
+    "element_rest": np.float64,
+    "element_stiffness": np.float64,
+    "element_damping": np.float64,
+    "element_material": np.int32,
+    "element_active": np.bool_,
+}
+CORNER_ARRAYS = {
+    "corner_particle": np.int32,
+    "corner_weight": np.float64,
+}
+# Arrays of one family have one length.
+FAMILIES = (PARTICLE_ARRAYS, SPRING_ARRAYS, ELEMENT_ARRAYS, CORNER_ARRAYS)
+KINDS = {name: kind for family in FAMILIES for name, kind in family.items()}
 # Every array of a world's state, in the order in which it is hashed and stored: part of the replay contract.
-STATE_ARRAYS = (*PARTICLE_ARRAYS, *SPRING_ARRAYS)
+STATE_ARRAYS = tuple(KINDS)
 # Constants of springs that the quarantine can take back.
 GUARDED_CONSTANTS = ("rest_length", "stiffness", "damping", "hooke_stiffness", "hooke_damping")
-GUARDED = ("position", "velocity", "mass", *GUARDED_CONSTANTS)
-VECTOR_ARRAYS = frozenset({"position", "velocity", "origin", "slow_velocity", "impulse"})
+# Constants of elements that it can take back.
+GUARDED_ELEMENTS = ("element_rest", "element_stiffness", "element_damping", "corner_weight")
+GUARDED = ("position", "velocity", "mass", *GUARDED_CONSTANTS, *GUARDED_ELEMENTS)
+VECTOR_ARRAYS = frozenset({"position", "velocity", "origin", "slow_velocity", "impulse", "element_rest"})

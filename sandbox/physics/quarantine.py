@@ -1,8 +1,8 @@
 """Quarantine: a value that no physics can give is taken back before it spreads.
 
 A particle whose position, velocity or mass is not finite, or is absurd, gets its last good values back and is frozen:
-pinned where it was, until somebody unpins it. A spring's absurd constant gets its last good value back. Positions and
-velocities are good as the last tick ended with them, masses and constants as they were last set.
+pinned where it was, until somebody unpins it. An absurd constant of a spring or an element gets its last good value
+back. Positions and velocities are good as the last tick ended with them, masses and constants as they were last set.
 """
 
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.arrays import GUARDED_CONSTANTS
+from sandbox.physics.arrays import GUARDED_CONSTANTS, GUARDED_ELEMENTS
 from sandbox.physics.jit import kernel
 from sandbox.physics.world import World
 
@@ -21,7 +21,7 @@ ABSURD = 1e18
 
 @dataclass(frozen=True)
 class Containment:
-    """What was taken back: at a tick, in the array `array` of the particle or spring `name`."""
+    """What was taken back: at a tick, in the array `array` of the particle, spring or element `name`."""
 
     tick: int
     array: str
@@ -34,7 +34,10 @@ class Containment:
 
 
 @kernel
-def sound(position, velocity, mass, inverse_mass, rest_length, stiffness, damping, hooke_stiffness, hooke_damping):  # type: ignore[no-untyped-def]
+def sound(  # type: ignore[no-untyped-def]
+    position, velocity, mass, inverse_mass, rest_length, stiffness, damping, hooke_stiffness, hooke_damping,
+    element_rest, element_stiffness, element_damping, corner_weight,
+):  # fmt: skip
     """Whether every value that a tick reads is one that physics can give; NaN is in no range."""
     for p in range(mass.shape[0]):
         if not (
@@ -54,6 +57,18 @@ def sound(position, velocity, mass, inverse_mass, rest_length, stiffness, dampin
             and 0.0 <= hooke_stiffness[s] <= ABSURD
             and 0.0 <= hooke_damping[s] <= ABSURD
         ):
+            return False
+    for k in range(element_stiffness.shape[0]):
+        if not (
+            -ABSURD <= element_rest[k, 0] <= ABSURD
+            and -ABSURD <= element_rest[k, 1] <= ABSURD
+            and 0.0 <= element_stiffness[k] <= 1.0
+            and 0.0 <= element_damping[k] <= 1.0
+        ):
+            return False
+    for c in range(corner_weight.shape[0]):
+        weight = corner_weight[c]
+        if not 0.0 <= weight <= ABSURD:
             return False
     return True
 
@@ -81,7 +96,8 @@ def contain_inputs(world: World) -> None:
     """Before a tick: take back whatever something outside the physics has put there."""
     if sound(
         world.position, world.velocity, world.mass, world.inverse_mass, world.rest_length, world.stiffness,
-        world.damping, world.hooke_stiffness, world.hooke_damping,
+        world.damping, world.hooke_stiffness, world.hooke_damping, world.element_rest, world.element_stiffness,
+        world.element_damping, world.corner_weight,
     ):  # fmt: skip
         return
     for name in ("mass", "position", "velocity", "inverse_mass"):
@@ -89,12 +105,14 @@ def contain_inputs(world: World) -> None:
         lowest = -ABSURD if values.ndim == 2 else 0.0
         bad = _outside(values, lowest) | ((values == 0.0) if name == "mass" else False)
         _freeze(world, bad, name)
-    for name in GUARDED_CONSTANTS:
+    for name in (*GUARDED_CONSTANTS, *GUARDED_ELEMENTS):
         values = getattr(world, name)
-        highest = 1.0 if name in ("stiffness", "damping") else ABSURD
-        for slot in np.flatnonzero(_outside(values, 0.0, highest)).tolist():
+        lowest = -ABSURD if name == "element_rest" else 0.0
+        highest = 1.0 if name.endswith(("stiffness", "damping")) and "hooke" not in name else ABSURD
+        for slot in np.flatnonzero(_outside(values, lowest, highest)).tolist():
             values[slot] = world.good[name][slot]
-            world.contained.append(Containment(world.tick, name, world.spring_names[slot], frozen=False))
+            owner = world.slot_name(name, slot)
+            world.contained.append(Containment(world.tick, name, owner, frozen=False))
 
 
 def contain_outcome(world: World) -> None:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sandbox.physics.elements import AREA
 from sandbox.physics.jit import kernel
 from sandbox.physics.quarantine import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
@@ -49,6 +50,13 @@ def substep_coefficients(world: World, parts: int | None = None) -> tuple[Floats
     return stiffness, damping
 
 
+def element_coefficients(world: World, parts: int | None = None) -> tuple[Floats, Floats]:
+    """Cs and Cd (t,) of elements, as `substep_coefficients` gives those of springs."""
+    stiffness, damping = world.element_stiffness.copy(), world.element_damping.copy()
+    halve(stiffness, damping, parts or world.settings.fewest_substeps)
+    return stiffness, damping
+
+
 def step(world: World) -> None:
     """Advance the world by one tick of 1 / tick_rate seconds."""
     settings = world.settings
@@ -57,13 +65,15 @@ def step(world: World) -> None:
     parts = substep_count(world)
     h = substep_time(settings, parts)
     # Solvers only read them, so a tick in one part needs no copies.
-    whole = world.stiffness, world.damping
-    stiffness, damping = whole if parts == 1 else substep_coefficients(world, parts)
+    springs = world.stiffness, world.damping
+    elements = world.element_stiffness, world.element_damping
+    if parts > 1:
+        springs, elements = substep_coefficients(world, parts), element_coefficients(world, parts)
     # What a solver keeps is an impulse of one step: exact, as parts are a power of two.
     world.scale_impulses(settings.fewest_substeps / parts)
     for _ in range(parts):
         _add_gravity(world.velocity, world.inverse_mass, world.particle_active, *settings.gravity, h)
-        solver.solve(world, stiffness, damping, h)
+        solver.solve(world, springs, elements, h)
         _integrate(world.position, world.velocity, world.particle_active, h)
     world.scale_impulses(parts / settings.fewest_substeps)
     world.rest_hands()
@@ -75,8 +85,9 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS)) -> None:
     """Compile every kernel of a tick with these solvers, or load it from the cache, on a world of two particles."""
     for solver in solvers:
         world = World(WorldSettings(solver=solver, substeps=AUTO))
-        world.add_particles(["a", "b"], np.array([[0.0, 0.0], [1.0, 0.0]]))
+        world.add_particles(["a", "b", "c"], np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
         world.add_springs(["s", "t"], [0, 0], [1, 1], law=[0, 1])
+        world.add_elements(AREA, [[0, 1, 2]])
         step(world)
     if "direct" in solvers:
         # That is too small a body to be dissected by itself.

@@ -6,8 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sandbox.physics.arrays import GUARDED, PARTICLE_ARRAYS, SPRING_ARRAYS, VECTOR_ARRAYS
+from sandbox.physics.arrays import CORNER_ARRAYS, GUARDED, PARTICLE_ARRAYS, SPRING_ARRAYS
+from sandbox.physics.elements import BEND
 from sandbox.physics.settings import AUTO, WorldSettings
+from sandbox.physics.slots import BANK_UNOPENED, ElementSlots
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
@@ -25,11 +27,8 @@ HAND_MATERIAL = -1
 HAND_STIFFNESS = 0.2
 HAND_DAMPING = 0.3
 
-# An energy bank that the direct solver begins anew at its next step: something outside changed the body.
-BANK_UNOPENED = -1.0
 
-
-class World:
+class World(ElementSlots):
     """Particles and springs as a struct of arrays, plus the settings of a tick.
 
     Arrays, n particles and m springs, float64 unless said: position [m] (n, 2), velocity [m/s] (n, 2), origin [m]
@@ -41,6 +40,11 @@ class World:
     velocity, energy_bank [J] (n,) = what a body's earlier losses still allow it, at its free particle of lowest slot
     (-1: to be begun anew), tension [N s] (m,) = the impulse by which a spring pulled in the last step, of a whole tick
     where substeps are "auto", as impulse then is.
+
+    Of t elements (elements.py) with q corners in all: element_kind (int8), element_first, element_corners (int32: where
+    its corners begin, and how many), element_rest (t, 2), element_stiffness, element_damping (Cs, Cd per tick),
+    element_material (int32, -1 = Cs and Cd of its own), element_active (bool); corner_particle (int32),
+    corner_weight (q,). An element goes with any of the springs along its sides.
 
     Slots are append-only: an index stays a particle's or spring's handle for ever; removing clears the active flag.
     Pinned particles have velocity 0, except a hand's cursor while it moves.
@@ -69,6 +73,7 @@ class World:
     tension: Floats
 
     def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
+        super().__init__()
         self._settings = settings or WorldSettings()
         self.tick = 0
         self.material_names = tuple(material_names)
@@ -83,10 +88,6 @@ class World:
         # What the quarantine has taken back since somebody last looked, and, in `good`, the last good values by array;
         # never state.
         self.contained: list[Any] = []
-        for name, kind in (PARTICLE_ARRAYS | SPRING_ARRAYS).items():
-            setattr(self, name, np.zeros((0, 2) if name in VECTOR_ARRAYS else 0, dtype=kind))
-        self.good: dict[str, Floats] = {}
-        self.trust()
 
     @property
     def settings(self) -> WorldSettings:
@@ -134,6 +135,18 @@ class World:
     def spring_slot(self, name: str) -> int:
         """Slot of the spring of that name. Raises KeyError."""
         return self._spring_slots[name]
+
+    def slot_name(self, array: str, slot: int) -> str:
+        """What a person calls the owner of a slot of the state array of that name."""
+        if array in SPRING_ARRAYS:
+            return self.spring_names[slot]
+        if array in PARTICLE_ARRAYS:
+            return self.particle_names[slot]
+        if array in CORNER_ARRAYS:
+            return f"corner at {self.particle_names[self.corner_particle[slot]]}"
+        middle = self.element_first[slot] + (self.element_kind[slot] == BEND)
+        kind = "bend" if self.element_kind[slot] == BEND else "area"
+        return f"{kind} at {self.particle_names[self.corner_particle[middle]]}"
 
     def is_hand_particle(self, slot: int) -> bool:
         """Whether the slot is a hand's cursor."""
@@ -271,6 +284,7 @@ class World:
             self.impulse[slot] = 0.0
             self.tension[slot] = 0.0
             self._disturb(self.particle_a[slot], self.particle_b[slot])
+            self._drop_elements(slot)
 
     def hold(self, hand: int, particle: int, target: tuple[float, float]) -> None:
         """Join a particle to a hand's cursor at target [m] by a spring of rest length 0."""
@@ -318,15 +332,20 @@ class World:
         self.tension[spring] = 0.0
 
     def set_coefficients(self, stiffness: float | None, damping: float | None, material: int | None) -> None:
-        """Set Cs, Cd or both, of one material's springs or (None) of all; hands and Hooke springs keep theirs."""
-        chosen = self.material >= 0 if material is None else self.material == material
-        if stiffness is not None:
-            self.stiffness[chosen] = stiffness
-        if damping is not None:
-            self.damping[chosen] = damping
-        for name in ("stiffness", "damping"):
-            self.good[name][chosen] = getattr(self, name)[chosen]
-        self._disturb(self.particle_a[chosen], self.particle_b[chosen])
+        """Set Cs, Cd or both, of one material's springs and areas or (None) of all.
+
+        Hands, Hooke springs and elements with Cs and Cd of their own keep theirs.
+        """
+        for family, materials in (("", self.material), ("element_", self.element_material)):
+            chosen = materials >= 0 if material is None else materials == material
+            for name, value in ((f"{family}stiffness", stiffness), (f"{family}damping", damping)):
+                if value is not None:
+                    getattr(self, name)[chosen] = value
+                self.good[name][chosen] = getattr(self, name)[chosen]
+            if not family:
+                self._disturb(self.particle_a[chosen], self.particle_b[chosen])
+            else:
+                self._disturb(self.corner_particle[np.repeat(chosen, self.element_corners)])
 
     def trust(self) -> None:
         """Take everything as it is now for good."""
@@ -350,18 +369,6 @@ class World:
             for name in names[count:]:
                 del slots[name]
             del names[count:]
-
-    def _disturb(self, *particles: NDArray[np.integer] | int) -> None:
-        for slots in particles:
-            self.energy_bank[slots] = BANK_UNOPENED
-
-    def _append(self, **arrays: ArrayLike) -> None:
-        for name, values in arrays.items():
-            present = getattr(self, name)
-            added = np.asarray(values, dtype=present.dtype)
-            setattr(self, name, np.concatenate([present, added]))
-            if name in GUARDED:
-                self.good[name] = np.concatenate([self.good[name], added])
 
 
 def _hand_names() -> list[str]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.level.model import Level
-from sandbox.physics.arrays import PARTICLE_ARRAYS, STATE_ARRAYS
+from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, canonical_bytes, hash_by_array, state_hash
 from sandbox.physics.world import World
@@ -204,6 +204,6 @@ def _first_difference(tick: int, array: str, expected: NDArray[Any], world: Worl
     if flat is None:
         return Divergence(tick, array, None, "equal", "equal", note="the two runs agree here")
     place = tuple(int(part) for part in np.unravel_index(flat, actual.shape))
-    names = world.particle_names if array in PARTICLE_ARRAYS else world.spring_names
     index = place[0] if len(place) == 1 else (place[0], place[1])
-    return Divergence(tick, array, index, expected[place].item(), actual[place].item(), names[place[0]])
+    name = world.slot_name(array, place[0])
+    return Divergence(tick, array, index, expected[place].item(), actual[place].item(), name)

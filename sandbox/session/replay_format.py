@@ -21,7 +21,8 @@ import numpy as np
 
 from sandbox.level.files import level_data
 from sandbox.level.model import Level
-from sandbox.physics.arrays import PARTICLE_ARRAYS, SPRING_ARRAYS, STATE_ARRAYS, VECTOR_ARRAYS
+from sandbox.physics.arrays import FAMILIES, KINDS, STATE_ARRAYS, VECTOR_ARRAYS
+from sandbox.physics.elements import AREA
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.world import HAND_COUNT, HAND_MATERIAL, World, WorldSettings
@@ -89,12 +90,19 @@ def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> S
     if set(state) != set(STATE_ARRAYS):
         raise ValueError(f"state: the arrays are {', '.join(STATE_ARRAYS)}")
     arrays = {name: _decode_array(name, text) for name, text in state.items()}
-    for group in (PARTICLE_ARRAYS, SPRING_ARRAYS):
+    for group in FAMILIES:
         if len({len(arrays[name]) for name in group}) != 1:
             raise ValueError(f"state: {', '.join(group)} are not equally long")
-    for name in ("particle_a", "particle_b"):
+    for name in ("particle_a", "particle_b", "corner_particle"):
         if np.any((arrays[name] < 0) | (arrays[name] >= len(arrays["mass"]))):
             raise ValueError(f"state.{name}: names a particle that does not exist")
+    ends = np.cumsum(arrays["element_corners"], dtype=np.int64)
+    if np.any(arrays["element_corners"] < 3) or (int(ends[-1]) if len(ends) else 0) != len(arrays["corner_particle"]):
+        raise ValueError("state.element_corners: do not add up to the corners that there are")
+    if np.any(arrays["element_first"] != ends - arrays["element_corners"]):
+        raise ValueError("state.element_first: corners do not lie one element after another")
+    if not np.all((arrays["element_kind"] == AREA) | (arrays["element_corners"] == 3)):
+        raise ValueError("state.element_kind: a bend has three corners")
     hands = np.flatnonzero(arrays["material"] == HAND_MATERIAL)
     if len(hands) not in (0, HAND_COUNT) or np.any(np.diff(hands) != 1):
         raise ValueError(f"state.material: there are {HAND_COUNT} hands in a row, or none")
@@ -108,7 +116,7 @@ def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> S
 
 
 def _decode_array(name: str, text: str) -> Any:
-    kind = np.dtype((PARTICLE_ARRAYS | SPRING_ARRAYS)[name])
+    kind = np.dtype(KINDS[name])
     try:
         inflater = zlib.decompressobj()
         data = inflater.decompress(base64.b64decode(text, validate=True), ARRAY_LIMIT)

@@ -105,7 +105,7 @@ def energies(graphs: Graphs, count: int, *, start: bool = False) -> Floats:
     mass = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
     constant = SOLVERS[world.settings.solver].spring_constant(world.stiffness, world.damping, mass, h)
     if world.settings.substeps == AUTO:
-        constant = extremes(world)[start] * mass / (h * h)
+        constant = extremes(world.stiffness, world.damping)[start] * mass / (h * h)
     separation = world.position[world.particle_b] - world.position[world.particle_a]
     error = np.sqrt(np.sum(separation**2, axis=1)) - world.rest_length
     moving = np.where(world.inverse_mass > 0.0, world.mass * np.sum(world.velocity**2, axis=1), 0.0)

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from sandbox.physics.solvers import direct, iterative, single_pass
+from sandbox.physics.solvers.single_pass import Pair
 from sandbox.physics.world import Floats, World
 
 
@@ -11,13 +12,13 @@ from sandbox.physics.world import Floats, World
 class Solver:
     """One schedule of the equation.
 
-    solve(world, stiffness, damping, h): brings world.velocity from after gravity to the end of a step of h [s], with
-    Cs and Cd (m,) of that step. spring_constant(stiffness, damping, reduced_mass [kg], h): k [N/m] of the energy
-    k/2 x^2. proven_limit: whether the limits of `stability` hold for it. bounded: whether it needs none, because it
-    tests the energy of every step.
+    solve(world, springs, elements, h): brings world.velocity from after gravity to the end of a step of h [s], with
+    Cs and Cd (m,) of the springs and (t,) of the elements in that step. spring_constant(stiffness, damping,
+    reduced_mass [kg], h): k [N/m] of the energy k/2 x^2. proven_limit: whether the limits of `stability` hold for it.
+    bounded: whether it needs none, because it tests the energy of every step.
     """
 
-    solve: Callable[[World, Floats, Floats, float], None]
+    solve: Callable[[World, Pair, Pair, float], None]
     spring_constant: Callable[[Floats, Floats, Floats, float], Floats]
     proven_limit: bool
     bounded: bool

@@ -10,19 +10,25 @@ import numpy as np
 from sandbox.physics.jit import bundle_kernel, inner_kernel
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.measure import cap, extremes
+from sandbox.physics.solvers.minimise import copy, keep_tension, minimise, scale
 from sandbox.physics.solvers.network import (
-    HIGHEST_COEFFICIENT,
     kinetic,
     linearise,
     load_springs,
-    objective,
     potential,
     refine,
     solve_linear,
     update_impulses,
 )
-from sandbox.physics.solvers.pattern import Pattern, is_current, make_pattern
-from sandbox.physics.solvers.single_pass import apply_explicit
+from sandbox.physics.solvers.pattern import Pattern, has_elements, is_current, make_pattern
+from sandbox.physics.solvers.shapes import (
+    HIGHEST_COEFFICIENT,
+    linearise_shapes,
+    load_shapes,
+    shape_potential,
+    update_shapes,
+)
+from sandbox.physics.solvers.single_pass import Pair, apply_explicit
 from sandbox.physics.world import Floats, World
 
 # Directions are those at x + h AHEAD (v' - s). Lower explodes taut ropes, higher gains nothing.
@@ -45,12 +51,6 @@ BANK_SHARE = 0.05
 BOUNCY_BANK_SHARE = 3.0
 # Relative error of an energy summed over a large body; less rejects steps for rounding alone.
 ENERGY_ROUNDING = 1e-12
-# Newton rounds of the minimisation, sufficient decrease (Armijo), halvings of a round, and the relative decrease at
-# which it ends. With 3 rounds, a whipping rope can lose most of its motion in one step.
-NEWTON_ROUNDS = 10
-ARMIJO = 1e-4
-NEWTON_HALVINGS = 30
-NEWTON_TOLERANCE = 1e-6
 # Halvings of the velocities before a body is stopped.
 LAST_HALVINGS = 60
 # The measures of springs where the number of parts is fixed: none.
@@ -81,131 +81,60 @@ def _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h,
 
 
 @inner_kernel
-def _copy(first, last, source, destination):  # type: ignore[no-untyped-def]
-    for r in range(first, last):
-        destination[r, 0] = source[r, 0]
-        destination[r, 1] = source[r, 1]
-
-
-@inner_kernel
-def _scale(first, last, factor, vector):  # type: ignore[no-untyped-def]
-    for r in range(first, last):
-        vector[r, 0] *= factor
-        vector[r, 1] *= factor
-
-
-@inner_kernel
-def _take_candidate(first_row, last_row, first, last, rows, springs, matrix, rest_length, h):  # type: ignore[no-untyped-def]
+def _take_candidate(  # type: ignore[no-untyped-def]
+    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, h
+):
     # v' = v + D;  J = q - K n.(D_b - D_a);  T = max(0, -J) for what follows. Returned: H, and the largest misfit.
+    free_count = matrix.diagonal.shape[0]
     linearise(first, last, rows, springs, h, AHEAD, AHEAD)
-    solve_linear(first_row, last_row, first, last, rows, springs, matrix)
+    linearise_shapes(low, high, rows, shapes, h, AHEAD, AHEAD)
+    solve_linear(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix)
     held = 0.0
     misfit = 0.0
     for _refinement in range(2):
         for r in range(first_row, last_row):
             rows.trial[r, 0] += rows.change[r, 0]
             rows.trial[r, 1] += rows.change[r, 1]
-        held, misfit, rounded = update_impulses(
-            first, last, rows, springs, rest_length, h, matrix.diagonal.shape[0]
-        )  # fmt: skip
+        held, misfit, rounded = update_impulses(first, last, rows, springs, rest_length, h, free_count)
+        held_by_shapes, missed = update_shapes(low, high, rows, shapes, h, free_count)
+        held += held_by_shapes
+        misfit = max(misfit, missed)
         if not rounded:
             break
-        refine(first_row, last_row, first, last, rows, springs, matrix)
+        refine(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix)
     for k in range(first, last):
         springs.tension[k] = max(0.0, -springs.impulse[k])
     return kinetic(first_row, last_row, rows.mass, rows.trial) + held, misfit
 
 
 @inner_kernel
-def _start_minimisation(first_row, last_row, first, last, rows, springs, h):  # type: ignore[no-untyped-def]
-    # From the best of the candidate, v* and all at rest; f there.
-    _copy(first_row, last_row, rows.trial, rows.best)
-    lowest = objective(first_row, last_row, first, last, rows, springs, h)
-    _copy(first_row, last_row, rows.target, rows.trial)
-    value = objective(first_row, last_row, first, last, rows, springs, h)
-    if not lowest <= value:
-        lowest = value
-        _copy(first_row, last_row, rows.trial, rows.best)
-    _scale(first_row, last_row, 0.0, rows.trial)
-    value = objective(first_row, last_row, first, last, rows, springs, h)
-    if lowest <= value:
-        _copy(first_row, last_row, rows.best, rows.trial)
-        value = lowest
-    return value
+def _potential(first, last, low, high, position, velocity, springs, shapes, rest_length, time, h):  # type: ignore[no-untyped-def]
+    return potential(
+        first, last, position, velocity, springs, springs.measured, rest_length, time, h
+    ) + shape_potential(low, high, position, velocity, shapes, shapes.measured, time, h)  # fmt: skip
 
 
 @inner_kernel
-def _minimise(first_row, last_row, first, last, rows, springs, matrix, h):  # type: ignore[no-untyped-def]
-    # Newton's method on f with A = M + sum [K n' n'^T + h^2 max(0, t) / l' (I - n' n'^T)].
-    value = _start_minimisation(first_row, last_row, first, last, rows, springs, h)
-    for _ in range(NEWTON_ROUNDS):
-        linearise(first, last, rows, springs, h, 1.0, 0.0)
-        _copy(first_row, last_row, rows.trial, rows.best)
-        solve_linear(first_row, last_row, first, last, rows, springs, matrix)
-        slope = _slope(first_row, last_row, first, last, rows, springs)
-        if not slope < 0.0:
-            break
-        length = 1.0
-        better = False
-        for _halving in range(NEWTON_HALVINGS):
-            for r in range(first_row, last_row):
-                rows.trial[r, 0] = rows.best[r, 0] + length * rows.change[r, 0]
-                rows.trial[r, 1] = rows.best[r, 1] + length * rows.change[r, 1]
-            reached = objective(first_row, last_row, first, last, rows, springs, h)
-            if reached <= value + ARMIJO * length * slope:
-                value = reached
-                better = True
-                break
-            length *= 0.5
-        if not better:
-            _copy(first_row, last_row, rows.best, rows.trial)
-            break
-        if not -slope > NEWTON_TOLERANCE * value:
-            break
-    _keep_tension(first, last, rows, springs, h)
+def _hidden(first, last, low, high, position, velocity, springs, shapes, rest_length, time, h):  # type: ignore[no-untyped-def]
+    # What the most k adds to the measure.
+    return potential(
+        first, last, position, velocity, springs, springs.hidden, rest_length, time, h
+    ) + shape_potential(low, high, position, velocity, shapes, shapes.hidden, time, h)  # fmt: skip
 
 
 @inner_kernel
-def _slope(first_row, last_row, first, last, rows, springs):  # type: ignore[no-untyped-def]
-    # -(right side) . D = the derivative of f along D
-    free_count = last_row
-    total = 0.0
-    for r in range(first_row, last_row):
-        total -= rows.mass[r] * (
-            (rows.target[r, 0] - rows.trial[r, 0]) * rows.change[r, 0]
-            + (rows.target[r, 1] - rows.trial[r, 1]) * rows.change[r, 1]
-        )
-    for k in range(first, last):
-        a = springs.row_a[k]
-        b = springs.row_b[k]
-        jx = springs.impulse[k] * springs.normal[k, 0]
-        jy = springs.impulse[k] * springs.normal[k, 1]
-        if a < free_count:
-            total += jx * rows.change[a, 0] + jy * rows.change[a, 1]
-        if b < free_count:
-            total -= jx * rows.change[b, 0] + jy * rows.change[b, 1]
-    return total
-
-
-@inner_kernel
-def _keep_tension(first, last, rows, springs, h):  # type: ignore[no-untyped-def]
-    linearise(first, last, rows, springs, h, 1.0, 0.0)
-    for k in range(first, last):
-        springs.tension[k] = max(0.0, -springs.impulse[k])
-
-
-@inner_kernel
-def _energy(first_row, last_row, first, last, rows, springs, rest_length, h):  # type: ignore[no-untyped-def]
+def _energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h):  # type: ignore[no-untyped-def]
     # H = KE(v') + PE(x + h v')
-    return kinetic(first_row, last_row, rows.mass, rows.trial) + potential(
-        first, last, rows.position, rows.trial, springs, springs.measured, rest_length, h, h
+    return kinetic(first_row, last_row, rows.mass, rows.trial) + _potential(
+        first, last, low, high, rows.position, rows.trial, springs, shapes, rest_length, h, h
     )
 
 
 @inner_kernel
 def _open_bank(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, spread, kinetic_after, moved, rest_length, h
-):
+    first_row, last_row, first, last, low, high, rows, springs, shapes, bank, lowest, bouncy, spread, kinetic_after,
+    moved, rest_length, h,
+):  # fmt: skip
     # The body's bank before the step. It is begun anew where a particle says so (-1): after any change from outside.
     begun = True
     for r in range(first_row, last_row):
@@ -215,16 +144,16 @@ def _open_bank(  # type: ignore[no-untyped-def]
             bank[p] = 0.0
     held = bank[lowest] if begun else 0.0
     if spread:
-        # What the most k adds to the measure: of the start, and of the work of hands.
-        hidden = potential(first, last, rows.position, rows.start, springs, springs.hidden, rest_length, 0.0, h)
-        hidden_moved = potential(first, last, rows.moved, rows.moved, springs, springs.hidden, rest_length, 0.0, h)
+        # Of the start, and of the work of hands.
+        hidden = _hidden(first, last, low, high, rows.position, rows.start, springs, shapes, rest_length, 0.0, h)
+        hidden_moved = _hidden(first, last, low, high, rows.moved, rows.moved, springs, shapes, rest_length, 0.0, h)
         held += max(0.0, hidden_moved - hidden)
         if not begun:
             held += hidden
     if not bouncy:
         return held
     before = kinetic(first_row, last_row, rows.mass, rows.start)
-    present = potential(first, last, rows.position, rows.start, springs, springs.measured, rest_length, 0.0, h)
+    present = _potential(first, last, low, high, rows.position, rows.start, springs, shapes, rest_length, 0.0, h)
     if not begun:
         held += BOUNCY_BANK_SHARE * (before + present)
     # Work done by gravity and by hands since then counts as energy of the start.
@@ -233,56 +162,65 @@ def _open_bank(  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _step_body(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, rows, springs, matrix, rest_length, lowest, bank, bouncy, spread, moved, h
-):
+    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, lowest, bank, bouncy,
+    spread, moved, h,
+):  # fmt: skip
     kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
     before = kinetic_after + moved
     held = _open_bank(
-        first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, spread, kinetic_after, moved,
-        rest_length, h,
+        first_row, last_row, first, last, low, high, rows, springs, shapes, bank, lowest, bouncy, spread,
+        kinetic_after, moved, rest_length, h,
     )  # fmt: skip
     allowed = before * (1.0 + ENERGY_ROUNDING) + held
-    after, misfit = _take_candidate(first_row, last_row, first, last, rows, springs, matrix, rest_length, h)
+    after, misfit = _take_candidate(
+        first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, h
+    )
     for _solve in range(LINEAR_SOLVES - 1):
         within = after <= allowed
         if within and not misfit > MISFIT_RATE * h * h:
             break
-        _copy(first_row, last_row, rows.trial, rows.best)
+        copy(first_row, last_row, rows.trial, rows.best)
         once = after
-        after, misfit = _take_candidate(first_row, last_row, first, last, rows, springs, matrix, rest_length, h)
+        after, misfit = _take_candidate(
+            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, h
+        )
         if within and not after <= allowed:
-            _copy(first_row, last_row, rows.best, rows.trial)
-            _keep_tension(first, last, rows, springs, h)
+            copy(first_row, last_row, rows.best, rows.trial)
+            keep_tension(first, last, rows, springs, h)
             after = once
             break
     if not after <= allowed:
-        _minimise(first_row, last_row, first, last, rows, springs, matrix, h)
-        after = _energy(first_row, last_row, first, last, rows, springs, rest_length, h)
+        minimise(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, h)
+        after = _energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h)
         if not after <= allowed:
-            after = _brake(first_row, last_row, first, last, rows, springs, rest_length, allowed, h)
+            after = _brake(
+                first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, allowed, h
+            )  # fmt: skip
     share = BOUNCY_BANK_SHARE if bouncy else BANK_SHARE
     limit = share * before
     if spread:
-        limit += potential(first, last, rows.position, rows.trial, springs, springs.hidden, rest_length, h, h)
+        limit += _hidden(first, last, low, high, rows.position, rows.trial, springs, shapes, rest_length, h, h)
     saved = min(held + before - after, limit)
     bank[lowest] = saved if saved > 0.0 else 0.0
 
 
 @inner_kernel
-def _brake(first_row, last_row, first, last, rows, springs, rest_length, allowed, h):  # type: ignore[no-untyped-def]
+def _brake(  # type: ignore[no-untyped-def]
+    first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, allowed, h
+):
     # Halve the free velocities until the energy test holds; at rest it always does.
     after = 0.0
     for _halving in range(LAST_HALVINGS):
-        _scale(first_row, last_row, 0.5, rows.trial)
-        after = _energy(first_row, last_row, first, last, rows, springs, rest_length, h)
+        scale(first_row, last_row, 0.5, rows.trial)
+        after = _energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h)
         if after <= allowed:
             break
     if not after <= allowed:
         for r in range(first_row, last_row):
             rows.trial[r, 0] = 0.0
             rows.trial[r, 1] = 0.0
-        after = _energy(first_row, last_row, first, last, rows, springs, rest_length, h)
-    _keep_tension(first, last, rows, springs, h)
+        after = _energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h)
+    keep_tension(first, last, rows, springs, h)
     return after
 
 
@@ -291,26 +229,29 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, particle_active, rest_length, stiffness,
     damping, material, tension, numbers, least, most, parts, gravity_x, gravity_y, h,
 ):  # fmt: skip
-    bodies, rows, springs, matrix = numbers.items
+    bodies, rows, springs, shapes, matrix = numbers.items
     _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, matrix.diagonal.shape[0], rows)
     for body in range(bodies.lowest.shape[0]):
         first_row = bodies.row_start[body]
         last_row = bodies.row_start[body + 1]
         first = bodies.spring_start[body]
         last = bodies.spring_start[body + 1]
+        low = bodies.shape_start[body]
+        high = bodies.shape_start[body + 1]
         body_mass = 0.0
         for r in range(first_row, last_row):
             body_mass += rows.mass[r]
         # Gravity moves a body without anchors as a whole: started there, it falls without rounding.
         if not bodies.anchored[body]:
-            _copy(first_row, last_row, rows.target, rows.trial)
+            copy(first_row, last_row, rows.target, rows.trial)
         bouncy, spread, moved = load_springs(
             first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,
             least, most, parts, h, matrix.diagonal.shape[0],
         )  # fmt: skip
+        more_bouncy, more_spread, more_moved = load_shapes(low, high, inverse_mass, rows, shapes, parts, h)
         _step_body(
-            first_row, last_row, first, last, rows, springs, matrix, rest_length, bodies.lowest[body], energy_bank,
-            bouncy, spread, moved, h,
+            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length,
+            bodies.lowest[body], energy_bank, bouncy or more_bouncy, spread or more_spread, moved + more_moved, h,
         )  # fmt: skip
         for r in range(first_row, last_row):
             velocity[rows.particle[r], 0] = rows.trial[r, 0]
@@ -327,29 +268,47 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
 def pattern_of(world: World) -> Pattern:
     """The pattern of a world's matrix, made anew where topology or pins have changed since the last step."""
     pattern = world.solver_cache
-    if pattern is None or not is_current(
-        world.inverse_mass, world.particle_a, world.particle_b, world.spring_active, world.law, *pattern.signature
+    if pattern is None or not (
+        is_current(
+            world.inverse_mass, world.particle_a, world.particle_b, world.spring_active, world.law, *pattern.signature
+        )
+        and (not world.element_count or has_elements(pattern, world))
     ):
         pattern = world.solver_cache = make_pattern(world)
     return pattern
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
+def solve(world: World, springs: Pair, elements: Pair, h: float) -> None:
     """Bring the velocities to the end of a step of h [s]; slow_velocity, energy_bank and tension go with them."""
     pattern = pattern_of(world)
     if pattern.has_hooke:
-        apply_explicit(world, pattern.hooke, stiffness, damping, h)
+        apply_explicit(world, pattern.hooke, springs, h)
+    stiffness, damping = springs
     least, most, parts = NOTHING, NOTHING, 0
     if world.settings.substeps == AUTO:
         parts = round(1.0 / (h * world.settings.tick_rate))
         stiffness, damping = cap(stiffness, damping, parts)
-        least, most = extremes(world)
+        least, most = extremes(world.stiffness, world.damping)
+    if len(pattern.shapes.slot):
+        load_constants(pattern, world, elements, parts)
     gravity_x, gravity_y = world.settings.gravity
     _solve_bodies(
         world.position, world.velocity, world.mass, world.inverse_mass, world.slow_velocity, world.energy_bank,
         world.particle_active, world.rest_length, stiffness, damping, world.material, world.tension,
         pattern.numbers, least, most, parts, gravity_x, gravity_y, h,
     )  # fmt: skip
+
+
+def load_constants(pattern: Pattern, world: World, elements: Pair, parts: int) -> None:
+    """Copy the constants of a step's elements into the pattern's scratch; parts: 0, or those of a tick that chooses."""
+    shapes = pattern.shapes
+    if parts:
+        elements = cap(*elements, parts)
+        least, most = extremes(world.element_stiffness, world.element_damping)
+        shapes.least[:], shapes.most[:] = least[shapes.slot], most[shapes.slot]
+    shapes.stiffness[:], shapes.damping[:] = elements[0][shapes.slot], elements[1][shapes.slot]
+    shapes.rest[:] = world.element_rest[shapes.slot]
+    shapes.weight[:] = world.corner_weight[pattern.corners]
 
 
 def spring_constant(stiffness: Floats, damping: Floats, mass: Floats, h: float) -> Floats:

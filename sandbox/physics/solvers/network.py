@@ -17,26 +17,22 @@ import math
 from sandbox.physics.equation import SHORTEST, direction, reduced_mass
 from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.factor import back_substitute, factorise
-from sandbox.physics.solvers.fronts import add_block, clear_fronts, eliminate_rows, factorise_fronts, substitute_fronts
+from sandbox.physics.solvers.fronts import add_block, clear_fronts, factorise_fronts, substitute_fronts
+from sandbox.physics.solvers.shapes import (
+    assemble_shapes,
+    correct_wide,
+    implicit_masses,
+    push_shapes,
+    solve_again,
+    take_in_wide,
+)
 
-# Cd is capped here, and Cs with it: nearer to 1 springs stretch less, but steps are rejected more often and damp more.
-HIGHEST_COEFFICIENT = 1.0 - 1e-7
 # A linear solve is refined once where impulses that cancel are this many times those that are left: a violent step. A
 # higher bound loses the digits of one spring's step at Cd near 1, a lower one costs time on every step.
 CANCELLATION = 300.0
 # Refined only where lengths miss what was foreseen by no more than this share: what turns has larger errors than those
 # of rounding. Higher costs swinging ropes a tenth of their time, 0 loses one spring's digits.
 ROUNDING_MISFIT = 1e-10
-
-
-@scalar_kernel
-def implicit_masses(stiffness, damping, mass):  # type: ignore[no-untyped-def]
-    """K and K beta [kg] of a spring whose effective mass is `mass` [kg]."""
-    # K = m Cd / (1 - Cd);  K beta = m Cs / (1 - Cd)
-    if damping > HIGHEST_COEFFICIENT:
-        damping = HIGHEST_COEFFICIENT
-        stiffness = min(stiffness, HIGHEST_COEFFICIENT)
-    return mass * damping / (1.0 - damping), mass * stiffness / (1.0 - damping)
 
 
 @inner_kernel
@@ -223,23 +219,27 @@ def load_residual(first_row, last_row, first, last, rows, springs, free_count): 
 
 
 @inner_kernel
-def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
-    """Solve A D = right side for the rows of one body; D is left in `change`."""
+def solve_linear(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix):  # type: ignore[no-untyped-def]
+    """Solve A D = right side for the rows, springs and elements of one body; D is left in `change`."""
     load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
+    push_shapes(low, high, rows, shapes, matrix.diagonal.shape[0])
     fronts = matrix.fronts
     if fronts.of_row[first_row] >= 0:
         assemble_fronts(first_row, last_row, first, last, rows, springs, matrix)
+        assemble_shapes(low, high, shapes, matrix, True)
         factorise_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
         substitute_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
-        return
-    assemble(first_row, last_row, first, last, rows, springs, matrix)
-    factorise(
-        first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.where,
-        matrix.diagonal, matrix.lower, matrix.scaled,
-    )  # fmt: skip
-    back_substitute(
-        first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
-    )  # fmt: skip
+    else:
+        assemble(first_row, last_row, first, last, rows, springs, matrix)
+        assemble_shapes(low, high, shapes, matrix, False)
+        factorise(
+            first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.where,
+            matrix.diagonal, matrix.lower, matrix.scaled,
+        )  # fmt: skip
+        back_substitute(
+            first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
+        )  # fmt: skip
+    take_in_wide(first_row, last_row, low, high, rows, shapes, matrix)
 
 
 @inner_kernel
@@ -289,17 +289,13 @@ def update_impulses(first, last, rows, springs, rest_length, h, free_count):  # 
 
 
 @inner_kernel
-def refine(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
+def refine(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix):  # type: ignore[no-untyped-def]
     """Solve for what is left of the right side, with the impulses found so far; it is left in `change`."""
-    load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
-    fronts = matrix.fronts
-    if fronts.of_row[first_row] >= 0:
-        eliminate_rows(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
-        substitute_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
-        return
-    back_substitute(
-        first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
-    )  # fmt: skip
+    free_count = matrix.diagonal.shape[0]
+    load_residual(first_row, last_row, first, last, rows, springs, free_count)
+    push_shapes(low, high, rows, shapes, free_count)
+    solve_again(first_row, last_row, rows, matrix)
+    correct_wide(first_row, last_row, low, high, rows, shapes, free_count)
 
 
 @inner_kernel
