@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.editor.items import Item, Selection, items_of
-from sandbox.level.bodies import AnyBody, JellyDef, WebDef, WheelDef
+from sandbox.level.bodies import AnyBody, JellyDef, RingDef, WebDef, WheelDef
 from sandbox.level.expansion import Expansion, expansion
 from sandbox.level.layout import Layout
 from sandbox.level.limits import BODY_RADIUS, DEFAULT_MATERIAL
@@ -264,7 +264,7 @@ def _expand(level: Level, before: Scene | None) -> tuple[list[Expansion], dict[t
 
 def _form_key(body: AnyBody) -> tuple[Any, ...] | None:
     """All that shapes a body but its place; None where a move alters more than one point."""
-    if not isinstance(body, JellyDef | WebDef | WheelDef) or body.pose is not None:
+    if not isinstance(body, JellyDef | RingDef | WebDef | WheelDef) or body.pose is not None:
         return None
     return type(body), *(value for name, value in body.__dict__.items() if name not in _PLACED)
 
@@ -275,5 +275,6 @@ _PLACED = ("type", "id", "position", "velocity", "material", "group", "extras")
 
 def _placed(form: Expansion, body: AnyBody) -> Expansion:
     # A form about (0, 0) moved by its position has the very bits of one that is expanded there.
-    assert isinstance(body, JellyDef | WebDef | WheelDef)
-    return replace(form, position=form.position + np.array(body.position))
+    assert isinstance(body, JellyDef | RingDef | WebDef | WheelDef)
+    place = form.position + np.array(body.position)
+    return replace(form, position=place, form=place)

@@ -25,6 +25,7 @@ MASS_RANGE = (1e-9, 1e9)  # [kg]
 SPACING_RANGE = (1e-6, 1e6)  # [m]
 ANGLE_LIMIT = 1e6  # [rad]
 HOOKE_LIMIT = 1e15  # [N/m], [N s/m]
+INFLATION_LIMIT = 100.0  # multiple of a ring's own area
 SECONDS_LIMIT = 3_600.0  # [s] of run that an acceptance check may ask for
 
 FORMAT = "spring-sandbox/level"

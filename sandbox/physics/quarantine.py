@@ -127,8 +127,8 @@ def contain_outcome(world: World) -> None:
 
 def _outside(values: NDArray[np.float64], lowest: float, highest: float = ABSURD) -> NDArray[np.bool_]:
     """Rows (n,) that hold a value outside lowest..highest, or NaN."""
-    inside = ((values >= lowest) & (values <= highest)).reshape(len(values), -1)
-    return ~np.logical_and.reduce(inside, axis=1)
+    inside = (values >= lowest) & (values <= highest)
+    return ~(np.logical_and.reduce(inside, axis=1) if inside.ndim == 2 else inside)
 
 
 def _freeze(world: World, bad: NDArray[np.bool_], array: str) -> None:
