@@ -1,4 +1,4 @@
-"""Models of bodies: rope, bridge, girder, web, wheel, ring, jelly and mesh, as a file describes them before expansion."""
+"""Models of bodies: rope, bridge, girder, web, wheel, ring, jelly and mesh, before expansion."""
 
 from collections.abc import Iterable
 from typing import Annotated, Any, Literal, get_args
@@ -193,8 +193,8 @@ class JellyDef(BodyDef):
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
     area: bool = Field(
         default=True,
-        description="Whether its triangles keep their areas, with Cs and Cd of its material, so that it comes back from "
-        "being crushed or turned inside out; those of a Hooke material never do.",
+        description="Whether its triangles keep their areas, with Cs and Cd of its material, so that it comes back "
+        "from being crushed or turned inside out; those of a Hooke material never do.",
     )
 
 

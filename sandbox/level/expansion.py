@@ -15,8 +15,9 @@ Floats = NDArray[np.float64]
 class Expansion:
     """Particles and springs of one body, in generation order; before welds.
 
-    Of n particles: position [m] (n, 2), form [m] (n, 2) = where they are at rest, velocity [m/s] (n, 2), mass [kg] (n,), pinned (n,). Of the m springs that are
-    not cut: pairs (m, 2) of particles, numbers (m,) = the k of their names `id:k`, rest_length [m] (m,).
+    Of n particles: position [m] (n, 2), form [m] (n, 2) = where they are at rest, velocity [m/s] (n, 2), mass [kg]
+    (n,), pinned (n,). Of the m springs that are not cut: pairs (m, 2) of particles, numbers (m,) = the k of their names
+    `id:k`, rest_length [m] (m,).
     """
 
     position: Points

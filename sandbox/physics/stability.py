@@ -110,12 +110,12 @@ def largest_eigenvalue(world: World) -> float:
     if not len(rows):
         return 0.0
     weight = np.sqrt(world.inverse_mass[ends])[:, None]
-    vector = np.random.default_rng(1).standard_normal(int(rows.max()) + 1)
+    vector: Floats = np.random.default_rng(1).standard_normal(int(rows.max()) + 1)
     eigenvalue = 0.0
     for _ in range(POWER_ITERATIONS):
         pull = (vector / np.linalg.norm(vector))[rows, None] * gradient * weight
         velocity = np.stack([np.bincount(ends, pull[:, k], world.particle_count) for k in (0, 1)], 1)
-        vector = np.bincount(rows, np.sum(gradient * weight * velocity[ends], axis=1))
+        vector = np.bincount(rows, np.sum(gradient * weight * velocity[ends], axis=1)).astype(np.float64)
         eigenvalue = float(np.linalg.norm(vector))
         if eigenvalue == 0.0:
             break
@@ -168,8 +168,9 @@ def _summed_loads(world: World, demands: Floats, of_elements: Floats) -> Floats:
     a, b = world.particle_a, world.particle_b
     corners = _held_corners(world)
     asked = np.repeat(of_elements, world.element_corners)[corners]
-    at = np.bincount(a, demands, world.particle_count) + np.bincount(b, demands, world.particle_count)
-    at += np.bincount(world.corner_particle[corners], asked, world.particle_count)
+    at = np.zeros(world.particle_count)
+    for particles, weight in ((a, demands), (b, demands), (world.corner_particle[corners], asked)):
+        at = at + np.bincount(particles, weight, world.particle_count)
     ends = reduced_masses(world) * (world.inverse_mass[a] * at[a] + world.inverse_mass[b] * at[b])
     return np.concatenate([np.where(_working(world), ends, 0.0), _most_at_corners(world, at)])
 

@@ -1,8 +1,8 @@
 """Energy of violent random graphs under a solver, against the bound that is claimed for it.
 
-Run by hand: python -m tests.bench.energy_gate [graphs per kind] [steps] [elements]. Prints, per kind of coefficients, the highest
-total energy as a multiple of the start, over all graphs and steps. With "elements" the graphs hold areas of three to eight corners, some inflated, and bends.
-The suite runs a tenth of it.
+Run by hand: python -m tests.bench.energy_gate [graphs per kind] [steps] [elements]. Prints, per kind of coefficients,
+the highest total energy as a multiple of the start, over all graphs and steps. With "elements" the graphs hold areas of
+three to eight corners, some inflated, and bends. The suite runs a tenth of it.
 """
 
 import sys

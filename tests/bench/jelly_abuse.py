@@ -89,7 +89,10 @@ ABUSES: dict[str, Callable[[World], None]] = {
 
 
 def recover(world: World, seconds: float = SECONDS) -> tuple[float, list[float]]:
-    """Highest energy as a multiple of that at the start (where that is 0: itself), and the shape error after each second; inf where not finite."""
+    """Highest energy as a multiple of that at the start and the shape error after each second.
+
+    Where there was none at the start: itself. inf where it is not finite.
+    """
     start, highest, errors = total_energy(world), 0.0, []
     for tick in range(1, round(seconds * RATE) + 1):
         step(world)

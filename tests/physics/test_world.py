@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from physics_scenes import STILL, grid_with_diagonals, network, rope, run, scaled
 
-from sandbox.physics.arrays import STATE_ARRAYS
+from sandbox.physics.arrays import FAMILIES, STATE_ARRAYS
+from sandbox.physics.elements import AREA
 from sandbox.physics.energy import kinetic_energy, spring_energy
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
@@ -31,11 +32,13 @@ def test_slots_are_appended_and_named():
 
 def test_every_array_keeps_its_type_and_one_item_per_slot():
     world = held_rope()
-    for name in STATE_ARRAYS:
-        array = getattr(world, name)
-        assert array.flags.c_contiguous
-        springs = len(array) == world.spring_count == 4 + HAND_COUNT
-        assert springs or len(array) == world.particle_count == 5 + HAND_COUNT
+    world.add_elements(AREA, [[0, 1, 2, 3]])
+    counts = (5 + HAND_COUNT, 4 + HAND_COUNT, 1, 4)
+    for family, count in zip(FAMILIES, counts, strict=True):
+        for name in family:
+            array = getattr(world, name)
+            assert array.flags.c_contiguous and len(array) == count
+    assert (world.particle_count, world.spring_count, world.element_count) == counts[:3]
     assert world.particle_a.dtype == np.int32 and world.position.dtype == np.float64
 
 

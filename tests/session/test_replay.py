@@ -75,7 +75,11 @@ def _outcome(replay, start: int) -> str | None:
     return None
 
 
-@pytest.mark.parametrize("array", [name for name in STATE_ARRAYS if name not in ("particle_a", "particle_b", "law")])
+# Of another topology a world is no longer the same machine.
+STRUCTURE = ("particle_a", "particle_b", "law", "element_kind", "element_first", "element_corners", "corner_particle")
+
+
+@pytest.mark.parametrize("array", [name for name in STATE_ARRAYS if name not in STRUCTURE])
 def test_a_fault_of_one_unit_in_the_last_place_is_named(recorded, array):
     replay = read_replay(recorded)
     tick, slot = 137, 7

@@ -136,11 +136,13 @@ def solve(world: World, springs: Pair, elements: Pair, h: float) -> None:
     hooke = world.spring_active & (world.law == LAW_HOOKE)
     if hooke.any():
         apply_explicit(world, hooke, springs, h)
-    count, corners = world.spring_count, len(world.corner_particle)
-    wanted = Wanted(*np.zeros((2, corners, 2)), *np.zeros((2, world.element_count)))
+    count = world.spring_count
+    end_a, end_b, slot = np.zeros((3, count), dtype=np.int64)
+    place, slope = np.zeros((2, len(world.corner_particle), 2))
+    wanted = Wanted(place, slope, *np.zeros((2, world.element_count)))
     _iterate(
         world.position, world.velocity, world.inverse_mass, world.particle_a, world.particle_b, world.rest_length,
-        *springs, world.law, world.spring_active, h, world.settings.iterations, world.settings.warm_start,
-        world.impulse, *np.zeros((3, count), dtype=np.int64), np.zeros((count, 2)), *np.zeros((2, count)),
-        np.zeros((world.particle_count, 2)), world.elements, *elements, wanted,
+        springs[0], springs[1], world.law, world.spring_active, h, world.settings.iterations,
+        world.settings.warm_start, world.impulse, end_a, end_b, slot, np.zeros((count, 2)), np.zeros(count),
+        np.zeros(count), np.zeros((world.particle_count, 2)), world.elements, elements[0], elements[1], wanted,
     )  # fmt: skip

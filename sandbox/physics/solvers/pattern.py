@@ -167,20 +167,19 @@ def make_pattern(world: World) -> Pattern:
     matrix, place = _lay_out(len(nodes), columns, rank, fronts)
     corner_row = rank[index[parts.particle]]
     shapes, shape_body, corners = lay_out_shapes(parts, corner_row, body_number, place)
-    anchored = np.zeros(len(first_rows), dtype=np.bool_)
-    anchored[spring_body[np.maximum(row_a, row_b) >= len(nodes)]] = True
-    anchored[shape_body[shapes_anchored(shapes, len(nodes))]] = True
+    row_a, row_b, spring_body = row_a[grouped], row_b[grouped], spring_body[grouped]
+    pinned_springs = spring_body[np.maximum(row_a, row_b) >= len(nodes)]
+    pinned_shapes = shape_body[shapes_anchored(shapes, len(nodes))]
     every_body = np.arange(len(first_rows) + 1)
     bodies = Bodies(
         np.append(first_rows, len(nodes)),
-        np.searchsorted(spring_body[grouped], every_body),
+        np.searchsorted(spring_body, every_body),
         np.searchsorted(shape_body, every_body),
         nodes[body_of_row[first_rows]],
-        anchored,
+        np.isin(every_body[:-1], np.concatenate([pinned_springs, pinned_shapes])),
     )
     hooke = kind == LAW_HOOKE
     rows = _scratch_rows(np.concatenate([nodes[order], anchors]))
-    row_a, row_b = row_a[grouped], row_b[grouped]
     springs = _scratch_springs(chosen[grouped], row_a, row_b, place(row_a, row_b))
     return Pattern(
         signature=(free, kind, a, b),

@@ -76,11 +76,11 @@ def lay_out_shapes(
     for side in range(3):
         block[narrow, side] = place(three[:, side], three[:, (side + 1) % 3])
     wide, most = _number_wide(narrow, body[grouped])
-    shapes = Shapes(
-        parts.slot[grouped], parts.kind[grouped], first, row, block, wide, np.zeros((count, 2)), np.zeros(len(row)),
-        *np.zeros((4, count)), *np.zeros((3, len(row), 2)), *np.zeros((7, count)),
-        np.zeros((most, len(body_of_row) if most else 0, 2)), np.zeros(most),
-    )  # fmt: skip
+    numbers = {name: np.zeros(count) for name in Shapes._fields[6:]}
+    numbers |= {"rest": np.zeros((count, 2)), "weight": np.zeros(len(row))}
+    numbers |= {name: np.zeros((len(row), 2)) for name in ("place", "slope", "spare")}
+    numbers |= {"response": np.zeros((most, len(body_of_row) if most else 0, 2)), "scale": np.zeros(most)}
+    shapes = Shapes(parts.slot[grouped], parts.kind[grouped], first, row, block, wide, **numbers)
     return shapes, body[grouped], parts.corner[corners]
 
 
