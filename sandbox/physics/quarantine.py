@@ -35,8 +35,7 @@ class Containment:
 
 @kernel
 def sound(  # type: ignore[no-untyped-def]
-    position, velocity, mass, inverse_mass, rest_length, stiffness, damping, hooke_stiffness, hooke_damping,
-    element_rest, element_stiffness, element_damping, corner_weight,
+    position, velocity, mass, inverse_mass, rest_length, stiffness, damping, hooke_stiffness, hooke_damping
 ):  # fmt: skip
     """Whether every value that a tick reads is one that physics can give; NaN is in no range."""
     for p in range(mass.shape[0]):
@@ -58,6 +57,12 @@ def sound(  # type: ignore[no-untyped-def]
             and 0.0 <= hooke_damping[s] <= ABSURD
         ):
             return False
+    return True
+
+
+@kernel
+def sound_elements(element_rest, element_stiffness, element_damping, corner_weight):  # type: ignore[no-untyped-def]
+    """Whether every constant of elements is one that physics can give."""
     for k in range(element_stiffness.shape[0]):
         if not (
             -ABSURD <= element_rest[k, 0] <= ABSURD
@@ -96,9 +101,10 @@ def contain_inputs(world: World) -> None:
     """Before a tick: take back whatever something outside the physics has put there."""
     if sound(
         world.position, world.velocity, world.mass, world.inverse_mass, world.rest_length, world.stiffness,
-        world.damping, world.hooke_stiffness, world.hooke_damping, world.element_rest, world.element_stiffness,
-        world.element_damping, world.corner_weight,
-    ):  # fmt: skip
+        world.damping, world.hooke_stiffness, world.hooke_damping,
+    ) and (world.element_count == 0 or sound_elements(
+        world.element_rest, world.element_stiffness, world.element_damping, world.corner_weight
+    )):  # fmt: skip
         return
     for name in ("mass", "position", "velocity", "inverse_mass"):
         values = getattr(world, name)

@@ -90,7 +90,7 @@ def test_a_ring_keeps_its_area_as_one_element_times_its_inflation():
 @pytest.mark.parametrize("inflation", [-0.1, 101.0, "much", True])
 def test_an_inflation_out_of_range_is_refused(inflation):
     ring = {"type": "ring", "id": "r", "radius": 1.0, "segments": 9, "inflation": inflation}
-    with pytest.raises(LevelError, match="bodies.0.inflation"):
+    with pytest.raises(LevelError, match=r"bodies\.0\.inflation"):
         world_of(ring)
 
 

@@ -87,7 +87,8 @@ def _take_candidate(  # type: ignore[no-untyped-def]
     # v' = v + D;  J = q - K n.(D_b - D_a);  T = max(0, -J) for what follows. Returned: H, and the largest misfit.
     free_count = matrix.diagonal.shape[0]
     linearise(first, last, rows, springs, h, AHEAD, AHEAD)
-    linearise_shapes(low, high, rows, shapes, h, AHEAD, AHEAD)
+    if high > low:
+        linearise_shapes(low, high, rows, shapes, h, AHEAD, AHEAD)
     solve_linear(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix)
     held = 0.0
     misfit = 0.0
@@ -96,9 +97,10 @@ def _take_candidate(  # type: ignore[no-untyped-def]
             rows.trial[r, 0] += rows.change[r, 0]
             rows.trial[r, 1] += rows.change[r, 1]
         held, misfit, rounded = update_impulses(first, last, rows, springs, rest_length, h, free_count)
-        held_by_shapes, missed = update_shapes(low, high, rows, shapes, h, free_count)
-        held += held_by_shapes
-        misfit = max(misfit, missed)
+        if high > low:
+            held_by_shapes, missed = update_shapes(low, high, rows, shapes, h, free_count)
+            held += held_by_shapes
+            misfit = max(misfit, missed)
         if not rounded:
             break
         refine(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix)
@@ -248,10 +250,14 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
             first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,
             least, most, parts, h, matrix.diagonal.shape[0],
         )  # fmt: skip
-        more_bouncy, more_spread, more_moved = load_shapes(low, high, inverse_mass, rows, shapes, parts, h)
+        if high > low:
+            more_bouncy, more_spread, more_moved = load_shapes(low, high, inverse_mass, rows, shapes, parts, h)
+            bouncy = bouncy or more_bouncy
+            spread = spread or more_spread
+            moved += more_moved
         _step_body(
             first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length,
-            bodies.lowest[body], energy_bank, bouncy or more_bouncy, spread or more_spread, moved + more_moved, h,
+            bodies.lowest[body], energy_bank, bouncy, spread, moved, h,
         )  # fmt: skip
         for r in range(first_row, last_row):
             velocity[rows.particle[r], 0] = rows.trial[r, 0]

@@ -222,16 +222,19 @@ def load_residual(first_row, last_row, first, last, rows, springs, free_count): 
 def solve_linear(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix):  # type: ignore[no-untyped-def]
     """Solve A D = right side for the rows, springs and elements of one body; D is left in `change`."""
     load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
-    push_shapes(low, high, rows, shapes, matrix.diagonal.shape[0])
+    if high > low:
+        push_shapes(low, high, rows, shapes, matrix.diagonal.shape[0])
     fronts = matrix.fronts
     if fronts.of_row[first_row] >= 0:
         assemble_fronts(first_row, last_row, first, last, rows, springs, matrix)
-        assemble_shapes(low, high, shapes, matrix, True)
+        if high > low:
+            assemble_shapes(low, high, shapes, matrix, True)
         factorise_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
         substitute_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
     else:
         assemble(first_row, last_row, first, last, rows, springs, matrix)
-        assemble_shapes(low, high, shapes, matrix, False)
+        if high > low:
+            assemble_shapes(low, high, shapes, matrix, False)
         factorise(
             first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.where,
             matrix.diagonal, matrix.lower, matrix.scaled,
@@ -239,7 +242,8 @@ def solve_linear(first_row, last_row, first, last, low, high, rows, springs, sha
         back_substitute(
             first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
         )  # fmt: skip
-    take_in_wide(first_row, last_row, low, high, rows, shapes, matrix)
+    if high > low:
+        take_in_wide(first_row, last_row, low, high, rows, shapes, matrix)
 
 
 @inner_kernel
@@ -293,9 +297,11 @@ def refine(first_row, last_row, first, last, low, high, rows, springs, shapes, m
     """Solve for what is left of the right side, with the impulses found so far; it is left in `change`."""
     free_count = matrix.diagonal.shape[0]
     load_residual(first_row, last_row, first, last, rows, springs, free_count)
-    push_shapes(low, high, rows, shapes, free_count)
+    if high > low:
+        push_shapes(low, high, rows, shapes, free_count)
     solve_again(first_row, last_row, rows, matrix)
-    correct_wide(first_row, last_row, low, high, rows, shapes, free_count)
+    if high > low:
+        correct_wide(first_row, last_row, low, high, rows, shapes, free_count)
 
 
 @inner_kernel
