@@ -164,8 +164,7 @@ def _play(options: argparse.Namespace) -> int:
     from sandbox.app.app import run_app
 
     source = Path(options.level) if level and Path(options.level).is_file() else None
-    more = {"profile": options.profile, "seconds": options.seconds, "scale": options.scale}
-    return run_app(level, replay=replay, source=source, **more)
+    return run_app(level, replay, source, profile=options.profile, seconds=options.seconds, scale=options.scale)
 
 
 def _play_headless(level: "Level", replay: "Replay | None") -> int:
@@ -373,11 +372,12 @@ def _render(options: argparse.Namespace) -> int:
 
 
 def _edit(options: argparse.Namespace) -> int:
-    from sandbox.app.app import run_app
     from sandbox.app.display import has_display
 
     if not has_display():
         raise Refused("the editor needs a display; without one, edit the level's JSON and try `sandbox check`")
+    from sandbox.app.app import run_app
+
     return run_app(edit=options.level or "", scale=options.scale)
 
 

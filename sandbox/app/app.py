@@ -12,6 +12,7 @@ from sandbox.app.colours import BACKGROUND
 from sandbox.app.dialogs import show_lines
 from sandbox.app.display import SCALE_RANGE, Display
 from sandbox.app.edit.documents import Documents
+from sandbox.app.edit.tour import Guide
 from sandbox.app.files import FileActions
 from sandbox.app.gallery import Gallery
 from sandbox.app.help import show_help
@@ -46,13 +47,13 @@ class App:
         self._notices: deque[Notice] = deque(maxlen=NOTICES)
         self._description = ""
         self.running = True
-        self._is_quitting = False
         self.ready = False
         self.screen: Screen | None = None
         self.gallery: Gallery | None = None
         self.input = Input(self)
         self.files = FileActions(self)
         self.documents = Documents(self)
+        self.guide = Guide(self)
         self._progress = Progress(self)
         self._own_actions = self._actions()
         self._figures = (0.0, 0.0)
@@ -85,6 +86,7 @@ class App:
         self.status = StatusLine(self.ui, self._notices)
         if self.screen is not None:
             self.screen.build(self.ui)
+        self.guide.build()
 
     def rebuild(self) -> None:
         """Lay everything out anew, after the window or the scale changed."""
@@ -151,7 +153,8 @@ class App:
             "fullscreen": self.display.toggle_fullscreen,
             "larger": lambda: self._rescale(1.125),
             "smaller": lambda: self._rescale(1 / 1.125),
-            "help": lambda: show_help(self.ui, self.mode),
+            "help": lambda: show_help(self.ui, self.mode, self.guide.begin),
+            "tour": self.guide.begin,
             "quit": self.quit,
         }
 
@@ -168,9 +171,6 @@ class App:
 
     def quit(self) -> None:
         """Leave after this frame, once it is clear what becomes of changes that are not saved."""
-        if self._is_quitting and self.ui.has_sheet:
-            return
-        self._is_quitting = True
         self.documents.if_saved(self._stop)
 
     def _stop(self) -> None:
@@ -203,8 +203,10 @@ class App:
             self.screen.update(frame_time, self.input.pointer_over_world(), self.profile, self.ready)
         with self.profile.part("ui"):
             self.status.update(frame_time)
+            self.documents.update()
             if self.gallery is not None:
                 self.gallery.update(self.ready)
+            self.guide.update(frame_time)
             self.ui.update(frame_time)
         self._draw()
         with self.profile.part("flip"):
@@ -221,10 +223,11 @@ class App:
             self.screen.draw(surface, self.profile)
         with self.profile.part("ui"):
             if self.screen is not None:
-                left = None if self.ui.has_sheet else 16.0
+                left = None if self.ui.has_sheet else self.screen.notices_left
                 legend = self.mode == "play"
                 self.status.draw(surface, self.screen.status(*self._figures), self.ui.units[0], left, legend)
             self.ui.draw(surface)
+            self.guide.draw(surface)
             if (self.screen is None or self.ui.has_sheet) and not self.ui.shows_page:
                 self.status.draw_notices(surface, 16.0)
             if not self.ready:
@@ -259,9 +262,9 @@ def _warm_up_kernels() -> None:
 
 def run_app(
     level: Level | None = None,
-    *,
     replay: Replay | None = None,
     source: Path | None = None,
+    *,
     edit: str | None = None,
     profile: bool = False,
     seconds: float | None = None,
@@ -273,6 +276,7 @@ def run_app(
     frame's time goes, at the end. scale: size of the widgets; None = the display's.
     """
     app = App(Display(scale), level, replay, source)
+    app.guide.may_offer = True
     if edit is not None:
         app.close_gallery()
         app.documents.begin(edit)

@@ -57,6 +57,12 @@ class Camera:
         """Move the picture by pixels."""
         self.centre = (self.centre[0] - dx / self.zoom, self.centre[1] + dy / self.zoom)
 
+    def show_as(self, other: "Camera") -> None:
+        """Show everything at the same pixels as another camera does, in whatever viewport."""
+        self.zoom = other.zoom
+        x, y = self.to_world(other.to_pixels(other.centre))
+        self.centre = (self.centre[0] + other.centre[0] - x, self.centre[1] + other.centre[1] - y)
+
     def can_show(self, box: Box) -> bool:
         """Whether a box [m] is no larger than the widest view."""
         left, bottom, right, top = box

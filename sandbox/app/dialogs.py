@@ -105,8 +105,11 @@ def ask(
     ui.focus_on(field.entry)
 
 
-def choose(ui: Ui, title: str, text: str, choices: Sequence[Choice], columns: int = 1) -> None:
-    """Offer choices, (label, what it does) each, the first of them marked; Escape or Cancel leaves all as it is."""
+def choose(ui: Ui, title: str, text: str, choices: Sequence[Choice], columns: int = 1) -> Any:
+    """Offer choices, (label, what it does) each, the first of them marked; Escape or Cancel leaves all as it is.
+
+    Gives the page, which is alive until one is taken.
+    """
     rows = -(-len(choices) // columns)
     lines = 1 + len(text) // LINE_CHARACTERS if text else 0
     height = MARGIN * 2 + 38 + lines * LINE_HEIGHT + rows * 42 + 44
@@ -130,6 +133,7 @@ def choose(ui: Ui, title: str, text: str, choices: Sequence[Choice], columns: in
         buttons.append(ui.button(place, label, partial(do, action), box, style=style))
     ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="@quiet")
     ui.focus_on(buttons[0])
+    return sheet
 
 
 def fill_in(

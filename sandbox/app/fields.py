@@ -10,13 +10,17 @@ from pygame_gui.elements import UIButton, UIPanel, UITextEntryLine
 
 @dataclass
 class Field:
-    """A line to type into; commit gets the text and says whether it is taken, else the old text comes back."""
+    """A line to type into; commit gets the text and says whether it is taken, else the old text comes back.
+
+    turn: what a notch of the wheel over it does, and an arrow key in it, +1 or -1; None = nothing.
+    """
 
     entry: UITextEntryLine
     commit: Callable[[str], bool]
     text: str
     focused: bool = False
     enter: Callable[[str], object] | None = None
+    turn: Callable[[int], object] | None = None
 
     def show(self, text: str) -> None:
         """Show a value, unless the person is typing one."""
@@ -34,6 +38,14 @@ class Field:
         if not self.commit(typed):
             self.text = before
             self.entry.set_text(before)
+
+    def step(self, by: int) -> bool:
+        """Take what was typed, and change the value by a step; whether it has steps."""
+        if self.turn is None:
+            return False
+        self.finish()
+        self.turn(by)
+        return True
 
     def revert(self) -> None:
         """Forget what was typed."""

@@ -34,17 +34,18 @@ class FileActions:
         is_replay = start[:2] == b"\x1f\x8b" or b"spring-sandbox/replay" in start
         return self.open_replay(path) if is_replay else self.open_level(path)
 
-    def open_level(self, path: str | Path) -> bool:
-        """Open a level file: play it, or edit it where a level is edited now."""
+    def open_level(self, path: str | Path, shipped: bool = False) -> bool:
+        """Open a level file: play it, or edit it where a level is edited now, a shipped one as a copy."""
         if self.app.mode == "edit":
-            self.app.documents.open(path)
+            documents = self.app.documents
+            (documents.open_copy if shipped else documents.open)(path)
             return True
         try:
             playback = Playback(read_level(Path(path)))
         except LevelError as error:
             self._refuse(path, error.faults)
             return False
-        self.app.start(playback, Path(path))
+        self.app.start(playback, None if shipped else Path(path))
         return True
 
     def open_replay(self, path: str | Path) -> bool:
@@ -65,22 +66,26 @@ class FileActions:
     def ask_to_open(self) -> None:
         """Ask for the path of a level or replay, or a shipped level's name."""
         hint = "A path, or the name of a shipped level. Files can be dropped on the window too."
-        ask(self.app.ui, "Open a level or a replay", hint, "", "Open", self._open_typed)
+        ask(self.app.ui, "Open a level or a replay", hint, "", "Open", self._fault_of, then=self._open_typed)
 
-    def _open_typed(self, typed: str) -> str | None:
+    def _fault_of(self, typed: str) -> str | None:
+        """Why nothing can be opened by that name; a file's own faults are shown when it is opened."""
+        if Path(typed).expanduser().is_file():
+            return None
+        try:
+            load_level(typed)
+        except LevelError as error:
+            return error.faults[0]
+        return None
+
+    def _open_typed(self, typed: str) -> None:
         path = Path(typed).expanduser()
         if path.is_file():
             self.open_path(path)
-            return None
-        try:
-            level = load_level(typed)
-        except LevelError as error:
-            return error.faults[0]
-        if self.app.mode == "edit":
-            self.app.documents.edit_level(level)
+        elif self.app.mode == "edit":
+            self.app.documents.edit_level(load_level(typed))
         else:
-            self.app.start(Playback(level))
-        return None
+            self.app.start(Playback(load_level(typed)))
 
     def _refuse(self, path: str | Path, faults: list[str]) -> None:
         self.app.show_faults(f"{Path(path).name} cannot be opened", faults)

@@ -118,6 +118,7 @@ class Gallery:
         self._unpainted: list[tuple[Card, Level]] = []
         self._scroll = 0.0
         self._columns = 1
+        self._open = partial(files.open_level, shipped=section == "levels")
         self.sheet = ui.open_sheet(close if files.app.screen is not None else lambda: None, "@cover")
         width, height = ui.units
         editing = files.app.mode == "edit"
@@ -156,11 +157,11 @@ class Gallery:
         try:
             level = read_level(path)
         except LevelError as error:
-            card = self._add_card(rect, path.stem, error.faults[0], lambda: self._files.open_level(path))
+            card = self._add_card(rect, path.stem, error.faults[0], partial(self._open, path))
             card.broken = True
             card.repaint()
             return
-        card = self._add_card(rect, level.name, level.description, lambda: self._files.open_level(path))
+        card = self._add_card(rect, level.name, level.description, partial(self._open, path))
         self._unpainted.append((card, level))
 
     def _add_recordings(self) -> None:

@@ -1,5 +1,6 @@
 """Help: the page of all shortcuts."""
 
+from collections.abc import Callable
 from typing import Any
 
 import pygame
@@ -11,27 +12,38 @@ from sandbox.app.widgets import Ui
 
 # Sizes in layout units.
 COLUMN_WIDTH = 480.0
-NARROWEST_COLUMN = 420.0
+NARROWEST_COLUMN = 400.0
+MOST_COLUMNS = 3
 ROW = 22.0
 HEADING = 34.0
 TOP = 62.0
 MARGIN = 28.0
 
 
-def show_help(ui: Ui, mode: Mode) -> None:
-    """Cover the window by the list of a mode's shortcuts, until it is closed."""
+def show_help(ui: Ui, mode: Mode, tour: Callable[[], object]) -> None:
+    """Cover the window by the list of a mode's shortcuts, until it is closed; tour: what begins the tour."""
     width, height = ui.units
-    columns = _columns(shortcuts(mode), 2 if width >= 2 * NARROWEST_COLUMN + 20 else 1)
+    entries = shortcuts(mode)
+    most = max(1, min(int((width - 20) // NARROWEST_COLUMN), MOST_COLUMNS))
+    # As few columns as the height allows: they are read from top to bottom.
+    layouts = [_columns(entries, count) for count in range(min(2, most), most + 1)]
+    room = height - 16 - TOP - MARGIN
+    columns = next((layout for layout in layouts if max(map(_height, layout)) <= room), layouts[-1])
     box_width = min(len(columns) * COLUMN_WIDTH, width - 16)
     box_height = min(TOP + max(map(_height, columns)) + MARGIN, height - 16)
 
     def close() -> None:
         ui.close_sheet(sheet)
 
+    def begin_tour() -> None:
+        close()
+        tour()
+
     sheet = ui.open_sheet(close, is_page=True)
     place = ui.rect((width - box_width) / 2, (height - box_height) / 2, box_width, box_height)
     box = ui.panel(place, sheet, "@dialog")
     ui.label(ui.rect(MARGIN, 18, 300, 28), "Shortcuts", box, "@title")
+    ui.button(ui.rect(box_width - MARGIN - 218, 16, 120, 32), "Take the tour", begin_tour, box, style="@quiet")
     button = ui.button(ui.rect(box_width - MARGIN - 90, 16, 90, 32), "Close", close, box)
     ShortcutTable(ui, ui.rect(MARGIN, TOP, box_width - 2 * MARGIN, box_height - TOP - 12), columns, box).repaint()
     ui.focus_on(button)

@@ -17,7 +17,9 @@ DOUBLE_SECONDS = 0.4
 # With Ctrl these belong to the line of text: all, copy, paste, cut, undo, redo.
 EDITING_KEYS = (pygame.K_a, pygame.K_c, pygame.K_v, pygame.K_x, pygame.K_z, pygame.K_y)
 # Actions that go on while their key is held down.
-REPEATED = ("step", "zoom_in", "zoom_out", "undo", "redo", "next_particle", "previous_particle")
+REPEATED = (
+    "step", "zoom_in", "zoom_out", "undo", "redo", "next_particle", "previous_particle", "next_item", "previous_item",
+)  # fmt: skip
 ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, 1), pygame.K_DOWN: (0, -1)}
 
 Pixel = tuple[float, float]
@@ -138,6 +140,10 @@ class Input:
         is_second = before is not None and now - before[0] <= 1000 * DOUBLE_SECONDS and math.dist(before[1], pixel) <= 6
         self._last_press = None if is_second else (now, pixel)
         return 2 if is_second else 1
+
+    def forget_clicks(self) -> None:
+        """Let the next press be the first of its kind, whenever it comes."""
+        self._last_press = None
 
     def _motion(self, event: pygame.event.Event) -> None:
         screen, ratio = self.app.screen, self.app.display.pixel_ratio

@@ -29,6 +29,7 @@ class PlayScreen:
     """Plays a level or a replay; source: the file of the level; of_document: the level is what the editor has open."""
 
     mode: Mode = "play"
+    notices_left = 16.0
 
     def __init__(self, app: "App", playback: Playback, source: Path | None = None, of_document: bool = False) -> None:
         self._app = app

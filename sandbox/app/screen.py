@@ -20,6 +20,8 @@ class Screen(Protocol):
 
     mode: Mode
     actions: dict[str, Callable[[], object]]
+    # Left edge of the notices, where they cover no widgets [layout units].
+    notices_left: float
 
     @property
     def camera(self) -> Camera:

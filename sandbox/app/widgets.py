@@ -208,6 +208,10 @@ class Ui:
         """The widget that the keyboard works on."""
         return self._focus
 
+    def buttons(self) -> list[UIButton]:
+        """The buttons that Tab reaches now."""
+        return [widget for widget in self._ring() if isinstance(widget, UIButton)]
+
     def process(self, event: pygame.event.Event) -> bool:
         """Let the widgets have an event; True where they use it."""
         if event.type == pygame_gui.UI_BUTTON_PRESSED and event.ui_element in self._actions:
@@ -227,11 +231,20 @@ class Ui:
             return True
         if event.type == pygame.KEYDOWN and self._press_key(event):
             return True
+        if event.type == pygame.MOUSEWHEEL and self._turn_field(event.precise_y or event.y):
+            return True
         if event.type == pygame.MOUSEBUTTONDOWN:
             self._focus = self._left = None
         used = bool(self.manager.process_events(event))
         self._finish_left_fields()
         return used
+
+    def _turn_field(self, notches: float) -> bool:
+        """Step the value of the line under the mouse, where it has steps."""
+        at = self.manager.get_mouse_position()
+        under = (self._fields[widget] for widget in self._ring() if widget in self._fields and widget.hover_point(*at))
+        field = next(under, None)
+        return field is not None and field.step(1 if notches > 0.0 else -1)
 
     def _finish_left_fields(self) -> None:
         for field in list(self._fields.values()):
@@ -249,7 +262,8 @@ class Ui:
         if event.key == pygame.K_ESCAPE:
             return self._escape(typed_into)
         if typed_into is not None:
-            return False
+            by = {pygame.K_UP: 1, pygame.K_DOWN: -1}.get(event.key)
+            return by is not None and typed_into.step(by)
         if self._focus is None:
             return False
         if isinstance(self._focus, Painted):
@@ -285,13 +299,17 @@ class Ui:
         self._choosers[menu](options[(options.index(chosen) + by) % len(options)])
 
     def _move_focus(self, by: int) -> None:
-        ring = self._sheets[-1].widgets if self._sheets else self._page
-        ring = [widget for widget in ring if widget.alive() and widget.visible and getattr(widget, "is_enabled", True)]
+        ring = self._ring()
         if not ring:
             return
         here = self._focus or self._left
         start = ring.index(here) if here in ring else (-1 if by > 0 else 0)
         self._set_focus(ring[(start + by) % len(ring)])
+
+    def _ring(self) -> list[UIElement]:
+        """What Tab goes through: the widgets of the topmost page."""
+        ring = self._sheets[-1].widgets if self._sheets else self._page
+        return [widget for widget in ring if widget.alive() and widget.visible and getattr(widget, "is_enabled", True)]
 
     def focus_on(self, widget: UIElement) -> None:
         """Give a widget the keyboard."""

@@ -58,7 +58,9 @@ class Autosave:
         self._lock: FileLock | None = None
         self._changed = threading.Condition()
         self._edit: _Edit | None = None
-        self._is_pending = self._is_writing = self._is_closing = False
+        # Numbers of the notes so far: the newest, the one that was last tried, the one that was last written.
+        self._noted = self._tried = self._written = 0
+        self._is_closing = False
         self._adopted: list[Orphan] = []
         self._thread: threading.Thread | None = None
 
@@ -80,7 +82,8 @@ class Autosave:
     def settle(self) -> None:
         """Wait until what was noted is written, or cannot be."""
         with self._changed:
-            self._changed.wait_for(lambda: not (self._is_pending or self._is_writing) or self.fault is not None)
+            noted = self._noted
+            self._changed.wait_for(lambda: self._tried >= noted)
 
     def close(self) -> None:
         """Write what was noted last and end; what was not cleared is offered at the next start."""
@@ -97,7 +100,7 @@ class Autosave:
 
     def _want(self, edit: _Edit | None) -> None:
         with self._changed:
-            self._edit, self._is_pending = edit, True
+            self._edit, self._noted = edit, self._noted + 1
             if self._thread is None:
                 self._is_closing = False
                 self._thread = threading.Thread(target=self._work, name="autosave", daemon=True)
@@ -107,17 +110,18 @@ class Autosave:
     def _work(self) -> None:
         while True:
             with self._changed:
-                self._changed.wait_for(lambda: self._is_pending or self._is_closing)
-                if not self._is_pending:
+                self._changed.wait_for(lambda: self._written < self._noted or self._is_closing)
+                if self._written == self._noted:
                     return
-                edit, self._is_pending, self._is_writing = self._edit, False, True
+                edit, number = self._edit, self._noted
             start = time.monotonic()
             fault = self._write(edit)
             shortest, longest = _PAUSES
             pause = longest if fault else min(max(_PAUSE_FACTOR * (time.monotonic() - start), shortest), longest)
             with self._changed:
-                self.fault, self._is_writing = fault, False
-                self._is_pending = self._is_pending or fault is not None
+                self.fault, self._tried = fault, number
+                if fault is None:
+                    self._written = number
                 self._changed.notify_all()
                 if self._is_closing and fault is not None:
                     return

@@ -87,7 +87,7 @@ def fragment(document: Document) -> Level:
     )
 
 
-def _inside(owners: set[str | int], *references: str) -> bool:
+def _inside(owners: frozenset[str | int], *references: str) -> bool:
     return all(owner_of(reference) in owners for reference in references)
 
 

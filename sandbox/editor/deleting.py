@@ -8,7 +8,7 @@ from sandbox.editor.items import Item, chosen_bodies, keys
 from sandbox.editor.names import free_ids, owner_of, rewired, taken_ids
 from sandbox.editor.scene import make_scene
 from sandbox.level.expansion import Expansion, expansion, named_particles
-from sandbox.level.limits import BODY_RADIUS
+from sandbox.level.limits import BODY_RADIUS, COORDINATE_LIMIT
 from sandbox.level.model import ParticleDef, SpringDef
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import Points, distances
@@ -80,6 +80,8 @@ def _loose_springs(made: Expansion, ids: list[str], group: str, material: str) -
         None if abs(rest - now) <= SAME_LENGTH * now else rest
         for rest, now in zip(made.rest_length.tolist(), placed.tolist(), strict=True)
     ]
+    if any(rest is not None and rest > COORDINATE_LIMIT for rest in given):
+        raise EditError("a spring is too long to keep its rest length by itself")
     first = SpringDef(a="-", b="-", material=material, group=group)
     rows = zip(made.pairs.tolist(), given, strict=True)
     return [replaced(first, a=ids[a], b=ids[b], rest_length=rest) for (a, b), rest in rows]

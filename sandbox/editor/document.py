@@ -1,26 +1,26 @@
 """Document: a level in work, and what of it is selected."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from pydantic import ValidationError
 
-from sandbox.editor.items import Selection, items_of
+from sandbox.editor.items import Selection
 from sandbox.level.bodies import AnyBody
 from sandbox.level.canonical import level_text
 from sandbox.level.faults import LevelError, shown
-from sandbox.level.limits import FILE_LIMIT, VERSION
+from sandbox.level.limits import FILE_LIMIT, FORMAT, VERSION
 from sandbox.level.model import Level, NissenMaterial
 from sandbox.level.quantities import Described, Description, replaced
 from sandbox.level.validate import check_level
 from sandbox.level.wording import worded
 
-# Below this many definitions and listed points a level cannot outgrow its file, whose text is then not measured.
-MEASURED_SIZE = 20_000
+# Below this many definitions and listed points, 209 bytes of a file's limit each, the text of a level is not measured.
+MEASURED_SIZE = 40_000
 
-_PLACE = re.compile(r"(bodies|particles|checks)\.(\d+)(?:\.|: |$)(.*)", re.DOTALL)
+_PLACE = re.compile(r"(bodies|particles|springs|checks)\.(\d+)(?:\.|: |$)(.*)", re.DOTALL)
 
 
 class EditError(ValueError):
@@ -51,7 +51,13 @@ def empty_level() -> Level:
 
 def select(document: Document, selection: Selection) -> Document:
     """Select those of the items that the level has."""
-    return replace(document, selection=selection.intersection(items_of(document.level)))
+    level = document.level
+    known = {
+        "body": {body.id for body in level.bodies},
+        "particle": {particle.id for particle in level.particles},
+        "spring": range(len(level.springs)),
+    }
+    return replace(document, selection=frozenset([item for item in selection if item[1] in known[item[0]]]))
 
 
 def checked(level: Level) -> Level:
@@ -72,15 +78,25 @@ def check_bodies(level: Level, bodies: Iterable[AnyBody]) -> None:
 
 def validated(definition: Described) -> Described:
     """A definition whose fields have been changed unseen, read anew. Raises EditError where one is out of range."""
-    data = dict(definition.__dict__)
-    if isinstance(data.get("shape"), Description):
-        data["shape"] = dict(data["shape"].__dict__)
-    part = "bodies" if "type" in data else "particles" if "id" in data else "springs"
+    return all_validated([definition])[0]
+
+
+def all_validated(definitions: Sequence[Described]) -> tuple[Described, ...]:
+    """As `validated`, of many bodies, of many loose particles or of many loose springs."""
+    rows = []
+    for definition in definitions:
+        data = dict(definition.__dict__)
+        if isinstance(data.get("shape"), Description):
+            data["shape"] = dict(data["shape"].__dict__)
+        rows.append(data)
+    first = rows[0] if rows else {}
+    part = "bodies" if "type" in first else "particles" if "id" in first else "springs"
     try:
-        level = Level.model_validate({"format": "spring-sandbox/level", "version": VERSION, "name": "-", part: (data,)})
+        level = Level.model_validate({"format": FORMAT, "version": VERSION, "name": "-", part: tuple(rows)})
     except ValidationError as error:
-        raise EditError(first_fault(error, subject(definition))) from None
-    result: Described = getattr(level, part)[0]
+        index = int(error.errors(include_url=False)[0]["loc"][1])
+        raise EditError(first_fault(error, subject(definitions[index]))) from None
+    result: tuple[Described, ...] = getattr(level, part)
     return result
 
 
@@ -103,7 +119,8 @@ def _named(level: Level, fault: str) -> str:
     if match is None:
         return fault
     about = getattr(level, match[1])[int(match[2])]
-    return f"{shown(about.name if match[1] == 'checks' else about.id)}: {match[3]}"
+    name = f"the spring :{match[2]}" if match[1] == "springs" else shown(getattr(about, "id", None) or about.name)
+    return f"{name}: {match[3]}"
 
 
 def _size(level: Level) -> int:

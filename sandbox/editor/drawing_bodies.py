@@ -2,19 +2,21 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, Generic, TypeVar, cast
 
 from pydantic import ValidationError
 
-from sandbox.editor.document import Document, EditError, select
+from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.drawing_options import JellyOptions, RopeOptions, TrussOptions, WebOptions, WheelOptions
 from sandbox.editor.gesture import Drawing
-from sandbox.editor.placing import add_body, weld
+from sandbox.editor.placing import add_body
 from sandbox.editor.sizing import links, rings, truss_cells, wheel_spokes
 from sandbox.editor.snap import PLACE_DECIMALS, Snap
 from sandbox.level.bodies import KINDS, AnyBody
 from sandbox.level.expansion import named_particles
 from sandbox.level.limits import DEFAULT_MATERIAL
+from sandbox.level.quantities import replaced
 from sandbox.level.shapes import expand
 from sandbox.level.wording import worded
 
@@ -65,7 +67,8 @@ def joined(document: Document, points: Sequence[Snap]) -> Document:
     """Weld the body that was added last to the particles that points are on, where it has a particle there."""
     if not points:
         return document
-    selection, body = document.selection, document.level.bodies[-1]
+    level, body = document.level, document.level.bodies[-1]
+    welds = []
     names = {index: name for name, index in named_particles(body).items()}
     places = expand(body)[0]
     for point in points:
@@ -73,8 +76,8 @@ def joined(document: Document, points: Sequence[Snap]) -> Document:
         distance = x * x + y * y
         nearest = int(distance.argmin())
         if point.name is not None and distance[nearest] <= SAME_PLACE * SAME_PLACE:
-            document = weld(document, point.name, f"{body.id}.{names.get(nearest, nearest)}")
-    return select(document, selection)
+            welds.append((point.name, f"{body.id}.{names.get(nearest, nearest)}"))
+    return replace(document, level=checked(replaced(level, welds=(*level.welds, *welds)))) if welds else document
 
 
 def direction(points: list[Snap]) -> str:

@@ -1,5 +1,6 @@
 """What a drawing tool can be told before and while it draws; remembered from one drawing to the next."""
 
+import math
 from dataclasses import dataclass, field, fields
 from dataclasses import replace as _replace
 from typing import Any, Literal, TypeVar
@@ -8,6 +9,9 @@ from sandbox.editor.document import EditError
 from sandbox.level.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL, MASS_RANGE, PARTICLE_LIMIT
 
 Kind = Literal["count", "number", "flag", "material"]
+
+# Steps of a value that can be negative; others go up by 1, 2, 5, 10, 20, ...
+SIGNED_STEP = 0.05
 
 # Slack of a rope: how much longer it is than the way from end to end, as a part of that.
 SLACK_RANGE = (-0.5, 4.0)
@@ -158,3 +162,24 @@ def changed(options: AnyOptions, name: str, value: Any) -> AnyOptions:
             raise EditError(f"{about.label}: {value:g} is not in {about.least:g}..{about.most:g} {about.unit}".rstrip())
         value = value if about.kind == "count" else float(value)
     return _replace(options, **{name: value})
+
+
+def stepped(about: About, value: float | None, by: int) -> float:
+    """The value one step up or down from another, within its limits: 1, 2, 5, 10, ... or, of counts, the next.
+
+    None steps to the least count, or to 1.
+    """
+    if value is None:
+        wanted = about.least if about.kind == "count" else 1.0
+    elif about.kind == "count":
+        return int(min(max(value + by, about.least), about.most))
+    elif about.least < 0.0:
+        wanted = round((round(value / SIGNED_STEP) + by) * SIGNED_STEP, 9)
+    elif value <= 0.0:
+        wanted = 1.0
+    else:
+        decade = math.floor(math.log10(value))
+        steps = [float(f"{digit}e{decade + up}") for up in (-1, 0, 1) for digit in (1, 2, 5)]
+        beyond = [step for step in steps if (step > value if by > 0 else step < value)]
+        wanted = beyond[0] if by > 0 else beyond[-1]
+    return min(max(wanted, about.least), about.most)

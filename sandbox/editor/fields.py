@@ -1,13 +1,13 @@
 """Changing fields of items, of the level and of its settings."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
 
 from pydantic import ValidationError
 
-from sandbox.editor.document import Document, EditError, checked, first_fault, validated
-from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles, with_same
+from sandbox.editor.document import Document, EditError, checked, first_fault, subject, validated
+from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles
 from sandbox.editor.names import renamed, rewired, taken_ids
 from sandbox.editor.remap import rebuilt
 from sandbox.level.bodies import AnyBody, BodyDef, RopeDef
@@ -41,15 +41,35 @@ def set_field(document: Document, items: Iterable[Item], field: str, value: Any)
 
     def with_value(part: Definition) -> Definition:
         kind = type(part)
+        if field not in kind.model_fields:
+            raise EditError(f"{subject(part)} has no {field}")
         if kind not in read:
             read[kind] = getattr(validated(replaced(part, **{field: value})), field)
         return part if getattr(part, field) == read[kind] else _with_field(part, field, read[kind])
 
     if not chosen:
         return document
+    return _settled(document, chosen, field, with_value)
+
+
+def change_field(document: Document, items: Iterable[Item], field: str, change: Callable[[Any], Any]) -> Document:
+    """Give a field of each item, which all have it, what `change` makes of its value. Raises EditError.
+
+    Else as `set_field`.
+    """
+
+    def with_change(part: Definition) -> Definition:
+        value = _with_tuples(change(getattr(part, field)))
+        new = getattr(validated(replaced(part, **{field: value})), field)
+        return part if getattr(part, field) == new else _with_field(part, field, new)
+
+    return _settled(document, frozenset(items), field, with_change)
+
+
+def _settled(document: Document, chosen: Selection, field: str, change: Callable[[Definition], Definition]) -> Document:
+    """The document with a field of the chosen items changed, and what depends on it."""
     old = document.level
-    level = changed(old, chosen, with_value)
-    level = with_same(old, bodies=level.bodies, particles=level.particles, springs=level.springs)
+    level = changed(old, chosen, change)
     if level is old:
         return document
     if field not in _FORMLESS and level.bodies is not old.bodies:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene
+from sandbox.level.model import Level
 
 Severity = Literal["error", "warning", "hint"]
 Slots = NDArray[np.int64]
@@ -85,3 +86,11 @@ def connected_parts(scene: Scene) -> Generator[None, None, Slots]:
                 break
             label = lower
         yield None
+
+
+def falling_particles(level: Level, scene: Scene) -> Generator[None, None, tuple[Slots, NDArray[np.bool_]]]:
+    """The part that each particle belongs to (n,), and whether gravity takes it away (n,): no pin holds its part."""
+    part = yield from connected_parts(scene)
+    held = np.zeros(len(part), dtype=np.bool_)
+    held[part[scene.pinned]] = True
+    return part, ~held[part] & (level.settings.gravity != (0.0, 0.0))

@@ -11,9 +11,9 @@ from collections.abc import Generator, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.finding import called, connected_parts
+from sandbox.editor.finding import called, falling_particles
 from sandbox.editor.items import Selection
-from sandbox.editor.scene import Scene, make_scene
+from sandbox.editor.scene import make_scene
 from sandbox.level.build import build_world
 from sandbox.level.model import Level
 from sandbox.physics.step import step
@@ -33,6 +33,8 @@ LONGEST = 60.0
 # A part is stopped where its kinetic energy has fallen below this share of its last peak. Nearer to 1: the flutter of
 # single springs stops it too, and it creeps.
 PAST_PEAK = 0.9
+# Particles that move, at most: one tick of more takes so long that drawing waits for it.
+LARGEST = 4_000
 
 
 class Forecast:
@@ -47,6 +49,7 @@ class Forecast:
         self.position: Floats | None = None
         self.at_rest: bool | None = None
         self.falling: Selection = frozenset()
+        self._trouble = ""
         self._work = self._run(level)
 
     @property
@@ -55,9 +58,11 @@ class Forecast:
         if self.at_rest is None:
             return "The forecast is being worked out"
         if not self.at_rest:
-            return f"It does not come to rest within {LONGEST:g} s"
+            return self._trouble
+        if len(self.falling) == 1:
+            return f"Shown is where it hangs at rest; {called(*self.falling)} falls away, because nothing holds it"
         if self.falling:
-            return f"Shown is where it hangs at rest; {_counted(self.falling)} falls away, because nothing holds it"
+            return f"Shown is where it hangs at rest; {len(self.falling)} items fall away, because nothing holds them"
         return "Shown is where it hangs at rest"
 
     def advance(self, seconds: float) -> bool:
@@ -72,8 +77,17 @@ class Forecast:
     def _run(self, level: Level) -> Iterator[None]:
         scene = make_scene(level)
         yield None
-        part = yield from connected_parts(scene)
-        is_falling = self._let_fall(level, scene, part)
+        part, is_falling = yield from falling_particles(level, scene)
+        owners: list[int] = np.unique(scene.particle_item[is_falling]).tolist()
+        self.falling = frozenset(scene.items[index] for index in owners)
+        moving = int(np.count_nonzero(~(is_falling | scene.pinned)))
+        if not moving:
+            self.position, self.at_rest = scene.position, True
+            return
+        if moving > LARGEST:
+            self._trouble = f"{moving:,} particles move, too many for a forecast ({LARGEST:,}); play it to see"
+            self.at_rest = False
+            return
         world = build_world(level)
         yield None
         # Slots of the world by the particles of the scene: of welded ones the first alone.
@@ -81,32 +95,16 @@ class Forecast:
         slots = (np.cumsum(is_first) - 1)[scene.first_of_weld]
         for slot in np.unique(slots[is_falling]).tolist():
             world.pin(slot)
-        at_rest = yield from _settle(world, part[is_first])
-        if at_rest:
+        self._trouble = yield from _settle(world, part[is_first])
+        if not self._trouble:
             self.position = world.position[slots]
             self.position[is_falling] = scene.position[is_falling]
-        self.at_rest = at_rest
-
-    def _let_fall(self, level: Level, scene: Scene, part: Slots) -> NDArray[np.bool_]:
-        if level.settings.gravity == (0.0, 0.0):
-            return np.zeros(len(part), dtype=np.bool_)
-        held = np.zeros(len(part), dtype=np.bool_)
-        held[part[scene.pinned]] = True
-        is_falling = ~held[part]
-        owners: list[int] = np.unique(scene.particle_item[is_falling]).tolist()
-        self.falling = frozenset(scene.items[index] for index in owners)
-        return is_falling
+        self.at_rest = not self._trouble
 
 
-def _counted(items: Selection) -> str:
-    return f"{len(items)} items" if len(items) > 1 else called(next(iter(items)))
-
-
-def _settle(world: World, part: Slots) -> Generator[None, None, bool]:
-    """Run until nothing moves, or too long: whether it came to rest. part (k,): of the first k slots, a label each."""
+def _settle(world: World, part: Slots) -> Generator[None, None, str]:
+    """Run until nothing moves, or for too long: the trouble, empty at rest. part (k,): labels of the first slots."""
     count = len(part)
-    if not count:
-        return True
     free = world.inverse_mass[:count] > 0.0
     mass = np.where(free, world.mass[:count], 0.0)
     tick_rate = world.settings.tick_rate
@@ -119,6 +117,8 @@ def _settle(world: World, part: Slots) -> Generator[None, None, bool]:
     before = world.position[:count].copy()
     for tick in range(1, round(LONGEST * tick_rate) + 1):
         step(world)
+        if world.contained:
+            return "It blows up before it comes to rest; Findings may say which springs are too hard"
         speed = world.velocity[:count]
         energy = np.bincount(part, mass * (speed[:, 0] ** 2 + speed[:, 1] ** 2), count)
         past = energy < PAST_PEAK * peak
@@ -128,10 +128,10 @@ def _settle(world: World, part: Slots) -> Generator[None, None, bool]:
         if tick % window == 0:
             now = world.position[:count]
             if float(np.max(np.abs(now - before))) <= STILL * size:
-                return True
+                return ""
             before = now.copy()
         yield None
-    return False
+    return f"It does not come to rest within {LONGEST:g} s"
 
 
 def _stop(world: World, chosen: NDArray[np.bool_]) -> None:

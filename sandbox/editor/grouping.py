@@ -59,8 +59,7 @@ def _grouped(document: Document, name: str | None) -> Document:
         return part if part.group == name else replaced(part, group=name)
 
     level = changed(document.level, document.selection, regrouped)
-    parts = {part: getattr(level, part) for part in ("bodies", "particles", "springs")}
-    return Document(with_same(document.level, **parts), document.selection)
+    return Document(level, document.selection)
 
 
 def _order(chosen: Sequence[bool], to: Place) -> list[int]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sandbox.editor.finding import Finding, Rule, called, connected_parts, listed, middle_of, place_of
+from sandbox.editor.finding import Finding, Rule, called, falling_particles, listed, middle_of, place_of
 from sandbox.editor.lint_checks import hopeless_checks
 from sandbox.editor.lint_places import crossing_bodies, overlapping_particles
 from sandbox.editor.lint_solver import springs_past_limits
@@ -33,12 +33,8 @@ def findings(level: Level, scene: Scene) -> Iterator[Finding | None]:
 
 def falling_parts(level: Level, scene: Scene) -> Rule:
     """Parts that nothing holds, under gravity."""
-    if level.settings.gravity == (0.0, 0.0) or not len(scene.position):
-        return
-    part = yield from connected_parts(scene)
-    held = np.zeros(len(part), dtype=np.bool_)
-    held[part[scene.pinned]] = True
-    falling = np.flatnonzero(~held[part])
+    part, is_falling = yield from falling_particles(level, scene)
+    falling = np.flatnonzero(is_falling)
     yield None
     # Particles part by part, parts in order of their first particle.
     falling = falling[np.argsort(part[falling], kind="stable")]

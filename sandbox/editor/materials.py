@@ -77,7 +77,7 @@ def assign(document: Document, material: str) -> Document:
         return part if same else replaced(part, material=material)
 
     level = changed(document.level, document.selection, assigned)
-    return replace(document, level=with_same(document.level, bodies=level.bodies, springs=level.springs))
+    return replace(document, level=level)
 
 
 def set_checks(document: Document, checks: Iterable[CheckDef]) -> Document:

@@ -7,15 +7,26 @@ from typing import Literal
 
 import numpy as np
 
-from sandbox.editor.document import Document, EditError, check_bodies, subject, validated
-from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles, keys
+from sandbox.editor.document import Document, EditError, all_validated, check_bodies, subject, validated
+from sandbox.editor.items import (
+    MANY,
+    Definition,
+    Item,
+    Selection,
+    changed,
+    chosen_bodies,
+    chosen_particles,
+    exchanged,
+    keys,
+)
 from sandbox.editor.names import owner_of
 from sandbox.editor.placement import Motion, can_stretch, mapped_body, mapped_particle, shifted, stretch
 from sandbox.editor.remap import rebuilt
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.level.bodies import AnyBody
+from sandbox.level.collector import collector_paused
 from sandbox.level.limits import COORDINATE_LIMIT
-from sandbox.level.model import Level, ParticleDef, SpringDef
+from sandbox.level.model import Level, SpringDef
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import Points
 
@@ -27,7 +38,7 @@ Axis = Literal["x", "y"]
 def move(document: Document, dx: float, dy: float) -> Document:
     """Move the selection by dx, dy [m]. Raises EditError where it would leave the world."""
     _finite("a move", dx, dy)
-    return document if (dx, dy) == (0.0, 0.0) else _moved(document, lambda _: (dx, dy))
+    return document if (dx, dy) == (0.0, 0.0) else _moved(document, lambda ids: np.full((len(ids), 2), (dx, dy)))
 
 
 def rotate(document: Document, angle: float, centre: Point) -> Document:
@@ -83,24 +94,23 @@ def distribute(document: Document, axis: Axis) -> Document:
     return _moved_along(document, parts, apart, along)
 
 
-def _moved(document: Document, by: Callable[[str], Point]) -> Document:
-    """Move each selected body and loose particle by what is asked for its id [m]."""
-
-    def moved(part: Definition) -> Definition:
-        if isinstance(part, SpringDef):
-            return part
-        dx, dy = by(part.id)
-        if not isinstance(part, ParticleDef):
-            return _within(shifted(part, dx, dy))
-        x, y = part.position[0] + dx, part.position[1] + dy
-        if abs(x) > COORDINATE_LIMIT or abs(y) > COORDINATE_LIMIT:
-            raise _beyond(part)
-        return replaced(part, position=(x, y))
-
-    level = changed(document.level, _placed(document.selection), moved)
-    if level.bodies is not document.level.bodies:
-        check_bodies(level, chosen_bodies(level, document.selection))
-    return replace(document, level=level)
+def _moved(document: Document, by: Callable[[list[str]], Points]) -> Document:
+    """Move each selected body and loose particle by what is asked for their ids [m] (k, 2)."""
+    level = document.level
+    bodies = chosen_bodies(level, document.selection)
+    particles = chosen_particles(level, document.selection)
+    places = np.array([particle.position for particle in particles], dtype=np.float64).reshape(-1, 2)
+    places = places + by([particle.id for particle in particles])
+    outside = np.flatnonzero(np.any(np.abs(places) > COORDINATE_LIMIT, axis=1))
+    if len(outside):
+        raise _beyond(particles[outside[0]])
+    shifts = zip(bodies, by([body.id for body in bodies]).tolist(), strict=True)
+    moved = [_within(shifted(body, dx, dy)) for body, (dx, dy) in shifts]
+    check_bodies(level, moved)
+    with collector_paused(len(particles) > MANY):
+        rows = zip(particles, places.tolist(), strict=True)
+        placed = [replaced(particle, position=(x, y)) for particle, (x, y) in rows]
+        return replace(document, level=exchanged(level, document.selection, moved, placed))
 
 
 def _finite(what: str, *numbers: float) -> None:
@@ -128,24 +138,29 @@ def _mapped(document: Document, motion: Motion) -> Document:
     if (motion.angle, motion.sx, motion.sy) == (0.0, 1.0, 1.0):
         return document
     level, selection = document.level, document.selection
-    images: dict[str, Points] = {}
-    bodies: dict[str, AnyBody] = {}
-    for body in chosen_bodies(level, selection):
-        new, images[body.id] = mapped_body(body, motion)
-        bodies[body.id] = validated(new)
-    inside = selection - {item for item in selection if item.kind == "spring"}
-    springs = _inside_springs(level, inside) if motion.factor != 1.0 or not motion.is_even else frozenset()
-    scene = make_scene(level) if springs else None
+    chosen = chosen_bodies(level, selection)
+    mapped = [mapped_body(body, motion) for body in chosen]
+    bodies = {body.id: body for body in all_validated([body for body, _ in mapped])}
+    images = {body.id: image for body, image in mapped}
+    with collector_paused(len(selection) > MANY):
+        particles = all_validated([mapped_particle(part, motion) for part in chosen_particles(level, selection)])
+        moved = exchanged(level, selection, chosen, particles)
+    if motion.factor != 1.0 or not motion.is_even:
+        moved = _stretched(level, moved, _placed(selection), motion)
+    return replace(document, level=rebuilt(moved, bodies, images) if bodies else moved)
 
-    def part(old: Definition) -> Definition:
-        if isinstance(old, ParticleDef):
-            return validated(mapped_particle(old, motion))
-        if isinstance(old, SpringDef) and old.rest_length is not None and scene is not None:
-            return validated(replaced(old, rest_length=old.rest_length * _spring_stretch(scene, old, motion)))
-        return old
 
-    level = changed(level, frozenset(item for item in selection if item.kind == "particle") | springs, part)
-    return replace(document, level=rebuilt(level, bodies, images) if bodies else level)
+def _stretched(old: Level, new: Level, selection: Selection, motion: Motion) -> Level:
+    """The new level with what a motion makes of the given rest lengths between selected things of the old."""
+    springs = _inside_springs(old, selection)
+    scene = make_scene(old)
+
+    def part(spring: Definition) -> Definition:
+        if not isinstance(spring, SpringDef) or spring.rest_length is None:
+            return spring
+        return validated(replaced(spring, rest_length=spring.rest_length * _spring_stretch(scene, spring, motion)))
+
+    return changed(new, springs, part)
 
 
 def _inside_springs(level: Level, selection: Selection) -> Selection:
@@ -164,7 +179,7 @@ def _spring_stretch(scene: Scene, spring: SpringDef, motion: Motion) -> float:
 
 
 def _placed(selection: Selection) -> Selection:
-    return frozenset(item for item in selection if item.kind != "spring")
+    return frozenset([item for item in selection if item[0] != "spring"])
 
 
 def _boxes(document: Document) -> tuple[dict[str, int], Points, Points]:
@@ -186,9 +201,12 @@ def _boxes(document: Document) -> tuple[dict[str, int], Points, Points]:
 
 
 def _moved_along(document: Document, parts: dict[str, int], apart: Points, axis: int) -> Document:
-    distances = apart.tolist()
-    if not any(distances):
+    if not np.any(apart):
         return document
-    if axis == 0:
-        return _moved(document, lambda name: (distances[parts[name]], 0.0))
-    return _moved(document, lambda name: (0.0, distances[parts[name]]))
+
+    def by(ids: list[str]) -> Points:
+        shift = np.zeros((len(ids), 2))
+        shift[:, axis] = apart[[parts[name] for name in ids]]
+        return shift
+
+    return _moved(document, by)

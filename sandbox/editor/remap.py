@@ -1,14 +1,16 @@
 """What hangs on a body's particles and springs by number, when its form becomes another one: the nearest take over."""
 
+import math
 from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.document import check_bodies, checked
-from sandbox.editor.names import owner_of, rewired
+from sandbox.editor.document import EditError, check_bodies, checked, subject
+from sandbox.editor.names import rewired
 from sandbox.level.bodies import AnyBody
 from sandbox.level.expansion import named_particles
+from sandbox.level.limits import COORDINATE_LIMIT
 from sandbox.level.model import Level
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import Pairs, Points, expand
@@ -19,6 +21,8 @@ Indices = NDArray[np.int64]
 NEIGHBOURS = 4
 # Distances that are computed at once; more of them take memory, fewer time.
 CHUNK = 1_000_000
+# Distances that carrying a pose over may take, about two seconds; a larger body's is carried by some of its particles.
+WORK = 50_000_000
 # Places this close, in units of the body's size, are the same: far above rounding, far below what is seen.
 SAME = 1e-9
 
@@ -31,34 +35,47 @@ def rebuilt(level: Level, bodies: Mapping[str, AnyBody], images: Mapping[str, Po
     bodies with an image lie in the new place already. Raises EditError for what could not be saved.
     """
     check_bodies(level, (replaced(body, pinned=(), cut=(), pose=None) for body in bodies.values()))
+    used = _used(level, bodies)
     fitted, parts = [], {}
     for old in level.bodies:
         new = bodies.get(old.id, old)
         if new is not old:
-            new, particles = _fitted(old, new, (images or {}).get(old.id))
-            if particles is not None:
-                parts[old.id] = _parts(old, new, particles)
+            new, goes = _fitted(old, new, (images or {}).get(old.id), sorted(set(used[old.id].values())))
+            if goes is not None:
+                names = {index: name for name, index in named_particles(new).items()}
+                named = named_particles(old)
+                # A name stays a name where it can.
+                parts[old.id] = {
+                    part: names.get(goes[index], str(goes[index])) if part in named else str(goes[index])
+                    for part, index in used[old.id].items()
+                }
         fitted.append(new)
 
     def follow(reference: str) -> str:
-        owner = owner_of(reference)
-        part = reference.partition(".")[2]
+        owner, _, part = reference.partition(".")
         return f"{owner}.{parts[owner][part]}" if owner in parts else reference
 
     level = replaced(level, bodies=tuple(fitted))
     return checked(rewired(level, follow)[0] if parts else level)
 
 
-def _parts(old: AnyBody, new: AnyBody, particles: Indices) -> dict[str, str]:
-    """The part after the dot, for each that a reference to the old body may have: a name stays a name if it can."""
-    names = {index: name for name, index in named_particles(new).items()}
-    numbers = particles.tolist()
-    named = {name: names.get(numbers[index], str(numbers[index])) for name, index in named_particles(old).items()}
-    return {str(index): str(number) for index, number in enumerate(numbers)} | named
+def _used(level: Level, bodies: Mapping[str, AnyBody]) -> dict[str, dict[str, int]]:
+    """By body, the parts after the dot of the references to it, with the indices of their particles."""
+    named = {body.id: named_particles(body) for body in level.bodies if body.id in bodies}
+    used: dict[str, dict[str, int]] = {name: {} for name in named}
+
+    def note(reference: str) -> str:
+        owner, _, part = reference.partition(".")
+        if owner in used:
+            used[owner][part] = named[owner][part] if part in named[owner] else int(part)
+        return reference
+
+    rewired(level, note)
+    return used
 
 
-def _fitted(old: AnyBody, new: AnyBody, image: Points | None) -> tuple[AnyBody, Indices | None]:
-    """The new body with pins, cuts and pose of the old, and which particle of it each old one is; None = the same."""
+def _fitted(old: AnyBody, new: AnyBody, image: Points | None, used: list[int]) -> tuple[AnyBody, dict[int, int] | None]:
+    """The new body with pins, cuts and pose of the old, and where used particles go to; None = all stay."""
     old_form, old_pairs = expand(old)
     form, pairs = expand(new)
     pose = None if new.pose is None else np.array(new.pose)
@@ -69,17 +86,30 @@ def _fitted(old: AnyBody, new: AnyBody, image: Points | None) -> tuple[AnyBody, 
         image = _laid_on(old_form, form)
     else:
         shift = None if pose is None else pose - image
-    particles = nearest(image, form)
-    if len(form) == len(image) and np.array_equal(particles, np.arange(len(form))):
+    order = same_places(image, form)
+    if order is not None and np.array_equal(order, np.arange(len(form))):
         return _posed(new, form, shift), None
-    cut = _followed(old_pairs[list(new.cut)], pairs, particles, image, form)
-    pinned = tuple(sorted({int(particles[index]) for index in new.pinned}))
-    fitted = replaced(new, pinned=pinned, cut=cut)
-    return _posed(fitted, form, None if shift is None else spread(image, shift, form)), particles
+    cut = old_pairs[list(new.cut)]
+    wanted = np.array(sorted({*used, *new.pinned, *cut.ravel().tolist()}), dtype=np.int64)
+    found = order[wanted] if order is not None else nearest(image[wanted], form)
+    goes = dict(zip(wanted.tolist(), found.tolist(), strict=True))
+    fitted = replaced(
+        new,
+        pinned=tuple(sorted({goes[index] for index in new.pinned})),
+        cut=_followed(cut, pairs, goes, image, form),
+    )
+    if shift is not None:
+        shift = shift[np.argsort(order)] if order is not None else spread(image, shift, form)
+    return _posed(fitted, form, shift), goes
 
 
 def _posed(body: AnyBody, form: Points, shift: Points | None) -> AnyBody:
-    return body if shift is None else replaced(body, pose=tuple(map(tuple, (form + shift).tolist())))
+    if shift is None:
+        return body
+    pose = form + shift
+    if float(np.max(np.abs(pose))) > COORDINATE_LIMIT:
+        raise EditError(f"{subject(body)} would lie beyond the limit {COORDINATE_LIMIT:.15g}")
+    return replaced(body, pose=tuple(map(tuple, pose.tolist())))
 
 
 def _laid_on(old: Points, new: Points) -> Points:
@@ -89,16 +119,22 @@ def _laid_on(old: Points, new: Points) -> Points:
     return np.asarray(new.min(axis=0) + share * np.ptp(new, axis=0))
 
 
+def same_places(points: Points, places: Points) -> Indices | None:
+    """Index of the place that each point is at (n,), where both are the same in another order; else None."""
+    if len(points) != len(places):
+        return None
+    size = max(float(np.ptp(places, axis=0).max()), SAME)
+    before, after = _reading_order(points, size), _reading_order(places, size)
+    if float(np.max(np.abs(points[before] - places[after]))) > SAME * size:
+        return None
+    result = np.zeros(len(points), dtype=np.int64)
+    result[before] = after
+    return result
+
+
 def nearest(points: Points, places: Points) -> Indices:
     """Index of the place nearest to each point (n,), the lowest on a tie."""
     result = np.zeros(len(points), dtype=np.int64)
-    if len(points) == len(places):
-        # The same places in another order, as in a mirror image, need no search.
-        size = max(float(np.ptp(places, axis=0).max()), SAME)
-        before, after = _reading_order(points, size), _reading_order(places, size)
-        if float(np.max(np.abs(points[before] - places[after]))) <= SAME * size:
-            result[before] = after
-            return result
     for rows, squared in _squared(points, places):
         result[rows] = np.argmin(squared, axis=1)
     return result
@@ -111,6 +147,8 @@ def _reading_order(points: Points, size: float) -> Indices:
 
 def spread(points: Points, values: Points, places: Points) -> Points:
     """Values (n, 2) known at points (n, 2), at other places (k, 2): the linear part, and what the nearest add to it."""
+    step = math.ceil(len(points) * len(places) / WORK)
+    points, values = points[::step], values[::step]
     base = np.column_stack([points, np.ones(len(points))])
     linear = np.linalg.lstsq(base, values, rcond=None)[0]
     rest = values - base @ linear
@@ -133,11 +171,11 @@ def _squared(points: Points, places: Points) -> Iterator[tuple[slice, Points]]:
         yield rows, np.sum(apart * apart, axis=2)
 
 
-def _followed(cut: Pairs, pairs: Pairs, particles: Indices, image: Points, form: Points) -> tuple[int, ...]:
+def _followed(cut: Pairs, pairs: Pairs, goes: dict[int, int], image: Points, form: Points) -> tuple[int, ...]:
     """The springs to cut for those that were: between the same two particles, or else with the nearest middle."""
     if not len(cut) or not len(pairs):
         return ()
     numbers = {pair: k for k, pair in reversed(list(enumerate(map(tuple, np.sort(pairs, axis=1).tolist()))))}
-    wanted = map(tuple, np.sort(particles[cut], axis=1).tolist())
+    wanted = [tuple(sorted((goes[a], goes[b]))) for a, b in cut.tolist()]
     close = nearest(image[cut].mean(axis=1), form[pairs].mean(axis=1)).tolist()
     return tuple(sorted({numbers.get(pair, near) for pair, near in zip(wanted, close, strict=True)}))

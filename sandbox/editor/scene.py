@@ -58,9 +58,7 @@ class _Names:
 
 
 def _alike(new: tuple[Any, ...], old: tuple[Any, ...]) -> bool:
-    return len(new) == len(old) and all(
-        a is b or (a.id == b.id and type(a) is type(b)) for a, b in zip(new, old, strict=True)
-    )
+    return [part.id for part in new] == [part.id for part in old] and [*map(type, new)] == [*map(type, old)]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,8 +5,6 @@ and counts. Each stage trusts what the one before has refused.
 """
 
 import collections
-import contextlib
-import gc
 import itertools
 import json
 import re
@@ -15,6 +13,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from sandbox.level.collector import collector_paused
 from sandbox.level.faults import Fault, LevelError, json_path, shown
 from sandbox.level.limits import (
     CHECK_LIMIT,
@@ -53,25 +52,12 @@ LEVEL_LIMITS = {
 def parse_level(data: bytes, source: str) -> Level:
     """Read a level from the bytes of a file; source names it in messages. Raises LevelError with all faults."""
     try:
-        with _no_collection(len(data)):
+        with collector_paused(len(data) > _LARGE):
             level = _parse(data, source)
             check_level(level, source)
     except (MemoryError, RecursionError):
         raise LevelError(source, [("", "is too large or too deep to be read")]) from None
     return level
-
-
-@contextlib.contextmanager
-def _no_collection(size: int) -> Iterator[None]:
-    """Pause the collector of cycles, which takes most of the time of reading [bytes] many small objects at once."""
-    paused = size > _LARGE and gc.isenabled()
-    if paused:
-        gc.disable()
-    try:
-        yield
-    finally:
-        if paused:
-            gc.enable()
 
 
 def _parse(data: bytes, source: str) -> Level:

@@ -75,10 +75,10 @@ def _read(data: bytes, faults: list[Fault]) -> dict[str, Any] | None:
     if not isinstance(raw, dict):
         faults.append(("", f"a level is an object {{...}}; this is {shown(raw)}"))
         return None
-    if "format" not in raw:
+    if "format" not in raw and raw.keys() & {"bodies", "particles"}:
         faults.append(("format", f'is missing; it is taken for "{FORMAT}"'))
-    elif raw["format"] != FORMAT:
-        faults.append(("format", f'{shown(raw["format"])} is not "{FORMAT}"; this is no level'))
+    elif raw.get("format") != FORMAT:
+        faults.append(("format", f'{shown(raw.get("format"))} is not "{FORMAT}"; this is no level'))
         return None
     return _of_this_version(raw, faults)
 
@@ -214,10 +214,11 @@ class _Remains:
                 continue
             index = int(rest[0])
             inner = [int(part) if part.isdigit() else part for part in rest[1:]]
-            told = json_path([key, self.places[key][index], *inner])
-            # A check whose particle is gone would then be told to need one.
-            if len(self.faults) <= FAULT_LIMIT and told not in (place for place, _ in self.faults):
-                self.faults.append((told, text))
+            if len(self.faults) <= FAULT_LIMIT:
+                told = json_path([key, self.places[key][index], *inner])
+                # A check whose particle is gone would otherwise be told to need one.
+                if told not in (place for place, _ in self.faults):
+                    self.faults.append((told, text))
             if key == "bodies" and not inner and self._unweld(level.bodies[index].id):
                 continue
             wrong.setdefault((key, index), []).append((inner, False))

@@ -60,9 +60,14 @@ def write_over(path: Path, data: bytes, backups: Path | None = None) -> str | No
         write_file(path, data)
         return None
     except OSError as error:
-        if error.errno not in _CANNOT_REPLACE or not path.is_file() or not os.access(path, os.W_OK):
+        if error.errno not in _CANNOT_REPLACE:
             raise
         refused = error
+    if not path.exists():
+        _write_new(path, data)
+        return f"{path} cannot be replaced in one step here: each save will write over it, and keep a copy first"
+    if not path.is_file() or not os.access(path, os.W_OK):
+        raise refused
     copy = _keep_copy(path, backups)
     if copy is None:
         raise refused
@@ -166,6 +171,18 @@ def _is_whole(path: Path) -> bool:
     except (OSError, ValueError, RecursionError):
         return False
     return True
+
+
+def _write_new(path: Path, data: bytes) -> None:
+    """Write a file that is not there yet under its own name, or leave none. Raises OSError."""
+    with open(path, "xb"):
+        pass
+    try:
+        _write_in_place(path, data)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(path)
+        raise
 
 
 def _write_in_place(path: Path, data: bytes) -> None:

@@ -53,6 +53,13 @@ _CACHE_FOLDER = _cache_folder() if COMPILED else ""
 unsigned: Any = np.uint64 if COMPILED else int
 
 
+def interpreter_function(name: str, result: str, *arguments: str) -> Any:
+    """A function of Python's own C interface for compiled kernels, given the numba names of its types."""
+    # By name, so that a cached kernel finds it again in the next process; its address would not last.
+    kinds = _numba.types
+    return kinds.ExternalFunction(name, getattr(kinds, result)(*(getattr(kinds, kind) for kind in arguments)))
+
+
 def _viewed(item: Any) -> Any:
     if isinstance(item, np.ndarray):
         return memoryview(cast(Any, item))
@@ -107,6 +114,11 @@ def inner_kernel(function: Function) -> Function:
 def scalar_kernel(function: Function) -> Function:
     """Make `function` a kernel that takes and gives scalars alone, to be called from other kernels."""
     return _compiled(function) if COMPILED else function
+
+
+def waiting_kernel(function: Function) -> Function:
+    """Make `function` a kernel for a thread of its own: others run meanwhile, and may be waited for."""
+    return _compiled(function, nogil=True, **_UNCOUNTED) if COMPILED else _interpreted(function)
 
 
 if COMPILED:

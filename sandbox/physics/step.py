@@ -8,7 +8,8 @@ from sandbox.physics.elements import AREA
 from sandbox.physics.jit import kernel
 from sandbox.physics.quarantine import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
-from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.solvers import SOLVERS, halves
+from sandbox.physics.solvers.direct import pattern_of
 from sandbox.physics.solvers.dissection import dissect
 from sandbox.physics.substeps import halve, substep_count
 from sandbox.physics.world import Floats, World
@@ -90,5 +91,7 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS)) -> None:
         world.add_elements(AREA, [[0, 1, 2]])
         step(world)
     if "direct" in solvers:
-        # That is too small a body to be dissected by itself.
+        # That is too small a body to be dissected by itself, or to need a second thread.
         dissect(np.array([0]), np.array([1]), world.position)
+        pattern = pattern_of(world)
+        halves.warm_up(pattern.matrix.fronts, pattern.rows.change)

@@ -89,6 +89,10 @@ class World(ElementSlots):
         # never state.
         self.contained: list[Any] = []
 
+    def __getstate__(self) -> dict[str, Any]:
+        """What a copy starts from: all but what solvers derive, which may hold a thread."""
+        return self.__dict__ | {"solver_cache": None}
+
     @property
     def settings(self) -> WorldSettings:
         """Settings of a tick, replaced as a whole; another solver begins anew what solvers keep, auto the banks."""

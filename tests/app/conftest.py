@@ -9,6 +9,7 @@ import json
 
 import pygame
 import pytest
+from person import VirtualScreen
 
 from sandbox.app.app import App
 from sandbox.app.display import Display
@@ -116,6 +117,33 @@ class Driver:
         self.type(text)
         self.key(pygame.K_RETURN)
 
+    # In the editor.
+
+    def at(self, x, y):
+        """Where a point [m] of the level that is edited is on the screen."""
+        return self.editor.camera.to_pixels((x, y))
+
+    def drag(self, *points, mods=0):
+        """Press at the first of points [m], move along the others, release at the last."""
+        pygame.key.set_mods(mods)
+        self.press(self.at(*points[0]))
+        for x, y in points[1:]:
+            self.move(self.at(x, y))
+        self.release(self.at(*points[-1]))
+        pygame.key.set_mods(0)
+
+    def click_at(self, x, y, mods=0):
+        """Click a point [m]; a second click there is a click of its own."""
+        pygame.key.set_mods(mods)
+        self.click(self.at(x, y))
+        pygame.key.set_mods(0)
+        self.app.input.forget_clicks()
+
+    def choose(self, label):
+        """Press the button of that label on the page that is open."""
+        button = next(button for button in self.app.ui.buttons() if button.text == label)
+        self.click_widget(button)
+
     def pixel_of(self, name):
         """Where a particle is on the screen."""
         position = self.playback.current.position[self.world.particle_slot(name)]
@@ -145,6 +173,30 @@ def open_app(documents):
 
 
 @pytest.fixture
+def edit(open_app):
+    """Open the editor on a level, or (None) an empty sheet."""
+
+    def open_(level=None):
+        driver = open_app(level or small_level())
+        if level is None:
+            driver.app.documents.new()
+        else:
+            driver.app.documents.edit_level(level)
+        driver.frames(2)
+        return driver
+
+    return open_
+
+
+@pytest.fixture
 def driver(open_app):
     """The app on the small level."""
     return open_app(small_level())
+
+
+@pytest.fixture
+def screen(tmp_path):
+    """A virtual screen of the window's size."""
+    virtual = VirtualScreen(tmp_path)
+    yield virtual
+    virtual.close()

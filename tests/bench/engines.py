@@ -25,11 +25,19 @@ class Running:
 
 @dataclass(frozen=True)
 class Setting:
-    """An engine with the settings that a row of the table is about."""
+    """An engine with the settings that a row of the table is about; method: what of it solves the links."""
 
     engine: str
     name: str
     build: Callable[[Scene], Running]
+    method: str
+    substeps: int
+    iterations: int = 1
+
+    def works_as_much_as(self, other: "Setting") -> bool:
+        """Whether a frame does at least what one of the other setting does."""
+        alike = (self.engine, self.method) == (other.engine, other.method)
+        return alike and self.substeps >= other.substeps and self.iterations >= other.iterations
 
 
 def sandbox_setting(substeps: int, solver: str = "direct") -> Setting:
@@ -39,7 +47,7 @@ def sandbox_setting(substeps: int, solver: str = "direct") -> Setting:
         world = scene.world(substeps=substeps, solver=solver)
         return Running(lambda: step(world), lambda: (world.position, world.velocity))
 
-    return Setting("Spring Sandbox", f"{solver}, substeps {substeps}", build)
+    return Setting("Spring Sandbox", f"{solver}, substeps {substeps}", build, solver, substeps)
 
 
 def pymunk_setting(substeps: int, iterations: int, spring: float | None = None) -> Setting:
@@ -76,8 +84,10 @@ def pymunk_setting(substeps: int, iterations: int, spring: float | None = None) 
 
         return Running(frame, lambda: _state([(tuple(b.position), tuple(b.velocity)) for b in bodies]))
 
-    kind = "PinJoint" if spring is None else f"DampedSpring {spring:g} m/h²"
-    return Setting("pymunk", f"{kind}, substeps {substeps}, iterations {iterations}", build)
+    method = "PinJoint" if spring is None else "DampedSpring"
+    kind = method if spring is None else f"{method} {spring:g} m/h²"
+    name = f"{kind}, substeps {substeps}, iterations {iterations}"
+    return Setting("pymunk", name, build, method, substeps, iterations)
 
 
 def box2d_setting(substeps: int, hertz: float | None = None) -> Setting:
@@ -113,8 +123,9 @@ def box2d_setting(substeps: int, hertz: float | None = None) -> Setting:
             ),
         )
 
-    kind = "rigid" if hertz is None else f"soft {hertz:g} of the substep rate"
-    return Setting("Box2D v3", f"{kind}, substeps {substeps}", build)
+    method = "rigid" if hertz is None else "soft"
+    kind = method if hertz is None else f"{method} {hertz:g} of the substep rate"
+    return Setting("Box2D v3", f"{kind}, substeps {substeps}", build, method, substeps)
 
 
 def _state(rows: list[tuple[tuple[float, float], tuple[float, float]]]) -> tuple[Floats, Floats]:

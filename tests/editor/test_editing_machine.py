@@ -34,13 +34,14 @@ EXAMPLES, EDITS = (2_000, 50) if NIGHTLY else (100, 20)
 # Levels that edits make larger than this are not worked on: the physics of large levels is tested elsewhere.
 WORKED_ON = 3_000  # [particles]
 
-LENGTHS = st.sampled_from([0.0, 0.25, -1.0, 3.0, 1e6, 1e300, float("nan")]) | st.floats(-5.0, 5.0)
+# Most values can be used, so that edits build on each other; a few are what a person should not be able to enter.
+LENGTHS = st.sampled_from([*[0.0, 0.25, -1.0, 3.0, 2.5] * 6, 1e6, 1e300, float("nan")])
 POINTS = st.tuples(LENGTHS, LENGTHS)
-FACTORS = st.sampled_from([1.0, 0.5, 2.0, 1.5, 0.0, -1.0, 1e9])
+FACTORS = st.sampled_from([*[0.5, 2.0, 1.0, 1.5, 0.2] * 4, 0.0, -1.0, 1e9])
 ANGLES = st.sampled_from([0.0, 0.3, 1.5707963267948966, 3.141592653589793, -2.0, 1e5]) | st.floats(-4.0, 4.0)
 SHARES = st.lists(st.floats(0.0, 0.999), min_size=1, max_size=4)
-COUNTS = st.sampled_from([-1, 0, 1, 2, 3, 5, 8, 13, 10**6])
-TEXTS = st.sampled_from(["rope", "deck 2", "a.b", "", "+", "x" * 300, "neu", "mehr 7", "hook"])
+COUNTS = st.sampled_from([*[3, 2, 5, 8, 13] * 3, 1, 0, -1, 10**6])
+TEXTS = st.sampled_from([*["rope", "deck 2", "fine", "more 7", "hook", "net"] * 3, "a.b", "", "+", "x" * 300])
 FIELDS = {
     "segments": COUNTS,
     "spacing": st.sampled_from([0.1, 0.2, 0.3, 0.5, 0.0, 1e-9]),
@@ -66,8 +67,20 @@ FIELDS = {
     "group": st.none() | TEXTS,
     "a": st.sampled_from(["hook", "rope.2", "cube.0", "nobody"]),
     "id": TEXTS,
-    "nonsense": COUNTS,
+    "hub_mass": st.none() | FACTORS,
+    "masses": st.sampled_from([None, [1.0], [1.0, 2.0, 3.0]]),
+    "particles": st.sampled_from([[[0, 0], [1, 0]], [[0, 0], [2, 0], [3, 1]], [[0, 0], [2, 0], [3, 1], [4, 4]]]),
+    "springs": st.sampled_from([[], [[0, 1]], [[1, 2], [2, 0]], [[0, 7]]]),
 }
+
+COUNTED = {"segments", "spacing", "spokes", "rings", "shape", "particles"}
+FORM = {"start", "end", "position", "angle", "radius", "thickness", "height", "springs"}
+
+
+def definitions(level, items):
+    """What a level says of items."""
+    everything = (*level.bodies, *level.particles, *level.springs)
+    return [part for item, part in zip(items_of(level), everything, strict=True) if item in items]
 
 
 @dataclass(frozen=True)
@@ -83,9 +96,9 @@ def state(level: Level) -> State:
 
 
 class EditingMachine(RuleBasedStateMachine):
-    @initialize(empty=st.booleans())
-    def open(self, empty: bool) -> None:
-        level = empty_level() if empty else zoo()
+    @initialize(empty=st.integers(0, 9))
+    def open(self, empty: int) -> None:
+        level = empty_level() if empty == 9 else zoo()
         self.history = History(Document(level))
         self.scene = make_scene(level)
         self.states, self.index, self.key = [state(level)], 0, None
@@ -212,11 +225,29 @@ class EditingMachine(RuleBasedStateMachine):
     def delete(self, apart) -> None:
         self._edit(deleting.break_apart if apart else deleting.delete)
 
-    @rule(data=st.data(), field=st.sampled_from(sorted(FIELDS)), chosen=st.booleans(), share=st.floats(0, 0.999))
-    def set_field(self, data, field, chosen, share) -> None:
+    def _set_field(self, data, names, share, chosen=False) -> None:
         item = self._item(share)
-        items = self.document.selection if chosen else frozenset([item] if item else [])
-        self._edit(fields.set_field, items, field, data.draw(FIELDS[field]), merge=f"set {field}")
+        part = definitions(self.document.level, [item])[0]
+        known = [name for name in sorted(names) if name in type(part).model_fields]
+        if known:
+            field = data.draw(st.sampled_from(known))
+            items = self.document.selection if chosen else frozenset([item])
+            self._edit(fields.set_field, items, field, data.draw(FIELDS[field]), merge=f"set {field}")
+
+    @precondition(lambda self: self.scene.items)
+    @rule(data=st.data(), chosen=st.booleans(), share=st.floats(0, 0.999))
+    def set_form(self, data, chosen, share) -> None:
+        self._set_field(data, FORM, share, chosen)
+
+    @precondition(lambda self: self.document.level.bodies)
+    @rule(data=st.data(), share=st.floats(0, 0.999))
+    def set_count(self, data, share) -> None:
+        self._set_field(data, COUNTED, share * len(self.document.level.bodies) / len(self.scene.items))
+
+    @precondition(lambda self: self.scene.items)
+    @rule(data=st.data(), chosen=st.booleans(), share=st.floats(0, 0.999))
+    def set_another_field(self, data, chosen, share) -> None:
+        self._set_field(data, set(FIELDS) - FORM - COUNTED, share, chosen)
 
     @rule(
         value=st.sampled_from(
@@ -237,7 +268,7 @@ class EditingMachine(RuleBasedStateMachine):
         settings_too = value[0] in ("gravity", "substeps", "tick_rate", "solver")
         self._edit(fields.set_setting if settings_too else fields.set_level_field, *value)
 
-    @rule(way=st.integers(0, 5), name=st.sampled_from(["steel", "wire", "unused", "default", "neu", ""]), new=TEXTS)
+    @rule(way=st.integers(0, 5), name=st.sampled_from(["steel", "wire", "unused", "default", "fine", ""]), new=TEXTS)
     def change_materials(self, way, name, new) -> None:
         soft = NissenMaterial.model_construct(stiffness=0.1 * way, damping=0.5 * way)
         edits = [

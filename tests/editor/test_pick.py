@@ -49,6 +49,22 @@ def test_of_discs_that_overlap_the_one_with_the_nearest_centre_is_hit(scene):
     assert item_at(scene, (0.05, 5.0), 0.0) == BALL
 
 
+def test_beside_all_discs_the_one_with_the_nearest_border_is_hit():
+    particles = ParticleDef(id="large", radius=0.5), ParticleDef(id="small", position=(1.0, 0.0))
+    scene = make_scene(Level(format="spring-sandbox/level", version=1, name="Beside", particles=particles))
+    assert particle_at(scene, (0.6, 0.0), 0.4) == 0
+    assert particle_at(scene, (0.9, 0.0), 0.4) == 1
+
+
+def test_a_body_is_open_where_no_spring_closes_it():
+    corners = [(0.0, 3.0), (0.0, 0.0), (3.0, 0.0), (3.0, 3.0)]
+    for turns in range(4):
+        cup = RopeDef(type="rope", id="cup", start=(0.0, 0.0), end=(3.0, 0.0), segments=3, pose=tuple(corners))
+        scene = make_scene(Level(format="spring-sandbox/level", version=1, name="Cup", bodies=(cup,)))
+        assert item_at(scene, (1.5, 1.4), 0.1) is None, turns
+        corners = [(3.0 - y, x) for x, y in corners]
+
+
 def test_of_particles_in_one_place_the_one_drawn_last_is_hit():
     particles = tuple(ParticleDef(id=name) for name in ("under", "over"))
     level = Level(format="spring-sandbox/level", version=1, name="Stack", particles=particles)

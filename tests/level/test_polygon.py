@@ -2,11 +2,12 @@
 
 from fractions import Fraction
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sandbox.level.polygon import grid_bounds, is_simple, polygon_grid
+from sandbox.level.polygon import grid_bounds, is_simple, polygon_grid, simplified
 
 eighths = st.integers(-40, 40)
 corners = st.lists(st.tuples(eighths, eighths), min_size=3, max_size=7)
@@ -91,3 +92,29 @@ def test_a_side_that_is_almost_level_neither_leaks_nor_floods(tilt):
 
 def test_a_polygon_between_the_points_of_its_grid_holds_none():
     assert polygon_grid([(0.1, 0.1), (0.2, 0.1), (0.1, 0.2)], 1.0)[2].size == 0
+
+
+def test_a_line_drawn_by_hand_keeps_the_corners_that_it_needs_and_loses_the_rest():
+    square = [(x / 10, 0.0) for x in range(30)] + [(3.0, y / 10) for y in range(30)]
+    square += [(3.0 - x / 10, 3.0) for x in range(30)] + [(0.0, 3.0 - y / 10) for y in range(30)]
+    assert simplified(square, 0.01) == [(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]
+
+
+@given(st.lists(st.tuples(st.floats(-5, 5), st.floats(-5, 5)), min_size=3, max_size=40), st.floats(0.0, 2.0))
+def test_no_corner_that_is_left_out_is_farther_than_the_tolerance_from_what_is_kept(corners, tolerance):
+    kept = simplified(corners, tolerance)
+    assert kept == [corner for corner in kept if corner in corners]
+    if len(kept) < 2:
+        assert len({*corners}) < 3
+        return
+    outline = np.array([*kept, kept[0]])
+    for corner in corners:
+        distance = min(segment_distance(outline[k], outline[k + 1], np.array(corner)) for k in range(len(kept)))
+        assert distance <= tolerance + 1e-9
+
+
+def segment_distance(a, b, point):
+    along = b - a
+    squared = float(along @ along)
+    share = min(max(float((point - a) @ along) / squared, 0.0), 1.0) if squared > 0.0 else 0.0
+    return float(np.linalg.norm(point - a - share * along))

@@ -35,10 +35,6 @@ def refusing(monkeypatch, holder, name, number, only=lambda *_: True):
     monkeypatch.setattr(holder, name, fails)
 
 
-def is_temporary(path, *_):
-    return str(path).endswith(".tmp")
-
-
 class FullFile:
     """A file on a disk that is full: what is written does not fit, at once or when it is flushed."""
 
@@ -150,10 +146,21 @@ def test_without_a_copy_nothing_is_written_in_place(path, monkeypatch):
 
 
 def test_a_new_file_that_cannot_be_made_is_refused(tmp_path, monkeypatch):
-    refusing(monkeypatch, builtins, "open", errno.EROFS, is_temporary)
+    refusing(monkeypatch, builtins, "open", errno.EROFS)
     with pytest.raises(OSError, match="Read-only"):
         write_over(tmp_path / "x.json", NEW, tmp_path / "backups")
+    monkeypatch.undo()
     assert os.listdir(tmp_path) == []
+
+
+def test_a_new_file_where_none_can_be_replaced_is_written_under_its_name_or_not_at_all(tmp_path, monkeypatch):
+    refusing(monkeypatch, os, "replace", errno.EPERM)
+    assert "each save will write over it" in write_over(tmp_path / "x.json", NEW)
+    assert (tmp_path / "x.json").read_bytes() == NEW
+    monkeypatch.setattr(writing.Path, "read_bytes", lambda _: NEW[:5])
+    with pytest.raises(OSError, match="it reads back otherwise"):
+        write_over(tmp_path / "y.json", NEW)
+    assert os.listdir(tmp_path) == ["x.json"]
 
 
 def test_a_write_in_place_that_fails_half_way_puts_the_old_content_back(path, monkeypatch):

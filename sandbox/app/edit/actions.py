@@ -9,11 +9,12 @@ from sandbox.app.camera import Box
 from sandbox.app.dialogs import choose, fill_in
 from sandbox.app.edit.bar import TOOLS
 from sandbox.app.edit.hands import DrawHand
+from sandbox.app.shortcuts import shortcuts
 from sandbox.editor.copying import array_circle, array_line, duplicate
 from sandbox.editor.deleting import break_apart, delete
 from sandbox.editor.document import Document
 from sandbox.editor.grouping import group, reorder, ungroup
-from sandbox.editor.items import Item, items_of
+from sandbox.editor.items import Item
 from sandbox.editor.moving import align, distribute, mirror
 from sandbox.editor.pick import items_of_material
 from sandbox.editor.placing import unweld
@@ -24,6 +25,12 @@ if TYPE_CHECKING:
 # A copy is put this many steps of the grid to the right of and below what it is of.
 COPY_STEPS = 2
 COPY_LIMIT = 1_000
+
+# Actions that have no button in the bar.
+MENU = (
+    "copy", "cut", "paste", "copy_level", "select_all", "select_material", "forward", "backward", "recent", "open_file",
+    "save_as", "revert",
+)  # fmt: skip
 
 Edge = Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]
 Place = Literal["front", "forward", "backward", "back"]
@@ -49,12 +56,13 @@ def edit_actions(screen: "EditScreen") -> dict[str, Callable[[], object]]:
         "paste": clipboard.paste,
         "copy_level": clipboard.copy_level,
         "duplicate": lambda: _duplicate(screen),
-        "delete": lambda: _edit_selection(screen, "Delete", delete),
-        "select_all": lambda: screen.select(frozenset(items_of(screen.document.level))),
+        "delete": lambda: _delete_or_back(screen),
+        "select_all": lambda: screen.select(frozenset(screen.scene.items)),
         "select_material": lambda: _ask_material(screen),
         "mirror": lambda: _ask_mirror(screen),
         "array": lambda: _ask_array(screen),
         "parts": lambda: _ask_parts(screen),
+        "menu": lambda: _show_menu(screen),
         "group": lambda: _edit_selection(screen, "Group", group),
         "ungroup": lambda: _edit_selection(screen, "Ungroup", ungroup),
         "break_apart": lambda: _edit_selection(screen, "Break apart", break_apart),
@@ -75,7 +83,21 @@ def edit_actions(screen: "EditScreen") -> dict[str, Callable[[], object]]:
         "zoom_out": lambda: _adjust_or_zoom(screen, -1),
         "fit": screen.fit,
         "panel": screen.toggle_side,
+        "next_page": lambda: _turn_page(screen, 1),
+        "previous_page": lambda: _turn_page(screen, -1),
     }
+
+
+def _show_menu(screen: "EditScreen") -> None:
+    """Offer what has no button of its own."""
+    entries = [entry for entry in shortcuts("edit") if entry.action in MENU]
+    choices = [(f"{entry.label}  [{entry.keys[0]}]", screen.actions[entry.action]) for entry in entries]
+    choose(screen.ui, "More", "", choices, columns=2)
+
+
+def _turn_page(screen: "EditScreen", by: int) -> None:
+    if screen.side is not None:
+        screen.side.turn(by)
 
 
 def _has_selection(screen: "EditScreen") -> bool:
@@ -155,8 +177,8 @@ def _ask_align(screen: "EditScreen") -> None:
 
 
 def _ask_parts(screen: "EditScreen") -> None:
-    names = ("group", "ungroup", "break_apart", "unjoin", "select_material")
-    labels = ("Group", "Ungroup", "Break bodies apart", "Take joints apart", "Select by material")
+    names = ("group", "ungroup", "break_apart", "unjoin")
+    labels = ("Group", "Ungroup", "Break bodies apart", "Take joints apart")
     choices = [(label, screen.actions[name]) for label, name in zip(labels, names, strict=True)]
     choose(screen.ui, "Parts", "Groups are selected and moved together. A body that is broken apart "
            "becomes loose particles and springs.", choices)  # fmt: skip
@@ -256,6 +278,14 @@ def _adjust_or_zoom(screen: "EditScreen", by: int) -> None:
         screen.zoom(2 * by)
 
 
+def _delete_or_back(screen: "EditScreen") -> None:
+    """Take the last point of what is drawn back, or delete the selection."""
+    if isinstance(screen.hand, DrawHand) and screen.hand.drawing.under_way:
+        screen.hand.drawing.back()
+    else:
+        _edit_selection(screen, "Delete", delete)
+
+
 def _finish(screen: "EditScreen") -> None:
     if isinstance(screen.hand, DrawHand):
         screen.hand.finish()
@@ -263,7 +293,7 @@ def _finish(screen: "EditScreen") -> None:
 
 def _visit(screen: "EditScreen", by: int) -> None:
     """Select the next item of the file, or the one before."""
-    items = items_of(screen.document.level)
+    items = screen.scene.items
     if not items:
         return
     chosen = [index for index, item in enumerate(items) if item in screen.document.selection]

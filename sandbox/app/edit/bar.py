@@ -25,13 +25,13 @@ LEFT = (
     (("undo", "undo"), ("redo", "redo")),
     (("new", "new"), ("open", "open"), ("save", "save")),
     (
-        ("duplicate", "duplicate"), ("delete", "delete"), ("mirror", "mirror"), ("array", "array"), ("group", "group"),
+        ("duplicate", "duplicate"), ("delete", "delete"), ("mirror", "mirror"), ("array", "array"), ("parts", "group"),
         ("align", "align"), ("order", "order"),
     ),
     (("snap", "snap"), ("forecast", "forecast")),
 )  # fmt: skip
-RIGHT = (("fit", "fit"), ("panel", "panel"))
-NEEDS_SELECTION = ("duplicate", "delete", "mirror", "array", "group", "align", "order")
+RIGHT = (("menu", "menu"), ("fit", "fit"), ("panel", "panel"))
+NEEDS_SELECTION = ("duplicate", "delete", "mirror", "array", "parts", "align", "order")
 MARGIN = 14.0
 GROUP_GAP = 14.0
 
@@ -76,9 +76,9 @@ class _Buttons:
             return
         self._shown[action] = colour
         button = self.by_action[action]
+        set_icon(button, self._icon(self._pictures[action], colour))
         (button.enable if enabled else button.disable)()
         (button.select if on else button.unselect)()
-        set_icon(button, self._icon(self._pictures[action], colour))
 
     def _icon(self, name: str, colour: Colour) -> pygame.Surface:
         key = (name, colour)

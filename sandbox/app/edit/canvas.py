@@ -1,6 +1,9 @@
 """Painter of the scene that is edited: a layer that is kept while nothing changes, and what moves drawn over it."""
 
-from dataclasses import dataclass
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 import pygame
@@ -23,16 +26,22 @@ from sandbox.app.colours import (
 )
 from sandbox.app.lines import Canvas
 from sandbox.app.renderer import CROWDED, DENSITY, GRID_STEP, PIN_RADIUS, SMALLEST_RADIUS, SPRING_WIDTH, THINNEST_SPRING
-from sandbox.editor.items import Selection
+from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene
+from sandbox.level.limits import BODY_RADIUS
 
 # Distance of the points that the pointer snaps to, at least [pixels at scale 1].
 SNAP_STEP = 16.0
-# More springs than this are drawn plainly while they change, and smoothly in the first frame that nothing does.
+# More particles and springs than this are drawn plainly while they change, and smoothly afterwards.
 PLAIN_FROM = 6_000
 # What is only a preview is this much paler.
 GHOST_SHARE = 0.45
 HIGHLIGHT_WIDTH = 2.4
+# The smooth picture is made of so many springs or particles at a time, for so long [s] in every frame.
+CHUNK = 2_000
+SLICE = 0.006
+# Particles that would be smaller than this [pixels] are left out of the plain picture.
+SMALLEST_PLAIN = 1.0
 HOVERED: Colour = (180, 190, 205)
 
 Mask = NDArray[np.bool_]
@@ -49,6 +58,19 @@ class Part:
     ghost: bool = False
 
 
+class Chosen(NamedTuple):
+    """Which particles (n,) and springs (m,) of a scene are selected."""
+
+    particles: Mask
+    springs: Mask
+
+    @classmethod
+    def of(cls, scene: Scene, selection: Selection) -> "Chosen":
+        """Find them, which takes time in large selections."""
+        chosen = scene.chosen(selection)
+        return cls(chosen[scene.particle_item], chosen[scene.spring_item])
+
+
 class ScenePainter:
     """Draws scenes on a surface; `compiled`: whether the kernels are ready; scale: pixels per layout unit."""
 
@@ -56,80 +78,104 @@ class ScenePainter:
         self.scale = scale
         self.compiled = True
         self._layer: pygame.Surface | None = None
+        self._scene: Scene | None = None
         self._key: tuple[object, ...] = ()
-        self._is_plain = False
+        self._finer: pygame.Surface | None = None
+        self._work: Iterator[None] | None = None
 
-    def draw(self, surface: pygame.Surface, camera: Camera, scene: Scene, selection: Selection, hidden: bool) -> None:
+    def draw(self, surface: pygame.Surface, camera: Camera, scene: Scene, chosen: Chosen, hidden: bool) -> None:
         """Draw grid, scene and selection, from the layer that is kept where it still holds.
 
-        hidden: the selection is left out, because it is drawn elsewhere while it moves.
+        hidden: the selection is left out, because it is drawn elsewhere while it moves. Of a large scene the first
+        picture is plain; a smooth one is made in the frames that follow, and takes its place.
         """
-        key = (id(scene), camera.centre, camera.zoom, camera.viewport, self.scale, selection, hidden, self.compiled)
-        is_new = key != self._key
-        if self._layer is None or self._layer.get_size() != surface.get_size():
+        key = (camera.centre, camera.zoom, camera.viewport, self.scale, id(chosen.particles), hidden, self.compiled)
+        if self._layer is None or scene is not self._scene or key != self._key:
+            self._key, self._scene, self._chosen = key, scene, chosen
+            is_large = len(scene.particle_a) + len(scene.position) > PLAIN_FROM
             self._layer = pygame.Surface(surface.get_size(), 0, 32)
-            is_new = True
-        if is_new or self._is_plain:
-            self._is_plain = is_new and len(scene.particle_a) > PLAIN_FROM
-            self._key, self._scene = key, scene
-            self._paint_layer(self._layer, camera, scene, selection, hidden)
+            for _ in self._layer_work(self._layer, camera, scene, chosen, hidden, is_large):
+                pass
+            self._work = None
+            if is_large and not hidden:
+                self._finer = pygame.Surface(surface.get_size(), 0, 32)
+                self._work = self._layer_work(self._finer, camera, scene, chosen, hidden, False)
+        elif self._work is not None:
+            self._refine()
         surface.blit(self._layer, camera.viewport[:2], camera.viewport)
 
-    def _paint_layer(
-        self, layer: pygame.Surface, camera: Camera, scene: Scene, selection: Selection, hidden: bool
-    ) -> None:
+    def _refine(self) -> None:
+        """Go on with the smooth picture for a moment."""
+        assert self._work is not None
+        end = time.perf_counter() + SLICE
+        for _ in self._work:
+            if time.perf_counter() > end:
+                return
+        self._work, self._layer = None, self._finer
+
+    def _layer_work(
+        self, layer: pygame.Surface, camera: Camera, scene: Scene, chosen: Chosen, hidden: bool, plain: bool
+    ) -> Iterator[None]:
+        # The clip holds while a slice is drawn, and nobody else draws on the layer.
         layer.set_clip(camera.viewport)
         layer.fill(BACKGROUND)
         draw_grid(layer, camera, self.scale)
-        particles, springs = scene.particles_of(selection), scene.springs_of(selection)
-        if hidden:
-            springs |= hanging_springs(scene, particles)
-        self.paint(layer, camera, Part(scene, ~particles, ~springs), self._is_plain)
+        particles, springs = chosen
+        away = springs | hanging_springs(scene, particles) if hidden else springs
+        yield from self._slices(layer, camera, Part(scene, ~particles, ~away), plain)
         if not hidden:
-            self.paint(layer, camera, Part(scene, particles, springs, ACCENT), self._is_plain)
-        layer.set_clip(None)
+            yield from self._slices(layer, camera, Part(scene, particles, springs, ACCENT), plain)
 
-    def paint_moved(self, surface: pygame.Surface, camera: Camera, scene: Scene, selection: Selection) -> None:
-        """Draw the selection in a scene where it has moved, and the springs of others that hang on it."""
-        particles, springs = scene.particles_of(selection), scene.springs_of(selection)
+    def paint_moved(
+        self, surface: pygame.Surface, camera: Camera, scene: Scene, chosen: Chosen, matrix: NDArray[np.float64]
+    ) -> None:
+        """Draw the selection where a matrix (2, 3) takes it, and the springs of others that hang on it."""
+        particles, springs = chosen
+        position = scene.position.copy()
+        position[particles] = position[particles] @ matrix[:, :2].T + matrix[:, 2]
+        moved = replace(scene, position=position[scene.first_of_weld] if len(scene.welds) else position)
         nobody = np.zeros(len(particles), dtype=np.bool_)
-        self.paint(surface, camera, Part(scene, nobody, hanging_springs(scene, particles) & ~springs))
-        self.paint(surface, camera, Part(scene, particles, springs, ACCENT))
+        self.paint(surface, camera, Part(moved, nobody, hanging_springs(scene, particles) & ~springs))
+        self.paint(surface, camera, Part(moved, particles, springs, ACCENT))
 
-    def paint_hovered(self, surface: pygame.Surface, camera: Camera, scene: Scene, items: Selection) -> None:
+    def paint_hovered(self, surface: pygame.Surface, camera: Camera, scene: Scene, item: Item) -> None:
         """Draw what a click would select, brighter; of large bodies only the springs."""
-        particles, springs = scene.particles_of(items), scene.springs_of(items)
+        particles, springs = Chosen.of(scene, frozenset({item}))
         if np.count_nonzero(springs) > PLAIN_FROM:
             particles = np.zeros(len(particles), dtype=np.bool_)
         self.paint(surface, camera, Part(scene, particles, springs, HOVERED))
 
-    def paint(self, surface: pygame.Surface, camera: Camera, part: Part, plain: bool | None = None) -> None:
-        """Draw a part of a scene; plain: with quick lines, None = where there are many."""
-        scene = part.scene
-        springs = np.flatnonzero(part.springs)
+    def paint(self, surface: pygame.Surface, camera: Camera, part: Part) -> None:
+        """Draw a part of a scene, plainly where it is large."""
+        for _ in self._slices(surface, camera, part, bool(np.count_nonzero(part.springs) > PLAIN_FROM)):
+            pass
+
+    def _slices(self, surface: pygame.Surface, camera: Camera, part: Part, plain: bool) -> Iterator[None]:
+        """Draw a part, a slice at each turn."""
+        scene, springs, particles = part.scene, np.flatnonzero(part.springs), np.flatnonzero(part.particles)
         canvas = Canvas(surface, self.compiled)
         pixels = camera.project(scene.position)
-        plain = len(springs) > PLAIN_FROM if plain is None else plain
-        self._paint_springs(canvas, camera, part, springs, pixels, plain)
-        if not (plain and len(springs) > PLAIN_FROM and self._radius(camera, part) < 1.0):
-            self._paint_particles(canvas, camera, part, pixels)
-
-    def _paint_springs(
-        self, canvas: Canvas, camera: Camera, part: Part, springs: NDArray[np.int64], pixels: NDArray[np.float64],
-        plain: bool,
-    ) -> None:  # fmt: skip
-        scene = part.scene
-        ends = np.concatenate([pixels[scene.particle_a[springs]], pixels[scene.particle_b[springs]]], axis=1)
-        ends = np.ascontiguousarray(ends)
         colours = self._colours(part)[scene.material[springs]]
+        ends = np.concatenate([pixels[scene.particle_a[springs]], pixels[scene.particle_b[springs]]], axis=1)
         if plain:
-            canvas.plain_lines(ends, colours)
+            canvas.plain_lines(np.ascontiguousarray(ends), colours)
+        else:
+            width = self._width(camera, scene.rest_length[springs])
+            passes = [(colours, width)]
+            if part.tint is not None:
+                under = np.full(len(springs), packed(mixed(BACKGROUND, part.tint, 0.55)))
+                passes.insert(0, (under, width + HIGHLIGHT_WIDTH * self.scale))
+            for tones, wide in passes:
+                for start in range(0, len(springs), CHUNK):
+                    stop = start + CHUNK
+                    canvas.lines(np.ascontiguousarray(ends[start:stop]), tones[start:stop], wide)
+                    yield
+        crowded = self._radius(camera, part)
+        if plain and len(springs) > PLAIN_FROM and crowded < SMALLEST_PLAIN:
             return
-        width = self._width(camera, scene.rest_length[springs])
-        if part.tint is not None:
-            under = np.full(len(springs), packed(mixed(BACKGROUND, part.tint, 0.55)))
-            canvas.lines(ends, under, width + HIGHLIGHT_WIDTH * self.scale)
-        canvas.lines(ends, colours, width)
+        for start in range(0, len(particles), CHUNK):
+            self._paint_particles(canvas, camera, part, particles[start : start + CHUNK], pixels, crowded, plain)
+            yield
 
     def _colours(self, part: Part) -> NDArray[np.int64]:
         """Colours (materials,) of the springs."""
@@ -142,28 +188,33 @@ class ScenePainter:
         return float(np.clip(spacing * DENSITY, THINNEST_SPRING * self.scale, SPRING_WIDTH * self.scale))
 
     def _radius(self, camera: Camera, part: Part) -> float:
-        """About how large [pixels] the particles of a part are."""
+        """About how large [pixels] particles may be to leave room between them."""
         rest = part.scene.rest_length[part.springs]
         return float(np.median(rest)) * camera.zoom * CROWDED if len(rest) else np.inf
 
-    def _paint_particles(self, canvas: Canvas, camera: Camera, part: Part, pixels: NDArray[np.float64]) -> None:
-        scene, shown = part.scene, np.flatnonzero(part.particles)
-        if not len(shown):
-            return
-        fewest, rim = THINNEST_SPRING * self.scale, 1.4 * self.scale
-        usual = np.minimum(SMALLEST_RADIUS * self.scale, max(self._radius(camera, part), fewest))
-        radii = np.maximum(scene.radius[shown] * camera.zoom, usual)
-        if self._radius(camera, part) < SMALLEST_RADIUS * self.scale:
-            radii = np.where(scene.radius[shown] <= scene.radius.min(), np.minimum(radii, usual), radii)
+    def _paint_particles(
+        self, canvas: Canvas, camera: Camera, part: Part, shown: NDArray[np.int64], pixels: NDArray[np.float64],
+        crowded: float, plain: bool,
+    ) -> None:  # fmt: skip
+        scene, own = part.scene, part.scene.radius[shown]
+        smallest = max(min(SMALLEST_RADIUS * self.scale, crowded), THINNEST_SPRING * self.scale)
+        radii = np.maximum(own * camera.zoom, smallest)
+        # Particles of the usual radius shrink with the mesh that they belong to, or it is a field of dots.
+        radii = np.where(own <= BODY_RADIUS, np.minimum(radii, max(smallest, crowded)), radii)
         centres = np.ascontiguousarray(pixels[shown])
-        under = part.tint or BACKGROUND
         colour = mixed(PARTICLE, BACKGROUND, GHOST_SHARE) if part.ghost else PARTICLE
-        canvas.discs(centres, radii + np.minimum(rim, radii * 0.6), np.full(len(shown), packed(under)))
+        if plain:
+            canvas.discs(centres, radii, np.full(len(shown), packed(part.tint or colour)))
+            return
+        rim = np.minimum(1.4 * self.scale, radii * 0.6)
+        canvas.discs(centres, radii + rim, np.full(len(shown), packed(part.tint or BACKGROUND)))
         canvas.discs(centres, radii, np.full(len(shown), packed(colour)))
         held = scene.pinned[shown]
-        self._paint_rings(canvas, centres[held], radii[held], mixed(PINNED, BACKGROUND, 0.4) if part.ghost else PINNED)
-        welded = np.isin(shown, scene.welds.ravel())
-        self._paint_rings(canvas, centres[welded & ~held], radii[welded & ~held], WELD)
+        fade = GHOST_SHARE if part.ghost else 0.0
+        self._paint_rings(canvas, centres[held], radii[held], mixed(PINNED, BACKGROUND, fade))
+        if len(scene.welds):
+            welded = np.isin(shown, scene.welds) & ~held
+            self._paint_rings(canvas, centres[welded], radii[welded], mixed(WELD, BACKGROUND, fade))
 
     def _paint_rings(
         self, canvas: Canvas, centres: NDArray[np.float64], radii: NDArray[np.float64], colour: Colour

@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sandbox.app.dialogs import ask, choose, show_lines
 from sandbox.app.edit.screen import EditScreen
@@ -16,7 +16,7 @@ from sandbox.editor.history import History
 from sandbox.editor.recent import remember
 from sandbox.editor.storage import ChangedOnDisk, FileExists, LevelFile, LevelInUse, StorageError
 from sandbox.level.faults import LevelError
-from sandbox.level.files import load_level, shipped_folder
+from sandbox.level.files import load_level
 from sandbox.level.model import Level
 
 if TYPE_CHECKING:
@@ -36,6 +36,9 @@ class Documents:
         self.editor: EditScreen | None = None
         self._autosave: Autosave | None = None
         self._told_of_change = False
+        self._told_fault: str | None = None
+        # The box that asks about changes, while it is open: it is not asked twice.
+        self._question: Any = None
 
     # Opening.
 
@@ -50,21 +53,31 @@ class Documents:
             except LevelError as error:
                 show_lines(self.app.ui, f"{name} cannot be opened", error.faults)
 
-    def new(self) -> None:
-        """Begin with an empty sheet."""
-        self.if_saved(lambda: self._show(empty_level(), LevelFile(), "New"))
+    def new(self, then: Callable[[], object] = lambda: None) -> None:
+        """Begin with an empty sheet; then: what is done once it is there."""
+
+        def begin() -> None:
+            self._show(empty_level(), LevelFile(), "New")
+            then()
+
+        self.if_saved(begin)
 
     def edit_level(self, level: Level, label: str = "Open") -> None:
         """Edit a level that has no file of its own."""
         self.if_saved(lambda: self._show(level, LevelFile(), label))
 
     def open(self, path: str | Path) -> None:
-        """Edit a level file; a shipped level as a copy, which leaves the shipped one as it is."""
+        """Edit a level file; the one that is open already is shown as it is."""
         path = Path(path)
-        if path.resolve().parent == shipped_folder("levels").resolve() and not os.access(path, os.W_OK):
-            self.if_saved(lambda: self._open(path, LevelFile.copy_of))
+        if self._has_open(path):
+            self.back()
+            self.look_at_disk()
         else:
             self.if_saved(lambda: self._open(path, LevelFile.open))
+
+    def _has_open(self, path: Path) -> bool:
+        own = self.editor.level_file.path if self.editor is not None else None
+        return own is not None and os.path.realpath(own) == os.path.realpath(path)
 
     def open_copy(self, path: str | Path) -> None:
         """Edit a level file's content under no name yet."""
@@ -114,6 +127,7 @@ class Documents:
         if level_file.path is not None:
             remember(level_file.path)
         self.app.show_screen(self.editor)
+        self.app.guide.offer()
 
     # Saving.
 
@@ -206,8 +220,12 @@ class Documents:
         if editor is None or editor.history.is_saved:
             then()
             return
+        if self._question is not None and self._question.alive():
+            return
         choices = [("Save", lambda: self._save(then)), ("Discard the changes", then)]
-        choose(self.app.ui, f"Save “{editor.document.level.name}”?", "It has changes that are not saved.", choices)
+        self._question = choose(
+            self.app.ui, f"Save “{editor.document.level.name}”?", "It has changes that are not saved.", choices
+        )
 
     def give_up(self) -> None:
         """Keep nothing in the autosave: the person has saved, or does not want it."""
@@ -222,6 +240,14 @@ class Documents:
             self._autosave.close()
 
     # Safety.
+
+    def update(self) -> None:
+        """Say once where the autosave cannot be written."""
+        fault = self._autosave.fault if self._autosave is not None else None
+        if fault != self._told_fault:
+            self._told_fault = fault
+            if fault is not None:
+                self.app.say(fault)
 
     def note(self, level: Level, path: Path | None, label: str) -> None:
         """Have the autosave follow a change."""
@@ -290,7 +316,7 @@ class Documents:
             return
         editor.leave()
         screen = self.app.start_document(Playback(editor.document.level))
-        screen.camera.centre, screen.camera.zoom = editor.camera.centre, editor.camera.zoom
+        screen.camera.show_as(editor.camera)
 
     def back(self) -> None:
         """Back from playing to the document as it was."""

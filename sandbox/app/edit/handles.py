@@ -13,8 +13,8 @@ from sandbox.app.colours import ACCENT, BACKGROUND
 SIDE = 8.0
 REACH = 9.0
 KNOB = 26.0
-# The box keeps this distance from what it holds.
-PADDING = 9.0
+# The box keeps this distance from what it holds; nearer, its handles lie over particles.
+PADDING = 14.0
 # A turn snaps to whole multiples of this [degrees].
 TURN_STEP = 15.0
 # What is scaled keeps at least this part of its size, and its side.

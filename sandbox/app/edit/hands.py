@@ -79,6 +79,7 @@ class SelectHand:
         self._gesture: Gesture | None = None
         self._pressed: Point | None = None
         self._clicked: Item | None = None
+        self._double = False
         self.hovered: Item | None = None
 
     @property
@@ -111,7 +112,7 @@ class SelectHand:
         screen = self._screen
         handles = self.handles()
         name = handles.at(screen.camera.to_pixels(point)) if handles is not None else None
-        self._pressed, self._clicked, self._gesture = point, None, None
+        self._pressed, self._clicked, self._gesture, self._double = point, None, None, clicks == 2
         if handles is not None and name is not None:
             even = not can_scale_unevenly(screen.document)
             self._gesture = Transforming(screen, handles, name, point, even)
@@ -145,12 +146,12 @@ class SelectHand:
         return Lassoing(screen, start) if self._lasso else Boxing(screen, start)
 
     def up(self, point: Point, modifiers: int) -> None:
-        """End the drag; a click in the open selects nothing."""
+        """End the drag; a click selects what is there alone, in the open nothing."""
         gesture, pressed, self._gesture, self._pressed = self._gesture, self._pressed, None, None
         if gesture is not None:
             gesture.end()
-        elif pressed is not None and self._clicked is None and pick_mode(modifiers, True) == "replace":
-            self._screen.select(frozenset())
+        elif pressed is not None and not self._double and pick_mode(modifiers, True) == "replace":
+            self._screen.select(frozenset() if self._clicked is None else frozenset({self._clicked}))
 
     def hover(self, point: Point | None, modifiers: int) -> None:
         """Find the item under the pointer."""

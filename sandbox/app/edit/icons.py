@@ -156,9 +156,14 @@ def _keep(pen: Pen) -> None:
     pen.line((6.5, 3.5), (17.5, 3.5), (17.5, 20.5), (12, 15.5), (6.5, 20.5), (6.5, 3.5))
 
 
+def _menu(pen: Pen) -> None:
+    for y in (6, 12, 18):
+        pen.line((4, y), (20, y), width=2.2)
+
+
 EDIT_DRAWINGS: dict[str, Callable[[Pen], None]] = {
     "select": _select, "lasso": _lasso, "particle": _particle, "rope": _rope, "bridge": _bridge, "girder": _girder,
     "web": _web, "box": _box, "circle": _circle, "polygon": _polygon, "wheel": _wheel, "edit": _edit, "new": _new,
     "open": _open, "duplicate": _duplicate, "delete": _delete, "mirror": _mirror, "array": _array, "group": _group,
-    "align": _align, "order": _order, "snap": _snap, "forecast": _forecast, "keep": _keep,
+    "align": _align, "order": _order, "snap": _snap, "forecast": _forecast, "keep": _keep, "menu": _menu,
 }  # fmt: skip

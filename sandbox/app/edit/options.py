@@ -6,11 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import pygame
 
+from sandbox.app.colours import material_colours
 from sandbox.app.edit.hands import DrawHand
+from sandbox.app.edit.rows import Picker, Row
 from sandbox.app.fields import Field
 from sandbox.editor.document import EditError
-from sandbox.editor.drawing_options import About, described
+from sandbox.editor.drawing_options import About, described, stepped
 from sandbox.editor.moving import move, rotate, scale
+from sandbox.editor.snap import PLACE_DECIMALS
 from sandbox.level.limits import DEFAULT_MATERIAL
 
 if TYPE_CHECKING:
@@ -34,8 +37,8 @@ class OptionsRow:
         self._x = 0.0
         self._made: list[Any] = []
         self.fields: dict[str, Field] = {}
-        self._flags: dict[str, Any] = {}
-        self._menus: dict[str, Any] = {}
+        self.flags: dict[str, Any] = {}
+        self.menus: dict[str, Picker] = {}
 
     def refresh(self) -> None:
         """Show the options, or the selection's numbers, as they are now."""
@@ -55,7 +58,7 @@ class OptionsRow:
     def _remake(self, hand: object, materials: tuple[str, ...]) -> None:
         for widget in self._made:
             self._ui.remove(widget)
-        self._made, self.fields, self._flags, self._menus, self._x = [], {}, {}, {}, GAP
+        self._made, self.fields, self.flags, self.menus, self._x = [], {}, {}, {}, GAP
         if isinstance(hand, DrawHand):
             self._add_label(self._screen.tool.capitalize() if self._screen.tool != "box" else "Jelly", "@heading")
             for name, about in described(hand.drawing.options).items():
@@ -114,22 +117,25 @@ class OptionsRow:
                 button = self._ui.button(
                     self._rect(width), about.label, toggle, self.back, style="@segment", tip=about.text
                 )
-                self._flags[name] = button
+                self.flags[name] = button
                 self._made.append(button)
                 self._x += 6
             return
         self._add_label(about.label + unit, "@muted")
         if about.kind != "material":
-            self._add_field(name, partial(self._type_option, hand, name, about), ENTRY_WIDTH, about.text)
+            tip = f"{about.text} The wheel or Up and Down change it."
+            self._add_field(name, partial(self._type_option, hand, name, about), ENTRY_WIDTH, tip)
+            if name in self.fields:
+                self.fields[name].turn = partial(self._turn_option, hand, name, about)
         elif self._room(MENU_WIDTH):
             chosen = getattr(hand.drawing.options, name)
             if chosen not in materials:
                 chosen = materials[-1] if len(materials) > 1 else DEFAULT_MATERIAL
                 self._set(hand, name, chosen)
-            choose = partial(self._choose, hand, name)
-            menu = self._ui.menu(self._rect(MENU_WIDTH), materials, chosen, choose, self.back)
-            self._menus[name] = menu
-            self._made.append(menu)
+            picker = Picker(self._ui, self._rect(MENU_WIDTH), partial(self._choose, hand, name), self.back)
+            picker.set_tooltip(about.text)
+            self.menus[name] = picker
+            self._made.append(picker)
             self._x += GAP
 
     # Showing.
@@ -139,13 +145,14 @@ class OptionsRow:
         for name, field in self.fields.items():
             value = getattr(options, name)
             field.show("" if value is None else f"{value:g}")
-        for name, button in self._flags.items():
+        for name, button in self.flags.items():
             if getattr(options, name) != button.is_selected:
                 (button.select if getattr(options, name) else button.unselect)()
 
-        for name, menu in self._menus.items():
-            if menu.selected_option[0] != getattr(options, name):
-                self._ui.replace_menu(menu, getattr(options, name))
+        for name, picker in self.menus.items():
+            colours = material_colours(self._screen.scene.materials)
+            rows = tuple(Row(material, swatch=colour) for material, colour in colours.items())
+            picker.show_value(rows, Row(getattr(options, name), swatch=colours[getattr(options, name)]))
 
     def _show_selection(self) -> None:
         box = self._screen.selection_box
@@ -155,7 +162,7 @@ class OptionsRow:
         values = {"x": (left + right) / 2, "y": (bottom + top) / 2, "width": right - left, "height": top - bottom}
         for name, value in values.items():
             if name in self.fields:
-                self.fields[name].show(f"{value:.6g}")
+                self.fields[name].show(f"{round(value, PLACE_DECIMALS) + 0.0:.6g}")
 
     # Changing.
 
@@ -167,8 +174,8 @@ class OptionsRow:
             return False
         return True
 
-    def _choose(self, hand: DrawHand, name: str, chosen: str) -> None:
-        self._set(hand, name, chosen)
+    def _choose(self, hand: DrawHand, name: str, index: int) -> None:
+        self._set(hand, name, self.menus[name].rows[index].text)
 
     def _toggle(self, hand: DrawHand, name: str) -> None:
         self._set(hand, name, not getattr(hand.drawing.options, name))
@@ -182,6 +189,19 @@ class OptionsRow:
         if about.kind == "count" and value == int(value):
             return self._set(hand, name, int(value))
         return self._set(hand, name, value)
+
+    def _turn_option(self, hand: DrawHand, name: str, about: About, by: int) -> None:
+        """Step a value up or down; a number of parts from the one that fits."""
+        if name == hand.drawing.counted:
+            hand.adjust(by)
+        else:
+            self._set(hand, name, stepped(about, getattr(hand.drawing.options, name), by))
+        self._show_option(name, getattr(hand.drawing.options, name))
+
+    def _show_option(self, name: str, value: float | None) -> None:
+        text = "" if value is None else f"{value:g}"
+        self.fields[name].text = text
+        self.fields[name].entry.set_text(text)
 
     def _number(self, label: str, text: str) -> float | None:
         try:

@@ -1,22 +1,25 @@
 """EditScreen: a level that is edited: canvas and rulers, palette, bar, tool options, and the panel at the side."""
 
+import gc
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-import numpy as np
 import pygame
 
 from sandbox.app.camera import Box, Camera, Point, bounds, grid_spacing
 from sandbox.app.colours import ACCENT, DANGER, MUTED, SURFACE, TEXT, WARNING, Colour
 from sandbox.app.edit.actions import edit_actions
 from sandbox.app.edit.bar import Bar, Palette
-from sandbox.app.edit.canvas import SNAP_STEP, Part, ScenePainter
+from sandbox.app.edit.canvas import SNAP_STEP
 from sandbox.app.edit.clipboard import Clipboard
 from sandbox.app.edit.hands import DrawHand, Hand, SelectHand
 from sandbox.app.edit.options import OPTIONS_HEIGHT, OptionsRow
-from sandbox.app.edit.overlay import draw_cursor, draw_label, draw_snap, draw_spot
+from sandbox.app.edit.overlay import draw_snap
 from sandbox.app.edit.rulers import RULER, Rulers
+from sandbox.app.edit.side import Side
+from sandbox.app.edit.view import View
 from sandbox.app.edit.watch import Watch
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Pixel, Pointer
@@ -32,7 +35,7 @@ from sandbox.editor.forecast import Forecast
 from sandbox.editor.history import History
 from sandbox.editor.items import Selection
 from sandbox.editor.moving import can_scale_unevenly, move
-from sandbox.editor.scene import Scene, make_scene, transformed
+from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.snap import Snap, snap
 from sandbox.editor.storage import LevelFile
 
@@ -44,6 +47,8 @@ PALETTE_WIDTH = 52.0
 SIDE_WIDTH = 292.0
 # A nudge with Shift is this many steps of the grid.
 NUDGE_LEAP = 10
+# Of more items than this the panel at the side follows a frame later.
+LARGE_SELECTION = 1_000
 # View [m] of a level in which nothing is yet.
 FIRST_VIEW: Box = (-6.0, -3.0, 6.0, 4.0)
 
@@ -52,6 +57,7 @@ class EditScreen:
     """Edits a level; panels and tools change it by `edit` alone, so that every change can be undone."""
 
     mode: Mode = "edit"
+    notices_left = PALETTE_WIDTH + RULER + 12.0
 
     def __init__(self, app: "App", history: History, level_file: LevelFile) -> None:
         self.app = app
@@ -59,16 +65,16 @@ class EditScreen:
         self.history = history
         self.level_file = level_file
         self.camera = Camera(viewport=self._viewport())
-        self.painter = ScenePainter(app.scale)
+        self.view = View(self)
         self.tool = "select"
         self.snapping = True
         self.show_side = True
         self.cursor: Point | None = None
         self.pointer: Pixel | None = None
         self._scene: Scene | None = None
-        self._ghost_scene: Scene | None = None
         self._box: tuple[Scene, Selection, Box | None] | None = None
-        self._spot: tuple[Point, float] | None = None
+        self._seen: Document | None = None
+        self._is_side_late = False
         self.watch = Watch(self)
         self.clipboard = Clipboard(self)
         self.hands: dict[str, Hand] = {
@@ -105,7 +111,8 @@ class EditScreen:
     def edit(self, label: str, function: Callable[[Document], Document], merge: str | None = None) -> bool:
         """Make an edit a step of the history; False, and a line for the person, where it cannot be made."""
         try:
-            document = function(self.document)
+            with _no_collection():
+                document = function(self.document)
         except EditError as error:
             self.say(str(error))
             return False
@@ -126,12 +133,13 @@ class EditScreen:
     def step_to(self, index: int) -> None:
         """Show the state after a step of the history."""
         before = self.document.level
-        self.cancel()
+        self.leave()
         self.history.go_to(index)
         self.level_changed(self.history.labels[index], before)
 
     def select(self, selection: Selection) -> None:
-        """Select items; the history has no step for it."""
+        """Select items; the history has no step for it, but what is nudged next is a step of its own."""
+        self.history.end_merge()
         self.history.select(selection)
 
     def say(self, text: str) -> None:
@@ -156,7 +164,7 @@ class EditScreen:
         pixel = self.camera.to_pixels(place)
         if not pygame.Rect(left, top, width, height).inflate(-width // 5, -height // 5).collidepoint(pixel):
             self.camera.centre = place
-        self._spot = (place, 0.0)
+        self.view.point_out(place)
 
     # Layout.
 
@@ -177,12 +185,16 @@ class EditScreen:
         before = self.camera.viewport
         self.camera.viewport = self._viewport()
         self.camera.zoom *= math.sqrt(self.camera.viewport[2] * self.camera.viewport[3] / max(before[2] * before[3], 1))
-        self.painter.scale = ui.scale
         width, height = ui.units
         self.bar = Bar(ui, self.app.act)
         self.palette = Palette(ui, self.app.act, BAR_HEIGHT, PALETTE_WIDTH, height - BAR_HEIGHT - STATUS_HEIGHT)
         self.options = OptionsRow(self, ui.rect(PALETTE_WIDTH, BAR_HEIGHT, width - PALETTE_WIDTH, OPTIONS_HEIGHT))
         self.rulers = Rulers(ui)
+        self.side = Side(ui, self, self._side_place()) if self.show_side else None
+
+    def _side_place(self) -> pygame.Rect:
+        ui, (width, height), top = self.ui, self.ui.units, BAR_HEIGHT + OPTIONS_HEIGHT
+        return ui.rect(width - SIDE_WIDTH, top, SIDE_WIDTH, height - top - STATUS_HEIGHT)
 
     def toggle_side(self) -> None:
         """Hide or show the panel at the side."""
@@ -190,9 +202,12 @@ class EditScreen:
         self.app.rebuild()
 
     def fit(self) -> None:
-        """Show everything, or a first view where there is nothing."""
-        level = self.document.level
-        self.camera.fit(bounds(self.scene.position) if len(self.scene.position) else level.view or FIRST_VIEW)
+        """Show the level's view and everything in it, or a first view where there is nothing."""
+        level, points = self.document.level, self.scene.position
+        boxes = [level.view] if level.view is not None else []
+        boxes += [bounds(points)] if len(points) else []
+        left, bottom, right, top = zip(*(boxes or [FIRST_VIEW]), strict=True)
+        self.camera.fit((min(left), min(bottom), max(right), max(top)))
 
     @property
     def scales_apart(self) -> bool:
@@ -295,10 +310,7 @@ class EditScreen:
 
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
         """Follow the pointer, look for faults a little, and show the state in the widgets."""
-        self.painter.compiled = ready
-        if self._spot is not None:
-            place, age = self._spot
-            self._spot = (place, age + frame_time) if age < 1.5 else None
+        self.view.update(frame_time, ready)
         if not pygame.mouse.get_pressed()[0] or pointer is None:
             self.pointer = pointer
             at = self.cursor if self.cursor is not None else None if pointer is None else self.camera.to_world(pointer)
@@ -308,46 +320,24 @@ class EditScreen:
         self.bar.show(self)
         self.palette.show(self.tool)
         self.options.refresh()
+        self._refresh_side()
+
+    def _refresh_side(self) -> None:
+        """Refresh the panel; where much is selected, which takes it long, a frame after the canvas has answered."""
+        is_large = len(self.document.selection) > LARGE_SELECTION
+        is_new = is_large and self.document is not self._seen and not self._is_side_late
+        self._seen, self._is_side_late = self.document, is_new
+        if self.side is not None and not is_new:
+            self.side.refresh()
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw canvas and rulers."""
         surface.fill(SURFACE)
         surface.set_clip(self.camera.viewport)
         with profile.part("canvas"):
-            self._draw_scene(surface)
-            self._draw_overlay(surface)
+            self.view.draw(surface)
         surface.set_clip(None)
         self.rulers.draw(surface, self.camera, self.pointer)
-
-    def _draw_scene(self, surface: pygame.Surface) -> None:
-        scene, selection, matrix = self.scene, self.document.selection, self.hand.matrix
-        self.painter.draw(surface, self.camera, scene, selection, matrix is not None)
-        if matrix is not None:
-            moved = transformed(scene, selection, matrix)
-            self.painter.paint_moved(surface, self.camera, moved, selection)
-        forecast = self.watch.forecast_scene(scene)
-        if forecast is not None:
-            every = np.ones(len(scene.position), dtype=np.bool_), np.ones(len(scene.particle_a), dtype=np.bool_)
-            self.painter.paint(surface, self.camera, Part(forecast, *every, ghost=True))
-        ghost = self.hand.ghost()
-        if ghost is not None and ghost.level is not self.document.level:
-            if self._ghost_scene is None or self._ghost_scene.level is not ghost.level:
-                self._ghost_scene = make_scene(ghost.level, scene)
-            drawn, new = self._ghost_scene, ghost.selection
-            part = Part(drawn, drawn.particles_of(new), drawn.springs_of(new), ghost=True)
-            self.painter.paint(surface, self.camera, part)
-
-    def _draw_overlay(self, surface: pygame.Surface) -> None:
-        hand = self.hand
-        hand.draw(surface)
-        if isinstance(hand, SelectHand) and hand.hovered is not None and hand.matrix is None:
-            self.painter.paint_hovered(surface, self.camera, self.scene, frozenset({hand.hovered}))
-        if self.cursor is not None:
-            draw_cursor(surface, self.camera.to_pixels(self.cursor), self.scale)
-        if self._spot is not None:
-            draw_spot(surface, self.camera.to_pixels(self._spot[0]), self._spot[1], self.scale)
-        if hand.measure and self.pointer is not None:
-            draw_label(surface, self.ui, self.pointer, hand.measure, self.camera.viewport)
 
     def draw_snap(self, surface: pygame.Surface, snapped: Snap) -> None:
         """Mark what the pointer snaps to, with a word."""
@@ -386,3 +376,14 @@ class EditScreen:
         if self.hand.matrix is not None or isinstance(self.hand, DrawHand):
             self.hand.cancel()
         self.history.end_merge()
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """No search for garbage among the objects of all states, which takes longer than the edit of a large level."""
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        gc.enable()

@@ -2,12 +2,13 @@
 
 import time
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
 
 from sandbox.editor.forecast import Forecast
 from sandbox.editor.lint import Finding, findings
-from sandbox.editor.scene import Scene
 from sandbox.level.model import Level
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ class Watch:
         self._since = 0.0
         self._lint: Iterator[Finding | None] | None = None
         self._found: list[Finding] = []
-        self._hanging: tuple[Forecast, Scene, Scene] | None = None
+        self._is_told = False
 
     def toggle_forecast(self) -> None:
         """Work out where everything will hang, or no longer."""
@@ -49,10 +50,12 @@ class Watch:
             return
         if before < PATIENCE:
             self._lint, self._found = findings(level, self._screen.scene), []
+            self._is_told = False
             self.forecast = Forecast(level) if self.forecasts and self._screen.scene.items else None
         self._look()
-        if self.forecast is not None:
-            self.forecast.advance(SLICE)
+        if self.forecast is not None and self.forecast.advance(SLICE) and not self._is_told:
+            self._is_told = True
+            self._screen.say(f"{self.forecast.text}.")
 
     def _look(self) -> None:
         if self._lint is None:
@@ -65,11 +68,8 @@ class Watch:
                 return
         self._lint, self.findings = None, self._found
 
-    def forecast_scene(self, scene: Scene) -> Scene | None:
-        """The scene with everything where it will hang, once that is known."""
-        forecast = self.forecast
-        if forecast is None or forecast.position is None or self._level is not scene.level:
-            return None
-        if self._hanging is None or self._hanging[0] is not forecast or self._hanging[1] is not scene:
-            self._hanging = (forecast, scene, replace(scene, position=forecast.position))
-        return self._hanging[2]
+    @property
+    def hanging(self) -> NDArray[np.float64] | None:
+        """Where everything will hang [m] (n, 2), by the particles of the screen's scene; None until it is known."""
+        is_present = self._level is self._screen.document.level
+        return self.forecast.position if self.forecast is not None and is_present else None

@@ -9,6 +9,7 @@ import numpy as np
 
 from sandbox.physics.jit import bundle_kernel, inner_kernel
 from sandbox.physics.settings import AUTO
+from sandbox.physics.solvers.halves import hire
 from sandbox.physics.solvers.measure import cap, extremes
 from sandbox.physics.solvers.minimise import copy, keep_tension, minimise, scale
 from sandbox.physics.solvers.network import (
@@ -281,6 +282,7 @@ def pattern_of(world: World) -> Pattern:
         and (not world.element_count or has_elements(pattern, world))
     ):
         pattern = world.solver_cache = make_pattern(world)
+        hire(pattern, pattern.matrix.fronts, pattern.rows.change)
     return pattern
 
 

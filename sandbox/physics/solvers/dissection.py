@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.solvers.fronts import PANEL, Fronts
+from sandbox.physics.solvers.fronts import PANEL, Fronts, Scratch
+from sandbox.physics.solvers.halves import CALL_LENGTH, find_fork
 from sandbox.physics.world import Floats, Slots
 
 # Particles that are not split further. Fewer make many small fronts, more make needless zeros; measured best of 12..48.
@@ -271,15 +272,25 @@ def make_fronts(count: int, dissections: list[tuple[int, Dissection]]) -> Fronts
     levels = joined("place", none).reshape(-1, 2) if rows else np.zeros((0, 2), dtype=np.int64)
     size = np.zeros(DEEPEST, dtype=np.int64)
     np.maximum.at(size, levels[:, 0], borders * borders)
-    # Two fronts of a level wait at most, one per side; nothing lies below the widest front.
+    # Two fronts of a level wait at most, one per side, of each half; nothing lies below the widest front.
     before = widest + 2 * (np.cumsum(size) - size)
     remains = before[levels[:, 0]] + levels[:, 1] * size[levels[:, 0]]
+    fork = np.zeros((len(first), 2), dtype=np.int64)
+    for (_, one), k in zip(dissections, fronts_before, strict=False):
+        begin, end = find_fork(one.first, one.last, one.child, one.border_start)
+        fork[k + len(one.first) - 1] = k + begin, k + end
+        remains[k + begin : k + end] += 2 * int(size.sum())
     return Fronts(
         of_row, diagonal, row_width, first, last, np.concatenate(child) if child else np.zeros((0, 2), dtype=np.int64),
         border_start, border, joined("to_parent", none), width, ends - pivots * width, remains,
-        np.zeros(int(ends[-1]) if len(ends) else 0), np.zeros(widest + 2 * int(size.sum())), np.zeros(2 * count),
-        np.zeros(int(PANEL) * widest), np.zeros(int(PANEL)), np.zeros(widest),
+        np.zeros(int(ends[-1]) if len(ends) else 0), np.zeros(widest + (4 if fork.any() else 2) * int(size.sum())),
+        np.zeros(2 * count), fork, _scratch(widest), _scratch(widest), np.zeros((count, 2)),
+        np.zeros(CALL_LENGTH, dtype=np.int64),
     )  # fmt: skip
+
+
+def _scratch(widest: int) -> Scratch:
+    return Scratch(np.zeros(int(PANEL) * widest), np.zeros(int(PANEL)), np.zeros(widest))
 
 
 def spring_places(fronts: Fronts, low: Slots, high: Slots) -> Slots:

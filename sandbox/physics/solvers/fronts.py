@@ -17,6 +17,14 @@ ZERO, ONE, TWO, THREE, FOUR = unsigned(0), unsigned(1), unsigned(2), unsigned(3)
 PANEL = unsigned(8)
 
 
+class Scratch(NamedTuple):
+    """Room for one thread's work on a front."""
+
+    panel: Floats
+    inverse: Floats
+    vector: Floats
+
+
 class Fronts(NamedTuple):
     """The fronts of all large bodies, children before parents.
 
@@ -24,7 +32,8 @@ class Fronts(NamedTuple):
     numbers and the width of its front.
     first, last, child, border_start, border, to_parent: see Dissection, rows counted over all bodies. width (f,):
     scalars in a row of the front; base and remains (f,): its places in numbers and remainder. inverses (2n,): 1 / d.
-    panel, inverse and vector are scratch.
+    fork (f, 2): at the last front of a body, where its second half begins, and where that ends; equal: it has none.
+    here and aside are the scratch of the two halves, apart (n, 2) is the second's right side, call is their talk.
     """
 
     of_row: Slots
@@ -42,9 +51,11 @@ class Fronts(NamedTuple):
     numbers: Floats
     remainder: Floats
     inverses: Floats
-    panel: Floats
-    inverse: Floats
-    vector: Floats
+    fork: Slots
+    here: Scratch
+    aside: Scratch
+    apart: Floats
+    call: Slots
 
 
 @inner_kernel
@@ -193,9 +204,9 @@ def clear_fronts(first_row, last_row, mass, fronts):  # type: ignore[no-untyped-
 
 
 @inner_kernel
-def factorise_fronts(first_front, last_front, fronts, change):  # type: ignore[no-untyped-def]
+def factorise_fronts(first_front, last_front, fronts, scratch, change):  # type: ignore[no-untyped-def]
     """Factor the fronts first_front..last_front in place, and begin to solve for their rows of change (n, 2)."""
-    stride = unsigned(fronts.vector.shape[0])
+    stride = unsigned(scratch.vector.shape[0])
     for front in range(first_front, last_front):
         pivots = TWO * unsigned(fronts.last[front] - fronts.first[front])
         width = unsigned(fronts.width[front])
@@ -212,37 +223,37 @@ def factorise_fronts(first_front, last_front, fronts, change):  # type: ignore[n
                     fronts.to_parent, unsigned(fronts.border_start[below]), unsigned(fronts.border_start[below + 1]),
                 )  # fmt: skip
         _eliminate_front(
-            fronts.numbers, base, fronts.remainder, place, pivots, width, fronts.panel, stride, fronts.inverse,
+            fronts.numbers, base, fronts.remainder, place, pivots, width, scratch.panel, stride, scratch.inverse,
             fronts.inverses, TWO * unsigned(fronts.first[front]),
         )  # fmt: skip
-        _eliminate_rows(front, fronts, change)
+        _eliminate_rows(front, fronts, scratch.vector, change)
 
 
 @inner_kernel
-def _gather(front, fronts, change):  # type: ignore[no-untyped-def]
+def _gather(front, fronts, vector, change):  # type: ignore[no-untyped-def]
     k = 0
     for row in range(fronts.first[front], fronts.last[front]):
-        fronts.vector[k] = change[row, 0]
-        fronts.vector[k + 1] = change[row, 1]
+        vector[k] = change[row, 0]
+        vector[k + 1] = change[row, 1]
         k += 2
     for at in range(fronts.border_start[front], fronts.border_start[front + 1]):
         row = fronts.border[at]
-        fronts.vector[k] = change[row, 0]
-        fronts.vector[k + 1] = change[row, 1]
+        vector[k] = change[row, 0]
+        vector[k + 1] = change[row, 1]
         k += 2
 
 
 @inner_kernel
-def _scatter(front, fronts, change):  # type: ignore[no-untyped-def]
+def _scatter(front, fronts, vector, change):  # type: ignore[no-untyped-def]
     k = 0
     for row in range(fronts.first[front], fronts.last[front]):
-        change[row, 0] = fronts.vector[k]
-        change[row, 1] = fronts.vector[k + 1]
+        change[row, 0] = vector[k]
+        change[row, 1] = vector[k + 1]
         k += 2
     for at in range(fronts.border_start[front], fronts.border_start[front + 1]):
         row = fronts.border[at]
-        change[row, 0] = fronts.vector[k]
-        change[row, 1] = fronts.vector[k + 1]
+        change[row, 0] = vector[k]
+        change[row, 1] = vector[k + 1]
         k += 2
 
 
@@ -289,34 +300,34 @@ def _substitute_back(numbers, base, pivots, width, inverses, first_inverse, vect
 
 
 @inner_kernel
-def _eliminate_rows(front, fronts, change):  # type: ignore[no-untyped-def]
-    _gather(front, fronts, change)
+def _eliminate_rows(front, fronts, vector, change):  # type: ignore[no-untyped-def]
+    _gather(front, fronts, vector, change)
     _substitute_forward(
         fronts.numbers, unsigned(fronts.base[front]), TWO * unsigned(fronts.last[front] - fronts.first[front]),
-        unsigned(fronts.width[front]), fronts.inverses, TWO * unsigned(fronts.first[front]), fronts.vector,
+        unsigned(fronts.width[front]), fronts.inverses, TWO * unsigned(fronts.first[front]), vector,
     )  # fmt: skip
-    _scatter(front, fronts, change)
+    _scatter(front, fronts, vector, change)
 
 
 @inner_kernel
-def eliminate_rows(first_front, last_front, fronts, change):  # type: ignore[no-untyped-def]
+def eliminate_rows(first_front, last_front, fronts, scratch, change):  # type: ignore[no-untyped-def]
     """Begin to solve for the rows of the factored fronts first_front..last_front of change (n, 2)."""
     for front in range(first_front, last_front):
-        _eliminate_rows(front, fronts, change)
+        _eliminate_rows(front, fronts, scratch.vector, change)
 
 
 @inner_kernel
-def substitute_fronts(first_front, last_front, fronts, change):  # type: ignore[no-untyped-def]
+def substitute_fronts(first_front, last_front, fronts, scratch, change):  # type: ignore[no-untyped-def]
     """Finish solving for the rows of the fronts first_front..last_front of change (n, 2), in place."""
     for back in range(last_front - first_front):
         front = last_front - 1 - back
-        _gather(front, fronts, change)
+        _gather(front, fronts, scratch.vector, change)
         _substitute_back(
             fronts.numbers, unsigned(fronts.base[front]), TWO * unsigned(fronts.last[front] - fronts.first[front]),
-            unsigned(fronts.width[front]), fronts.inverses, TWO * unsigned(fronts.first[front]), fronts.vector,
+            unsigned(fronts.width[front]), fronts.inverses, TWO * unsigned(fronts.first[front]), scratch.vector,
         )  # fmt: skip
         k = 0
         for row in range(fronts.first[front], fronts.last[front]):
-            change[row, 0] = fronts.vector[k]
-            change[row, 1] = fronts.vector[k + 1]
+            change[row, 0] = scratch.vector[k]
+            change[row, 1] = scratch.vector[k + 1]
             k += 2

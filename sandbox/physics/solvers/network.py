@@ -17,7 +17,8 @@ import math
 from sandbox.physics.equation import SHORTEST, direction, reduced_mass
 from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.factor import back_substitute, factorise
-from sandbox.physics.solvers.fronts import add_block, clear_fronts, factorise_fronts, substitute_fronts
+from sandbox.physics.solvers.fronts import add_block, clear_fronts
+from sandbox.physics.solvers.halves import solve_fronts
 from sandbox.physics.solvers.shapes import (
     assemble_shapes,
     correct_wide,
@@ -229,8 +230,7 @@ def solve_linear(first_row, last_row, first, last, low, high, rows, springs, sha
         assemble_fronts(first_row, last_row, first, last, rows, springs, matrix)
         if high > low:
             assemble_shapes(low, high, shapes, matrix, True)
-        factorise_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
-        substitute_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
+        solve_fronts(False, first_row, last_row, fronts, rows.change)
     else:
         assemble(first_row, last_row, first, last, rows, springs, matrix)
         if high > low:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from sandbox.physics.elements import AREA, area_of, evaluate
 from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.factor import back_substitute
-from sandbox.physics.solvers.fronts import eliminate_rows, substitute_fronts
+from sandbox.physics.solvers.halves import solve_fronts
 from sandbox.physics.world import Floats, Slots
 
 # Cd is capped here, and Cs with it: nearer to 1 springs stretch less, but steps are rejected more often and damp more.
@@ -231,8 +231,7 @@ def solve_again(first_row, last_row, rows, matrix):  # type: ignore[no-untyped-d
     """Solve with the matrix as it was factored, for the right side in `change`."""
     fronts = matrix.fronts
     if fronts.of_row[first_row] >= 0:
-        eliminate_rows(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
-        substitute_fronts(fronts.of_row[first_row], fronts.of_row[last_row - 1] + 1, fronts, rows.change)
+        solve_fronts(True, first_row, last_row, fronts, rows.change)
         return
     back_substitute(
         first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change

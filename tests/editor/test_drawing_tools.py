@@ -7,6 +7,7 @@ import pytest
 
 from sandbox.editor.document import Document, EditError, empty_level
 from sandbox.editor.drawing import DRAWINGS
+from sandbox.editor.drawing_options import RopeOptions, described, stepped
 from sandbox.editor.items import Item
 from sandbox.editor.scene import make_scene
 from sandbox.editor.snap import Snap, snap
@@ -348,3 +349,16 @@ def test_a_material_that_a_level_does_not_have_is_the_default_one(empty):
     bare = Document(empty.level.model_copy(update={"materials": {}}))
     assert last_body(drawn("rope", bare, (0.0, 0.0), (3.0, 0.0))).material == "default"
     assert last_body(drawn("rope", empty, (0.0, 0.0), (3.0, 0.0))).material == "steel"
+
+
+def test_steps_of_options_go_through_round_values_and_end_at_the_limits():
+    mass, slack = described(RopeOptions())["particle_mass"], described(RopeOptions())["slack"]
+    links = described(RopeOptions())["segments"]
+    up = [0.7]
+    while up[-1] < 100.0:
+        up.append(stepped(mass, up[-1], 1))
+    assert up == [0.7, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]
+    assert stepped(mass, 1.0, -1) == 0.5 and stepped(mass, None, 1) == 1.0
+    assert stepped(mass, mass.most, 1) == mass.most and stepped(mass, mass.least, -1) == mass.least
+    assert stepped(slack, 0.0, -1) == -0.05 and stepped(slack, slack.least, -1) == slack.least
+    assert stepped(links, 1, -1) == 1 and stepped(links, 1, 1) == 2

@@ -1,0 +1,44 @@
+"""Locks that compiled kernels wait for: the interpreter's own, which every platform has and which need no GIL."""
+
+import ctypes
+
+from sandbox.physics.jit import COMPILED, inner_kernel, interpreter_function
+
+_NAMES = ("allocate_lock", "free_lock", "acquire_lock", "release_lock")
+# Whether there are any: interpreted kernels never wait for one another.
+LOCKS = COMPILED and all(hasattr(ctypes.pythonapi, f"PyThread_{name}") for name in _NAMES)
+
+_acquire = interpreter_function("PyThread_acquire_lock", "intc", "voidptr", "intc") if LOCKS else None
+_release = interpreter_function("PyThread_release_lock", "void", "voidptr") if LOCKS else None
+
+
+@inner_kernel
+def take(lock, wait):  # type: ignore[no-untyped-def]
+    """Take a lock, waiting for it where `wait` is 1; whether it was had."""
+    return _acquire(lock, wait) == 1  # type: ignore[misc]
+
+
+@inner_kernel
+def give(lock):  # type: ignore[no-untyped-def]
+    """Give a lock that is taken to whoever takes it next, in whatever thread."""
+    _release(lock)  # type: ignore[misc]
+
+
+class Lock:
+    """A lock for `take` and `give`, taken at first.
+
+    handle: its address, for kernels. It lasts as long as this object.
+    """
+
+    def __init__(self) -> None:
+        allocate, acquire = ctypes.pythonapi.PyThread_allocate_lock, ctypes.pythonapi.PyThread_acquire_lock
+        allocate.restype = ctypes.c_void_p
+        self.handle: int = allocate()
+        acquire(ctypes.c_void_p(self.handle), 0)
+
+    def give(self) -> None:
+        """As `give` in kernels."""
+        ctypes.pythonapi.PyThread_release_lock(ctypes.c_void_p(self.handle))
+
+    def __del__(self) -> None:
+        ctypes.pythonapi.PyThread_free_lock(ctypes.c_void_p(self.handle))

@@ -1,0 +1,120 @@
+"""Person: drives a real window on a virtual screen from outside by xdotool; sees its title and its pixels alone."""
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from sandbox.app.display import WINDOW_SIZE
+
+# How long something that must happen may take before it counts as not happening [s].
+DEADLINE = 90.0
+# A movement that changes no pixel is given up after this [s].
+PATIENCE = 1.0
+
+needs_a_screen = pytest.mark.skipif(
+    not (shutil.which("Xvfb") and shutil.which("xdotool")), reason="needs Xvfb and xdotool (apt install xvfb xdotool)"
+)
+
+
+class VirtualScreen:
+    """A screen of the window's size; display: its DISPLAY; its pixels are in a file of X's own picture format."""
+
+    def __init__(self, folder: Path) -> None:
+        read, write = os.pipe()
+        size = f"{WINDOW_SIZE[0]}x{WINDOW_SIZE[1]}x24"
+        command = ["Xvfb", "-displayfd", str(write), "-screen", "0", size, "-fbdir", str(folder), "-nolisten", "tcp"]
+        self.server = subprocess.Popen([*command, "-noreset"], pass_fds=[write], stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as pipe:
+            self.display = f":{pipe.readline().strip()}"
+        self._file = folder / "Xvfb_screen0"
+
+    def pixels(self) -> np.ndarray:
+        """What is seen now: red, green, blue (height, width, 3)."""
+        data = self._file.read_bytes()
+        header = np.frombuffer(data, ">u4", 25).tolist()
+        start, width, height, line = header[0] + 12 * header[19], header[4], header[5], header[12]
+        rows = np.frombuffer(data, np.uint8, line * height, start).reshape(height, line)
+        return rows[:, : 4 * width].reshape(height, width, 4)[:, :, 2::-1]
+
+    def save(self, path: Path) -> None:
+        """Keep what is seen now as a picture."""
+        pygame.image.save(pygame.surfarray.make_surface(self.pixels().swapaxes(0, 1)), path)
+
+    def close(self) -> None:
+        """Take the screen away."""
+        self.server.terminate()
+        self.server.wait()
+
+
+class Person:
+    """Drives the app's window from outside; arguments: of the command `sandbox`; folder: holds documents and data."""
+
+    def __init__(self, screen: VirtualScreen, arguments: list[str], folder: Path) -> None:
+        self.screen = screen
+        self.environment = {
+            **os.environ,
+            "DISPLAY": screen.display,
+            "XDG_DOCUMENTS_DIR": str(folder / "documents"),
+            "XDG_DATA_HOME": str(folder / "data"),
+            "SDL_VIDEODRIVER": "x11",
+            "PYTHONPATH": os.pathsep.join(sys.path),
+        }
+        command = [sys.executable, "-m", "sandbox", *arguments, "--scale", "1"]
+        self.app = subprocess.Popen(
+            command, env=self.environment, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+        )
+
+    def do(self, *arguments: object) -> str:
+        words = ["xdotool", *map(str, arguments)]
+        return subprocess.run(words, env=self.environment, capture_output=True, text=True).stdout.strip()
+
+    def title(self) -> str:
+        return self.do("search", "--onlyvisible", "--class", "spring-sandbox", "getwindowname")
+
+    def wait_for(self, *words: str, without: str = "\0") -> None:
+        """Poll the title until it has the words."""
+        give_up = time.monotonic() + DEADLINE
+        title = ""
+        while time.monotonic() < give_up:
+            title = self.title()
+            if all(word in title for word in words) and without not in title:
+                return
+            assert self.app.poll() is None, self.app.communicate()[0].decode()
+        raise AssertionError(f"the title is {title!r}, without {words}")
+
+    def seen(self, *arguments: object, patience: float = DEADLINE) -> bool:
+        """Do something and poll the pixels until they change; whether they did."""
+        before = self.screen.pixels()
+        self.do(*arguments)
+        give_up = time.monotonic() + patience
+        while time.monotonic() < give_up:
+            if not np.array_equal(before, self.screen.pixels()):
+                return True
+        return False
+
+    def move(self, pixel: tuple[float, float]) -> None:
+        """Move the mouse; the app has seen it once what is under the mouse looks otherwise."""
+        self.seen("mousemove", *map(round, pixel), patience=PATIENCE)
+
+    def click(self, pixel: tuple[float, float]) -> None:
+        """Click; the app has seen the press before the button goes up again."""
+        self.move(pixel)
+        self.seen("mousedown", 1, patience=PATIENCE)
+        self.do("mouseup", 1)
+
+    def drag(self, points: list[tuple[float, float]], while_held: str | None = None) -> None:
+        self.do("mousemove", *map(round, points[0]))
+        self.do("mousedown", 1)
+        if while_held:
+            self.wait_for(while_held)
+        for point in points[1:]:
+            self.do("mousemove", *map(round, point))
+        self.do("mouseup", 1)

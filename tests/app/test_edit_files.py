@@ -1,0 +1,244 @@
+"""Files of the editor: new, open, save, revert, changes that are not saved, other windows, and work found again."""
+
+import json
+
+import pygame
+import pytest
+from conftest import small_level
+
+from sandbox.editor.autosave import Autosave, orphans
+from sandbox.editor.storage import LevelFile
+from sandbox.level.canonical import level_text
+from sandbox.level.files import read_level, shipped_levels, write_level
+
+CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
+
+
+@pytest.fixture
+def path(tmp_path):
+    path = tmp_path / "small.json"
+    write_level(small_level(), path)
+    return path
+
+
+@pytest.fixture
+def driver(edit, path):
+    driver = edit()
+    driver.app.documents.open(path)
+    driver.frames(2)
+    return driver
+
+
+def draw(driver):
+    driver.key(pygame.K_a)
+    driver.click_at(3, 3)
+    driver.key(pygame.K_v)
+
+
+def test_an_edit_shows_in_the_title_and_saving_writes_it_as_it_is(driver, path):
+    assert "Small - editing" in driver.app.title()
+    draw(driver)
+    assert "Small* - editing" in driver.app.title()
+    driver.key(pygame.K_s, CTRL)
+    assert "Small - editing" in driver.app.title()
+    assert read_level(path) == driver.editor.document.level
+    driver.key(pygame.K_z, CTRL)
+    assert "Small*" in driver.app.title()
+
+
+def test_a_level_without_a_file_asks_for_a_name_and_never_overwrites_without_asking(edit, documents):
+    driver = edit()
+    draw(driver)
+    driver.key(pygame.K_s, CTRL)
+    assert driver.app.ui.has_sheet
+    driver.type("mine")
+    driver.key(pygame.K_RETURN)
+    assert not driver.app.ui.has_sheet
+    assert read_level(documents / "mine.json") == driver.editor.document.level
+    (documents / "other.json").write_text("precious")
+    driver.key(pygame.K_s, CTRL | SHIFT)
+    driver.type("other")
+    driver.key(pygame.K_RETURN)
+    assert (documents / "other.json").read_text() == "precious" and driver.app.ui.has_sheet
+    driver.choose("Replace it")
+    assert read_level(documents / "other.json") == driver.editor.document.level
+
+
+def test_a_place_that_cannot_be_written_is_said_and_the_level_stays(edit, tmp_path):
+    driver = edit()
+    draw(driver)
+    driver.key(pygame.K_s, CTRL | SHIFT)
+    driver.type(str(tmp_path / "no such folder" / "x"))
+    driver.key(pygame.K_RETURN)
+    assert driver.app.ui.has_sheet and not driver.editor.history.is_saved
+    driver.key(pygame.K_ESCAPE)
+    assert len(driver.editor.document.level.particles) == 1
+
+
+@pytest.mark.parametrize("action", ["new", "quit"])
+def test_changes_that_are_not_saved_are_asked_about(driver, path, action):
+    draw(driver)
+    editor, level = driver.editor, driver.editor.document.level
+    driver.app.act(action)
+    driver.frames()
+    driver.choose("Cancel")
+    assert driver.editor is editor and driver.app.running
+    driver.app.act(action)
+    driver.frames()
+    driver.choose("Save")
+    assert read_level(path) == level
+    assert driver.editor is not editor if action == "new" else not driver.app.running
+
+
+def test_discarding_changes_leaves_the_file_as_it_is(driver, path):
+    before = path.read_bytes()
+    draw(driver)
+    driver.post(pygame.QUIT)
+    driver.frames()
+    assert driver.app.running
+    driver.choose("Discard the changes")
+    assert not driver.app.running and path.read_bytes() == before
+
+
+def test_saving_a_new_level_on_the_way_out_asks_for_its_name_first(edit, documents):
+    driver = edit()
+    draw(driver)
+    driver.key(pygame.K_q, CTRL)
+    driver.choose("Save")
+    assert driver.app.running
+    driver.type("last")
+    driver.key(pygame.K_RETURN)
+    assert not driver.app.running and (documents / "last.json").is_file()
+
+
+def test_revert_reads_the_file_again_and_can_be_undone(driver):
+    draw(driver)
+    edited = driver.editor.document.level
+    driver.key(pygame.K_r, CTRL | SHIFT)
+    assert driver.editor.document.level == small_level() and driver.editor.history.is_saved
+    driver.key(pygame.K_z, CTRL)
+    assert driver.editor.document.level is edited
+
+
+def test_a_file_that_another_program_writes_is_noticed_when_the_window_comes_back(driver, path):
+    level = small_level(name="From elsewhere")
+    path.write_text(level_text(level))
+    driver.post(pygame.WINDOWFOCUSGAINED)
+    driver.frames()
+    driver.choose("Read it again")
+    assert driver.editor.document.level.name == "From elsewhere"
+
+
+def test_saving_over_what_another_program_wrote_asks_first(driver, path):
+    draw(driver)
+    path.write_text(level_text(small_level(name="From elsewhere")))
+    driver.key(pygame.K_s, CTRL)
+    assert read_level(path).name == "From elsewhere"
+    driver.choose("Replace it")
+    assert read_level(path) == driver.editor.document.level
+
+
+def test_a_level_that_is_open_elsewhere_can_be_opened_as_a_copy(edit, path):
+    other, _ = LevelFile.open(path)
+    driver = edit()
+    driver.app.documents.open(path)
+    driver.frames()
+    driver.choose("Open a copy")
+    assert driver.editor.document.level == small_level() and driver.editor.level_file.path is None
+    other.close()
+
+
+def test_a_faulty_level_opens_as_far_as_it_is_valid_only_on_agreement(edit, tmp_path):
+    data = json.loads(level_text(small_level()))
+    data["bodies"][1]["segments"] = -3
+    path = tmp_path / "faulty.json"
+    path.write_text(json.dumps(data))
+    before = path.read_bytes()
+    driver = edit()
+    driver.post(pygame.DROPFILE, file=str(path))
+    driver.frames(2)
+    assert driver.app.ui.has_sheet and not driver.editor.document.level.bodies
+    driver.choose("Open what is valid")
+    assert [body.id for body in driver.editor.document.level.bodies] == ["rope"]
+    assert driver.editor.level_file.path is None and path.read_bytes() == before
+
+
+def test_a_file_that_is_no_level_is_shown_as_lines(edit, tmp_path):
+    path = tmp_path / "broken.json"
+    path.write_text("{")
+    driver = edit()
+    for missing in (path, tmp_path / "nowhere.json", tmp_path):
+        driver.app.documents.open(missing)
+        driver.frames()
+        assert driver.app.ui.has_sheet
+        driver.key(pygame.K_RETURN)
+        assert not driver.app.ui.has_sheet
+    assert driver.editor.history.labels == ["New"]
+
+
+def test_the_gallery_opens_a_shipped_level_as_a_copy_and_my_levels_to_edit(edit, path):
+    driver = edit()
+    driver.key(pygame.K_o, CTRL)
+    card = next(card for card in driver.app.gallery.cards if card.name == "Spider web")
+    driver.app.gallery._show(card)
+    driver.frames()
+    driver.click_widget(card)
+    assert driver.editor.document.level.name == "Spider web" and driver.editor.level_file.path is None
+    driver.app.documents.open(path)
+    driver.key(pygame.K_l, CTRL)
+    assert [card.name for card in driver.app.gallery.cards] == ["Small"]
+
+
+def test_work_of_a_session_that_ended_badly_is_offered_and_comes_back_unsaved(open_app, path):
+    lost = Autosave()
+    level = small_level(name="Lost work")
+    lost.note(level, path, "Draw rope")
+    lost.settle()
+    lost.close()
+    driver = open_app(small_level())
+    driver.app.documents.offer_recovery()
+    driver.frames()
+    label = next(button.text for button in driver.app.ui.buttons() if "Lost work" in button.text)
+    driver.choose(label)
+    assert driver.editor.document.level == level and not driver.editor.history.is_saved
+    assert driver.editor.level_file.path == path
+    driver.app.documents.close()
+    assert [orphan.name for orphan in orphans()] == ["Lost work"]
+
+
+def test_a_session_that_ends_well_leaves_nothing_to_recover(driver):
+    draw(driver)
+    driver.key(pygame.K_s, CTRL)
+    driver.app.close()
+    assert orphans() == []
+
+
+def test_every_shipped_level_opens_and_saves_as_it_was(edit, tmp_path):
+    driver = edit()
+    for shipped in shipped_levels():
+        driver.app.documents.open_copy(shipped)
+        driver.frames(2)
+        target = tmp_path / shipped.name
+        driver.editor.level_file.save_as(driver.editor.document.level, target)
+        assert target.read_bytes() == shipped.read_bytes(), shipped.name
+
+
+def test_closing_the_window_twice_asks_once_and_also_from_a_page(driver):
+    draw(driver)
+    driver.key(pygame.K_F1)
+    for _ in range(3):
+        driver.post(pygame.QUIT)
+        driver.frames()
+    driver.choose("Cancel")
+    driver.key(pygame.K_ESCAPE)
+    assert not driver.app.ui.has_sheet and driver.app.running
+
+
+def test_a_folder_that_the_autosave_cannot_write_is_said_and_editing_goes_on(edit, tmp_path):
+    (tmp_path / "data").write_text("a file where the folder should be")
+    driver = edit()
+    draw(driver)
+    driver.app.documents._autosave.settle()
+    driver.frames(2)
+    assert any("cannot be kept" in text for text in driver.notices)
+    assert len(driver.editor.document.level.particles) == 1

@@ -1,0 +1,109 @@
+"""Between editing and playing: one key there and back, and what is kept of a run."""
+
+import pygame
+import pytest
+from conftest import small_level
+
+from sandbox.level.files import write_level
+from sandbox.session.commands import SetCoefficients
+from sandbox.session.reading import read_replay
+from sandbox.session.replay import verify
+
+CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
+
+
+@pytest.fixture
+def driver(edit):
+    return edit(small_level(settings={"solver": "direct"}))
+
+
+def test_e_plays_the_document_from_its_beginning_and_comes_back_to_it_untouched(driver):
+    editor, document = driver.editor, driver.editor.document
+    driver.key(pygame.K_e)
+    assert driver.app.mode == "play" and driver.playback.level is document.level
+    driver.frames(30)
+    assert driver.playback.session.tick > 10
+    driver.key(pygame.K_e)
+    assert driver.app.screen is editor and editor.document is document
+    assert editor.history.labels == ["Open"]
+    driver.key(pygame.K_e)
+    assert driver.playback.session.tick < 10
+
+
+def test_the_picture_stays_where_it_is_when_playing_begins(driver):
+    camera = driver.editor.camera
+    before = camera.to_pixels((1, 1))
+    driver.key(pygame.K_e)
+    assert driver.stage.camera.to_pixels((1, 1)) == pytest.approx(before, abs=1)
+    assert driver.stage.camera.zoom == camera.zoom
+
+
+def test_e_edits_a_level_that_is_played_and_a_replays_level(open_app):
+    driver = open_app(small_level())
+    driver.key(pygame.K_e)
+    assert driver.app.mode == "edit" and driver.editor.document.level == small_level()
+    assert driver.editor.level_file.path is None
+
+
+def test_the_settled_pose_is_kept_and_undo_takes_it_back(driver):
+    before = driver.editor.document.level
+    driver.key(pygame.K_e)
+    driver.frames(120)
+    held = driver.world.position[driver.world.particle_slot("rope.4")].copy()
+    assert held[1] < -0.2
+    driver.key(pygame.K_k, CTRL)
+    driver.choose("Pose: where everything is now")
+    driver.key(pygame.K_e)
+    slot = driver.editor.scene.slot("rope.4")
+    assert driver.editor.scene.position[slot] == pytest.approx(held, abs=1e-3)
+    assert driver.editor.history.labels[-1].startswith("Keep pose")
+    driver.key(pygame.K_z, CTRL)
+    assert driver.editor.document.level is before
+
+
+def test_coefficients_cuts_and_pins_are_kept_together(driver):
+    driver.key(pygame.K_e)
+    driver.playback.submit(SetCoefficients(stiffness=0.11, damping=0.22, material=None))
+    driver.key(pygame.K_p)
+    driver.app.act("pause")
+    driver.click(driver.pixel_of("pair.1"))
+    driver.key(pygame.K_k, CTRL)
+    driver.choose("All of it")
+    level = driver.editor.document.level
+    assert level.materials["steel"].stiffness == 0.11 and level.materials["rubber"].damping == 0.22
+    driver.key(pygame.K_e)
+    assert driver.editor.scene.pinned[driver.editor.scene.slot("pair.1")]
+    assert len(driver.editor.history.labels) == 2
+
+
+def test_only_a_document_can_keep_something(open_app):
+    driver = open_app(small_level())
+    driver.key(pygame.K_k, CTRL)
+    assert not driver.app.ui.has_sheet and driver.notices
+
+
+def test_what_is_drawn_plays_and_its_recording_verifies(edit, documents):
+    driver = edit()
+    driver.key(pygame.K_r)
+    driver.drag((-2, 1), (0, 1), (2, 1))
+    driver.key(pygame.K_e)
+    driver.key(pygame.K_r, CTRL)
+    driver.frames(40)
+    driver.key(pygame.K_e)
+    (path,) = documents.glob("*.replay.jsonl")
+    assert verify(read_replay(path)) is None
+
+
+def test_dropping_a_level_opens_it_for_editing_while_editing_and_plays_it_while_playing(driver, tmp_path):
+    path = tmp_path / "dropped.json"
+    write_level(small_level(name="Dropped"), path)
+    driver.post(pygame.DROPFILE, file=str(path))
+    driver.frames(2)
+    assert driver.app.mode == "edit" and driver.editor.document.level.name == "Dropped"
+    assert driver.editor.level_file.path == path
+    driver.key(pygame.K_e)
+    driver.post(pygame.DROPFILE, file=str(path))
+    driver.frames(2)
+    assert driver.app.mode == "play"
+    driver.key(pygame.K_e)
+    assert driver.app.mode == "edit" and driver.editor.level_file.path == path

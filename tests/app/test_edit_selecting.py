@@ -1,0 +1,206 @@
+"""Selecting and changing what is selected, by mouse, handles, keys and numbers."""
+
+import numpy as np
+import pygame
+import pytest
+from conftest import small_level
+
+from sandbox.editor.items import Item
+
+CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
+ROPE, PAIR = Item("body", "rope"), Item("body", "pair")
+
+
+@pytest.fixture
+def driver(edit):
+    return edit(small_level())
+
+
+def selected(driver):
+    return set(driver.editor.document.selection)
+
+
+def body(driver, name="rope"):
+    return next(body for body in driver.editor.document.level.bodies if body.id == name)
+
+
+def test_a_click_selects_shift_adds_and_ctrl_takes_away(driver):
+    driver.click_at(1, 0)
+    assert selected(driver) == {ROPE}
+    driver.click_at(1, 2, SHIFT)
+    assert selected(driver) == {ROPE, PAIR}
+    driver.click_at(1, 0, CTRL)
+    assert selected(driver) == {PAIR}
+    driver.click_at(2, -2)
+    assert selected(driver) == set()
+
+
+def test_a_box_selects_what_lies_in_it_whole(driver):
+    driver.drag((-0.5, 1.5), (0, 1.8), (1.5, 2.5))
+    assert selected(driver) == {PAIR}
+    driver.drag((-0.5, -0.5), (3, 0.2), (4.4, 0.5), mods=SHIFT)
+    assert selected(driver) == {ROPE, PAIR}
+    driver.drag((-0.5, 1.5), (0, 1.8), (1.5, 2.5), mods=CTRL)
+    assert selected(driver) == {ROPE}
+
+
+def test_a_lasso_selects_what_lies_inside(driver):
+    driver.key(pygame.K_l)
+    driver.drag((-0.5, 1.5), (1.5, 1.4), (1.6, 2.5), (0.5, 2.9), (-0.6, 2.4))
+    assert selected(driver) == {PAIR}
+
+
+def test_a_double_click_selects_the_whole_group(driver):
+    driver.key(pygame.K_a, CTRL)
+    driver.key(pygame.K_g, CTRL)
+    driver.key(pygame.K_ESCAPE)
+    driver.click_at(1, 0)
+    assert selected(driver) == {ROPE}
+    driver.click(driver.at(1, 0))
+    driver.click(driver.at(1, 0))
+    assert selected(driver) == {ROPE, PAIR}
+
+
+def test_dragging_an_item_moves_it_by_the_grid_and_undo_brings_the_very_level_back(driver):
+    before = driver.editor.document.level
+    driver.drag((2, 0), (2, -0.5), (2, -1))
+    assert body(driver).start == pytest.approx((0, -1)) and body(driver).end == pytest.approx((4, -1))
+    assert driver.editor.history.labels[-1] == "Move"
+    driver.key(pygame.K_z, CTRL)
+    assert driver.editor.document.level is before
+
+
+def test_a_drag_shows_the_selection_where_it_will_be_and_escape_gives_it_up(driver):
+    before = driver.editor.document.level
+    driver.press(driver.at(2, 0))
+    driver.move(driver.at(2, 0.5))
+    driver.move(driver.at(2, 1))
+    assert driver.editor.hand.matrix[1, 2] == pytest.approx(1.0)
+    driver.key(pygame.K_ESCAPE)
+    driver.release(driver.at(2, 1))
+    assert driver.editor.document.level is before
+
+
+def test_an_end_that_is_dropped_on_a_particle_joins_it_and_undo_parts_them(driver):
+    driver.drag((0, 2), (0.5, 1.5), (1.5, 0.2), (2, 0))
+    assert driver.editor.document.level.welds
+    assert body(driver, "pair").start == pytest.approx((2, 0))
+    driver.key(pygame.K_z, CTRL)
+    assert not driver.editor.document.level.welds
+
+
+def test_handles_scale_about_the_other_side_and_the_knob_turns(driver):
+    driver.click_at(1, 0)
+    handles = driver.editor.hand.handles()
+    assert "right" not in handles.places or "top" not in handles.places
+    driver.key(pygame.K_a, CTRL)
+    handles = driver.editor.hand.handles()
+    corner = handles.places["top right"]
+    driver.press(corner)
+    driver.move((corner[0] + 10, corner[1] - 10))
+    driver.move((corner[0] + 60, corner[1] - 30))
+    driver.release((corner[0] + 60, corner[1] - 30))
+    assert driver.editor.history.labels[-1] == "Scale"
+    assert body(driver).start == pytest.approx((0, 0), abs=1e-9) and body(driver).end[0] > 4.1
+    knob = driver.editor.hand.handles().knob
+    driver.press(knob)
+    driver.move((knob[0] + 20, knob[1] + 5))
+    x, y = driver.at(*np.reshape(driver.editor.selection_box, (2, 2)).mean(axis=0))
+    driver.move((x + 200, y))
+    driver.release((x + 200, y))
+    assert driver.editor.history.labels[-1] == "Turn"
+    start, end = body(driver).start, body(driver).end
+    assert start[0] == pytest.approx(end[0], abs=1e-9) and end[1] < start[1]
+
+
+def test_arrow_keys_nudge_as_one_step_and_shift_ten_times_as_far(driver):
+    driver.click_at(1, 0)
+    grid = driver.editor.grid
+    for _ in range(3):
+        driver.key(pygame.K_UP)
+    driver.key(pygame.K_RIGHT, SHIFT)
+    assert body(driver).start == pytest.approx((10 * grid, 3 * grid))
+    assert driver.editor.history.labels == ["Open", "Nudge"]
+
+
+def test_typed_numbers_place_size_and_turn_the_selection(driver):
+    driver.click_at(1, 0)
+    driver.frames(2)
+    fields = driver.editor.options.fields
+    driver.fill(fields["x"], "10")
+    assert body(driver).start == pytest.approx((8, 0))
+    driver.fill(fields["width"], "2")
+    assert (body(driver).start, body(driver).end) == (pytest.approx((9, 0)), pytest.approx((11, 0)))
+    driver.fill(fields["turn"], "90")
+    assert body(driver).end == pytest.approx((10, 1))
+    driver.fill(fields["y"], "up")
+    assert any("not a number" in text for text in driver.notices)
+
+
+def test_mirror_order_align_and_array_are_asked_for_in_boxes(driver):
+    driver.click_at(1, 0)
+    driver.key(pygame.K_m)
+    driver.choose("Left and right")
+    assert body(driver).start == pytest.approx((4, 0))
+    driver.key(pygame.K_z)
+    driver.choose("To the front")
+    assert [each.id for each in driver.editor.document.level.bodies] == ["pair", "rope"]
+    driver.key(pygame.K_a, CTRL)
+    driver.key(pygame.K_i)
+    driver.choose("Left edges")
+    assert min(body(driver, "pair").start[0], body(driver, "pair").end[0]) == pytest.approx(0.0)
+    driver.click_at(0.5, 2)
+    driver.key(pygame.K_d, CTRL | SHIFT)
+    driver.choose("Along a line")
+    driver.key(pygame.K_RETURN)
+    assert len(driver.editor.document.level.bodies) == 6
+    assert not driver.app.ui.has_sheet
+
+
+def test_a_wrong_number_in_a_box_is_said_there_and_nothing_is_made(driver):
+    driver.click_at(1, 0)
+    driver.key(pygame.K_d, CTRL | SHIFT)
+    driver.choose("Along a line")
+    driver.type("many")
+    driver.key(pygame.K_RETURN)
+    assert driver.app.ui.has_sheet and len(driver.editor.document.level.bodies) == 2
+    driver.key(pygame.K_ESCAPE)
+    assert not driver.app.ui.has_sheet
+
+
+def test_delete_duplicate_and_next_item_work_by_key(driver):
+    driver.key(pygame.K_n)
+    assert selected(driver) == {ROPE}
+    driver.key(pygame.K_n)
+    assert selected(driver) == {PAIR}
+    driver.key(pygame.K_d, CTRL)
+    assert len(driver.editor.document.level.bodies) == 3
+    driver.key(pygame.K_DELETE)
+    assert len(driver.editor.document.level.bodies) == 2
+    driver.key(pygame.K_ESCAPE)
+    driver.key(pygame.K_DELETE)
+    assert any("Nothing is selected" in text for text in driver.notices)
+
+
+def test_all_of_a_material_is_selected(driver):
+    driver.key(pygame.K_m, CTRL)
+    driver.choose("rubber")
+    assert selected(driver) == {PAIR}
+
+
+def test_what_cannot_be_done_is_said_and_changes_nothing(driver):
+    before = driver.editor.document.level
+    driver.click_at(1, 0)
+    driver.frames(2)
+    driver.fill(driver.editor.options.fields["x"], "1e7")
+    assert driver.editor.document.level is before
+    assert driver.notices
+
+
+def test_undo_and_redo_keep_the_selection(driver):
+    driver.key(pygame.K_a, CTRL)
+    driver.drag((2, 0), (2, -0.5), (2, -1))
+    assert driver.editor.history.labels[-1] == "Move"
+    for key in (pygame.K_z, pygame.K_y):
+        driver.key(key, CTRL)
+        assert selected(driver) == {ROPE, PAIR}

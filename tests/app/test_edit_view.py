@@ -1,0 +1,161 @@
+"""What the editor shows: pictures, ghosts, rulers, findings, forecasts, and large levels."""
+
+import numpy as np
+import pygame
+import pytest
+from conftest import small_level
+
+from sandbox.app.camera import Camera
+from sandbox.app.colours import BACKGROUND
+from sandbox.app.edit.actions import MENU
+from sandbox.app.edit.canvas import PLAIN_FROM, Chosen, ScenePainter
+from sandbox.app.edit.handles import Handles
+from sandbox.app.shortcuts import shortcuts
+from sandbox.editor.scene import make_scene
+
+LARGE = [{"type": "jelly", "id": "big", "shape": {"box": [4.0, 3.0]}, "spacing": 0.07}]
+
+
+def pixels(driver):
+    return pygame.surfarray.array3d(driver.app.display.surface).astype(int)
+
+
+@pytest.fixture
+def driver(edit):
+    return edit(small_level())
+
+
+def test_parts_the_selection_and_the_ghost_are_seen(driver):
+    plain = pixels(driver)
+    x, y = (round(value) for value in driver.at(2.5, 0))
+    assert np.abs(plain[x - 4 : x + 4, y - 4 : y + 4] - BACKGROUND).max() > 60
+    driver.click_at(1, 0)
+    assert np.abs(pixels(driver)[x - 4 : x + 4, y - 6 : y + 6] - plain[x - 4 : x + 4, y - 6 : y + 6]).max() > 20
+    driver.key(pygame.K_a)
+    driver.move(driver.at(3, 1))
+    x, y = (round(value) for value in driver.at(3, 1))
+    assert np.abs(pixels(driver)[x - 4 : x + 4, y - 4 : y + 4] - plain[x - 4 : x + 4, y - 4 : y + 4]).max() > 20
+
+
+def test_the_rulers_mark_where_the_pointer_is(driver):
+    driver.move(driver.at(2.35, 1.3))
+    before = pixels(driver)
+    driver.move(driver.at(3.35, 2.3))
+    changed = np.abs(pixels(driver) - before).max(axis=2) > 60
+    left, top = driver.editor.camera.viewport[:2]
+    columns = np.flatnonzero(changed[left:, top - 10]) + left
+    assert {round(driver.at(2.35, 1.3)[0]), round(driver.at(3.35, 2.3)[0])} <= set(columns.tolist())
+
+
+def test_a_large_scene_is_drawn_plainly_at_once_and_smoothly_afterwards():
+    scene = make_scene(small_level(bodies=LARGE))
+    assert len(scene.particle_a) > PLAIN_FROM
+    camera = Camera((0.0, 0.0), 100.0, (0, 0, 640, 480))
+    painter, chosen = ScenePainter(1.0), Chosen.of(scene, frozenset())
+    surface = pygame.Surface((640, 480), 0, 32)
+
+    def drawn():
+        painter.draw(surface, camera, scene, chosen, False)
+        return pygame.surfarray.array3d(surface)
+
+    plain = drawn()
+    # However slow the computer is, a slice is made in every frame.
+    for _ in range(100):
+        smooth = drawn()
+    assert (smooth != plain).any() and (drawn() == smooth).all()
+    painter = ScenePainter(1.0)
+    drawn()
+    for _ in range(100):
+        again = drawn()
+    assert (again == smooth).all()
+
+
+def test_findings_come_after_a_moment_and_a_place_can_be_shown(edit):
+    driver = edit(small_level(settings={"solver": "direct"}))
+    driver.frames(60)
+    texts = [finding.text for finding in driver.editor.findings]
+    assert texts
+    driver.editor.show((40.0, 0.0))
+    driver.frames()
+    assert driver.editor.contains(driver.at(40.0, 0.0))
+
+
+def test_the_forecast_shows_where_a_rope_will_hang_and_changes_nothing(edit):
+    driver = edit(small_level(settings={"solver": "direct"}))
+    level = driver.editor.document.level
+    driver.key(pygame.K_u)
+    for _ in range(3000):
+        driver.frames()
+        if driver.editor.forecast is not None and driver.editor.forecast.position is not None:
+            break
+    hanging = driver.editor.watch.hanging
+    assert hanging[driver.editor.scene.slot("rope.4")] == pytest.approx((0, -4), abs=0.3)
+    assert driver.editor.document.level is level
+    driver.key(pygame.K_u)
+    assert driver.editor.watch.hanging is None
+
+
+def test_the_window_can_be_resized_and_the_panel_hidden(driver):
+    middle = driver.editor.camera.centre
+    driver.app.display.window.size = (700, 480)
+    driver.frames(2)
+    assert driver.editor.camera.viewport[2] < 400 and driver.editor.camera.centre == middle
+    driver.key(pygame.K_h)
+    assert driver.editor.camera.viewport[0] + driver.editor.camera.viewport[2] == 700
+    assert len(driver.editor.palette.tools) == 13
+
+
+def test_handles_lie_around_the_box_and_only_where_they_mean_something():
+    camera = Camera((0.0, 0.0), 100.0, (0, 0, 640, 480))
+    flat = Handles((-1.0, 0.0, 1.0, 0.0), camera, 1.0, uneven=True)
+    assert set(flat.places) == {"left", "right"}
+    even = Handles((-1.0, -1.0, 1.0, 1.0), camera, 1.0, uneven=False)
+    assert set(even.places) == {"top left", "top right", "bottom left", "bottom right"}
+    whole = Handles((-1.0, -1.0, 1.0, 1.0), camera, 1.0, uneven=True)
+    assert whole.at(whole.knob) == "turn" and whole.at(whole.places["left"]) == "left" and whole.at((320, 240)) is None
+
+
+@pytest.mark.parametrize(("even", "about_centre", "expected"), [
+    (False, False, (1.5, 1.0, (-1.0, -1.0))), (True, False, (1.5, 1.5, (-1.0, -1.0))),
+    (False, True, (2.0, 1.0, (0.0, 0.0))),
+])  # fmt: skip
+def test_a_corner_scales_about_the_opposite_one_or_the_middle(even, about_centre, expected):
+    camera = Camera((0.0, 0.0), 100.0, (0, 0, 640, 480))
+    handles = Handles((-1.0, -1.0, 1.0, 1.0), camera, 1.0, uneven=True)
+    change = handles.scaling("top right", (1.0, 1.0), (2.0, 1.0), even, about_centre)
+    assert (change.x, change.y, change.centre) == expected
+    assert change.matrix @ (*expected[2], 1.0) == pytest.approx(expected[2])
+
+
+def test_every_action_of_the_editor_is_in_the_table_and_the_other_way_round(driver):
+    assert {entry.action for entry in shortcuts("edit") if entry.action} == set(driver.app.actions)
+
+
+def test_no_action_fails_with_nothing_or_something_selected(driver):
+    for chosen in (False, True):
+        for name in sorted(driver.app.actions):
+            if name in ("quit", "fullscreen"):
+                continue
+            driver.editor.select(frozenset(driver.editor.scene.items) if chosen else frozenset())
+            driver.app.act(name)
+            driver.frames(2)
+            while driver.app.ui.has_sheet:
+                driver.key(pygame.K_ESCAPE)
+            if driver.app.mode == "play":
+                driver.key(pygame.K_e)
+
+
+def test_everything_that_is_done_by_key_is_done_by_a_button_too(driver):
+    by_gesture = {"press", "finish", "cancel", "zoom_in", "zoom_out", "next_item", "previous_item", "numbers"}
+    by_other_means = {"fullscreen", "larger", "smaller", "quit", "recordings", "next_page", "previous_page"}
+    shown = (
+        set(driver.editor.bar.buttons.by_action) | {f"tool_{name}" for name in driver.editor.palette.tools} | set(MENU)
+    )
+    in_boxes = {"group", "ungroup", "break_apart", "unjoin", "tour"}
+    assert set(driver.app.actions) - shown - by_gesture - by_other_means - in_boxes == set()
+
+
+def test_the_menu_offers_what_has_no_button(driver):
+    driver.click_widget(driver.editor.bar.buttons.by_action["menu"])
+    driver.choose("Select everything  [Ctrl+A]")
+    assert len(driver.editor.document.selection) == 2

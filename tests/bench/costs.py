@@ -1,0 +1,75 @@
+"""How the direct solver's time grows with its scenes. Run by hand: python -m tests.bench.costs
+
+Each ratio is the median over pairs of ticks run in turns, so that both meet the same load of the machine; below it
+the limit that the solver is held to.
+"""
+
+import itertools
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from sandbox.physics.step import step, warm_up
+from sandbox.physics.world import World
+from tests.bench import scenes
+
+PAIRS = 300
+# Ticks of one block that are timed together: its tick is too short for the clock.
+BATCH = 500
+
+
+def seconds(action: Callable[[], object]) -> float:
+    """Wall-clock time of a call [s]."""
+    began = time.perf_counter()
+    action()
+    return time.perf_counter() - began
+
+
+def settled(scene: scenes.Scene) -> World:
+    """The scene after a second."""
+    world = scene.world()
+    for _ in range(60):
+        step(world)
+    return world
+
+
+def median_ratio(large: Callable[[], object], small: Callable[[], object], pairs: int = PAIRS) -> float:
+    """Median of the time of one call over that of another."""
+    return float(np.median([seconds(large) / seconds(small) for _ in range(pairs)]))
+
+
+def longer_rope() -> float:
+    """A tick of a rope of 1000 links, in ticks of one of 100."""
+    long, short = settled(scenes.rope(1000)), settled(scenes.rope(100))
+    return median_ratio(lambda: step(long), lambda: step(short))
+
+
+def more_blocks() -> float:
+    """A tick of 500 separate blocks, in five hundred ticks of one."""
+    many, one = settled(scenes.blocks(BATCH)), settled(scenes.blocks(1))
+    return median_ratio(lambda: step(many), lambda: [step(one) for _ in range(BATCH)], pairs=PAIRS // 10)
+
+
+def cut() -> float:
+    """Cutting one spring of a 32x32 lattice, with the tick after it, in ticks without."""
+    world = settled(scenes.lattice(32))
+    springs = itertools.count(0, 40)
+
+    def cut_and_step() -> None:
+        world.cut([next(springs)])
+        step(world)
+
+    return median_ratio(cut_and_step, lambda: step(world), pairs=PAIRS // 4)
+
+
+def main() -> None:
+    """Print the ratios."""
+    warm_up()
+    print("| cost | ratio | limit |\n|---|---|---|")
+    for measure, limit in ((longer_rope, 12.0), (more_blocks, 1.5), (cut, 5.0)):
+        print(f"| {measure.__doc__} | {measure():.2f} | {limit:g} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,272 @@
+"""Lint: what it finds, what it leaves in peace, and that it pauses."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from zoo import zoo
+
+from sandbox.editor.document import Document, empty_level
+from sandbox.editor.drawing import DRAWINGS
+from sandbox.editor.finding import LISTED, connected_parts
+from sandbox.editor.items import Item, items_of
+from sandbox.editor.lint import findings
+from sandbox.editor.placing import weld
+from sandbox.editor.scene import make_scene
+from sandbox.editor.snap import Snap
+from sandbox.level.bodies import BoxShape, BridgeDef, JellyDef, RopeDef
+from sandbox.level.build import build_world
+from sandbox.level.checks import CheckDef
+from sandbox.level.files import read_level
+from sandbox.level.model import Level, NissenMaterial, ParticleDef, Settings, SpringDef
+from sandbox.physics.stability import report, spring_loads
+
+LEVELS = sorted((Path(__file__).resolve().parents[2] / "levels").glob("*.json"))
+
+
+def level_of(**parts):
+    return Level(format="spring-sandbox/level", version=1, name="Lint", **parts)
+
+
+def found(level):
+    return [finding for finding in findings(level, make_scene(level)) if finding is not None]
+
+
+def texts(level):
+    return [finding.text for finding in found(level)]
+
+
+def rope(name="rope", y=0.0, start=0.0, **fields):
+    given = {"segments": 4, "pin": ("start",)} | fields
+    return RopeDef(type="rope", id=name, start=(start, y), end=(start + 4.0, y), **given)
+
+
+def cube(name, x, y, **fields):
+    return JellyDef(type="jelly", id=name, shape=BoxShape(box=(1.0, 1.0)), spacing=0.25, position=(x, y), **fields)
+
+
+def test_an_empty_level_and_a_sound_one_have_no_findings():
+    assert texts(empty_level()) == []
+    assert texts(level_of(bodies=(rope(),), particles=(ParticleDef(id="weight", position=(4.0, 0.0)),),
+                          welds=(("rope.end", "weight"),))) == []  # fmt: skip
+
+
+@pytest.mark.parametrize("path", LEVELS, ids=lambda path: path.stem)
+def test_findings_of_shipped_levels_have_items_that_exist_and_places_in_them(path):
+    level = read_level(path)
+    left, bottom, right, top = make_scene(level).bounds()
+    for finding in found(level):
+        assert finding.items <= set(items_of(level))
+        assert finding.text[-1] != "." and "\n" not in finding.text
+        if finding.place is not None:
+            assert left <= finding.place[0] <= right
+            assert bottom <= finding.place[1] <= top
+
+
+def test_of_a_level_with_everything_each_finding_is_one_line_and_about_something():
+    lines = found(zoo())
+    assert lines
+    assert all(finding.items and finding.place for finding in lines)
+
+
+def test_what_nothing_holds_is_found_and_what_hangs_on_a_pin_is_not():
+    level = level_of(bodies=(rope(), rope("loose", 5.0, pin=()), cube("cube", 9.0, 9.0)))
+    assert [(finding.severity, finding.items) for finding in found(level)] == [
+        ("warning", {Item("body", "loose")}),
+        ("warning", {Item("body", "cube")}),
+    ]
+    hung = level.model_copy(update={"welds": (("loose.start", "rope.2"),)})
+    assert [finding.items for finding in found(hung)] == [{Item("body", "cube")}]
+    assert texts(level.model_copy(update={"settings": Settings(gravity=(0.0, 0.0))})) == []
+
+
+def test_a_part_of_several_items_is_one_finding_and_a_part_cut_off_a_body_is_named_by_its_particles():
+    joined = level_of(bodies=(cube("cube", 0.0, 0.0),), particles=(ParticleDef(id="ball", position=(0.0, 3.0)),),
+                      springs=(SpringDef(a="ball", b="cube.22"),))  # fmt: skip
+    (finding,) = found(joined)
+    assert finding.items == {Item("body", "cube"), Item("particle", "ball")}
+    assert finding.text.startswith('"cube" and what it is joined to, 2 items,')
+    (finding,) = found(level_of(bodies=(rope(cut=(2,)),)))
+    assert finding.text.startswith('"rope.3" and 1 more will fall')
+    assert finding.place == (3.0, 0.0)
+
+
+def test_a_flood_of_findings_ends_in_one_line_that_counts_the_rest():
+    balls = tuple(ParticleDef(id=f"ball {index}", position=(float(index), 0.0)) for index in range(50))
+    lines = found(level_of(particles=balls))
+    assert len(lines) == LISTED + 1
+    assert lines[-1].text.startswith("And 30 more")
+    assert len(lines[-1].items) == 50 - LISTED
+
+
+def test_springs_and_pins_that_do_nothing_are_found():
+    pins = tuple(ParticleDef(id=name, position=(x, 0.0), pinned=True) for name, x in (("a", 0.0), ("b", 1.0)))
+    level = level_of(particles=(*pins, ParticleDef(id="nail", position=(5.0, 0.0), pinned=True)),
+                     springs=(SpringDef(a="a", b="b"),))  # fmt: skip
+    assert [(finding.severity, finding.items, finding.place) for finding in found(level)] == [
+        ("hint", {Item("spring", 0)}, (0.5, 0.0)),
+        ("hint", {Item("particle", "nail")}, (5.0, 0.0)),
+    ]
+
+
+def test_particles_that_lie_on_each_other_are_found_until_they_are_joined():
+    level = level_of(bodies=(rope(), rope("other", 0.01, start=4.01)))
+    (finding,) = found(level)
+    assert finding.items == {Item("body", "rope"), Item("body", "other")}
+    assert finding.text.startswith('"rope.4" lies on "other.0" and is not joined to it; weld')
+    assert finding.place == (4.0, 0.0)
+    assert found(weld(Document(level), "rope.end", "other.start").level) == []
+    assert found(level.model_copy(update={"springs": (SpringDef(a="rope.end", b="other.start"),)})) == []
+
+
+@pytest.mark.parametrize("shift", [(0.0, 0.0), (0.0249, 0.0249), (0.025, 0.05), (-0.001, 0.049), (7.3, -2.19)])
+def test_particles_that_lie_on_each_other_are_found_wherever_the_grid_of_the_search_divides_them(shift):
+    x, y = shift
+    pair = tuple(ParticleDef(id=name, position=(x + dx, y), pinned=True) for name, dx in (("a", -0.01), ("b", 0.01)))
+    assert any('"a" lies on "b"' in text for text in texts(level_of(particles=pair)))
+
+
+def test_overlaps_are_those_that_comparing_every_pair_finds():
+    random = np.random.default_rng(3)
+    places = random.uniform(0.0, 0.6, (120, 2)).tolist()
+    balls = tuple(ParticleDef(id=str(index), position=tuple(place)) for index, place in enumerate(places))
+    level = level_of(particles=balls, settings=Settings(gravity=(0.0, 0.0)))
+    apart = np.linalg.norm(np.array(places)[:, None] - np.array(places)[None], axis=2)
+    expected = int(np.sum(np.triu(apart <= 0.025, 1)))
+    assert expected > LISTED
+    last = found(level)[-1]
+    assert last.text.startswith(f"And {expected - LISTED} more")
+
+
+def test_bodies_that_cross_are_found_where_they_cross_and_joined_or_touching_ones_are_left_in_peace():
+    still = {"settings": Settings(gravity=(0.0, 0.0))}
+    apart = cube("a", 0.0, 0.0), cube("b", 1.0, 0.3)
+    assert texts(level_of(bodies=apart, **still)) == []
+    (finding,) = found(level_of(bodies=(cube("a", 0.0, 0.0), cube("b", 0.9, 0.6)), **still))
+    assert (finding.severity, finding.items) == ("hint", {Item("body", "a"), Item("body", "b")})
+    assert 0.4 <= finding.place[0] <= 0.5
+    assert 0.1 <= finding.place[1] <= 0.5
+    crossing = cube("a", 0.0, 0.0), cube("b", 0.9, 0.6)
+    for order in (crossing, crossing[::-1]):
+        assert texts(level_of(bodies=order, springs=(SpringDef(a="a.0", b="b.24"),), **still)) == []
+
+
+def test_crossing_is_found_in_either_order_and_among_many_bodies():
+    bodies = tuple(cube(f"c{index}", 2.0 * index, 0.0, pinned=(0,)) for index in range(12))
+    across = rope("across", 0.3, start=5.1)
+    for order in ((*bodies, across), (across, *bodies)):
+        crossed = {frozenset(item.key for item in finding.items) for finding in found(level_of(bodies=order))}
+        assert crossed == {frozenset({"across", f"c{index}"}) for index in (3, 4)}
+
+
+def test_springs_past_the_proven_limit_are_found_by_item_with_what_the_meter_says():
+    hard = NissenMaterial(stiffness=1.0, damping=1.0)
+    soft = NissenMaterial(stiffness=0.01, damping=0.01)
+    deck = BridgeDef(type="bridge", id="deck", start=(0.0, 0.0), end=(4.0, 0.0), segments=4, pin=("start",))
+    bodies = deck.model_copy(update={"material": "hard"}), rope(y=5.0, material="soft")
+    level = level_of(bodies=bodies, materials={"hard": hard, "soft": soft}, settings=Settings(solver="single_pass"))
+    (finding,) = found(level)
+    assert (finding.severity, finding.items) == ("warning", {Item("body", "deck")})
+    world = build_world(level)
+    load = spring_loads(world)
+    past = int(np.sum(load[: level.bodies[0].segments * 5 + 1] >= 4.0))
+    assert finding.text.startswith(f'{past} springs of "deck" are past')
+    assert f"{load.max():.3g} at {world.spring_names[int(np.argmax(load))]}" in finding.text
+    assert not report(world).within_limit
+    assert texts(level.model_copy(update={"settings": Settings(solver="direct")})) == []
+
+
+@pytest.mark.parametrize(("coefficient", "is_past"), [(0.66, False), (0.67, True)])
+def test_the_limit_is_where_the_meter_has_it(coefficient, is_past):
+    materials = {"default": NissenMaterial(stiffness=coefficient, damping=coefficient)}
+    level = level_of(bodies=(rope(),), materials=materials, settings=Settings(solver="single_pass"))
+    assert bool(texts(level)) == is_past
+    assert report(build_world(level)).within_limit != is_past
+
+
+def test_a_weight_that_is_welded_on_counts_for_the_limit():
+    materials = {"default": NissenMaterial(stiffness=0.8, damping=0.8)}
+    ball = ParticleDef(id="ball", position=(4.0, 0.0), mass=1000.0)
+    level = level_of(bodies=(rope(),), particles=(ball,), welds=(("rope.end", "ball"),), materials=materials,
+                     settings=Settings(solver="single_pass"))  # fmt: skip
+    (finding,) = found(level)
+    load = spring_loads(build_world(level))
+    assert f"add up to {load.max():.3g} at" in finding.text
+    assert finding.text.startswith(f'{int(np.sum(load >= 4.0))} springs of "rope"')
+
+
+@pytest.mark.parametrize("path", LEVELS, ids=lambda path: path.stem)
+def test_the_lint_and_the_meter_agree_on_shipped_levels_under_the_single_pass(path):
+    level = read_level(path)
+    level = level.model_copy(update={"settings": level.settings.model_copy(update={"solver": "single_pass"})})
+    past = any("is proven to hold" in text for text in texts(level))
+    assert past == (report(build_world(level)).within_limit is False)
+
+
+def test_the_iterative_solver_gets_one_hint_about_the_published_limit():
+    material = {"default": NissenMaterial(stiffness=0.6, damping=0.6)}
+    level = level_of(bodies=(rope(),), materials=material, settings=Settings(solver="iterative"))
+    (finding,) = found(level)
+    assert finding.severity == "hint"
+    assert "published limit 1/(n+1)" in finding.text
+    gentle = {"default": NissenMaterial(stiffness=0.3, damping=0.3)}
+    assert texts(level.model_copy(update={"materials": gentle})) == []
+
+
+CHECKS = {
+    "never below 0": CheckDef(name="c", metric="max_strain", at_most=-0.1),
+    "no spring breaks": CheckDef(name="c", metric="broken_springs", at_least=1.0),
+    "x stays 0": CheckDef(name="c", metric="x", particle="rope.start", at_least=1.0),
+    "speed stays 0": CheckDef(name="c", metric="speed", particle="rope.start", at_least=0.5),
+    "before the first tick": CheckDef(name="c", metric="y", particle="rope.end", after=0.0, at_most=1.0),
+    "says nothing": CheckDef(name="c", metric="y", particle="rope.start", at_most=1.0),
+}
+
+
+@pytest.mark.parametrize("words", CHECKS)
+def test_a_check_that_cannot_hold_or_says_nothing_is_found(words):
+    (finding,) = found(level_of(bodies=(rope(),), checks=(CHECKS[words],)))
+    assert words in finding.text
+    assert finding.severity == ("hint" if words in ("before the first tick", "says nothing") else "warning")
+
+
+def test_checks_that_contradict_each_other_are_found_and_ones_that_do_not_are_left_in_peace():
+    def checks(least):
+        return (
+            CheckDef(name="low", metric="y", particle="rope.end", at_most=1.0),
+            CheckDef(name="high", metric="y", particle="rope.end", at_least=least),
+        )
+
+    (finding,) = found(level_of(bodies=(rope(),), checks=checks(2.0)))
+    assert 'Check "high" contradicts check "low"' in finding.text
+    assert found(level_of(bodies=(rope(),), checks=checks(0.5))) == []
+
+
+def test_connected_parts_are_what_springs_and_welds_join():
+    level = level_of(bodies=(rope(), rope("b", 5.0), rope("c", 9.0)), welds=(("rope.end", "c.2"),))
+    work = connected_parts(make_scene(level))
+    pauses = 0
+    try:
+        while True:
+            next(work)
+            pauses += 1
+    except StopIteration as end:
+        part = end.value
+    assert part.tolist() == [0] * 5 + [5] * 5 + [0] * 5
+    assert pauses > 0
+
+
+def test_a_large_level_is_searched_in_many_slices():
+    bodies = tuple(cube(f"c{index}", 1.01 * (index % 20), 1.01 * (index // 20)) for index in range(200))
+    level = level_of(bodies=bodies)
+    assert sum(finding is None for finding in findings(level, make_scene(level))) > 200
+
+
+def test_the_tools_draw_nothing_that_the_lint_complains_about():
+    document = Document(empty_level())
+    for index, tool in enumerate(("rope", "bridge", "girder", "web")):
+        drawing = DRAWINGS[tool]()
+        drawing.down(Snap((0.0, 10.0 * index)))
+        drawing.up(Snap((3.0, 10.0 * index)))
+        document = drawing.done(document)
+    assert texts(document.level) == []

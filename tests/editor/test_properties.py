@@ -1,0 +1,304 @@
+"""What can be changed of a selection, a level and its checks: fields, values, typed text."""
+
+import json
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sandbox.editor.abouts import abouts
+from sandbox.editor.document import Document, EditError
+from sandbox.editor.items import Item, items_of
+from sandbox.editor.properties import (
+    MIXED,
+    add_check,
+    check_properties,
+    delete_check,
+    level_properties,
+    properties,
+)
+from sandbox.editor.typed import line_text, list_text, number_text, read_line, read_pairs, read_words
+from sandbox.level.bodies import KINDS
+from sandbox.level.canonical import level_text
+from sandbox.level.files import parse_level
+from sandbox.level.model import Level, ParticleDef, Settings, SpringDef
+
+LEVEL = {
+    "format": "spring-sandbox/level",
+    "version": 1,
+    "name": "Everything",
+    "materials": {"steel": {"stiffness": 1.0}, "hook": {"law": "hooke", "k": 3.0, "c": 1.0}},
+    "bodies": [
+        {"type": "rope", "id": "rope", "start": [0, 0], "end": [4, 0], "segments": 4, "pin": ["start"],
+         "rest_length": 1.5, "material": "steel"},
+        {"type": "rope", "id": "line", "start": [0, 1], "end": [4, 0], "segments": 6, "material": "steel"},
+        {"type": "bridge", "id": "deck", "start": [0, 5], "end": [4, 5], "segments": 4, "pin": ["start", "end"]},
+        {"type": "girder", "id": "beam", "start": [0, 8], "end": [4, 8], "segments": 4},
+        {"type": "web", "id": "web", "position": [9, 0], "radius": 2.0, "spokes": 6, "rings": 2, "pin": ["rim"]},
+        {"type": "wheel", "id": "wheel", "position": [9, 6], "radius": 2.0, "thickness": 0.5, "segments": 6},
+        {"type": "jelly", "id": "box", "shape": {"box": [2.0, 1.0]}, "spacing": 0.5, "position": [20, 0]},
+        {"type": "jelly", "id": "disc", "shape": {"circle": 1.0}, "spacing": 0.5, "position": [20, 4]},
+        {"type": "jelly", "id": "kite", "shape": {"polygon": [[-1, 0], [0, -1], [1, 0], [0, 2]]}, "spacing": 0.5,
+         "position": [20, 8]},
+        {"type": "mesh", "id": "mesh", "particles": [[30, 0], [31, 0]], "masses": [1.0, 2.0], "springs": [[0, 1]],
+         "velocities": [[0, 0], [0, 1]], "pinned": [0], "extras": {"by": "hand"}},
+    ],
+    "particles": [{"id": "ball", "position": [4, 3], "mass": 5.0}, {"id": "nail", "position": [6, 3], "pinned": True}],
+    "springs": [{"a": "ball", "b": "rope.end", "material": "hook"}, {"a": "nail", "b": "ball"}],
+    "welds": [["line.end", "deck.1"]],
+    "checks": [{"name": "up", "metric": "y", "particle": "ball", "at_least": 0.0}],
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def level():
+    return parse_level(json.dumps(LEVEL).encode(), "test")
+
+
+def chosen(level, *keys):
+    return Document(level, frozenset(item for item in items_of(level) if item.key in keys))
+
+
+def fields(document):
+    return {each.field: each for section in properties(document) for each in section.properties}
+
+
+def body(document, name):
+    return next(part for part in (*document.level.bodies, *document.level.particles) if part.id == name)
+
+
+def changed(document, field, text, axis=0):
+    each = fields(document)[field]
+    return each.set(document, each.typed(text, axis))
+
+
+def test_nothing_selected_has_no_properties(level):
+    assert properties(Document(level)) == ()
+
+
+def test_every_field_of_every_kind_of_item_can_be_reached(level):
+    for item, part in zip(items_of(level), (*level.bodies, *level.particles, *level.springs), strict=True):
+        shown = {name.partition(".")[0] for name in fields(Document(level, frozenset([item])))}
+        assert type(part).model_fields.keys() - shown - {"type"} <= {"extras"}, item
+    assert "extras" in fields(chosen(level, "mesh"))
+    assert {type(part) for part in level.bodies} == set(KINDS.values())
+
+
+def test_every_field_of_the_level_and_its_settings_can_be_reached(level):
+    first, second = level_properties(Document(level))
+    parts = {"format", "version", "settings", "materials", "bodies", "particles", "springs", "welds", "checks"}
+    assert {each.field for each in first.properties} == set(Level.model_fields) - parts - {"extras"}
+    assert {each.field for each in second.properties} == set(Settings.model_fields)
+
+
+def test_units_limits_and_tooltips_come_from_the_schema():
+    about = abouts(KINDS["rope"])["particle_mass"]
+    assert (about.unit, about.low, about.high, about.above) == ("kg", 1e-9, 1e9, False)
+    assert about.tooltip == "Mass of each particle. 1e-09 to 1e+09 kg."
+    assert abouts(KINDS["wheel"])["radius"].above
+    assert abouts(KINDS["rope"])["rest_length"].empty == "as placed"
+    assert abouts(SpringDef)["rest_length"].optional and not abouts(ParticleDef)["mass"].optional
+
+
+def test_what_differs_is_mixed_and_what_is_the_same_is_shown(level):
+    both = fields(chosen(level, "rope", "line"))
+    assert both["segments"].value is MIXED and both["segments"].texts == ("mixed",)
+    assert both["start"].value == (0.0, MIXED)
+    assert both["end"].texts == ("4", "0")
+    assert both["pin"].value == {"start": MIXED, "end": False}
+    assert both["material"].value == "steel"
+    assert "id" not in both
+
+
+def test_several_kinds_have_the_fields_that_they_share(level):
+    shared = set(fields(chosen(level, "rope", "deck")))
+    assert {"start", "end", "segments", "particle_mass", "pin", "material", "group"} <= shared
+    assert not {"rest_length", "height", "end_mass"} & shared
+    # Ends that are held are not the rim that is.
+    assert "pin" not in fields(chosen(level, "rope", "web"))
+    assert set(fields(Document(level, frozenset(items_of(level))))) == {"group", "extras"}
+
+
+def test_one_axis_of_many_is_set_and_the_other_stays(level):
+    document = changed(chosen(level, "rope", "line", "deck"), "start", "-2,5", axis=1)
+    assert [body(document, name).start for name in ("rope", "line", "deck")] == [(0.0, -2.5)] * 3
+    document = changed(chosen(level, "ball", "nail"), "position", "7")
+    assert [part.position for part in document.level.particles] == [(7.0, 3.0), (7.0, 3.0)]
+    assert document.level.bodies is level.bodies
+
+
+def test_a_held_end_is_set_of_many_and_their_other_ends_stay(level):
+    document = chosen(level, "rope", "line", "deck")
+    document = fields(document)["pin"].set(document, {"end": True})
+    assert [body(document, name).pin for name in ("rope", "line", "deck")] == [
+        ("start", "end"),
+        ("end",),
+        ("start", "end"),
+    ]
+
+
+def test_segments_of_several_bodies_change_at_once_and_a_rope_keeps_its_length(level):
+    document = changed(chosen(level, "rope", "deck"), "segments", "8")
+    assert body(document, "rope").segments == body(document, "deck").segments == 8
+    assert body(document, "rope").rest_length == 0.75
+    assert document.level.springs == level.springs
+
+
+def test_an_empty_text_is_null_where_the_format_has_it(level):
+    document = changed(chosen(level, "rope"), "rest_length", " ")
+    assert body(document, "rope").rest_length is None
+    with pytest.raises(EditError, match="Particle mass: nothing is not a number"):
+        changed(chosen(level, "rope"), "particle_mass", "")
+    assert body(changed(chosen(level, "mesh"), "masses", ""), "mesh").masses is None
+
+
+def test_lists_are_typed_with_and_without_brackets(level):
+    for text in ("0, 2", "[0, 2]", " 0,2 "):
+        assert body(changed(chosen(level, "rope"), "pinned", text), "rope").pinned == (0, 2)
+    for text in ("[30, 0], [32, 1]", "[[30, 0], [32, 1]]"):
+        assert body(changed(chosen(level, "mesh"), "particles", text), "mesh").particles == ((30, 0), (32, 1))
+    assert body(changed(chosen(level, "rope"), "cut", "1"), "rope").cut == (1,)
+
+
+@pytest.mark.parametrize(
+    ("name", "field", "text", "fault"),
+    [
+        ("rope", "particle_mass", "heavy", 'Particle mass: "heavy" is not a number'),
+        ("rope", "particle_mass", "0", '"rope": particle_mass: 0.0 is below the limit 1e-09'),
+        ("rope", "particle_mass", "nan", 'Particle mass: "nan" is not a finite number'),
+        ("rope", "segments", "2.5", 'Segments: "2.5" is not a whole number'),
+        ("rope", "start", "left", 'Start x: "left" is not a number'),
+        ("rope", "pinned", "9", '"rope": pinned.0: 9 is beyond the last particle, 4'),
+        ("rope", "pinned", "start", 'Held particles: "start" is not a list such as 0, 4, 5'),
+        ("rope", "pinned", "[" * 3000, None),
+        ("mesh", "particles", "[0, 0], 7", None),
+        ("rope", "id", "deck", '"deck" is taken; every body and loose particle needs an id of its own'),
+        ("rope", "id", "a.b", None),
+        ("wheel", "thickness", "2", '"wheel": thickness: 2.0 is not below the radius, 2.0'),
+    ],
+)
+def test_a_wrong_text_gives_one_line_and_changes_nothing(level, name, field, text, fault):
+    document = chosen(level, name)
+    with pytest.raises(EditError) as refusal:
+        changed(document, field, text)
+    assert "\n" not in str(refusal.value)
+    assert fault is None or str(refusal.value) == fault
+    assert document.level is level
+
+
+def test_the_outline_of_a_jelly_changes_its_kind_and_its_size(level):
+    document = chosen(level, "box")
+    assert fields(document)["shape"].value == "box"
+    circle = fields(document)["shape"].set(document, "circle")
+    assert body(circle, "box").shape.circle == 0.5
+    assert "shape.circle" in fields(circle) and "shape.box" not in fields(circle)
+    assert body(changed(circle, "shape.circle", "0.75"), "box").shape.circle == 0.75
+    polygon = fields(document)["shape"].set(document, "polygon")
+    assert len(body(polygon, "box").shape.polygon) == 4
+    back = fields(polygon)["shape"].set(polygon, "box")
+    assert body(back, "box").shape == body(document, "box").shape
+    assert body(changed(document, "shape.box", "3", axis=1), "box").shape.box == (2.0, 3.0)
+
+
+def test_outlines_of_several_kinds_are_mixed_and_can_be_made_alike(level):
+    document = chosen(level, "box", "disc", "kite")
+    assert fields(document)["shape"].value is MIXED
+    alike = fields(document)["shape"].set(document, "circle")
+    assert [body(alike, name).shape.circle for name in ("box", "disc", "kite")] == [0.5, 1.0, 1.0]
+
+
+def test_what_is_only_shown_says_so(level):
+    joined = fields(chosen(level, "deck"))["welds"]
+    assert joined.value == "line.end = deck.1" and not joined.editable
+    assert fields(chosen(level, "rope"))["size"].value == "5 particles, 4 springs"
+    assert fields(chosen(level, "mesh"))["size"].value == "2 particles, 1 spring"
+    with pytest.raises(EditError):
+        joined.set(chosen(level, "deck"), "nothing")
+    assert fields(Document(level, frozenset([Item("spring", 1)])))["name"].value == ":1"
+
+
+def test_settings_are_set_with_the_formats_types(level):
+    document = Document(level)
+
+    def setting(field):
+        return next(each for each in level_properties(document)[1].properties if each.field == field)
+
+    document = setting("substeps").set(document, "auto")
+    assert document.level.settings.substeps == "auto"
+    document = setting("substeps").set(document, "4")
+    assert document.level.settings.substeps == 4
+    document = setting("gravity").set(document, setting("gravity").typed("-1.62", 1))
+    assert document.level.settings.gravity == (0.0, -1.62)
+    document = setting("solver").set(document, "iterative")
+    assert document.level.settings.solver == "iterative"
+    with pytest.raises(EditError, match="tick_rate: 0 is below the limit 1"):
+        setting("tick_rate").set(document, setting("tick_rate").typed("0"))
+
+
+def test_a_check_gets_a_particle_with_a_metric_that_needs_one_and_loses_it_again(level):
+    document = add_check(chosen(level, "rope"))
+    assert document.level.checks[1].at_most == 0.0
+
+    def of_check():
+        return {each.field: each for each in check_properties(document, 1)[0].properties}
+
+    assert "particle" not in of_check()
+    document = of_check()["metric"].set(document, "speed")
+    assert document.level.checks[1].particle == "rope.4"
+    assert "particle" in of_check()
+    document = of_check()["metric"].set(document, "max_strain")
+    assert document.level.checks[1].particle is None
+    with pytest.raises(EditError, match="needs a bound"):
+        of_check()["at_most"].set(document, None)
+    assert delete_check(document, 1).level.checks == level.checks
+    assert check_properties(document, 7) == ()
+
+
+EVERYTHING = parse_level(json.dumps(LEVEL).encode(), "test")
+TYPED = st.one_of(
+    st.text(max_size=12),
+    st.floats().map(repr),
+    st.integers(-(10**30), 10**30).map(str),
+    st.lists(st.integers(-2, 12)).map(str),
+    st.lists(st.tuples(st.floats(-9, 9), st.floats(-9, 9)).map(list), max_size=4).map(str),
+    st.sampled_from(["1e999", "-0", "0x10", "1_0", "true", "null", '"', "[[[[", "]", "{}", "\\"]),
+    st.sampled_from(["9" * 5000, "[" * 3000]),
+)  # fmt: skip
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.integers(0, len(items_of(EVERYTHING)) - 1), st.data(), TYPED, st.integers(0, 1))
+def test_whatever_is_typed_gives_a_level_that_can_be_saved_or_one_line(index, data, text, axis):
+    document = Document(EVERYTHING, frozenset([items_of(EVERYTHING)[index]]))
+    everywhere = [*properties(document), *level_properties(document), *check_properties(document, 0)]
+    typed = [each for section in everywhere for each in section.properties if each.editable]
+    typed = [each for each in typed if each.about.kind not in ("flags", "yes_no", "choice")]
+    each = data.draw(st.sampled_from(typed), "field")
+    try:
+        after = each.set(document, each.typed(text, axis))
+    except EditError as fault:
+        assert str(fault) and len(str(fault).splitlines()) == 1
+        return
+    saved = level_text(after.level)
+    assert parse_level(saved.encode(), "saved") == after.level
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_number_is_shown_without_becoming_another(value):
+    assert float(number_text(value)) == value
+
+
+@given(st.text(alphabet="ab\\nt\n\t ", max_size=12))
+def test_a_text_of_several_lines_is_one_line_to_change(text):
+    assert "\n" not in line_text(text)
+    assert read_line(line_text(text)) == text
+
+
+@given(st.lists(st.text(max_size=6).filter(lambda word: word.strip()), max_size=4))
+def test_words_survive_being_typed(words):
+    assert read_words("Tags", list_text(words)) == words
+
+
+@given(st.lists(st.tuples(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6)), max_size=3))
+def test_points_survive_being_typed(points):
+    assert read_pairs("Corners", list_text(points)) == [list(point) for point in points]
