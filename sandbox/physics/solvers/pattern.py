@@ -146,8 +146,7 @@ def make_pattern(world: World) -> Pattern:
     anchors = np.flatnonzero(used & ~free)
     # Rows before the elimination order is known; anchors come after every free particle, in any order.
     index = np.full(world.particle_count, -1, dtype=np.int64)
-    index[nodes] = np.arange(len(nodes))
-    index[anchors] = len(nodes) + np.arange(len(anchors))
+    index[np.concatenate([nodes, anchors])] = np.arange(len(nodes) + len(anchors))
     end_a, end_b = index[a_chosen], index[b_chosen]
     link_a, link_b = (np.concatenate([end, more]) for end, more in zip((end_a, end_b), index[parts.links], strict=True))
     links = np.flatnonzero((link_a < len(nodes)) & (link_b < len(nodes)))
@@ -168,15 +167,14 @@ def make_pattern(world: World) -> Pattern:
     corner_row = rank[index[parts.particle]]
     shapes, shape_body, corners = lay_out_shapes(parts, corner_row, body_number, place)
     row_a, row_b, spring_body = row_a[grouped], row_b[grouped], spring_body[grouped]
-    pinned_springs = spring_body[np.maximum(row_a, row_b) >= len(nodes)]
-    pinned_shapes = shape_body[shapes_anchored(shapes, len(nodes))]
+    held = spring_body[np.maximum(row_a, row_b) >= len(nodes)], shape_body[shapes_anchored(shapes, len(nodes))]
     every_body = np.arange(len(first_rows) + 1)
     bodies = Bodies(
         np.append(first_rows, len(nodes)),
         np.searchsorted(spring_body, every_body),
         np.searchsorted(shape_body, every_body),
         nodes[body_of_row[first_rows]],
-        np.isin(every_body[:-1], np.concatenate([pinned_springs, pinned_shapes])),
+        np.isin(every_body[:-1], np.concatenate(held)),
     )
     hooke = kind == LAW_HOOKE
     rows = _scratch_rows(np.concatenate([nodes[order], anchors]))
