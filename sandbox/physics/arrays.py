@@ -40,6 +40,7 @@ ELEMENT_ARRAYS = {
 CORNER_ARRAYS = {
     "corner_particle": np.int32,
     "corner_weight": np.float64,
+    "corner_form": np.float64,
 }
 # Arrays of one family have one length.
 FAMILIES = (PARTICLE_ARRAYS, SPRING_ARRAYS, ELEMENT_ARRAYS, CORNER_ARRAYS)
@@ -49,6 +50,6 @@ STATE_ARRAYS = tuple(KINDS)
 # Constants of springs that the quarantine can take back.
 GUARDED_CONSTANTS = ("rest_length", "stiffness", "damping", "hooke_stiffness", "hooke_damping")
 # Constants of elements that it can take back.
-GUARDED_ELEMENTS = ("element_rest", "element_stiffness", "element_damping", "corner_weight")
+GUARDED_ELEMENTS = ("element_rest", "element_stiffness", "element_damping", "corner_weight", "corner_form")
 GUARDED = ("position", "velocity", "mass", *GUARDED_CONSTANTS, *GUARDED_ELEMENTS)
-VECTOR_ARRAYS = frozenset({"position", "velocity", "origin", "slow_velocity", "impulse", "element_rest"})
+VECTOR_ARRAYS = frozenset({"position", "velocity", "origin", "slow_velocity", "impulse", "element_rest", "corner_form"})

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.arrays import GUARDED_CONSTANTS, GUARDED_ELEMENTS
+from sandbox.physics.arrays import GUARDED_CONSTANTS, GUARDED_ELEMENTS, VECTOR_ARRAYS
 from sandbox.physics.jit import kernel
 from sandbox.physics.world import World
 
@@ -61,7 +61,7 @@ def sound(  # type: ignore[no-untyped-def]
 
 
 @kernel
-def sound_elements(element_rest, element_stiffness, element_damping, corner_weight):  # type: ignore[no-untyped-def]
+def sound_elements(element_rest, element_stiffness, element_damping, corner_weight, corner_form):  # type: ignore[no-untyped-def]
     """Whether every constant of elements is one that physics can give."""
     for k in range(element_stiffness.shape[0]):
         if not (
@@ -73,7 +73,11 @@ def sound_elements(element_rest, element_stiffness, element_damping, corner_weig
             return False
     for c in range(corner_weight.shape[0]):
         weight = corner_weight[c]
-        if not 0.0 <= weight <= ABSURD:
+        if not (
+            0.0 <= weight <= ABSURD
+            and -ABSURD <= corner_form[c, 0] <= ABSURD
+            and -ABSURD <= corner_form[c, 1] <= ABSURD
+        ):
             return False
     return True
 
@@ -103,7 +107,8 @@ def contain_inputs(world: World) -> None:
         world.position, world.velocity, world.mass, world.inverse_mass, world.rest_length, world.stiffness,
         world.damping, world.hooke_stiffness, world.hooke_damping,
     ) and (world.element_count == 0 or sound_elements(
-        world.element_rest, world.element_stiffness, world.element_damping, world.corner_weight
+        world.element_rest, world.element_stiffness, world.element_damping, world.corner_weight,
+        world.corner_form,
     )):  # fmt: skip
         return
     for name in ("mass", "position", "velocity", "inverse_mass"):
@@ -113,7 +118,7 @@ def contain_inputs(world: World) -> None:
         _freeze(world, bad, name)
     for name in (*GUARDED_CONSTANTS, *GUARDED_ELEMENTS):
         values = getattr(world, name)
-        lowest = -ABSURD if name == "element_rest" else 0.0
+        lowest = -ABSURD if name in VECTOR_ARRAYS else 0.0
         highest = 1.0 if name.endswith(("stiffness", "damping")) and "hooke" not in name else ABSURD
         for slot in np.flatnonzero(_outside(values, lowest, highest)).tolist():
             values[slot] = world.good[name][slot]

@@ -35,6 +35,7 @@ class ElementSlots:
     element_active: NDArray[np.bool_]
     corner_particle: NDArray[np.int32]
     corner_weight: Floats
+    corner_form: Floats
 
     def __init__(self) -> None:
         for name, kind in KINDS.items():
@@ -94,6 +95,7 @@ class ElementSlots:
             element_active=np.ones(count, dtype=np.bool_),
             corner_particle=slots.reshape(-1),
             corner_weight=weight.reshape(-1),
+            corner_form=places.reshape(-1, 2),
         )
         self._disturb(slots)
         return first

@@ -48,6 +48,7 @@ class Snapshot:
     element_active: NDArray[np.bool_]
     corner_particle: NDArray[np.int32]
     corner_weight: Floats
+    corner_form: Floats
     settings: WorldSettings
     tick: int
     hand_particle: int

@@ -9,10 +9,12 @@ import numpy as np
 
 from sandbox.physics.jit import bundle_kernel, inner_kernel
 from sandbox.physics.settings import AUTO
+from sandbox.physics.solvers.goal import aim_at_form, find_tangled, let_go
 from sandbox.physics.solvers.halves import hire
 from sandbox.physics.solvers.measure import cap, extremes
 from sandbox.physics.solvers.minimise import copy, keep_tension, minimise, scale
 from sandbox.physics.solvers.network import (
+    hold_spin,
     kinetic,
     linearise,
     load_springs,
@@ -63,10 +65,12 @@ def _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h,
     for r in range(rows.particle.shape[0]):
         p = rows.particle[r]
         rows.mass[r] = mass[p]
+        rows.inertia[r] = mass[p]
         for axis in range(2):
             rows.position[r, axis] = position[p, axis]
             rows.moved[r, axis] = position[p, axis]
             rows.target[r, axis] = velocity[p, axis]
+            rows.aim[r, axis] = velocity[p, axis]
             rows.start[r, axis] = velocity[p, axis]
             rows.slow[r, axis] = slow_velocity[p, axis]
         if r < free_count:
@@ -83,7 +87,7 @@ def _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h,
 
 @inner_kernel
 def _take_candidate(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, h
+    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, h
 ):
     # v' = v + D;  J = q - K n.(D_b - D_a);  T = max(0, -J) for what follows. Returned: H, and the largest misfit.
     free_count = matrix.diagonal.shape[0]
@@ -97,6 +101,8 @@ def _take_candidate(  # type: ignore[no-untyped-def]
         for r in range(first_row, last_row):
             rows.trial[r, 0] += rows.change[r, 0]
             rows.trial[r, 1] += rows.change[r, 1]
+        if free and high > low:
+            hold_spin(first_row, last_row, rows)
         held, misfit, rounded = update_impulses(first, last, rows, springs, rest_length, h, free_count)
         if high > low:
             held_by_shapes, missed = update_shapes(low, high, rows, shapes, h, free_count)
@@ -165,8 +171,8 @@ def _open_bank(  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _step_body(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, lowest, bank, bouncy,
-    spread, moved, h,
+    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, goals, rest_length, body, free, lowest,
+    bank, bouncy, spread, moved, h,
 ):  # fmt: skip
     kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
     before = kinetic_after + moved
@@ -175,23 +181,19 @@ def _step_body(  # type: ignore[no-untyped-def]
         kinetic_after, moved, rest_length, h,
     )  # fmt: skip
     allowed = before * (1.0 + ENERGY_ROUNDING) + held
-    after, misfit = _take_candidate(
-        first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, h
+    tangled = high > low and find_tangled(body, low, high, rows, shapes, goals)
+    aimed = tangled and aim_at_form(
+        body, last_row - first_row, not free, rows, shapes, goals, h, matrix.diagonal.shape[0]
+    )  # fmt: skip
+    after = _take_candidates(
+        first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, allowed, h
     )
-    for _solve in range(LINEAR_SOLVES - 1):
-        within = after <= allowed
-        if within and not misfit > MISFIT_RATE * h * h:
-            break
-        copy(first_row, last_row, rows.trial, rows.best)
-        once = after
-        after, misfit = _take_candidate(
-            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, h
+    if aimed and not after <= allowed:
+        let_go(first_row, last_row, rows)
+        copy(first_row, last_row, rows.target, rows.trial)
+        after = _take_candidates(
+            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, allowed, h
         )
-        if within and not after <= allowed:
-            copy(first_row, last_row, rows.best, rows.trial)
-            keep_tension(first, last, rows, springs, h)
-            after = once
-            break
     if not after <= allowed:
         minimise(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, h)
         after = _energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h)
@@ -203,8 +205,36 @@ def _step_body(  # type: ignore[no-untyped-def]
     limit = share * before
     if spread:
         limit += _hidden(first, last, low, high, rows.position, rows.trial, springs, shapes, rest_length, h, h)
-    saved = min(held + before - after, limit)
+    saved = held + before - after
+    # A tangled body keeps all that it lost for the way back to its form; one that hands move, no more than others do.
+    if not (tangled and free):
+        saved = min(saved, limit)
     bank[lowest] = saved if saved > 0.0 else 0.0
+
+
+@inner_kernel
+def _take_candidates(  # type: ignore[no-untyped-def]
+    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, allowed, h
+):
+    # Linear solves until nothing is missed, or until one that is better in this breaks the bound of energy; H.
+    after, misfit = _take_candidate(
+        first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, h
+    )
+    for _solve in range(LINEAR_SOLVES - 1):
+        within = after <= allowed
+        if within and not misfit > MISFIT_RATE * h * h:
+            break
+        copy(first_row, last_row, rows.trial, rows.best)
+        once = after
+        after, misfit = _take_candidate(
+            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, h
+        )
+        if within and not after <= allowed:
+            copy(first_row, last_row, rows.best, rows.trial)
+            keep_tension(first, last, rows, springs, h)
+            after = once
+            break
+    return after
 
 
 @inner_kernel
@@ -232,7 +262,7 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, particle_active, rest_length, stiffness,
     damping, material, tension, numbers, least, most, parts, gravity_x, gravity_y, h,
 ):  # fmt: skip
-    bodies, rows, springs, shapes, matrix = numbers.items
+    bodies, rows, springs, shapes, matrix, goals = numbers.items
     _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, matrix.diagonal.shape[0], rows)
     for body in range(bodies.lowest.shape[0]):
         first_row = bodies.row_start[body]
@@ -257,8 +287,8 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
             spread = spread or more_spread
             moved += more_moved
         _step_body(
-            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length,
-            bodies.lowest[body], energy_bank, bouncy, spread, moved, h,
+            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, goals, rest_length, body,
+            not bodies.anchored[body], bodies.lowest[body], energy_bank, bouncy, spread, moved, h,
         )  # fmt: skip
         for r in range(first_row, last_row):
             velocity[rows.particle[r], 0] = rows.trial[r, 0]

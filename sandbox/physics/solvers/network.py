@@ -147,7 +147,7 @@ def _block(nx, ny, along, across):  # type: ignore[no-untyped-def]
 @inner_kernel
 def assemble_fronts(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
     """The same matrix as `assemble`, of a large body."""
-    clear_fronts(first_row, last_row, rows.mass, matrix.fronts)
+    clear_fronts(first_row, last_row, rows.inertia, matrix.fronts)
     free_count = matrix.diagonal.shape[0]
     numbers = matrix.fronts.numbers
     diagonal = matrix.fronts.diagonal
@@ -169,7 +169,7 @@ def assemble(first_row, last_row, first, last, rows, springs, matrix):  # type: 
     """A = M + sum [K n n^T + g (I - n n^T)]."""
     free_count = matrix.diagonal.shape[0]
     for r in range(first_row, last_row):
-        mass = rows.mass[r]
+        mass = rows.inertia[r]
         matrix.diagonal[r, 0] = mass
         matrix.diagonal[r, 1] = 0.0
         matrix.diagonal[r, 2] = mass
@@ -202,8 +202,8 @@ def assemble(first_row, last_row, first, last, rows, springs, matrix):  # type: 
 def load_residual(first_row, last_row, first, last, rows, springs, free_count):  # type: ignore[no-untyped-def]
     """The right side M (v* - v') + sum of the springs' impulses of one body, into `change`."""
     for r in range(first_row, last_row):
-        rows.change[r, 0] = rows.mass[r] * (rows.target[r, 0] - rows.trial[r, 0])
-        rows.change[r, 1] = rows.mass[r] * (rows.target[r, 1] - rows.trial[r, 1])
+        rows.change[r, 0] = rows.inertia[r] * (rows.aim[r, 0] - rows.trial[r, 0])
+        rows.change[r, 1] = rows.inertia[r] * (rows.aim[r, 1] - rows.trial[r, 1])
     for k in range(first, last):
         nx = springs.normal[k, 0]
         ny = springs.normal[k, 1]
@@ -324,6 +324,40 @@ def objective(first_row, last_row, first, last, rows, springs, h):  # type: igno
         after = error + growth
         total += 0.5 * (springs.along[k] * growth * growth + springs.pull[k] * (after * after - growth * growth))
     return total
+
+
+@inner_kernel
+def hold_spin(first_row, last_row, rows):  # type: ignore[no-untyped-def]
+    """Take from `trial` the angular momentum that a free body would gain: nothing outside turns it.
+
+    Directions taken ahead turn a body that is violently out of shape. What is taken is a turn as a whole.
+    """
+    mass = x = y = before = after = inertia = u = v = p = q = 0.0
+    for r in range(first_row, last_row):
+        m = rows.mass[r]
+        mass += m
+        x += m * rows.position[r, 0]
+        y += m * rows.position[r, 1]
+        u += m * rows.target[r, 0]
+        v += m * rows.target[r, 1]
+        p += m * rows.trial[r, 0]
+        q += m * rows.trial[r, 1]
+    x /= mass
+    y /= mass
+    for r in range(first_row, last_row):
+        m = rows.mass[r]
+        dx = rows.position[r, 0] - x
+        dy = rows.position[r, 1] - y
+        inertia += m * (dx * dx + dy * dy)
+        before += m * (dx * (rows.target[r, 1] - v / mass) - dy * (rows.target[r, 0] - u / mass))
+        after += m * (dx * (rows.trial[r, 1] - q / mass) - dy * (rows.trial[r, 0] - p / mass))
+    kept = min(max(after, min(0.0, before)), max(0.0, before))
+    if kept == after or not inertia > 0.0:
+        return
+    turn = (kept - after) / inertia
+    for r in range(first_row, last_row):
+        rows.trial[r, 0] -= turn * (rows.position[r, 1] - y)
+        rows.trial[r, 1] += turn * (rows.position[r, 0] - x)
 
 
 @inner_kernel

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from sandbox.physics.jit import bundle, kernel
 from sandbox.physics.solvers.dissection import Dissection, dissect_bodies, make_fronts, spring_places
 from sandbox.physics.solvers.fronts import Fronts
+from sandbox.physics.solvers.goal import Goals, lay_out_goals
 from sandbox.physics.solvers.ordering import label_bodies, minimum_degree, update_targets
 from sandbox.physics.solvers.shape_pattern import chosen_elements, lay_out_shapes, shapes_anchored
 from sandbox.physics.solvers.shapes import Shapes
@@ -33,6 +34,8 @@ class Rows(NamedTuple):
     position: Floats
     start: Floats
     target: Floats
+    inertia: Floats
+    aim: Floats
     slow: Floats
     moved: Floats
     trial: Floats
@@ -93,12 +96,12 @@ class Bodies(NamedTuple):
 class Pattern:
     """Everything about a world's matrix that its topology and pins decide, with the scratch arrays of a step.
 
-    signature: what it was made for. elements: which were active then; corners: those of the elements of the matrix.
-    numbers: the five named tuples as a bundle for kernels.
+    signature: what it was made for. elements: which were active then, their corners' particles and form; corners: those of the elements of the matrix.
+    numbers: the six named tuples as a bundle for kernels.
     """
 
     signature: tuple[NDArray[Any], ...]
-    elements: NDArray[np.bool_]
+    elements: tuple[NDArray[Any], ...]
     corners: Slots
     has_hooke: bool
     hooke: NDArray[np.bool_]
@@ -107,6 +110,7 @@ class Pattern:
     springs: Springs
     shapes: Shapes
     matrix: Matrix
+    goals: Goals
     numbers: Any
 
 
@@ -129,7 +133,12 @@ def is_current(inverse_mass, particle_a, particle_b, spring_active, law, free, k
 
 def has_elements(pattern: Pattern, world: World) -> bool:
     """Whether a world's elements are those that a pattern was made for."""
-    return np.array_equal(pattern.elements, world.element_active)
+    active, particle, form = pattern.elements
+    # What an element joins stays what it is, unless a restored state brings others: those are other arrays.
+    return np.array_equal(active, world.element_active) and (
+        (particle is world.corner_particle or np.array_equal(particle, world.corner_particle))
+        and (form is world.corner_form or np.array_equal(form, world.corner_form))
+    )
 
 
 def make_pattern(world: World) -> Pattern:
@@ -178,10 +187,11 @@ def make_pattern(world: World) -> Pattern:
     )
     hooke = kind == LAW_HOOKE
     rows = _scratch_rows(np.concatenate([nodes[order], anchors]))
+    goals = lay_out_goals(shapes, shape_body, len(first_rows), world.corner_form[corners])
     springs = _scratch_springs(chosen[grouped], row_a, row_b, place(row_a, row_b))
     return Pattern(
         signature=(free, kind, a, b),
-        elements=world.element_active.copy(),
+        elements=(world.element_active.copy(), world.corner_particle, world.corner_form),
         corners=corners,
         has_hooke=bool(hooke.any()),
         hooke=hooke,
@@ -190,7 +200,8 @@ def make_pattern(world: World) -> Pattern:
         springs=springs,
         shapes=shapes,
         matrix=matrix,
-        numbers=bundle((bodies, rows, springs, shapes, matrix)),
+        goals=goals,
+        numbers=bundle((bodies, rows, springs, shapes, matrix, goals)),
     )
 
 
@@ -262,7 +273,8 @@ def _lay_out(
 
 def _scratch_rows(particles: Slots) -> Rows:
     count = len(particles)
-    return Rows(particles, np.zeros(count), *(np.zeros((count, 2)) for _ in range(9)))
+    numbers = {name: np.zeros(count if name in ("mass", "inertia") else (count, 2)) for name in Rows._fields[1:]}
+    return Rows(particles, **numbers)
 
 
 def _scratch_springs(slots: Slots, row_a: Slots, row_b: Slots, block: Slots) -> Springs:
