@@ -13,7 +13,7 @@ from sandbox.app.camera import Camera, bounds, grid_spacing
 from sandbox.app.colours import BACKGROUND, packed, strain_colours
 from sandbox.app.lines import Canvas
 from sandbox.app.loop import LONGEST_FRAME, SPEEDS, TickClock
-from sandbox.app.picture import draw_picture, save_picture
+from sandbox.app.picture import crop_of, draw_picture, save_picture, view_of
 from sandbox.app.playback import Playback, interpolated
 from sandbox.app.renderer import Renderer
 from sandbox.physics.jit import COMPILED
@@ -233,6 +233,15 @@ def test_a_picture_shows_every_particle_and_is_written_as_png(tmp_path):
     assert (pygame.surfarray.array2d(picture) & 0xFFFFFF != packed(BACKGROUND)).sum() > 300
     with pytest.raises(OSError):
         save_picture(session, tmp_path / "missing" / "picture.png")
+
+
+def test_a_small_picture_shows_ground_and_what_lies_in_the_view_and_no_empty_part_of_it():
+    ground = {"id": "ground", "polygon": [[-4, -1], [4, -1], [4, 0], [-4, 0]]}
+    far = [{"id": "near", "position": [0, 1]}, {"id": "flown", "position": [90, 2]}]
+    level = small_level(bodies=[], materials={}, particles=far, terrain=[ground], view=[-8, -3, 8, 9])
+    assert crop_of(level, Session(level).snapshot()) == (-4.0, -1.0, 8.0, 2.0)
+    unframed = small_level(bodies=[], materials={}, particles=far[:1], terrain=[ground], view=None)
+    assert view_of(unframed, Session(unframed).snapshot()) == (-4.0, -1.0, 4.0, 1.0)
 
 
 def test_an_empty_level_and_a_level_of_one_particle_can_be_drawn():
