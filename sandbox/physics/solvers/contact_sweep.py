@@ -171,8 +171,11 @@ def load_responses(contacts, push, inverse_mass, blocks):  # type: ignore[no-unt
 
 
 @kernel
-def load_biases(contacts, push, velocity, inverse_mass, gravity_x, gravity_y, h):  # type: ignore[no-untyped-def]
-    """What each contact adds to its velocity: its gap, its overlap or its bounce; velocity: after gravity."""
+def load_biases(contacts, push, velocity, before, h):  # type: ignore[no-untyped-def]
+    """What each contact adds to its velocity: its gap, its overlap or its bounce.
+
+    velocity, before: after and before what forces have done in the step.
+    """
     for c in range(contacts.particle.shape[0]):
         nx = contacts.normal[c, 0]
         ny = contacts.normal[c, 1]
@@ -182,17 +185,19 @@ def load_biases(contacts, push, velocity, inverse_mass, gravity_x, gravity_y, h)
             continue
         ux = 0.0
         uy = 0.0
-        fall = 0.0
+        gain_x = 0.0
+        gain_y = 0.0
         for end in range(3):
             p, weight = weight_of(contacts, c, end)
             if p >= 0:
                 ux += weight * velocity[p, 0]
                 uy += weight * velocity[p, 1]
-                if inverse_mass[p] > 0.0:
-                    fall -= weight * (gravity_x * nx + gravity_y * ny)
+                gain_x += weight * (velocity[p, 0] - before[p, 0])
+                gain_y += weight * (velocity[p, 1] - before[p, 1])
         u = ux * nx + uy * ny
         if u < -SLOWEST_BOUNCE and gap + h * u < 0.0:
-            push.bias[c] = -_bounce(contacts.restitution[c], -u - fall * h, fall, gap, h)
+            gain = gain_x * nx + gain_y * ny
+            push.bias[c] = -_bounce(contacts.restitution[c], gain - u, -gain / h, gap, h)
 
 
 @inner_kernel

@@ -6,6 +6,7 @@ No proven limit. Hooke springs are no constraints: they act once, explicitly, be
 import numpy as np
 
 from sandbox.physics.equation import direction, reduced_mass
+from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
 from sandbox.physics.shapes import NO_CONTACTS
 from sandbox.physics.solvers.contact_sweep import (
@@ -84,7 +85,7 @@ def _iterate(  # type: ignore[no-untyped-def]
     add_change(velocity, change, inverse_mass)
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
+def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Before) -> None:
     """Bring the velocities to the end of a step of h [s]; world.impulse keeps the sums for the next warm start."""
     hooke = world.spring_active & (world.law == LAW_HOOKE)
     if hooke.any():
@@ -92,7 +93,7 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
     springs, contacts = world.spring_count, world.contacts or NO_CONTACTS
     blocks = loose_blocks(world.particle_count if world.contacts else 0)
     push = new_push(len(contacts.particle))
-    load_biases(contacts, push, world.velocity, world.inverse_mass, *world.settings.gravity, h)
+    load_biases(contacts, push, world.velocity, before.velocity, h)
     _iterate(
         world.position, world.velocity, world.inverse_mass, world.particle_a, world.particle_b, world.rest_length,
         stiffness, damping, world.law, world.spring_active, h, world.settings.iterations, world.settings.warm_start,
