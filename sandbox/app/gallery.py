@@ -191,10 +191,12 @@ class Gallery:
         self.cards.append(card)
         return card
 
-    def update(self, ready: bool) -> None:
-        """Draw one more picture, once the kernels are ready, and keep the focused card in sight."""
-        if ready and self._unpainted:
-            self._paint_picture(*self._unpainted.pop(0))
+    def update(self, is_ready: Callable[[bool], bool]) -> None:
+        """Draw one more picture of those that are ready to be run (see Preparation); keep the focused card in sight."""
+        next_one = next((each for each in self._unpainted if is_ready(each[1].has_contacts)), None)
+        if next_one is not None:
+            self._unpainted.remove(next_one)
+            self._paint_picture(*next_one)
         focus = self._ui.focus
         if isinstance(focus, Card) and focus in self.cards:
             self._show(focus)
