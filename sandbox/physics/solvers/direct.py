@@ -171,7 +171,7 @@ def _open_bank(  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _step_body(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, goals, rest_length, body, free, lowest,
+    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, tangled, aimed, lowest,
     bank, bouncy, spread, moved, h,
 ):  # fmt: skip
     kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
@@ -181,19 +181,30 @@ def _step_body(  # type: ignore[no-untyped-def]
         kinetic_after, moved, rest_length, h,
     )  # fmt: skip
     allowed = before * (1.0 + ENERGY_ROUNDING) + held
-    tangled = high > low and find_tangled(body, low, high, rows, shapes, goals)
-    aimed = tangled and aim_at_form(
-        body, last_row - first_row, not free, rows, shapes, goals, h, matrix.diagonal.shape[0]
-    )  # fmt: skip
-    after = _take_candidates(
-        first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, allowed, h
-    )
-    if aimed and not after <= allowed:
-        let_go(first_row, last_row, rows)
-        copy(first_row, last_row, rows.target, rows.trial)
-        after = _take_candidates(
-            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, allowed, h
+    after = 0.0
+    solves = 0
+    while solves < LINEAR_SOLVES:
+        once = after
+        within = solves > 0 and once <= allowed
+        if within:
+            copy(first_row, last_row, rows.trial, rows.best)
+        after, misfit = _take_candidate(
+            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, h
         )
+        solves += 1
+        if within and not after <= allowed:
+            copy(first_row, last_row, rows.best, rows.trial)
+            keep_tension(first, last, rows, springs, h)
+            after = once
+            break
+        if after <= allowed and not misfit > MISFIT_RATE * h * h:
+            break
+        if aimed and solves == LINEAR_SOLVES and not after <= allowed:
+            # Without the goal, from the start.
+            aimed = False
+            solves = 0
+            let_go(first_row, last_row, rows)
+            copy(first_row, last_row, rows.target, rows.trial)
     if not after <= allowed:
         minimise(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, h)
         after = _energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h)
@@ -210,31 +221,6 @@ def _step_body(  # type: ignore[no-untyped-def]
     if not (tangled and free):
         saved = min(saved, limit)
     bank[lowest] = saved if saved > 0.0 else 0.0
-
-
-@inner_kernel
-def _take_candidates(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, allowed, h
-):
-    # Linear solves until nothing is missed, or until one that is better in this breaks the bound of energy; H.
-    after, misfit = _take_candidate(
-        first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, h
-    )
-    for _solve in range(LINEAR_SOLVES - 1):
-        within = after <= allowed
-        if within and not misfit > MISFIT_RATE * h * h:
-            break
-        copy(first_row, last_row, rows.trial, rows.best)
-        once = after
-        after, misfit = _take_candidate(
-            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, h
-        )
-        if within and not after <= allowed:
-            copy(first_row, last_row, rows.best, rows.trial)
-            keep_tension(first, last, rows, springs, h)
-            after = once
-            break
-    return after
 
 
 @inner_kernel
@@ -275,20 +261,28 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
         for r in range(first_row, last_row):
             body_mass += rows.mass[r]
         # Gravity moves a body without anchors as a whole: started there, it falls without rounding.
-        if not bodies.anchored[body]:
+        free = not bodies.anchored[body]
+        if free:
             copy(first_row, last_row, rows.target, rows.trial)
         bouncy, spread, moved = load_springs(
             first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,
             least, most, parts, h, matrix.diagonal.shape[0],
         )  # fmt: skip
+        tangled = False
+        aimed = False
         if high > low:
             more_bouncy, more_spread, more_moved = load_shapes(low, high, inverse_mass, rows, shapes, parts, h)
             bouncy = bouncy or more_bouncy
             spread = spread or more_spread
             moved += more_moved
+            tangled = find_tangled(body, low, high, rows, shapes, goals)
+            if tangled:
+                aimed = aim_at_form(
+                    body, last_row - first_row, not free, rows, shapes, goals, h, matrix.diagonal.shape[0]
+                )  # fmt: skip
         _step_body(
-            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, goals, rest_length, body,
-            not bodies.anchored[body], bodies.lowest[body], energy_bank, bouncy, spread, moved, h,
+            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, tangled, aimed,
+            bodies.lowest[body], energy_bank, bouncy, spread, moved, h,
         )  # fmt: skip
         for r in range(first_row, last_row):
             velocity[rows.particle[r], 0] = rows.trial[r, 0]
