@@ -44,7 +44,8 @@ class World(ElementSlots):
     Of t elements (elements.py) with q corners in all: element_kind (int8), element_first, element_corners (int32: where
     its corners begin, and how many), element_rest (t, 2), element_stiffness, element_damping (Cs, Cd per tick),
     element_material (int32, -1 = Cs and Cd of its own), element_active (bool); corner_particle (int32),
-    corner_weight (q,), corner_form [m] (q, 2) = where it stands at rest. An element goes with any of the springs along its sides.
+    corner_weight (q,), corner_form [m] (q, 2) = where it stands at rest. An element goes with any of the
+    springs along its sides.
 
     Slots are append-only: an index stays a particle's or spring's handle for ever; removing clears the active flag.
     Pinned particles have velocity 0, except a hand's cursor while it moves.

@@ -7,7 +7,7 @@ the body's energy stays within what it had plus what its bank holds of earlier l
 
 import numpy as np
 
-from sandbox.physics.jit import bundle_kernel, inner_kernel
+from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.goal import aim_at_form, find_tangled, let_go
 from sandbox.physics.solvers.halves import hire
@@ -171,8 +171,8 @@ def _open_bank(  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _step_body(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, tangled, aimed, lowest,
-    bank, bouncy, spread, moved, h,
+    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, tangled, aimed,
+    lowest, bank, bouncy, spread, moved, h,
 ):  # fmt: skip
     kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
     before = kinetic_after + moved
@@ -243,12 +243,12 @@ def _brake(  # type: ignore[no-untyped-def]
     return after
 
 
-@bundle_kernel
+@kernel
 def _solve_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, particle_active, rest_length, stiffness,
     damping, material, tension, numbers, least, most, parts, gravity_x, gravity_y, h,
 ):  # fmt: skip
-    bodies, rows, springs, shapes, matrix, goals = numbers.items
+    bodies, rows, springs, shapes, matrix, goals = contents(numbers)
     _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, matrix.diagonal.shape[0], rows)
     for body in range(bodies.lowest.shape[0]):
         first_row = bodies.row_start[body]
@@ -281,8 +281,8 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
                     body, last_row - first_row, not free, rows, shapes, goals, h, matrix.diagonal.shape[0]
                 )  # fmt: skip
         _step_body(
-            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, tangled, aimed,
-            bodies.lowest[body], energy_bank, bouncy, spread, moved, h,
+            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, tangled,
+            aimed, bodies.lowest[body], energy_bank, bouncy, spread, moved, h,
         )  # fmt: skip
         for r in range(first_row, last_row):
             velocity[rows.particle[r], 0] = rows.trial[r, 0]
