@@ -4,13 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sandbox.physics.contacts import find_contacts
-from sandbox.physics.guard import stop_at_terrain
 from sandbox.physics.jit import kernel
+from sandbox.physics.meeting import leave, meet
 from sandbox.physics.quarantine import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS, halves
-from sandbox.physics.solvers.contact_sweep import keep_impulses
 from sandbox.physics.solvers.direct import pattern_of
 from sandbox.physics.solvers.dissection import dissect
 from sandbox.physics.substeps import halve, substep_count
@@ -65,13 +63,14 @@ def step(world: World) -> None:
     stiffness, damping = whole if parts == 1 else substep_coefficients(world, parts)
     # What a solver keeps is an impulse of one step: exact, as parts are a power of two.
     world.scale_impulses(settings.fewest_substeps / parts)
+    world.contacts = None
     for _ in range(parts):
+        before = world.velocity.copy() if world.has_contacts else world.velocity
         _add_gravity(world.velocity, world.inverse_mass, world.particle_active, *settings.gravity, h)
-        world.contacts = find_contacts(world, h) if world.has_contacts else None
+        meeting = meet(world, before, h) if world.has_contacts else None
         solver.solve(world, stiffness, damping, h)
-        if world.contacts is not None:
-            keep_impulses(world, world.contacts)
-            stop_at_terrain(world, h)
+        if meeting is not None:
+            leave(world, meeting, h)
         _integrate(world.position, world.velocity, world.particle_active, h)
     world.scale_impulses(parts / settings.fewest_substeps)
     world.rest_hands()

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.jit import bundle_kernel, inner_kernel
+from sandbox.physics.shapes import weight_of
 from sandbox.physics.solvers import direct
 from sandbox.physics.solvers.contact_clusters import find_touching
 from sandbox.physics.solvers.contact_sweep import (
@@ -17,7 +18,6 @@ from sandbox.physics.solvers.contact_sweep import (
     load_responses,
     new_push,
     solve_contacts,
-    weight_of,
 )
 from sandbox.physics.solvers.direct import (
     AHEAD,
@@ -296,7 +296,7 @@ def _push(
         return touched
     touching, blocks = find_touching(world, pattern, contacts)
     push = new_push(len(contacts.particle))
-    load_biases(contacts, push, world.velocity, world.inverse_mass, *world.settings.gravity, h)
+    load_biases(contacts, push, h)
     touched[touching.body] = True
     sizes = np.diff(pattern.bodies.row_start)[touching.body] * np.diff(blocks.start)
     columns = np.zeros(4 * int(sizes.max(initial=0)))

@@ -92,7 +92,7 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
     springs, contacts = world.spring_count, world.contacts or NO_CONTACTS
     blocks = loose_blocks(world.particle_count if world.contacts else 0)
     push = new_push(len(contacts.particle))
-    load_biases(contacts, push, world.velocity, world.inverse_mass, *world.settings.gravity, h)
+    load_biases(contacts, push, h)
     _iterate(
         world.position, world.velocity, world.inverse_mass, world.particle_a, world.particle_b, world.rest_length,
         stiffness, damping, world.law, world.spring_active, h, world.settings.iterations, world.settings.warm_start,

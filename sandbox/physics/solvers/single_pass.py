@@ -64,7 +64,7 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
         apply_explicit(world, world.spring_active, stiffness, damping, h)
         return
     push = new_push(len(contacts.particle))
-    load_biases(contacts, push, world.velocity, world.inverse_mass, *world.settings.gravity, h)
+    load_biases(contacts, push, h)
     apply_explicit(world, world.spring_active, stiffness, damping, h)
     sweep_masses(
         contacts, push, world.velocity, np.zeros((world.particle_count, 2)), world.inverse_mass,
