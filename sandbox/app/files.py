@@ -60,7 +60,7 @@ class FileActions:
             self._refuse(path, error.faults)
             return False
         self.app.start(playback)
-        self.app.say(f"Watching {Path(path).name}. Touch anything to take over.")
+        self.app.say(f"Watching {one_line(Path(path).name)}. Touch anything to take over.")
         return True
 
     def ask_to_open(self) -> None:
@@ -88,7 +88,7 @@ class FileActions:
             self.app.start(Playback(load_level(typed)))
 
     def _refuse(self, path: str | Path, faults: list[str]) -> None:
-        self.app.show_faults(f"{one_line(Path(path).name)} cannot be opened", faults)
+        self.app.show_faults(f"{one_line(Path(path).name)} cannot be opened", [one_line(fault) for fault in faults])
 
     # Recording.
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import pygame
 import pygame_gui
+from pygame_gui.core import gui_font_pygame
 from pygame_gui.core.ui_appearance_theme import UIAppearanceTheme
 
 from sandbox.level.files import shipped_folder
@@ -16,7 +17,33 @@ _SCALED = {
     "size", "shape_corner_radius", "border_width", "text_horiz_alignment_padding", "open_button_width",
     "list_item_height", "rect_width",
 }  # fmt: skip
-_FONTS: dict[tuple[int, bool], pygame.font.Font] = {}
+
+
+class _Font(pygame.font.Font):
+    # pygame raises errors for texts that it cannot show, and names in files that people open may be such texts.
+    def render(self, text: Any, *arguments: Any, **named: Any) -> pygame.Surface:
+        try:
+            return super().render(_clean(text), *arguments, **named)
+        except pygame.error:  # nothing but characters without a width
+            return super().render("", *arguments, **named)
+
+    def size(self, text: Any) -> tuple[int, int]:
+        return super().size(_clean(text))
+
+    def metrics(self, text: Any) -> list[Any]:
+        return super().metrics(_clean(text))
+
+
+def _clean(text: Any) -> Any:
+    """A text without halves of surrogate pairs and null characters."""
+    if not isinstance(text, str) or text.isprintable():
+        return text
+    return text.encode("utf-8", "replace").decode().replace("\0", "?")
+
+
+# The library has no way to be told which fonts it makes.
+gui_font_pygame.Font = _Font  # type: ignore[misc]
+_FONTS: dict[tuple[int, bool], _Font] = {}
 
 
 def plain_font(size: int, bold: bool) -> pygame.font.Font:
@@ -24,7 +51,7 @@ def plain_font(size: int, bold: bool) -> pygame.font.Font:
     if (size, bold) not in _FONTS:
         name = "NotoSans-Bold.ttf" if bold else "NotoSans-Regular.ttf"
         data = files("pygame_gui").joinpath("data", name).read_bytes()
-        _FONTS[size, bold] = pygame.font.Font(io.BytesIO(data), size)
+        _FONTS[size, bold] = _Font(io.BytesIO(data), size)
     return _FONTS[size, bold]
 
 

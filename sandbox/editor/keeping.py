@@ -27,7 +27,8 @@ def keep_coefficients(document: Document, world: World) -> Document:
         material = document.level.materials.get(name, NissenMaterial() if name == DEFAULT_MATERIAL else None)
         if not len(springs) or not isinstance(material, NissenMaterial):
             continue
-        played = NissenMaterial(stiffness=float(world.stiffness[springs[0]]), damping=float(world.damping[springs[0]]))
+        stiffness, damping = float(world.stiffness[springs[0]]), float(world.damping[springs[0]])
+        played = replaced(material, stiffness=stiffness, damping=damping)
         if played != material:
             document = set_material(document, name, played)
     return document

@@ -25,6 +25,7 @@ from sandbox.editor.scene import Scene, make_scene, positions
 from sandbox.level.bodies import AnyBody
 from sandbox.level.limits import COORDINATE_LIMIT
 from sandbox.level.model import Level, SpringDef
+from sandbox.level.parts import given_length
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import Points
 
@@ -151,21 +152,31 @@ def _stretched(old: Level, new: Level, selection: Selection, motion: Motion) -> 
     scene = make_scene(old)
 
     def part(spring: Definition) -> Definition:
-        if not isinstance(spring, SpringDef) or spring.rest_length is None:
+        if not isinstance(spring, SpringDef):
             return spring
-        return validated(replaced(spring, rest_length=spring.rest_length * _spring_stretch(scene, spring, motion)))
+        return validated(_scaled(spring, _spring_stretch(scene, spring, motion)))
 
     return changed(new, springs, part)
 
 
 def _inside_springs(level: Level, selection: Selection) -> Selection:
-    """Loose springs of a given rest length between two selected things."""
+    """Loose springs of a given rest length, or hydraulics, between two selected things."""
     owners = keys(selection, "body") | keys(selection, "particle")
     return frozenset(
         Item("spring", index)
         for index, spring in enumerate(level.springs)
-        if spring.rest_length is not None and owner_of(spring.a) in owners and owner_of(spring.b) in owners
+        if given_length(spring) is not None and owner_of(spring.a) in owners and owner_of(spring.b) in owners
     )
+
+
+def _scaled(spring: SpringDef, factor: float) -> SpringDef:
+    """A loose spring with the lengths that it is given times a factor."""
+    if spring.rest_length is not None:
+        spring = replaced(spring, rest_length=spring.rest_length * factor)
+    if spring.hydraulic is not None:
+        longest, shortest = spring.hydraulic.longest * factor, spring.hydraulic.shortest * factor
+        spring = replaced(spring, hydraulic=replaced(spring.hydraulic, shortest=shortest, longest=longest))
+    return spring
 
 
 def _spring_stretch(scene: Scene, spring: SpringDef, motion: Motion) -> float:

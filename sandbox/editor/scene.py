@@ -1,7 +1,7 @@
 """Scene: a level as arrays to draw, pick from and measure, made anew after every edit from what did not change."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain
 from operator import is_, itemgetter
@@ -16,6 +16,7 @@ from sandbox.level.expansion import Expansion, expansion
 from sandbox.level.layout import Layout
 from sandbox.level.limits import BODY_RADIUS, DEFAULT_MATERIAL
 from sandbox.level.model import Level, ParticleDef
+from sandbox.level.parts import given_length
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import distances
 from sandbox.level.welds import united
@@ -221,14 +222,6 @@ def make_scene(level: Level, before: Scene | None = None) -> Scene:
     )
 
 
-def transformed(scene: Scene, selection: Selection, matrix: Floats) -> Scene:
-    """The scene with the particles of a selection mapped by matrix (2, 3), as a preview: rest lengths stay."""
-    moved = scene.particles_of(selection)
-    position = scene.position.copy()
-    position[moved] = position[moved] @ matrix[:, :2].T + matrix[:, 2]
-    return replace(scene, position=position[scene.first_of_weld] if len(scene.welds) else position)
-
-
 def _parts(level: Level, before: Scene | None) -> _Parts:
     if before is None:
         made, origin, forms = _expand(level, {}, {})
@@ -286,7 +279,8 @@ def _links(level: Level, names: _Names) -> _Links:
     materials = tuple({DEFAULT_MATERIAL: None} | dict.fromkeys(level.materials))
     index = {name: number for number, name in enumerate(materials)}
     slots = [(names.layout.slot(spring.a), names.layout.slot(spring.b)) for spring in level.springs]
-    given = [np.nan if spring.rest_length is None else spring.rest_length for spring in level.springs]
+    lengths = map(given_length, level.springs)
+    given = [np.nan if length is None else length for length in lengths]
     return _Links(
         ends=np.array(slots, dtype=np.int64).reshape(-1, 2),
         rest_length=np.array(given, dtype=np.float64),

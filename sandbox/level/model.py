@@ -7,6 +7,7 @@ from pydantic_core import PydanticKnownError
 
 from sandbox.level.bodies import AnyBody
 from sandbox.level.checks import CheckDef
+from sandbox.level.driving import HydraulicDef, MuscleDef
 from sandbox.level.limits import (
     CHECK_LIMIT,
     DEFAULT_MATERIAL,
@@ -20,13 +21,16 @@ from sandbox.level.quantities import (
     Coefficient,
     Collides,
     CollisionGroup,
+    Compression,
     Coordinate,
     Corners,
     Description,
+    Drag,
     Extras,
     Friction,
     FrictionCoefficient,
     Gravity,
+    GravityScale,
     Group,
     HookeDamping,
     HookeStiffness,
@@ -38,8 +42,11 @@ from sandbox.level.quantities import (
     Point,
     Restitution,
     Share,
+    Tension,
     Text,
     Velocity,
+    YieldShare,
+    YieldStrain,
     unit,
 )
 from sandbox.physics.settings import AUTO, Substeps
@@ -69,6 +76,12 @@ class Settings(Description):
         le=1.0,
         description="Part of the last step's pulling impulses that the iterative solver reuses.",
     )
+    wind: Velocity = Field(default=(0.0, 0.0), description="Velocity of the air; it acts by `drag` alone.")
+    drag: Drag = Field(
+        default=0.0,
+        description="Rate at which every free particle takes on the wind's velocity, whatever its mass: what it "
+        "differs by falls to 1/(1 + drag h) in a step of h seconds.",
+    )
 
     @field_validator("substeps", mode="before")
     @classmethod
@@ -90,7 +103,24 @@ class Settings(Description):
         raise ValueError("there is no such solver; use one of " + ", ".join(sorted(SOLVERS)))
 
 
-class NissenMaterial(Description):
+class MaterialDef(Description):
+    """What springs of every law have: limits of strain, (length - rest length) / rest length, at the end of a tick."""
+
+    tension_limit: Tension | None = Field(
+        default=None, description="Strain beyond which a stretched spring breaks; null = never."
+    )
+    compression_limit: Compression | None = Field(
+        default=None, description="Strain beyond which a compressed spring breaks, above 0; null = never."
+    )
+    yield_strain: YieldStrain | None = Field(
+        default=None, description="Strain either way beyond which the rest length follows for good; null = elastic."
+    )
+    yield_limit: YieldShare = Field(
+        default=0.25, description="Largest change of the rest length by yielding, as a share of it as built."
+    )
+
+
+class NissenMaterial(MaterialDef):
     """The impulse-based spring (Nissen 2019): Cs and Cd per tick, the same behaviour for every mass."""
 
     stiffness: Coefficient = Field(
@@ -101,7 +131,7 @@ class NissenMaterial(Description):
     )
 
 
-class HookeMaterial(Description):
+class HookeMaterial(MaterialDef):
     """The classic spring, F = -k x - c u, for comparison: it explodes where k or c is too large for mass and step."""
 
     law: Literal["hooke"] = Field(description='"hooke"; without `law` a material is the impulse-based spring.')
@@ -129,6 +159,7 @@ class ParticleDef(Description):
     mass: Mass = Field(default=1.0, description="Mass.")
     radius: Length = Field(default=0.05, description="Radius of its disc.")
     pinned: bool = Field(default=False, description="Whether it is held where it is.")
+    gravity_scale: GravityScale = 1.0
     friction: Friction = None
     restitution: Restitution = None
     collides: Collides = True
@@ -142,8 +173,16 @@ class SpringDef(Description):
 
     a: Name = Field(description="One end: `id`, `id.k`, or a name such as `id.start`.")
     b: Name = Field(description="The other end.")
-    rest_length: Length | None = Field(default=None, description="Rest length; null = as placed.")
+    rest_length: Length | None = Field(
+        default=None, description="Rest length; null = as placed, of a hydraulic its shortest."
+    )
     material: Name = Field(default=DEFAULT_MATERIAL, description="Name of its material.")
+    drive: MuscleDef | None = Field(
+        default=None, description="Wave that its rest length follows: a muscle; null = none."
+    )
+    hydraulic: HydraulicDef | None = Field(
+        default=None, description="Lengths between which it is driven; null = it is no hydraulic."
+    )
     group: Group = None
     extras: Extras = Field(default={})
 

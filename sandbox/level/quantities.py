@@ -5,17 +5,27 @@ from typing import Annotated, Any, TypeVar
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from sandbox.level.limits import (
+    AMPLITUDE_LIMIT,
     ANGLE_LIMIT,
     COORDINATE_LIMIT,
     CORNER_LIMIT,
+    DRAG_LIMIT,
     FRICTION_LIMIT,
     GRAVITY_LIMIT,
+    GRAVITY_SCALE_LIMIT,
     HOOKE_LIMIT,
     MASS_RANGE,
+    PERIOD_RANGE,
+    RATE_LIMIT,
     SECONDS_LIMIT,
     SPACING_RANGE,
     SPEED_LIMIT,
+    STRAIN_LIMIT,
     TEXT_LIMIT,
+    TORQUE_LIMIT,
+    TURN_LIMIT,
+    YIELD_RANGE,
+    YIELD_SHARE_LIMIT,
 )
 
 
@@ -60,6 +70,8 @@ LINE_PATTERN = r"^[^\x00-\x1f\x7f-\x9f]*$"
 TEXT_PATTERN = r"^[^\x00-\x08\x0b-\x1f\x7f-\x9f]*$"
 # `.`, `:` and `,` build names of particles and springs; `+` begins the names of what is added while playing.
 ID_PATTERN = r"^[^+.:,\x00-\x1f\x7f-\x9f][^.:,\x00-\x1f\x7f-\x9f]*$"
+# Keys of a keyboard that every layout has unshifted.
+KEY_PATTERN = r"^[a-z0-9]$"
 
 Id = Annotated[str, Field(min_length=1, max_length=TEXT_LIMIT, pattern=ID_PATTERN)]
 Line = Annotated[str, Field(max_length=TEXT_LIMIT, pattern=LINE_PATTERN)]
@@ -80,6 +92,26 @@ Angle = Annotated[float, Field(ge=-ANGLE_LIMIT, le=ANGLE_LIMIT, json_schema_extr
 Coefficient = Annotated[float, Field(ge=0.0, le=1.0, json_schema_extra=unit("per tick"))]
 HookeStiffness = Annotated[float, Field(ge=0.0, le=HOOKE_LIMIT, json_schema_extra=unit("N/m"))]
 HookeDamping = Annotated[float, Field(ge=0.0, le=HOOKE_LIMIT, json_schema_extra=unit("N s/m"))]
+Drag = Annotated[float, Field(ge=0.0, le=DRAG_LIMIT, json_schema_extra=unit("1/s"))]
+GravityScale = Annotated[
+    float,
+    Field(
+        ge=-GRAVITY_SCALE_LIMIT,
+        le=GRAVITY_SCALE_LIMIT,
+        description="How many times gravity pulls at its particles; 0 = floats, below 0 = rises.",
+    ),
+]
+Tension = Annotated[float, Field(gt=0.0, le=STRAIN_LIMIT)]
+Compression = Annotated[float, Field(gt=0.0, le=1.0)]
+YieldStrain = Annotated[float, Field(ge=YIELD_RANGE[0], le=YIELD_RANGE[1])]
+YieldShare = Annotated[float, Field(ge=0.0, le=YIELD_SHARE_LIMIT)]
+Amplitude = Annotated[float, Field(ge=0.0, le=AMPLITUDE_LIMIT)]
+Period = Annotated[int, Field(ge=PERIOD_RANGE[0], le=PERIOD_RANGE[1], json_schema_extra=unit("ticks"))]
+Phase = Annotated[float, Field(ge=0.0, le=1.0)]
+TurnRate = Annotated[float, Field(ge=-TURN_LIMIT, le=TURN_LIMIT, json_schema_extra=unit("rad/s"))]
+Torque = Annotated[float, Field(ge=0.0, le=TORQUE_LIMIT, json_schema_extra=unit("N m"))]
+Rate = Annotated[float, Field(ge=0.0, le=RATE_LIMIT, json_schema_extra=unit("m/s"))]
+Key = Annotated[str, Field(pattern=KEY_PATTERN, max_length=1)]
 Seconds = Annotated[float, Field(ge=0.0, le=SECONDS_LIMIT, json_schema_extra=unit("s"))]
 Index = Annotated[int, Field(ge=0)]
 Extras = Annotated[dict[str, Any], Field(description="Data of other tools; kept and ignored.")]

@@ -25,6 +25,9 @@ TITLES = {
     "MeshDef": "Mesh",
     "ParticleDef": "Loose particle",
     "SpringDef": "Loose spring",
+    "MuscleDef": "Muscle",
+    "HydraulicDef": "Hydraulic",
+    "MotorDef": "Motor",
     "CheckDef": "Acceptance check",
 }
 

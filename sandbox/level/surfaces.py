@@ -12,6 +12,7 @@ from sandbox.level.faults import Fault, shown, suggestion
 from sandbox.level.limits import BODY_RADIUS, COLLISION_GROUP_LIMIT, CORNER_LIMIT
 from sandbox.level.model import ContactsDef, Level, ParticleDef, TerrainDef
 from sandbox.level.polygon import is_simple
+from sandbox.physics.equipment import Surface
 from sandbox.physics.outline import ALL_GROUPS, TERRAIN_GROUP
 from sandbox.physics.terrain import NO_TERRAIN, Chain, Terrain, make_terrain
 
@@ -130,6 +131,14 @@ def surfaces_of(level: Level, counts: Sequence[int]) -> dict[str, NDArray[Any]]:
         name: np.repeat(np.array(column, dtype=kind), sizes)
         for name, column, kind in zip(names, columns, kinds, strict=True)
     }
+
+
+def surface_of(level: Level) -> Surface:
+    """What a particle that joins the level while it runs is like to the touch: like one that says nothing else."""
+    if not level.has_contacts:
+        return Surface()
+    usual = level.contacts or ContactsDef()
+    return Surface(usual.friction, usual.restitution, group_bits(level)[DEFAULT_GROUP], ALL_GROUPS)
 
 
 def _touched(item: Item, bits: dict[str, int]) -> int:

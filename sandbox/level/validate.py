@@ -18,6 +18,7 @@ from sandbox.level.bodies import (
     WheelDef,
 )
 from sandbox.level.checks import PARTICLE_METRICS, CheckDef
+from sandbox.level.driven_faults import driven_faults
 from sandbox.level.faults import Fault, LevelError, json_path, shown, suggestion
 from sandbox.level.layout import Layout
 from sandbox.level.limits import (
@@ -118,6 +119,7 @@ def _all_faults(level: Level, counts: list[tuple[int, int]], layout: Layout) -> 
             yield from _changes(path, body, *counts[index])
     yield from surface_faults(level)
     yield from _springs(level, layout)
+    yield from driven_faults(level)
     for index, (a, b) in enumerate(level.welds):
         yield from _pair(f"welds.{index}", layout, {"0": a, "1": b})
     for index, check in enumerate(level.checks):
@@ -271,7 +273,5 @@ def _kept(path: list[Any], value: Any) -> Iterator[Fault]:
     elif isinstance(value, str):
         if len(value) > TEXT_LIMIT:
             yield json_path(path), f"has {len(value)} characters; at most {TEXT_LIMIT} are allowed"
-    elif (isinstance(value, float) and not math.isfinite(value)) or (
-        isinstance(value, int) and value.bit_length() > 1024
-    ):
+    elif not _is_finite(value):
         yield json_path(path), f"{shown(value)} is not a finite number"

@@ -59,8 +59,8 @@ def _make_outline(world: World, signature: tuple[NDArray[np.generic], ...]) -> O
     swapped = world.edge[chosen] == SOLID_RIGHT
     a, b = np.where(swapped, b, a), np.where(swapped, a, b)
     edge_a, edge_b = np.append(a, count + terrain.edge_a), np.append(b, count + terrain.edge_b)
-    side = np.append((world.edge[chosen] != LINE).astype(np.int64), terrain.solid)
     owner = np.append(world.owner.astype(np.int64), _owners(terrain))
+    side = np.append(_sides(world.edge[chosen] != LINE, a, b, owner), terrain.solid)
     joined = np.flatnonzero(world.spring_active)
     ends = world.particle_a[joined].astype(np.int64), world.particle_b[joined].astype(np.int64)
     edges = np.arange(len(edge_a))
@@ -77,6 +77,12 @@ def _make_outline(world: World, signature: tuple[NDArray[np.generic], ...]) -> O
         _shielded(world, chosen),
         len(chosen),
     )
+
+
+def _sides(solid: NDArray[np.bool_], a: Slots, b: Slots, owner: Slots) -> Slots:
+    """Side of each edge a to b: an outline that is torn open encloses nothing, so all its edges have two sides."""
+    ways = np.bincount(a[solid], minlength=len(owner)) != np.bincount(b[solid], minlength=len(owner))
+    return (solid & ~np.isin(owner[a], owner[ways])).astype(np.int64)
 
 
 def _shielded(world: World, edges: Slots) -> NDArray[np.bool_]:

@@ -24,12 +24,14 @@ class Snapshot:
     mass: Floats
     inverse_mass: Floats
     radius: Floats
+    gravity_scale: Floats
     particle_active: NDArray[np.bool_]
     slow_velocity: Floats
     energy_bank: Floats
     particle_a: NDArray[np.int32]
     particle_b: NDArray[np.int32]
     rest_length: Floats
+    natural_length: Floats
     stiffness: Floats
     damping: Floats
     law: NDArray[np.int8]
@@ -39,6 +41,7 @@ class Snapshot:
     spring_active: NDArray[np.bool_]
     impulse: Floats
     tension: Floats
+    part_value: Floats
     friction: Floats
     restitution: Floats
     owner: NDArray[np.int32]
@@ -80,6 +83,7 @@ def restore(world: World, snapshot: Snapshot) -> None:
     world.hand_particle = snapshot.hand_particle
     world.hand_spring = snapshot.hand_spring
     world.trust()
+    world.see_what_touches()
     world.forget_names_beyond(len(snapshot.mass), len(snapshot.rest_length))
 
 
@@ -112,6 +116,8 @@ def state_hash(world: World | Snapshot, arrays: Mapping[str, str] | None = None)
         state.solver,
         str(state.iterations),
         float(state.warm_start).hex(),
+        *((component + 0.0).hex() for component in state.wind),
+        float(state.drag).hex(),
     )
     text = "\n".join([*(by_array[name] for name in STATE_ARRAYS), str(world.tick), *settings])
     return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()

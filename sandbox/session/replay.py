@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.level.model import Level
-from sandbox.physics.arrays import CONTACT_ARRAYS, PARTICLE_ARRAYS, STATE_ARRAYS
+from sandbox.level.parts import parts
+from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, canonical_bytes, hash_by_array, state_hash
 from sandbox.physics.world import World
@@ -71,6 +72,12 @@ class Replay:
             snapshot = decode_state(tick, stored.arrays, stored.settings)
         except ValueError as error:
             raise ReplayError(f"{self.source}: line {stored.line}: {error}") from None
+        driven = len(parts(self.level))
+        if len(snapshot.part_value) != driven:
+            raise ReplayError(
+                f"{self.source}: line {stored.line}: state.part_value: has {len(snapshot.part_value)} values, "
+                f"where the level has {driven} driven parts"
+            )
         if state_hash(snapshot) != self.hashes[tick].whole:
             raise ReplayError(
                 f"{self.source}: line {stored.line}: state: is not the one whose hash stands at tick {tick}"
@@ -205,12 +212,5 @@ def _first_difference(tick: int, array: str, expected: NDArray[Any], world: Worl
         return Divergence(tick, array, None, "equal", "equal", note="the two runs agree here")
     place = tuple(int(part) for part in np.unravel_index(flat, actual.shape))
     index = place[0] if len(place) == 1 else (place[0], place[1])
-    name = _row_name(world, array, place[0])
+    name = world.slot_name(array, place[0])
     return Divergence(tick, array, index, expected[place].item(), actual[place].item(), name)
-
-
-def _row_name(world: World, array: str, row: int) -> str:
-    """Name of what a row of an array belongs to: of a contact, its particle."""
-    if array in CONTACT_ARRAYS:
-        return world.particle_names[world.contact_particle[row]]
-    return (world.particle_names if array in PARTICLE_ARRAYS else world.spring_names)[row]

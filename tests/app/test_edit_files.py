@@ -261,6 +261,19 @@ def test_work_on_the_file_that_is_open_comes_back_into_that_file(driver, path):
     assert read_level(path).name == "Lost work"
 
 
+def test_saving_under_a_new_name_tells_where_the_file_cannot_be_locked(driver, path, tmp_path):
+    (tmp_path / "blocked").write_text("a file, no folder")
+    driver.editor.level_file.folder = tmp_path / "blocked"
+    driver.app.documents.save_as()
+    driver.type(str(tmp_path / "other"))
+    driver.choose("Save")
+    told = [text for text in driver.notices if "cannot be locked against other windows" in text]
+    assert len(told) == 1 and told[0].startswith(str(tmp_path / "other.json"))
+    driver.app.status.notices.clear()
+    driver.key(pygame.K_s, CTRL)
+    assert not any("cannot be locked" in text for text in driver.notices)
+
+
 def test_discarding_what_is_offered_keeps_what_is_not(edit):
     for number in range(OFFERED + 1):
         lose(small_level(name=f"Level {number}"))

@@ -61,7 +61,8 @@ def press(driver, widget):
 
 
 def click_row(driver, rows: RowList, index):
-    driver.click(rows.rect_of(index).center)
+    middle = (rows._tops[index] + rows._tops[index + 1]) / 2
+    driver.click((rows.rect.centerx, rows.rect.top + middle - rows._offset))
     driver.frames(2)
 
 
@@ -223,7 +224,7 @@ def test_tab_goes_through_the_fields_and_keeps_them_in_sight(driver):
     choose(driver, ROPE)
     driver.app.ui.focus_on(entry(driver, "id").entry)
     seen = []
-    for _ in range(18):
+    for _ in range(20):
         driver.key(pygame.K_TAB)
         focus = driver.app.ui.focus
         seen.append(focus)
@@ -489,3 +490,25 @@ def test_no_text_whatever_breaks_a_field(driver, tab, number, text):
     saved = level(driver)
     assert parse_level(level_text(saved).encode(), "saved") == saved
     driver.editor.step_to(0)
+
+
+@pytest.mark.parametrize("name", ["\u202e", "\u200b\u200b"])
+def test_names_without_a_width_can_be_opened_shown_and_typed_over(edit, tmp_path, name):
+    names = {"name": name, "description": name, "materials": {name: {"stiffness": 0.3, "damping": 0.3}}}
+    bodies = [{"type": "rope", "id": name, "start": [0, 0], "end": [4, 0], "segments": 4, "material": name}]
+    path = tmp_path / f"{name}.json"
+    path.write_text(level_text(small_level(**names, bodies=bodies)))
+    driver = edit()
+    driver.app.files.open_path(path)
+    driver.frames(2)
+    choose(driver, Item("body", name))
+    for tab in PAGES:
+        open_tab(driver, tab)
+    driver.key(pygame.K_a)
+    driver.click_at(3, 3)
+    driver.app.quit()
+    driver.choose("Cancel")
+    driver.app.open_gallery("mine")
+    driver.frames(3)
+    assert [card.name for card in driver.app.gallery.cards] == [name]
+    assert driver.app.title() == "Levels - Spring Sandbox"

@@ -1,5 +1,7 @@
 """Steps one world with everything in it and prints its hash at each tick; run in processes of their own.
 
+Some of its springs yield and break.
+
 python kernel_script.py SOLVER SUBSTEPS TICKS [--without-numba | --broken-numba | --without-cache]
 """
 
@@ -45,16 +47,24 @@ def prepare(mode: str) -> None:
 
 def busy_world(solver: str, substeps: int):
     """A mesh with diagonals of unequal masses, Hooke springs, pins, a coincident pair and a free particle."""
+    import numpy as np
+
+    from sandbox.physics.equipment import Driven, Hydraulics, Motors, Muscles, StrainLimits
     from sandbox.physics.settings import WorldSettings
     from sandbox.physics.world import LAW_HOOKE, World
 
-    settings = WorldSettings((0.3, -9.81), substeps=substeps, solver=solver, iterations=6, warm_start=0.5)
+    settings = WorldSettings(
+        (0.3, -9.81), substeps=substeps, solver=solver, iterations=6, warm_start=0.5, wind=(3.0, 0.5), drag=0.4
+    )
     world = World(settings)
     side = 6
     points = [(0.5 * x, 0.45 * y) for y in range(side) for x in range(side)]
     masses = [0.1 + 0.37 * k * k for k in range(side * side)]
     pinned = [k in (side * (side - 1), side * side - 1) for k in range(side * side)]
-    world.add_particles([f"net.{k}" for k in range(side * side)], points, mass=masses, pinned=pinned)
+    scale = [1.0 - 0.05 * k for k in range(side * side)]
+    world.add_particles(
+        [f"net.{k}" for k in range(side * side)], points, mass=masses, pinned=pinned, gravity_scale=scale
+    )
     pairs = []
     for k in range(side * side):
         right, up = k % side < side - 1, k // side < side - 1
@@ -67,6 +77,12 @@ def busy_world(solver: str, substeps: int):
     world.hooke_stiffness[5:9], world.hooke_damping[5:9] = 40.0, 0.3
     pair = world.add_particles(["a", "b", "free"], [(4, 4), (4, 4), (5, 5)], velocity=[(0, 0), (0.1, -0.2), (1, 2)])
     world.add_springs([":0", ":1"], [pair, pair], [pair + 1, pair + 1], rest_length=[0.3, 0.0], stiffness=0.2)
+    world.limits = StrainLimits(*np.array([[0.6], [0.5], [0.15], [0.2]]))
+    muscles = Muscles(np.array([3, 30]), np.array([0.3, 0.2]), np.array([7, 12]), np.array([0.0, 0.3]))
+    hydraulics = Hydraulics(np.array([40]), np.array([0.2]), np.array([0.9]), np.array([1.7]), np.array([1]))
+    rim = np.array([8, 9, 13, 15, 19, 20, 21])
+    motors = Motors(np.array([14]), np.array([5.0]), np.array([90.0]), np.array([0]), np.array([0, 7]), rim)
+    world.fit(Driven(("motor", "jack"), muscles, hydraulics, motors), [0.7, 1.0])
     world.reserve_hands()
     return world
 
@@ -81,8 +97,9 @@ def touching_world(solver: str, substeps: int):
     world.group[:36], world.collides[:36], world.owner[:36] = 2, ALL_GROUPS, 1
     names, points = [f"disc.{k}" for k in range(6)], [(0.3 + 0.41 * k, 2.9 + 0.2 * (k % 2)) for k in range(6)]
     world.add_particles(
-        names, points, radius=0.15, friction=0.4, restitution=0.6, group=2, collides=ALL_GROUPS, velocity=(1.5, -9.0)
-    )
+        names, points, radius=0.15, friction=0.4, restitution=[0.6, 0.0] * 3, group=2, collides=ALL_GROUPS,
+        velocity=(1.5, -9.0), gravity_scale=2.0,
+    )  # fmt: skip
     bowl = Chain([(-1.0, -0.6), (3.5, -1.5), (3.5, -0.2), (1.2, -0.9)], "solid")
     line = Chain([(-0.5, 2.0), (-0.6, 0.5)], restitution=1.0)
     world.terrain = make_terrain([bowl, line, Chain([(-2.0, -2.0), (5.0, -2.0), (5.0, 9.0), (-2.0, 9.0)], "hollow")])
@@ -99,7 +116,7 @@ def touches(solver: str, substeps: int, ticks: int):
         step(world)
         met += len(world.contact_particle)
         yield state_hash(world)
-    assert met > 12
+    assert met > 40
 
 
 def hashes(solver: str, substeps: int, ticks: int):
@@ -120,6 +137,8 @@ def hashes(solver: str, substeps: int, ticks: int):
         if tick == 31:
             world.unpin(15)
             world.cut([20, 21])
+        if tick == 27:
+            world.drive(1, -0.3)
         if tick == 24:
             world.set_coefficients(0.11, 0.05, None)
         step(world)

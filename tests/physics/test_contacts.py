@@ -176,7 +176,7 @@ def test_what_nothing_touches_moves_as_in_a_world_without_contacts():
     for w in (alone, beside):
         add_jelly(w, (0.0, 20.0), angle=0.3)
     alone.collides[:] = 0
-    alone.trust()
+    alone.see_what_touches()
     add_discs(beside, [(30.0, 0.1)])
     for _ in range(30):
         step(alone)

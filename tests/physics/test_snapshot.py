@@ -7,6 +7,7 @@ import pytest
 from physics_scenes import grid, network, run, scaled
 
 from sandbox.physics.arrays import STATE_ARRAYS
+from sandbox.physics.equipment import Driven
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
@@ -17,6 +18,7 @@ from sandbox.physics.world import LAW_HOOKE, World
 def busy_world(solver="iterative"):
     world = grid(5, 5, solver=solver, gravity=(0.5, -9.81), substeps=2, stiffness=0.2)
     world.law[3], world.hooke_stiffness[3], world.hooke_damping[3] = LAW_HOOKE, 50.0, 0.1
+    world.fit(Driven(("part",)), [0.5])
     world.reserve_hands()
     world.hold(0, 12, (2.0, 2.5))
     run(world, 5)
@@ -112,6 +114,8 @@ def test_each_array_changes_the_hash_and_its_own_hash_alone(name):
         {"solver": "single_pass"},
         {"iterations": 11},
         {"warm_start": 0.25},
+        {"wind": (0.0, 1e-300)},
+        {"drag": 0.5},
     ],
 )
 def test_each_setting_changes_the_hash(change):
@@ -130,7 +134,8 @@ def test_the_tick_changes_the_hash():
 
 def test_all_settings_are_covered_by_the_test_of_settings():
     assert {field.name for field in dataclasses.fields(WorldSettings)} == {
-        "gravity", "tick_rate", "substeps", "solver", "iterations", "warm_start",
+        "gravity", "tick_rate", "substeps", "solver", "iterations", "warm_start", "wind",
+        "drag",
     }  # fmt: skip
 
 

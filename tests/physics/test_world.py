@@ -31,7 +31,8 @@ def test_slots_are_appended_and_named():
 
 def test_every_array_keeps_its_type_and_one_item_per_slot():
     world = held_rope()
-    for family, size in zip(FAMILIES, (5 + HAND_COUNT, 4 + HAND_COUNT, 0), strict=True):
+    assert (world.particle_count, world.spring_count) == (5 + HAND_COUNT, 4 + HAND_COUNT)
+    for family, size in zip(FAMILIES, (5 + HAND_COUNT, 4 + HAND_COUNT, 0, 0), strict=True):
         for name in family:
             array = getattr(world, name)
             assert array.flags.c_contiguous

@@ -4,13 +4,12 @@ import os
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from sandbox.app.dialogs import ask, choose, show_lines
 from sandbox.app.edit.screen import EditScreen
 from sandbox.app.playback import Playback
 from sandbox.app.recordings import plain_name, recordings_folder
-from sandbox.app.widgets import Ui
 from sandbox.editor.autosave import Autosave, Orphan, orphans
 from sandbox.editor.document import Document, empty_level
 from sandbox.editor.history import History
@@ -38,8 +37,6 @@ class Documents:
         self._autosave: Autosave | None = None
         self._told_of_change = False
         self._told_fault: str | None = None
-        # A question that may not get lost: its page, the widgets it belongs to, and what asks it.
-        self._question: tuple[Any, Ui, Callable[[], Any]] | None = None
 
     # Opening.
 
@@ -154,6 +151,7 @@ class Documents:
         """Write, and go on; where a file is in the way, the person is asked."""
         editor = self.editor
         assert editor is not None
+        before = editor.level_file.path
         try:
             warning = write(replace)
         except (FileExists, ChangedOnDisk) as error:
@@ -174,6 +172,8 @@ class Documents:
         remember(path)
         self.give_up()
         self.app.say(one_line(warning or f"Saved as {path}"))
+        if path != before and editor.level_file.warning:
+            self.app.say(editor.level_file.warning)
         then()
 
     def _ask_name(self, then: Callable[[], object]) -> None:
@@ -234,14 +234,11 @@ class Documents:
         if editor is None or editor.history.is_saved:
             then()
             return
-        if self._question is not None and self._question[0].alive():
+        if self.app.ui.has_question:
             return
         title = f"Save “{editor.document.level.name}”?"
         choices = [("Save", lambda: self._save(then)), ("Discard the changes", then)]
-        self._ask(lambda: choose(self.app.ui, title, "It has changes that are not saved.", choices))
-
-    def _ask(self, question: Callable[[], Any]) -> None:
-        self._question = (question(), self.app.ui, question)
+        choose(self.app.ui, title, "It has changes that are not saved.", choices, is_question=True)
 
     def give_up(self) -> None:
         """Keep nothing in the autosave: the person has saved, or does not want it."""
@@ -258,13 +255,7 @@ class Documents:
     # Safety.
 
     def update(self) -> None:
-        """Ask again what a new layout took away with the widgets; say once where the autosave cannot be written."""
-        if self._question is not None:
-            page, ui, question = self._question
-            if not page.alive():
-                self._question = None
-            elif ui is not self.app.ui:
-                self._ask(question)
+        """Say once where the autosave cannot be written."""
         fault = self._autosave.fault if self._autosave is not None else None
         if fault != self._told_fault:
             self._told_fault = fault
@@ -304,7 +295,7 @@ class Documents:
         more = f" {len(found) - OFFERED} more come at the next start." if len(found) > OFFERED else ""
         choices.append(("Discard all of these" if len(offered) > 1 else "Discard it", discard))
         text = f"The editor was not closed properly, and what was not saved has been kept.{more}"
-        self._ask(lambda: choose(self.app.ui, "Recover your work?", text, choices))
+        choose(self.app.ui, "Recover your work?", text, choices, is_question=True)
 
     def _recover(self, orphan: Orphan) -> None:
         try:

@@ -23,7 +23,7 @@ from sandbox.app.edit.watch import Watch
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Pixel, Pointer
 from sandbox.app.shortcuts import Mode
-from sandbox.app.stage import PICK_RADIUS, WHEEL_ZOOM
+from sandbox.app.stage import PICK_RADIUS
 from sandbox.app.status import STATUS_HEIGHT
 from sandbox.app.toolbar import BAR_HEIGHT
 from sandbox.app.widgets import Ui
@@ -277,15 +277,12 @@ class EditScreen:
         else:
             self.hand.up(point, modifiers)
 
-    def wheel(self, pixel: Pixel, notches: float) -> None:
-        """Zoom about a pixel, or scroll the panel under it."""
-        self.camera.zoom_about(pixel, WHEEL_ZOOM**notches)
+    def press_key(self, key: int, modifiers: int) -> bool:
+        """No key of a level works while it is edited."""
+        return False
 
-    def zoom(self, notches: float) -> None:
-        """Zoom about the keyboard cursor, or the middle."""
-        left, top, width, height = self.camera.viewport
-        middle = (left + width / 2, top + height / 2)
-        self.wheel(middle if self.cursor is None else self.camera.to_pixels(self.cursor), notches)
+    def release_key(self, key: int) -> None:
+        """Nothing was held."""
 
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
         """Nudge the selection by a step of the grid, ten with Shift; without one, move the keyboard cursor."""
@@ -294,7 +291,7 @@ class EditScreen:
             self.edit("Nudge", lambda document: move(document, dx * step, dy * step), merge="nudge")
             return
         left, top, width, height = self.camera.viewport
-        x, y = self.cursor or self.snapped(self.camera.to_world((left + width / 2, top + height / 2)), 0).point
+        x, y = self.cursor or self.snapped(self.camera.to_world(self.camera.middle), 0).point
         (low_x, high_y), (high_x, low_y) = (
             self.camera.to_world(corner) for corner in ((left, top), (left + width, top + height))
         )

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from sandbox.physics.forces import Before
 from sandbox.physics.solvers import contact_direct, direct, iterative, single_pass
 from sandbox.physics.world import Floats, World
 
@@ -11,13 +12,13 @@ from sandbox.physics.world import Floats, World
 class Solver:
     """One schedule of the equation.
 
-    solve(world, stiffness, damping, h): brings world.velocity from after gravity to the end of a step of h [s], with
-    Cs and Cd (m,) of that step. spring_constant(stiffness, damping, reduced_mass [kg], h): k [N/m] of the energy
-    k/2 x^2. proven_limit: whether the limits of `stability` hold for it. bounded: whether it needs none, because it
-    tests the energy of every step.
+    solve(world, stiffness, damping, h, before): brings world.velocity from after the forces to the end of a step of
+    h [s], with Cs and Cd (m,) of that step; before: what the step began with.
+    spring_constant(stiffness, damping, reduced_mass [kg], h): k [N/m] of the energy k/2 x^2. proven_limit: whether the
+    limits of `stability` hold for it. bounded: whether it needs none, because it tests the energy of every step.
     """
 
-    solve: Callable[[World, Floats, Floats, float], None]
+    solve: Callable[[World, Floats, Floats, float, Before], None]
     spring_constant: Callable[[Floats, Floats, Floats, float], Floats]
     proven_limit: bool
     bounded: bool

@@ -9,6 +9,7 @@ together that touch each other, so that one may take what another gives.
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.forces import Before
 from sandbox.physics.jit import bundle_kernel, inner_kernel
 from sandbox.physics.shapes import weight_of
 from sandbox.physics.solvers import direct
@@ -48,8 +49,8 @@ NEWTON_ROUNDS = 4
 
 @inner_kernel
 def _begin(  # type: ignore[no-untyped-def]
-    touching, items, energy_bank, inverse_mass, rest_length, stiffness, damping, material, tension, least, most, parts,
-    h,
+    touching, items, energy_bank, inverse_mass, rest_length, rest_before, stiffness, damping, material, tension, least,
+    most, parts, h,
 ):  # fmt: skip
     # Load the springs and the energies of every body that is touched.
     bodies, rows, springs, matrix = items
@@ -72,7 +73,7 @@ def _begin(  # type: ignore[no-untyped-def]
         touching.before[k] = kinetic_after + moved
         touching.held[k] = open_bank(
             first_row, last_row, first, last, rows, springs, energy_bank, bodies.lowest[body], bouncy, spread,
-            kinetic_after, moved, rest_length, h,
+            kinetic_after, moved, rest_length, rest_before, h,
         )  # fmt: skip
         touching.due[k] = True
 
@@ -249,14 +250,14 @@ def _finish(touching, items, velocity, energy_bank, tension, rest_length, h):  #
 @bundle_kernel
 def _push_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, rest_length, stiffness, damping, material,
-    tension, numbers, least, most, parts, gravity_x, gravity_y, h, touching, blocks, columns, contacts, push,
+    tension, numbers, least, most, parts, before, rest_before, h, touching, blocks, columns, contacts, push,
 ):  # fmt: skip
     items = numbers.items
     _, rows, _, matrix = items
-    load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, matrix.diagonal.shape[0], rows)
+    load_rows(position, velocity, mass, slow_velocity, before, h, matrix.diagonal.shape[0], rows)
     _begin(
-        touching, items, energy_bank, inverse_mass, rest_length, stiffness, damping, material, tension, least, most,
-        parts, h,
+        touching, items, energy_bank, inverse_mass, rest_length, rest_before, stiffness, damping, material, tension,
+        least, most, parts, h,
     )  # fmt: skip
     failing = False
     for solve in range(LINEAR_SOLVES + NEWTON_ROUNDS):
@@ -288,6 +289,7 @@ def _push(
     most: Floats,
     parts: int,
     h: float,
+    before: Before,
 ) -> NDArray[np.bool_]:
     """Solve the bodies and loose particles that touch something; which bodies those are."""
     contacts = world.contacts
@@ -300,15 +302,14 @@ def _push(
     touched[touching.body] = True
     sizes = np.diff(pattern.bodies.row_start)[touching.body] * np.diff(blocks.start)
     columns = np.zeros(4 * int(sizes.max(initial=0)))
-    gravity_x, gravity_y = world.settings.gravity
     _push_bodies(
         world.position, world.velocity, world.mass, world.inverse_mass, world.slow_velocity, world.energy_bank,
         world.rest_length, stiffness, damping, world.material, world.tension, pattern.numbers, least, most, parts,
-        gravity_x, gravity_y, h, touching, blocks, columns, contacts, push,
+        before.velocity, before.rest_length, h, touching, blocks, columns, contacts, push,
     )  # fmt: skip
     return touched
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
+def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Before) -> None:
     """Bring the velocities to the end of a step of h [s], contacts included; what nothing touches goes its own way."""
-    direct.solve(world, stiffness, damping, h, None if world.contacts is None else _push)
+    direct.solve(world, stiffness, damping, h, before, None if world.contacts is None else _push)

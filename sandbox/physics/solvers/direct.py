@@ -10,6 +10,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.forces import Before
 from sandbox.physics.jit import bundle_kernel, inner_kernel
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.halves import hire
@@ -62,11 +63,11 @@ NOTHING = np.zeros(0)
 # The bodies that are solved elsewhere: none.
 NOBODY = np.zeros(0, dtype=np.bool_)
 
-Push = Callable[[World, Pattern, Floats, Floats, Floats, Floats, int, float], NDArray[np.bool_]]
+Push = Callable[[World, Pattern, Floats, Floats, Floats, Floats, int, float, Before], NDArray[np.bool_]]
 
 
 @inner_kernel
-def load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, free_count, rows):  # type: ignore[no-untyped-def]
+def load_rows(position, velocity, mass, slow_velocity, before, h, free_count, rows):  # type: ignore[no-untyped-def]
     """Bring every row to the start of a step of h [s], with a first guess of its end in `trial`."""
     for r in range(rows.particle.shape[0]):
         p = rows.particle[r]
@@ -75,12 +76,9 @@ def load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, 
             rows.position[r, axis] = position[p, axis]
             rows.moved[r, axis] = position[p, axis]
             rows.target[r, axis] = velocity[p, axis]
-            rows.start[r, axis] = velocity[p, axis]
+            rows.start[r, axis] = before[p, axis]
             rows.slow[r, axis] = slow_velocity[p, axis]
-        if r < free_count:
-            rows.start[r, 0] -= gravity_x * h
-            rows.start[r, 1] -= gravity_y * h
-        else:
+        if r >= free_count:
             rows.moved[r, 0] += velocity[p, 0] * h
             rows.moved[r, 1] += velocity[p, 1] * h
         for axis in range(2):
@@ -216,20 +214,23 @@ def body_energy(first_row, last_row, first, last, rows, springs, rest_length, h)
 
 @inner_kernel
 def open_bank(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, spread, kinetic_after, moved, rest_length, h
-):
-    """What one body's bank holds before the step [J]; moved: its springs' energy once pinned particles have moved."""
+    first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, spread, kinetic_after, moved, rest_length,
+    rest_before, h,
+):  # fmt: skip
+    """What one body's bank holds before the step [J]; moved: its springs' energy once pins and drives have moved."""
     # The body's bank before the step. It is begun anew where a particle says so (-1): after any change from outside.
+    # A body that broke off begins with none: what is saved stays with the particle that was the lowest, once.
     begun = True
     for r in range(first_row, last_row):
         p = rows.particle[r]
         if bank[p] < 0.0:
             begun = False
+        if p != lowest:
             bank[p] = 0.0
     held = bank[lowest] if begun else 0.0
     if spread:
-        # What the most k adds to the measure: of the start, and of the work of hands.
-        hidden = potential(first, last, rows.position, rows.start, springs, springs.hidden, rest_length, 0.0, h)
+        # What the most k adds to the measure: of the start, and of the work of hands and drives.
+        hidden = potential(first, last, rows.position, rows.start, springs, springs.hidden, rest_before, 0.0, h)
         hidden_moved = potential(first, last, rows.moved, rows.moved, springs, springs.hidden, rest_length, 0.0, h)
         held += max(0.0, hidden_moved - hidden)
         if not begun:
@@ -237,22 +238,23 @@ def open_bank(  # type: ignore[no-untyped-def]
     if not bouncy:
         return held
     before = kinetic(first_row, last_row, rows.mass, rows.start)
-    present = potential(first, last, rows.position, rows.start, springs, springs.measured, rest_length, 0.0, h)
+    present = potential(first, last, rows.position, rows.start, springs, springs.measured, rest_before, 0.0, h)
     if not begun:
         held += BOUNCY_BANK_SHARE * (before + present)
-    # Work done by gravity and by hands since then counts as energy of the start.
+    # Work done by forces, hands and drives since then counts as energy of the start.
     return max(0.0, held + BOUNCY_BANK_SHARE * (kinetic_after - before + moved - present))
 
 
 @inner_kernel
 def _step_body(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, rows, springs, matrix, rest_length, lowest, bank, bouncy, spread, moved, h
-):
+    first_row, last_row, first, last, rows, springs, matrix, rest_length, rest_before, lowest, bank, bouncy, spread,
+    moved, h,
+):  # fmt: skip
     kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
     before = kinetic_after + moved
     held = open_bank(
         first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, spread, kinetic_after, moved,
-        rest_length, h,
+        rest_length, rest_before, h,
     )  # fmt: skip
     allowed = before * (1.0 + ENERGY_ROUNDING) + held
     after, misfit = _take_candidate(first_row, last_row, first, last, rows, springs, matrix, rest_length, h)
@@ -302,10 +304,10 @@ def _brake(first_row, last_row, first, last, rows, springs, rest_length, allowed
 @bundle_kernel
 def _solve_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, particle_active, rest_length, stiffness,
-    damping, material, tension, numbers, least, most, parts, gravity_x, gravity_y, h, touched,
+    damping, material, tension, numbers, least, most, parts, before, rest_before, h, touched,
 ):  # fmt: skip
     bodies, rows, springs, matrix = numbers.items
-    load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, matrix.diagonal.shape[0], rows)
+    load_rows(position, velocity, mass, slow_velocity, before, h, matrix.diagonal.shape[0], rows)
     for body in range(bodies.lowest.shape[0]):
         if touched.shape[0] > 0 and touched[body]:
             continue
@@ -324,8 +326,8 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
             least, most, parts, h, matrix.diagonal.shape[0],
         )  # fmt: skip
         _step_body(
-            first_row, last_row, first, last, rows, springs, matrix, rest_length, bodies.lowest[body], energy_bank,
-            bouncy, spread, moved, h,
+            first_row, last_row, first, last, rows, springs, matrix, rest_length, rest_before, bodies.lowest[body],
+            energy_bank, bouncy, spread, moved, h,
         )  # fmt: skip
         for r in range(first_row, last_row):
             velocity[rows.particle[r], 0] = rows.trial[r, 0]
@@ -350,7 +352,7 @@ def pattern_of(world: World) -> Pattern:
     return pattern
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float, push: Push | None = None) -> None:
+def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Before, push: Push | None = None) -> None:
     """Bring the velocities to the end of a step of h [s]; slow_velocity, energy_bank and tension go with them.
 
     push: solves the bodies that contacts push and tells which they are (bodies,); the others never hear of it.
@@ -363,12 +365,11 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float, push: Push
         parts = round(1.0 / (h * world.settings.tick_rate))
         stiffness, damping = cap(stiffness, damping, parts)
         least, most = extremes(world)
-    gravity_x, gravity_y = world.settings.gravity
-    touched = NOBODY if push is None else push(world, pattern, stiffness, damping, least, most, parts, h)
+    touched = NOBODY if push is None else push(world, pattern, stiffness, damping, least, most, parts, h, before)
     _solve_bodies(
         world.position, world.velocity, world.mass, world.inverse_mass, world.slow_velocity, world.energy_bank,
         world.particle_active, world.rest_length, stiffness, damping, world.material, world.tension,
-        pattern.numbers, least, most, parts, gravity_x, gravity_y, h, touched,
+        pattern.numbers, least, most, parts, before.velocity, before.rest_length, h, touched,
     )  # fmt: skip
 
 

@@ -6,6 +6,7 @@ No proven limit. Hooke springs are no constraints: they act once, explicitly, be
 import numpy as np
 
 from sandbox.physics.equation import direction, reduced_mass
+from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
 from sandbox.physics.shapes import NO_CONTACTS
 from sandbox.physics.solvers.contact_sweep import (
@@ -84,7 +85,7 @@ def _iterate(  # type: ignore[no-untyped-def]
     add_change(velocity, change, inverse_mass)
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
+def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Before) -> None:
     """Bring the velocities to the end of a step of h [s]; world.impulse keeps the sums for the next warm start."""
     hooke = world.spring_active & (world.law == LAW_HOOKE)
     if hooke.any():

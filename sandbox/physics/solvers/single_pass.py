@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.equation import direction, reduced_mass, spring_impulse
+from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
 from sandbox.physics.solvers.contact_sweep import load_biases, loose_blocks, new_push, sweep_masses
 from sandbox.physics.world import Floats, World
@@ -57,7 +58,7 @@ def apply_explicit(world: World, chosen: NDArray[np.bool_], stiffness: Floats, d
     )  # fmt: skip
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float) -> None:
+def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Before) -> None:
     """Bring the velocities to the end of a step of h [s]; contacts are swept after the springs."""
     contacts = world.contacts
     if contacts is None:
