@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import contents, inner_kernel, kernel
+from sandbox.physics.shapes import weight_of
 from sandbox.physics.solvers import direct
 from sandbox.physics.solvers.body import (
     BANK_SHARE,
@@ -27,7 +28,6 @@ from sandbox.physics.solvers.contact_sweep import (
     load_responses,
     new_push,
     solve_contacts,
-    weight_of,
 )
 from sandbox.physics.solvers.direct import AHEAD, ENERGY_ROUNDING, LAST_HALVINGS, LINEAR_SOLVES, MISFIT_RATE
 from sandbox.physics.solvers.goal import aim_at_form, find_tangled, let_go
@@ -342,7 +342,7 @@ def _push(
         return touched
     touching, blocks = find_touching(world, pattern, contacts)
     push = new_push(len(contacts.particle))
-    load_biases(contacts, push, world.velocity, before.velocity, h)
+    load_biases(contacts, push, h)
     touched[touching.body] = True
     sizes = np.diff(pattern.bodies.row_start)[touching.body] * np.diff(blocks.start)
     columns = np.zeros(4 * int(sizes.max(initial=0)))
