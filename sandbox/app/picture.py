@@ -29,7 +29,10 @@ def crop_of(level: Level, snapshot: Snapshot) -> Box:
 
 
 def _points(snapshot: Snapshot) -> NDArray[np.float64]:
-    return np.concatenate([snapshot.position[shown_particles(snapshot)], snapshot.terrain.vertex])
+    # Corners of all that is drawn.
+    shown = shown_particles(snapshot)
+    position, radius = snapshot.position[shown], snapshot.radius[shown, None]
+    return np.concatenate([position - radius, position + radius, snapshot.terrain.vertex])
 
 
 def draw_picture(

@@ -237,11 +237,11 @@ def test_a_picture_shows_every_particle_and_is_written_as_png(tmp_path):
 
 def test_a_small_picture_shows_ground_and_what_lies_in_the_view_and_no_empty_part_of_it():
     ground = {"id": "ground", "polygon": [[-4, -1], [4, -1], [4, 0], [-4, 0]]}
-    far = [{"id": "near", "position": [0, 1]}, {"id": "flown", "position": [90, 2]}]
+    far = [{"id": "near", "position": [0, 1], "radius": 0.5}, {"id": "flown", "position": [90, 2], "radius": 0.5}]
     level = small_level(bodies=[], materials={}, particles=far, terrain=[ground], view=[-8, -3, 8, 9])
-    assert crop_of(level, Session(level).snapshot()) == (-4.0, -1.0, 8.0, 2.0)
+    assert crop_of(level, Session(level).snapshot()) == (-4.0, -1.0, 8.0, 2.5)
     unframed = small_level(bodies=[], materials={}, particles=far[:1], terrain=[ground], view=None)
-    assert view_of(unframed, Session(unframed).snapshot()) == (-4.0, -1.0, 4.0, 1.0)
+    assert view_of(unframed, Session(unframed).snapshot()) == (-4.0, -1.0, 4.0, 1.5)
 
 
 def test_an_empty_level_and_a_level_of_one_particle_can_be_drawn():
