@@ -15,9 +15,9 @@ from sandbox.physics.world import Floats, Slots, World
 class Touching(NamedTuple):
     """The bodies that something touches, by block: body, cluster; the loose particles, their cluster; and scratch.
 
-    row: of each particle (n,), -1: none. before, held, after [J] and misfit by block; due: to be solved again; spread,
-    bouncy: of its springs. total, allowed [J], fails by cluster. free, pushed [m/s] by row. given, change [m/s] by
-    particle: velocities without contacts, and what those add.
+    row: of each particle (n,), -1: none. before, held, after [J] and misfit by block; due: to be solved again; bouncy,
+    spread: of its springs and elements; tangled, aimed: see goal.py. total, allowed [J], fails by cluster. free, pushed
+    [m/s] by row. given, change [m/s] by particle: velocities without contacts, and what those add.
     """
 
     body: Slots
@@ -32,6 +32,8 @@ class Touching(NamedTuple):
     due: NDArray[np.bool_]
     bouncy: NDArray[np.bool_]
     spread: NDArray[np.bool_]
+    tangled: NDArray[np.bool_]
+    aimed: NDArray[np.bool_]
     total: Floats
     allowed: Floats
     fails: NDArray[np.bool_]
@@ -72,29 +74,30 @@ def _join(contacts, block, inverse_mass, label):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _bind(contacts, inverse_mass, near_start, label, sprung, bound, cluster):  # type: ignore[no-untyped-def]
-    # cluster (k,) of each contact; bound (k,): those in whose cluster a spring holds anything that can move.
+def _bind(contacts, inverse_mass, held, label, tied, bound, cluster):  # type: ignore[no-untyped-def]
+    # cluster (k,) of each contact; bound (k,): those in whose cluster anything that can move is held.
     for p in range(label.shape[0]):
-        if near_start[p] != near_start[p + 1] and inverse_mass[p] > 0.0:
-            sprung[label[p]] = True
+        if held[p] and inverse_mass[p] > 0.0:
+            tied[label[p]] = True
     for c in range(contacts.particle.shape[0]):
         for end in range(3):
             p, _ = weight_of(contacts, c, end)
             if p >= 0 and inverse_mass[p] > 0.0:
                 cluster[c] = label[p]
-                bound[c] = sprung[label[p]]
+                bound[c] = tied[label[p]]
 
 
-def bound_contacts(contacts: Contacts, inverse_mass: Floats, near_start: Slots) -> tuple[NDArray[np.bool_], Slots]:
-    """Whether each contact hangs together, by others, with a particle that a spring moves; the number of its cluster.
-
-    near_start: where the springs of each particle begin, see Shapes.
+def bound_contacts(
+    contacts: Contacts, inverse_mass: Floats, held: NDArray[np.bool_]
+) -> tuple[NDArray[np.bool_], Slots]:
+    """Whether each contact hangs together, by others, with a particle that can move and is held by a spring or an
+    element, as held (n,) says; the number of its cluster.
     """
     count, size = len(inverse_mass), len(contacts.particle)
-    label, sprung = np.arange(count), np.zeros(count, dtype=np.bool_)
+    label, tied = np.arange(count), np.zeros(count, dtype=np.bool_)
     bound, cluster = np.zeros(size, dtype=np.bool_), np.zeros(size, dtype=np.int64)
     _join(contacts, np.full(count, -1, dtype=np.int64), inverse_mass, label)
-    _bind(contacts, inverse_mass, near_start, label, sprung, bound, cluster)
+    _bind(contacts, inverse_mass, held, label, tied, bound, cluster)
     return bound, cluster
 
 
@@ -122,10 +125,10 @@ def find_touching(world: World, pattern: Pattern, contacts: Contacts) -> tuple[T
     _, cluster = np.unique(label[np.append(count + np.arange(len(body)), loose)], return_inverse=True)
     clusters = int(cluster.max()) + 1 if len(cluster) else 0
     size = len(body)
-    numbers, flags, sums = np.zeros((4, size)), np.zeros((3, size), dtype=np.bool_), np.zeros((2, clusters))
+    numbers, flags, sums = np.zeros((4, size)), np.zeros((5, size), dtype=np.bool_), np.zeros((2, clusters))
     touching = Touching(
         body, cluster[:size].astype(np.int64), loose, cluster[size:].astype(np.int64), row,
-        numbers[0], numbers[1], numbers[2], numbers[3], flags[0], flags[1], flags[2],
+        numbers[0], numbers[1], numbers[2], numbers[3], flags[0], flags[1], flags[2], flags[3], flags[4],
         sums[0], sums[1], np.zeros(clusters, dtype=np.bool_), np.zeros((free_count, 2)), np.zeros((free_count, 2)),
         world.velocity.copy(), np.zeros((count, 2)),
     )  # fmt: skip
