@@ -146,12 +146,12 @@ def _recording(name: str, partial: bool = False) -> "Replay":
 
 def _is_replay(name: str) -> bool:
     """Whether a file's first bytes are a recording's, plain or compressed; anything else is taken for a level."""
+    from sandbox.session.reading import begins_as_replay
+
     try:
-        with open(name, "rb") as file:
-            start = file.read(64)
+        return begins_as_replay(name)
     except OSError:
         return False
-    return start[:2] == b"\x1f\x8b" or b"spring-sandbox/replay" in start
 
 
 def _play(options: argparse.Namespace) -> int:
@@ -257,7 +257,7 @@ def _run_with_bar(
     from sandbox.session.commands import CommandError
     from sandbox.session.summary import run
 
-    warm_up((session.world.settings.solver,))
+    warm_up((session.world.settings.solver,), session.world.has_contacts)
     with interrupted_between_ticks() as look_up, progress(ticks) as bar:
 
         def after(world: "World") -> None:

@@ -30,8 +30,8 @@ def test_the_program_in_the_readme_prints_that_every_tick_is_equal(tmp_path, mon
 
 
 def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_carried_out(tmp_path):
-    (lines,) = re.findall(r"```jsonl\n(.*?)```", COMMANDS, re.DOTALL)
-    assert {json.loads(line)["command"]["type"] for line in lines.splitlines()} == set(COMMAND_TYPES)
+    lines, driving = re.findall(r"```jsonl\n(.*?)```", COMMANDS, re.DOTALL)
+    assert {json.loads(line)["command"]["type"] for line in (lines + driving).splitlines()} == set(COMMAND_TYPES)
     table = COMMANDS.split("|---|---|---|")[1]
     named = {
         name
@@ -47,3 +47,8 @@ def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_ca
     assert not session.messages
     assert session.world.settings.solver == "iterative"
     assert "+.0" in session.world.particle_names
+    (tmp_path / "fire.jsonl").write_text(driving)
+    session = Session(load_level("catapult"), read_script(tmp_path / "fire.jsonl"))
+    for _ in range(180):
+        session.advance()
+    assert len(session.messages) == 1 and session.messages[0].endswith(" broke")

@@ -1,6 +1,5 @@
 """App: the window, its loop, its pages, and the screen that fills it."""
 
-import threading
 import time
 from collections import deque
 from collections.abc import Callable
@@ -8,7 +7,7 @@ from pathlib import Path
 
 import pygame
 
-from sandbox.app.colours import BACKGROUND
+from sandbox.app.colours import BACKGROUND, WARNING
 from sandbox.app.dialogs import show_lines
 from sandbox.app.display import SCALE_RANGE, Display
 from sandbox.app.edit.documents import Documents
@@ -16,10 +15,11 @@ from sandbox.app.edit.tour import Guide
 from sandbox.app.files import FileActions
 from sandbox.app.gallery import Gallery
 from sandbox.app.help import show_help
+from sandbox.app.idle import IdleCollector
 from sandbox.app.input import Input
-from sandbox.app.lines import warm_up_lines
 from sandbox.app.play import PlayScreen
 from sandbox.app.playback import Playback
+from sandbox.app.preparing import Preparation
 from sandbox.app.profile import Profile
 from sandbox.app.progress import Progress
 from sandbox.app.screen import Screen
@@ -27,7 +27,6 @@ from sandbox.app.shortcuts import Mode
 from sandbox.app.status import NOTICES, Notice, StatusLine, draw_spinner
 from sandbox.app.widgets import Ui
 from sandbox.level.model import Level
-from sandbox.physics.step import warm_up
 from sandbox.session.replay import Replay
 
 FRAME_RATE = 60
@@ -44,12 +43,12 @@ class App:
         self.display = display
         self.scale = display.scale
         self.profile = Profile()
+        self._collector = IdleCollector()
         self._notices: deque[Notice] = deque(maxlen=NOTICES)
         self._description = ""
         self.running = True
         self.ready = False
         self.screen: Screen | None = None
-        self.gallery: Gallery | None = None
         self.input = Input(self)
         self.files = FileActions(self)
         self.documents = Documents(self)
@@ -60,8 +59,7 @@ class App:
         self._counted = [0.0, 0, 0, 0.0]
         self._seconds = 0.0
         self._build_ui()
-        self.warming = threading.Thread(target=_warm_up_kernels, daemon=True)
-        self.warming.start()
+        self.preparation = Preparation()
         if replay is not None:
             self.start(Playback(replay.level, replay))
         elif level is not None:
@@ -82,6 +80,7 @@ class App:
         return "play" if self.screen is None else self.screen.mode
 
     def _build_ui(self) -> None:
+        self.gallery: Gallery | None = None
         self.ui = Ui(self.display.size, self.scale, self.display.pixel_ratio)
         self.status = StatusLine(self.ui, self._notices)
         if self.screen is not None:
@@ -90,11 +89,9 @@ class App:
 
     def rebuild(self) -> None:
         """Lay everything out anew, after the window or the scale changed."""
-        section = self.gallery.section if self.gallery is not None else None
-        self.gallery = None
+        before = self.ui
         self._build_ui()
-        if section is not None:
-            self.open_gallery(section)
+        self.ui.take_over(before)
 
     def say(self, text: str) -> None:
         """Show a line to the person for some seconds."""
@@ -110,7 +107,9 @@ class App:
         if self.screen is not None and self.screen is not screen:
             self.screen.leave()
         self.screen = screen
-        self.rebuild()
+        before = self.ui
+        self._build_ui()
+        self.ui.take_over(before, questions_alone=True)
 
     def start(self, playback: Playback, source: Path | None = None) -> None:
         """Show another run from its beginning; source: the file of its level."""
@@ -183,6 +182,7 @@ class App:
             self.screen.leave()
         self.documents.close()
         self.display.close()
+        self._collector.close()
 
     def _rescale(self, factor: float) -> None:
         self.scale = min(max(self.scale * factor, SCALE_RANGE[0]), SCALE_RANGE[1])
@@ -195,10 +195,12 @@ class App:
         started = time.perf_counter()
         self._seconds += frame_time
         with self.profile.part("events"):
-            self.input.process(pygame.event.get())
+            events = pygame.event.get()
+            self._collector.update(frame_time, bool(events))
+            self.input.process(events)
             if self.display.refresh():
                 self.rebuild()
-        self.ready = self.ready or not self.warming.is_alive()
+        self.ready = self.preparation.is_ready(self.play is not None and self.play.has_contacts)
         if self.screen is not None:
             self.screen.update(frame_time, self.input.pointer_over_world(), self.profile, self.ready)
         with self.profile.part("ui"):
@@ -225,12 +227,16 @@ class App:
             if self.screen is not None:
                 left = None if self.ui.has_sheet else self.screen.notices_left
                 legend = self.mode == "play"
-                self.status.draw(surface, self.screen.status(*self._figures), self.ui.units[0], left, legend)
+                parts = self.screen.status(*self._figures)
+                if not self.ready and self.mode == "edit":
+                    parts.append(("preparing the physics", WARNING))
+                self.status.draw(surface, parts, self.ui.units[0], left, legend)
             self.ui.draw(surface)
             self.guide.draw(surface)
             if (self.screen is None or self.ui.has_sheet) and not self.ui.shows_page:
                 self.status.draw_notices(surface, 16.0)
-            if not self.ready:
+            # A level can be drawn before the physics is there.
+            if not self.ready and self.mode == "play":
                 detail = "Only the first start takes some seconds."
                 draw_spinner(surface, self.ui, self._seconds, "Preparing the physics", detail)
 
@@ -252,12 +258,8 @@ class App:
         if self.screen is None or self.gallery is not None:
             return "Levels - Spring Sandbox"
         words = [*self.screen.title(), *(["dialog"] if self.ui.has_sheet else [])]
+        words += [] if self.ready else ["preparing"]
         return " - ".join([*words, "Spring Sandbox"])
-
-
-def _warm_up_kernels() -> None:
-    warm_up()
-    warm_up_lines()
 
 
 def run_app(

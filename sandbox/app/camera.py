@@ -15,6 +15,8 @@ ZOOM_RANGE = (1e-4, 1e6)
 FIT_MARGIN = 0.08
 # Smallest extent [m] that `fit` shows, for levels of a single point.
 SMALLEST_EXTENT = 0.5
+# Zoom of one notch of the wheel.
+WHEEL_ZOOM = 1.15
 
 
 @dataclass
@@ -26,11 +28,16 @@ class Camera:
     viewport: tuple[int, int, int, int] = (0, 0, 1280, 720)
 
     @property
+    def middle(self) -> Point:
+        """The pixel in the middle of the viewport."""
+        left, top, width, height = self.viewport
+        return left + width / 2, top + height / 2
+
+    @property
     def origin(self) -> Point:
         """Pixel position of the world's (0, 0)."""
-        left, top, width, height = self.viewport
-        x, y = self.centre
-        return left + width / 2 - x * self.zoom, top + height / 2 + y * self.zoom
+        (middle_x, middle_y), (x, y) = self.middle, self.centre
+        return middle_x - x * self.zoom, middle_y + y * self.zoom
 
     def to_pixels(self, point: Point) -> Point:
         """A point [m] in pixels."""
@@ -52,6 +59,14 @@ class Camera:
         self.zoom = min(max(self.zoom * factor, ZOOM_RANGE[0]), ZOOM_RANGE[1])
         now = self.to_world(pixel)
         self.centre = (self.centre[0] + held[0] - now[0], self.centre[1] + held[1] - now[1])
+
+    def turn_wheel(self, pixel: Point, notches: float) -> None:
+        """Zoom about a pixel by notches of the wheel."""
+        self.zoom_about(pixel, WHEEL_ZOOM**notches)
+
+    def zoom_at(self, cursor: Point | None, notches: float) -> None:
+        """Zoom about a keyboard cursor [m], or the middle where there is none."""
+        self.turn_wheel(self.middle if cursor is None else self.to_pixels(cursor), notches)
 
     def pan(self, dx: float, dy: float) -> None:
         """Move the picture by pixels."""

@@ -1,10 +1,12 @@
-"""Dialogs: lines that a person has to see, questions with a typed answer, and choices."""
+"""Dialogs: lines that a person has to see, questions with a typed answer, choices, and long lists to choose from."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
 from sandbox.app.colours import TEXT, WARNING
+from sandbox.app.edit.rows import MENU_ROWS, Row, RowList
+from sandbox.app.fields import Again
 from sandbox.app.painted import TextBlock
 from sandbox.app.widgets import Ui
 
@@ -15,16 +17,20 @@ LINE_HEIGHT = 21.0
 MOST_LINES = 14
 # Characters of a fault that fit on a line of the box.
 LINE_CHARACTERS = 74
+# Height of a row of a list.
+ROW_HEIGHT = 29.0
 
 # A button: its label, and what it does.
 Choice = tuple[str, Callable[[], object]]
 
 
-def _box(ui: Ui, height: float, close: Callable[[], None]) -> tuple[Any, Any, float]:
+def _box(
+    ui: Ui, height: float, close: Callable[[], None], again: Again, is_question: bool = False
+) -> tuple[Any, Any, float]:
     """A modal box in the middle: the sheet, the box and its width in layout units."""
     width, tall = ui.units
     box_width = min(WIDTH, width - 40)
-    sheet = ui.open_sheet(close)
+    sheet = ui.open_sheet(close, again=again, is_question=is_question)
     box = ui.panel(ui.rect((width - box_width) / 2, max((tall - height) / 2, 10), box_width, height), sheet, "@dialog")
     return sheet, box, box_width
 
@@ -43,7 +49,10 @@ def show_lines(ui: Ui, title: str, lines: list[str], other: Choice | None = None
         if other is not None:
             other[1]()
 
-    sheet, box, width = _box(ui, height, close)
+    def again(other_ui: Ui) -> None:
+        show_lines(other_ui, title, lines, other)
+
+    sheet, box, width = _box(ui, height, close, again)
     ui.label(ui.rect(MARGIN, MARGIN - 6, width - 2 * MARGIN, 28), title, box, "@title")
     place = ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN, height - MARGIN * 2 - 84)
     TextBlock(ui, place, "\n".join(shown), box, 13.0, TEXT)
@@ -92,7 +101,10 @@ def ask(
         note.show_text(fault)
         return False
 
-    sheet, box, width = _box(ui, height, close)
+    def again(other_ui: Ui) -> None:
+        ask(other_ui, title, hint, field.entry.get_text(), verb, answer, other, then)
+
+    sheet, box, width = _box(ui, height, close, again)
     inside = width - 2 * MARGIN
     ui.label(ui.rect(MARGIN, MARGIN - 6, inside, 28), title, box, "@title")
     ui.label(ui.rect(MARGIN, MARGIN + 26, inside, 20), hint, box, "@muted")
@@ -105,10 +117,12 @@ def ask(
     ui.focus_on(field.entry)
 
 
-def choose(ui: Ui, title: str, text: str, choices: Sequence[Choice], columns: int = 1) -> Any:
+def choose(
+    ui: Ui, title: str, text: str, choices: Sequence[Choice], columns: int = 1, *, is_question: bool = False
+) -> None:
     """Offer choices, (label, what it does) each, the first of them marked; Escape or Cancel leaves all as it is.
 
-    Gives the page, which is alive until one is taken.
+    is_question: it stays until it is answered, also where another screen comes.
     """
     rows = -(-len(choices) // columns)
     lines = 1 + len(text) // LINE_CHARACTERS if text else 0
@@ -121,7 +135,10 @@ def choose(ui: Ui, title: str, text: str, choices: Sequence[Choice], columns: in
         close()
         action()
 
-    sheet, box, width = _box(ui, height, close)
+    def again(other_ui: Ui) -> None:
+        choose(other_ui, title, text, choices, columns, is_question=is_question)
+
+    sheet, box, width = _box(ui, height, close, again, is_question)
     inside = width - 2 * MARGIN
     ui.label(ui.rect(MARGIN, MARGIN - 6, inside, 28), title, box, "@title")
     TextBlock(ui, ui.rect(MARGIN, MARGIN + 32, inside, lines * LINE_HEIGHT + 4), text, box, 13.0, TEXT)
@@ -133,7 +150,29 @@ def choose(ui: Ui, title: str, text: str, choices: Sequence[Choice], columns: in
         buttons.append(ui.button(place, label, partial(do, action), box, style=style))
     ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="@quiet")
     ui.focus_on(buttons[0])
-    return sheet
+
+
+def choose_row(ui: Ui, title: str, rows: Sequence[Row], take: Callable[[int], object]) -> None:
+    """Offer a list of any length, which scrolls; take(index) is called once a row is chosen."""
+    tall = min(min(len(rows), MENU_ROWS) * ROW_HEIGHT, ui.units[1] - 20 - 2 * MARGIN - 84)
+    height = MARGIN * 2 + 84 + tall
+
+    def close() -> None:
+        ui.close_sheet(sheet)
+
+    def do(index: int) -> None:
+        close()
+        take(index)
+
+    def again(other_ui: Ui) -> None:
+        choose_row(other_ui, title, rows, take)
+
+    sheet, box, width = _box(ui, height, close, again)
+    ui.label(ui.rect(MARGIN, MARGIN - 6, width - 2 * MARGIN, 28), title, box, "@title")
+    listed = RowList(ui, ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN, tall), do, box, at_once=False)
+    listed.show_rows(rows, None)
+    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="@quiet")
+    ui.focus_on(listed)
 
 
 def fill_in(
@@ -157,7 +196,11 @@ def fill_in(
         else:
             note.show_text(fault)
 
-    sheet, box, width = _box(ui, height, close)
+    def again(other_ui: Ui) -> None:
+        typed = [(label, entry.entry.get_text()) for (label, _), entry in zip(fields, entries, strict=True)]
+        fill_in(other_ui, title, hint, typed, verb, answer)
+
+    sheet, box, width = _box(ui, height, close, again)
     inside = width - 2 * MARGIN
     ui.label(ui.rect(MARGIN, MARGIN - 6, inside, 28), title, box, "@title")
     ui.label(ui.rect(MARGIN, MARGIN + 26, inside, 20), hint, box, "@muted")

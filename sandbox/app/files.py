@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 from sandbox.app.dialogs import ask
 from sandbox.app.playback import Playback
 from sandbox.app.recordings import SUFFIX, chosen_path, free_path, plain_name, recordings_folder
-from sandbox.level.files import LevelError, load_level, read_level
-from sandbox.session.reading import read_replay
+from sandbox.level.faults import LevelError, one_line
+from sandbox.level.files import load_level, read_level
+from sandbox.level.writing import refusal_of
+from sandbox.session.reading import begins_as_replay, read_replay
 from sandbox.session.replay import ReplayError
 
 if TYPE_CHECKING:
@@ -26,12 +28,10 @@ class FileActions:
     def open_path(self, path: str | Path) -> bool:
         """Open a level or a replay, whichever the file is; True where it could be."""
         try:
-            with open(path, "rb") as file:
-                start = file.read(64)
+            is_replay = begins_as_replay(path)
         except OSError as error:
-            self._refuse(path, [f"{path}: cannot be read: {error.strerror or error}"])
+            self._refuse(path, [one_line(f"{path}: cannot be read: {refusal_of(error)}")])
             return False
-        is_replay = start[:2] == b"\x1f\x8b" or b"spring-sandbox/replay" in start
         return self.open_replay(path) if is_replay else self.open_level(path)
 
     def open_level(self, path: str | Path, shipped: bool = False) -> bool:
@@ -60,7 +60,7 @@ class FileActions:
             self._refuse(path, error.faults)
             return False
         self.app.start(playback)
-        self.app.say(f"Watching {Path(path).name}. Touch anything to take over.")
+        self.app.say(f"Watching {one_line(Path(path).name)}. Touch anything to take over.")
         return True
 
     def ask_to_open(self) -> None:
@@ -70,7 +70,7 @@ class FileActions:
 
     def _fault_of(self, typed: str) -> str | None:
         """Why nothing can be opened by that name; a file's own faults are shown when it is opened."""
-        if Path(typed).expanduser().is_file():
+        if os.path.isfile(os.path.expanduser(typed)):
             return None
         try:
             load_level(typed)
@@ -79,8 +79,8 @@ class FileActions:
         return None
 
     def _open_typed(self, typed: str) -> None:
-        path = Path(typed).expanduser()
-        if path.is_file():
+        path = os.path.expanduser(typed)
+        if os.path.isfile(path):
             self.open_path(path)
         elif self.app.mode == "edit":
             self.app.documents.edit_level(load_level(typed))
@@ -88,7 +88,7 @@ class FileActions:
             self.app.start(Playback(load_level(typed)))
 
     def _refuse(self, path: str | Path, faults: list[str]) -> None:
-        self.app.show_faults(f"{Path(path).name} cannot be opened", faults)
+        self.app.show_faults(f"{one_line(Path(path).name)} cannot be opened", [one_line(fault) for fault in faults])
 
     # Recording.
 
@@ -103,7 +103,7 @@ class FileActions:
             return
         path = self._record_now()
         if path is not None:
-            self.app.say(f"Recording to {path}, from the beginning of the run.")
+            self.app.say(_recording(path))
 
     def save_run(self) -> None:
         """Save the run so far as a replay, under a name that is asked for."""
@@ -130,7 +130,8 @@ class FileActions:
         path = self.app.play.playback.session.stop_recording()
         if path is None:
             return
-        self.app.say(f"Saved as {path}")
+        self.app.status.take_back(_recording(path))
+        self.app.say(_saved(path))
         suggestion = path.name.removesuffix(SUFFIX)
         ask(
             self.app.ui,
@@ -152,7 +153,8 @@ class FileActions:
             return str(error)
         except OSError as error:
             return f"It stays {path.name}: {error.strerror or error}."
-        self.app.say(f"Saved as {wanted}")
+        self.app.status.take_back(_saved(path))
+        self.app.say(_saved(wanted))
         return None
 
     def _discard(self, path: Path) -> None:
@@ -161,7 +163,16 @@ class FileActions:
         except OSError as error:
             self.app.say(f"{path} cannot be removed: {error.strerror or error}.")
         else:
+            self.app.status.take_back(_saved(path))
             self.app.say(f"Removed {path.name}.")
+
+
+def _recording(path: Path) -> str:
+    return f"Recording to {path}, from the beginning of the run."
+
+
+def _saved(path: Path) -> str:
+    return f"Saved as {path}"
 
 
 def _move(path: Path, wanted: Path) -> None:

@@ -15,7 +15,8 @@ from sandbox.app.picture import draw_picture, run_ahead
 from sandbox.app.recordings import saved_recordings
 from sandbox.app.widgets import ENTER_KEYS, Ui
 from sandbox.editor.recent import recent_levels
-from sandbox.level.files import LevelError, read_level, shipped_levels
+from sandbox.level.faults import LevelError, one_line
+from sandbox.level.files import read_level, shipped_levels
 from sandbox.level.model import Level
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.query import shown_particles
@@ -119,7 +120,8 @@ class Gallery:
         self._scroll = 0.0
         self._columns = 1
         self._open = partial(files.open_level, shipped=section == "levels")
-        self.sheet = ui.open_sheet(close if files.app.screen is not None else lambda: None, "@cover")
+        end = close if files.app.screen is not None else lambda: None
+        self.sheet = ui.open_sheet(end, "@cover", again=lambda _: files.app.open_gallery(section))
         width, height = ui.units
         editing = files.app.mode == "edit"
         ui.label(ui.rect(MARGIN, 26, 300, 40), "Edit a level" if editing else "Spring Sandbox", self.sheet, "@display")
@@ -157,11 +159,13 @@ class Gallery:
         try:
             level = read_level(path)
         except LevelError as error:
-            card = self._add_card(rect, path.stem, error.faults[0], partial(self._open, path))
+            card = self._add_card(rect, one_line(path.stem), error.faults[0], partial(self._open, path))
             card.broken = True
             card.repaint()
             return
-        card = self._add_card(rect, level.name, level.description, partial(self._open, path))
+        # Levels of one's own are often still without a name.
+        text = level.description if self.section == "levels" else f"{one_line(path.name)}  {level.description}".strip()
+        card = self._add_card(rect, level.name, text, partial(self._open, path))
         self._unpainted.append((card, level))
 
     def _add_recordings(self) -> None:
@@ -176,7 +180,7 @@ class Gallery:
             when = time.strftime("%d %B %Y, %H:%M", time.localtime(stat.st_mtime))
             rect = ui.rect(6, 6 + index * (ROW_HEIGHT + 10), width, ROW_HEIGHT)
             card = Card(
-                ui, rect, path.name, f"{when}, {stat.st_size / 1024:,.0f} KiB",
+                ui, rect, one_line(path.name), f"{when}, {stat.st_size / 1024:,.0f} KiB",
                 partial(self._files.open_replay, path), self.area,
             )  # fmt: skip
             card.has_picture = False

@@ -6,22 +6,27 @@ from typing import Any
 import pygame
 
 from sandbox.app.colours import ACCENT, MUTED, TEXT
+from sandbox.app.edit.scroll import ScrollArea
 from sandbox.app.painted import Painted
 from sandbox.app.shortcuts import Mode, Shortcut, shortcuts
 from sandbox.app.widgets import Ui
 
 # Sizes in layout units.
-COLUMN_WIDTH = 480.0
+COLUMN_WIDTH = 500.0
 NARROWEST_COLUMN = 400.0
 MOST_COLUMNS = 3
 ROW = 22.0
-HEADING = 34.0
-TOP = 62.0
+HEADING = 31.0
+TOP = 56.0
 MARGIN = 28.0
+TEXT_SIZE = 12.5
 
 
 def show_help(ui: Ui, mode: Mode, tour: Callable[[], object]) -> None:
-    """Cover the window by the list of a mode's shortcuts, until it is closed; tour: what begins the tour."""
+    """Cover the window by the list of a mode's shortcuts, until it is closed; tour: what begins the tour.
+
+    What does not fit into the window is scrolled to.
+    """
     width, height = ui.units
     entries = shortcuts(mode)
     most = max(1, min(int((width - 20) // NARROWEST_COLUMN), MOST_COLUMNS))
@@ -39,14 +44,17 @@ def show_help(ui: Ui, mode: Mode, tour: Callable[[], object]) -> None:
         close()
         tour()
 
-    sheet = ui.open_sheet(close, is_page=True)
+    sheet = ui.open_sheet(close, is_page=True, again=lambda other: show_help(other, mode, tour))
     place = ui.rect((width - box_width) / 2, (height - box_height) / 2, box_width, box_height)
     box = ui.panel(place, sheet, "@dialog")
     ui.label(ui.rect(MARGIN, 18, 300, 28), "Shortcuts", box, "@title")
     ui.button(ui.rect(box_width - MARGIN - 218, 16, 120, 32), "Take the tour", begin_tour, box, style="@quiet")
     button = ui.button(ui.rect(box_width - MARGIN - 90, 16, 90, 32), "Close", close, box)
-    ShortcutTable(ui, ui.rect(MARGIN, TOP, box_width - 2 * MARGIN, box_height - TOP - 12), columns, box).repaint()
-    ui.focus_on(button)
+    needed = max(map(_height, columns))
+    area = ScrollArea(ui, ui.rect(MARGIN, TOP, box_width - 2 * MARGIN + 12, box_height - TOP - 12), box)
+    area.set_height(ui.px(needed))
+    ShortcutTable(ui, ui.rect(0, 0, box_width - 2 * MARGIN, needed), columns, area.content).repaint()
+    ui.focus_on(area.bar if area.bar.needed else button)
 
 
 Column = dict[str, list[Shortcut]]
@@ -69,7 +77,7 @@ def _keys(entry: Shortcut) -> str:
 
 
 class ShortcutTable(Painted):
-    """All shortcuts in columns; rows move closer together where the window is low."""
+    """All shortcuts in columns."""
 
     def __init__(self, ui: Ui, rect: pygame.Rect, columns: list[Column], container: Any) -> None:
         super().__init__(ui, rect, container)
@@ -78,22 +86,18 @@ class ShortcutTable(Painted):
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """The whole table."""
         surface = pygame.Surface(size, pygame.SRCALPHA)
-        row = min(1.0, size[1] / self.ui.px(max(map(_height, self.columns))))
         for index, column in enumerate(self.columns):
-            self._paint_column(surface, index * size[0] // len(self.columns), column, row)
+            self._paint_column(surface, index * size[0] // len(self.columns), column)
         return surface
 
-    def _paint_column(self, surface: pygame.Surface, left: int, column: Column, squeeze: float) -> None:
+    def _paint_column(self, surface: pygame.Surface, left: int, column: Column) -> None:
         ui, y = self.ui, 0.0
-        size = 12.5 * max(squeeze, 0.7)
-        widest = max(ui.font(size, True).size(_keys(entry))[0] for entries in column.values() for entry in entries)
+        bold, plain = ui.font(TEXT_SIZE, True), ui.font(TEXT_SIZE)
+        widest = max(bold.size(_keys(entry))[0] for entries in column.values() for entry in entries)
         for group, entries in column.items():
-            heading = ui.font(11 * max(squeeze, 0.7), True).render(group.upper(), True, MUTED)
-            surface.blit(heading, (left, ui.px(y + (HEADING - 22) * squeeze)))
-            y += HEADING * squeeze
+            surface.blit(ui.font(11, True).render(group.upper(), True, MUTED), (left, ui.px(y + HEADING - 22)))
+            y += HEADING
             for entry in entries:
-                keys = ui.font(size, True).render(_keys(entry), True, ACCENT)
-                surface.blit(keys, (left, ui.px(y)))
-                label = ui.font(size).render(entry.label, True, TEXT)
-                surface.blit(label, (left + widest + ui.px(18), ui.px(y)))
-                y += ROW * squeeze
+                surface.blit(bold.render(_keys(entry), True, ACCENT), (left, ui.px(y)))
+                surface.blit(plain.render(entry.label, True, TEXT), (left + widest + ui.px(18), ui.px(y)))
+                y += ROW

@@ -20,6 +20,8 @@ EDITING_KEYS = (pygame.K_a, pygame.K_c, pygame.K_v, pygame.K_x, pygame.K_z, pyga
 REPEATED = (
     "step", "zoom_in", "zoom_out", "undo", "redo", "next_particle", "previous_particle", "next_item", "previous_item",
 )  # fmt: skip
+# Actions that lay the widgets out anew, which keeps what is being typed; they work over a page, too.
+LAYOUT = ("fullscreen", "larger", "smaller")
 ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, 1), pygame.K_DOWN: (0, -1)}
 
 Pixel = tuple[float, float]
@@ -74,6 +76,8 @@ class Input:
     def _to_world(self, event: pygame.event.Event) -> None:
         if event.type == pygame.KEYUP:
             self._held_keys.discard(event.key)
+            if self.app.screen is not None:
+                self.app.screen.release_key(event.key)
         if event.type == pygame.KEYDOWN:
             self._key(event)
         elif event.type == pygame.KEYUP and event.key == pygame.K_SPACE:
@@ -91,13 +95,15 @@ class Input:
         elif event.type == pygame.MOUSEWHEEL:
             pixel = self.pointer_over_world()
             if pixel is not None:
-                self.app.screen.wheel(pixel, event.precise_y or event.y)
+                self.app.screen.camera.turn_wheel(pixel, event.precise_y or event.y)
 
     def _key(self, event: pygame.event.Event) -> None:
         app = self.app
         if app.ui.typing and not _works_while_typing(event):
             return
         if app.gallery is not None and app.gallery.press_key(event.key):
+            return
+        if app.screen is not None and not app.ui.has_sheet and app.screen.press_key(event.key, event.mod):
             return
         if event.key in ARROWS and app.screen is not None and not app.ui.has_sheet:
             app.screen.press_arrow(*ARROWS[event.key], event.mod)
@@ -111,8 +117,12 @@ class Input:
         self._held_keys.add(event.key)
         if is_repeated and action not in REPEATED:
             return
-        if action is not None and (not app.ui.has_sheet or action in ("quit", "fullscreen", "larger", "smaller")):
-            app.act(action)
+        if action is None or (app.ui.has_sheet and action not in ("quit", *LAYOUT)):
+            return
+        if app.ui.typing and action not in LAYOUT:
+            # What is being typed counts: it is not saved without it.
+            app.ui.blur()
+        app.act(action)
 
     def _space_up(self) -> None:
         pressed, self._space_down = self._space_down, None
@@ -140,10 +150,6 @@ class Input:
         is_second = before is not None and now - before[0] <= 1000 * DOUBLE_SECONDS and math.dist(before[1], pixel) <= 6
         self._last_press = None if is_second else (now, pixel)
         return 2 if is_second else 1
-
-    def forget_clicks(self) -> None:
-        """Let the next press be the first of its kind, whenever it comes."""
-        self._last_press = None
 
     def _motion(self, event: pygame.event.Event) -> None:
         screen, ratio = self.app.screen, self.app.display.pixel_ratio

@@ -8,6 +8,7 @@ import pygame
 
 from sandbox.app.camera import Camera
 from sandbox.app.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colour
+from sandbox.app.drive_keys import DriveKeys
 from sandbox.app.edit.keep import ask_to_keep
 from sandbox.app.loop import SPEEDS
 from sandbox.app.panel import PANEL_WIDTH, Panel
@@ -38,6 +39,7 @@ class PlayScreen:
         self.show_panel = True
         self.panel: Panel | None = None
         self.stage = Stage(playback, self.viewport, app.scale)
+        self._keys = DriveKeys(playback)
         self.actions = self._actions()
         app.follow(playback)
 
@@ -50,6 +52,11 @@ class PlayScreen:
     def playback(self) -> Playback:
         """The run."""
         return self.stage.playback
+
+    @property
+    def has_contacts(self) -> bool:
+        """Whether things touch in the run."""
+        return self.playback.session.world.has_contacts
 
     @property
     def viewport(self) -> tuple[int, int, int, int]:
@@ -86,8 +93,8 @@ class PlayScreen:
             "step": lambda: self.playback.clock.step_once(),
             "slow": self._slower,
             "reset": self._reset,
-            "zoom_in": lambda: stage.zoom(2),
-            "zoom_out": lambda: stage.zoom(-2),
+            "zoom_in": lambda: stage.camera.zoom_at(stage.cursor, 2),
+            "zoom_out": lambda: stage.camera.zoom_at(stage.cursor, -2),
             "fit": stage.fit,
             "record": files.toggle_recording,
             "save": files.save_run,
@@ -145,9 +152,16 @@ class PlayScreen:
             self.stage.cursor = None
         self.stage.point(kind, pixel, modifiers)
 
-    def wheel(self, pixel: Pixel, notches: float) -> None:
-        """Zoom about a pixel."""
-        self.stage.wheel(pixel, notches)
+    def press_key(self, key: int, modifiers: int) -> bool:
+        """Drive what the level lets a key drive."""
+        if self._keys.playback is not self.playback:
+            self._keys = DriveKeys(self.playback)
+        return self._keys.press(key, modifiers)
+
+    def release_key(self, key: int) -> None:
+        """Stop driving."""
+        if self._keys.playback is self.playback:
+            self._keys.release(key)
 
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
         """Move the keyboard cursor."""

@@ -40,12 +40,16 @@ class Screen(Protocol):
         """React to the pointer; clicks: 2 for the second press of a double click."""
         ...
 
-    def wheel(self, pixel: Pixel, notches: float) -> None:
-        """React to the wheel over the world."""
-        ...
-
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
         """React to an arrow key; dy is upward."""
+        ...
+
+    def press_key(self, key: int, modifiers: int) -> bool:
+        """React to a key that the level itself gives a meaning; whether it has one."""
+        ...
+
+    def release_key(self, key: int) -> None:
+        """React to a key that is let go."""
         ...
 
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:

@@ -77,6 +77,7 @@ SHORTCUTS = (
     Shortcut("next_item", ("N",), "Select the next part", "Select", "edit"),
     Shortcut("previous_item", ("Shift+N",), "Select the previous part", "Select", "edit"),
     Shortcut("numbers", ("T",), "Type numbers: place, size, options", "Select", "edit"),
+    Shortcut("", ("Wheel", "Up/Down"), "Over, in a number of a tool: step it", "Select", "edit"),
     Shortcut("", ("Arrows",), "Nudge by the grid; Shift: ten", "Select", "edit"),
     Shortcut("", ("Alt",), "Hold: nothing snaps", "Select", "edit"),
     Shortcut("snap", ("X",), "Snapping on or off", "Select", "edit"),

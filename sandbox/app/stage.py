@@ -20,8 +20,6 @@ from sandbox.tools.tool import PointerEvent, Tool
 # How far off a particle a press still hits it, and a step of the keyboard cursor [layout units].
 PICK_RADIUS = 14.0
 CURSOR_STEP, CURSOR_LEAP = 4.0, 24.0
-# Zoom of one notch of the wheel.
-WHEEL_ZOOM = 1.15
 
 Pixel = tuple[float, float]
 
@@ -125,16 +123,6 @@ class Stage:
         self.pressed_by_key = False
         self.cursor = None
 
-    def wheel(self, pixel: Pixel, notches: float) -> None:
-        """Zoom about a pixel."""
-        self.camera.zoom_about(pixel, WHEEL_ZOOM**notches)
-
-    def zoom(self, notches: float) -> None:
-        """Zoom about the keyboard cursor, or the middle."""
-        left, top, width, height = self.camera.viewport
-        middle = (left + width / 2, top + height / 2)
-        self.wheel(middle if self.cursor is None else self.camera.to_pixels(self.cursor), notches)
-
     # Keyboard cursor.
 
     def move_cursor(self, dx: int, dy: int, modifiers: int) -> None:
@@ -164,8 +152,7 @@ class Stage:
         self._cursor_to(self.camera.to_pixels((x, y)), 0)
 
     def _cursor_pixel(self) -> Pixel:
-        left, top, width, height = self.camera.viewport
-        return (left + width / 2, top + height / 2) if self.cursor is None else self.camera.to_pixels(self.cursor)
+        return self.camera.middle if self.cursor is None else self.camera.to_pixels(self.cursor)
 
     def _cursor_to(self, pixel: Pixel, modifiers: int) -> None:
         self.cursor = self.camera.to_world(pixel)

@@ -1,4 +1,4 @@
-"""Ui: the widgets of the app. It, fields.py and painted.py know pygame_gui; others get callbacks, not events."""
+"""Ui: the widgets of the app. It, theme.py, fields.py and painted.py know pygame_gui; others get callbacks."""
 
 import html
 import warnings
@@ -12,9 +12,9 @@ from pygame_gui.core import ObjectID, UIContainer, UIElement
 from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITextEntryLine
 
 from sandbox.app.colours import ACCENT
-from sandbox.app.fields import Choice, Field, Sheet
+from sandbox.app.fields import Again, Choice, Field, Sheet
 from sandbox.app.painted import Painted
-from sandbox.app.theme import plain_font, scaled_theme
+from sandbox.app.theme import Manager, plain_font, scaled_theme
 
 # It warns of every label that is a pixel lower than its font: only people who lay out can do something about that.
 warnings.filterwarnings("ignore", message="Label Rect is too small", module="pygame_gui")
@@ -32,7 +32,7 @@ class Ui:
     def __init__(self, size: tuple[int, int], scale: float, pixel_ratio: tuple[float, float] = (1.0, 1.0)) -> None:
         self.size = size
         self.scale = scale
-        self.manager = pygame_gui.UIManager(size, scaled_theme(scale), enable_live_theme_updates=False)
+        self.manager = Manager(size, scaled_theme(scale), enable_live_theme_updates=False)
         self.manager.mouse_pos_scale_factor = list(pixel_ratio)
         self.root = self.manager.get_root_container()
         self._actions: dict[UIElement, Callable[[], None]] = {}
@@ -174,8 +174,21 @@ class Ui:
         """Whether a modal page is open."""
         return bool(self._sheets)
 
-    def open_sheet(self, close: Callable[[], None], style: str = "@shade", is_page: bool = False) -> UIPanel:
-        """Cover the window by a modal page; close is called when Escape asks for it; is_page: no notices over it."""
+    @property
+    def has_question(self) -> bool:
+        """Whether a question is open that outlives the screen."""
+        return any(sheet.is_question for sheet in self._sheets)
+
+    def open_sheet(
+        self,
+        close: Callable[[], None],
+        style: str = "@shade",
+        *,
+        is_page: bool = False,
+        again: Again | None = None,
+        is_question: bool = False,
+    ) -> UIPanel:
+        """Cover the window by a modal page; close is called when Escape asks for it; the others are those of Sheet."""
         sheet = UIPanel(
             pygame.Rect((0, 0), self.size),
             SHEET_HEIGHT * (len(self._sheets) + 1),
@@ -183,7 +196,7 @@ class Ui:
             margins=_NO_MARGINS,
             object_id=_style(style),
         )
-        self._sheets.append(Sheet(sheet, close, is_page))
+        self._sheets.append(Sheet(sheet, close, is_page, again, is_question))
         self._set_focus(None)
         return sheet
 
@@ -195,6 +208,17 @@ class Ui:
         self._sheets = [entry for entry in self._sheets if entry.panel is not sheet]
         self._set_focus(None)
         sheet.kill()
+
+    def take_over(self, before: "Ui", questions_alone: bool = False) -> None:
+        """Open the modal pages of an earlier layout, and end that; questions_alone: pages of its screen are left."""
+        for sheet in before._sheets:
+            if sheet.again is not None and (sheet.is_question or not questions_alone):
+                sheet.again(self)
+                if isinstance(self._focus, UITextEntryLine):
+                    # The next letter is added to what was typed; it does not replace it.
+                    self._focus.select_range = [0, 0]
+                    self._focus.edit_position = len(self._focus.get_text())
+        before.manager.clear_and_reset()
 
     # Events and focus.
 
@@ -214,6 +238,9 @@ class Ui:
 
     def process(self, event: pygame.event.Event) -> bool:
         """Let the widgets have an event; True where they use it."""
+        if event.type == pygame.MOUSEMOTION:
+            # The wheel turns what it points at now, not what it pointed at when the last frame was drawn.
+            self.manager.mouse_position = self.manager.calculate_scaled_mouse_position(event.pos)
         if event.type == pygame_gui.UI_BUTTON_PRESSED and event.ui_element in self._actions:
             self._actions[event.ui_element]()
             return True

@@ -27,6 +27,7 @@ Kind = Literal[
 
 # What a description says of null.
 _EMPTY = re.compile(r"empty = ([^.;]+)")
+_OBJECTS = ("drive", "hydraulic", "motor")
 _TITLES = {
     "a": "End a",
     "b": "End b",
@@ -61,9 +62,9 @@ class About:
 
 @cache
 def abouts(model: type[BaseModel]) -> dict[str, About]:
-    """What is known of every field of a model, by name, in its order."""
+    """What is known of every field of a model that is a value, by name, in its order; drives are whole objects."""
     fields = model.model_json_schema()["properties"]
-    return {name: _about(name, fields[name]) for name in model.model_fields}
+    return {name: _about(name, fields[name]) for name in model.model_fields if name not in _OBJECTS}
 
 
 def title_of(field: str) -> str:

@@ -61,7 +61,7 @@ class Autosave:
         # Numbers of the notes so far: the newest, the one that was last tried, the one that was last written.
         self._noted = self._tried = self._written = 0
         self._is_closing = False
-        self._adopted: list[Orphan] = []
+        self._adopted: tuple[Orphan, ...] = ()
         self._thread: threading.Thread | None = None
 
     def note(self, level: Level, path: Path | None, label: str) -> None:
@@ -75,9 +75,7 @@ class Autosave:
 
     def adopt(self, orphan: "Orphan", level: Level) -> None:
         """Keep the level of an orphan; the orphan itself goes once that is written."""
-        with self._changed:
-            self._adopted.append(orphan)
-        self.note(level, orphan.edited, "Recover")
+        self._want(_Edit(level, orphan.edited, "Recover"), orphan)
 
     def settle(self) -> None:
         """Wait until what was noted is written, or cannot be."""
@@ -98,9 +96,10 @@ class Autosave:
                 _remove(_lock_path(self._path))
         self._thread = self._lock = None
 
-    def _want(self, edit: _Edit | None) -> None:
+    def _want(self, edit: _Edit | None, *adopted: "Orphan") -> None:
         with self._changed:
             self._edit, self._noted = edit, self._noted + 1
+            self._adopted = (*self._adopted, *adopted)
             if self._thread is None:
                 self._is_closing = False
                 self._thread = threading.Thread(target=self._work, name="autosave", daemon=True)
@@ -113,22 +112,23 @@ class Autosave:
                 self._changed.wait_for(lambda: self._written < self._noted or self._is_closing)
                 if self._written == self._noted:
                     return
-                edit, number = self._edit, self._noted
+                # Orphans that come with a later edit stay until that one is written.
+                edit, number, adopted = self._edit, self._noted, self._adopted
             start = time.monotonic()
-            fault = self._write(edit)
+            fault = self._write(edit, adopted)
             shortest, longest = _PAUSES
             pause = longest if fault else min(max(_PAUSE_FACTOR * (time.monotonic() - start), shortest), longest)
             with self._changed:
                 self.fault, self._tried = fault, number
                 if fault is None:
-                    self._written = number
+                    self._written, self._adopted = number, self._adopted[len(adopted) :]
                 self._changed.notify_all()
                 if self._is_closing and fault is not None:
                     return
                 self._changed.wait_for(lambda: self._is_closing, pause)
 
-    def _write(self, edit: _Edit | None) -> str | None:
-        """Bring the file to what is wanted: None, or why it cannot be."""
+    def _write(self, edit: _Edit | None, adopted: "tuple[Orphan, ...]") -> str | None:
+        """Bring the file to what is wanted, in place of the adopted orphans: None, or why it cannot be."""
         try:
             if edit is None:
                 self._path.unlink(missing_ok=True)
@@ -138,8 +138,6 @@ class Autosave:
         except (OSError, ValueError, MemoryError) as error:
             why = refusal_of(error) if isinstance(error, OSError) else one_line(str(error))
             return f"The work cannot be kept in {one_line(str(self.folder))}: {why}. Save it yourself."
-        with self._changed:
-            adopted, self._adopted = self._adopted, []
         for orphan in adopted:
             orphan.dismiss()
         return None

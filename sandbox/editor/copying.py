@@ -4,7 +4,6 @@ A fragment is a level of its own: selected bodies and loose particles, the loose
 materials that they are made of.
 """
 
-import math
 from collections.abc import Iterable
 
 from sandbox.editor.document import Document, EditError, checked
@@ -103,8 +102,6 @@ def _repeated(document: Document, count: int) -> Level:
     """The fragment to repeat. Raises EditError before anything is made that would be too much."""
     if count < 2:
         raise EditError("a row or circle has two or more")
-    if not math.isfinite(count):
-        raise EditError("a row or circle needs a finite number")
     first = fragment(document)
     total = [_size(level, part) for level in (document.level, first) for part in (0, 1)]
     for now, more, noun, limit in (

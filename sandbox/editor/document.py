@@ -7,14 +7,14 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sandbox.editor.items import Selection
+from sandbox.editor.items import Item, Kind, Selection, keys
 from sandbox.level.bodies import AnyBody
 from sandbox.level.canonical import level_text
 from sandbox.level.faults import LevelError, shown
 from sandbox.level.limits import FILE_LIMIT, FORMAT, VERSION
 from sandbox.level.model import Level, NissenMaterial
 from sandbox.level.quantities import Described, Description, replaced
-from sandbox.level.validate import check_level
+from sandbox.level.validate import check_level, outline_faults
 from sandbox.level.wording import worded
 
 # Below this many definitions and listed points, 209 bytes of a file's limit each, the text of a level is not measured.
@@ -52,12 +52,14 @@ def empty_level() -> Level:
 def select(document: Document, selection: Selection) -> Document:
     """Select those of the items that the level has."""
     level = document.level
-    known = {
-        "body": {body.id for body in level.bodies},
-        "particle": {particle.id for particle in level.particles},
+    known: dict[Kind, Sequence[str | int]] = {
+        "body": [body.id for body in level.bodies],
+        "particle": [particle.id for particle in level.particles],
         "spring": range(len(level.springs)),
     }
-    return replace(document, selection=frozenset([item for item in selection if item[1] in known[item[0]]]))
+    if sum(sum(map(keys(selection, kind).__contains__, known[kind])) for kind in known) < len(selection):
+        selection = selection.intersection(Item(kind, key) for kind in known for key in known[kind])
+    return replace(document, selection=selection)
 
 
 def checked(level: Level) -> Level:
@@ -74,6 +76,13 @@ def checked(level: Level) -> Level:
 def check_bodies(level: Level, bodies: Iterable[AnyBody]) -> None:
     """Raise EditError where one of the bodies, were it alone in the level, could not be saved."""
     checked(replaced(level, bodies=tuple(bodies), particles=(), springs=(), welds=(), checks=()))
+
+
+def check_places(bodies: Iterable[AnyBody]) -> None:
+    """Raise EditError where one of the bodies, sound but for where it lies, reaches beyond the world."""
+    for body in bodies:
+        for path, fault in outline_faults("", body):
+            raise EditError(f"{subject(body)}: {path.removeprefix('.')}: {fault}")
 
 
 def validated(definition: Described) -> Described:

@@ -13,6 +13,8 @@ from sandbox.level.polygon import is_simple, simplified
 
 # A line drawn by hand is simplified by up to this part of the reach: what a person cannot see.
 HAND_TOLERANCE = 0.5
+# At most this part of its corners is left out at the end, where a hand ran over what it began with.
+OVERSHOOT = 0.2
 
 
 class JellyDrawing(BodyDrawing[JellyOptions]):
@@ -110,6 +112,7 @@ class PolygonDrawing(JellyDrawing):
         elif math.dist(self.points[-1].raw, snap.raw) > self.reach:
             # A hand is freer than a grid.
             self.freehand = True
+            self.points[0] = Snap(self.points[0].raw)
             self.points.append(Snap(snap.raw))
 
     def up(self, snap: Snap) -> None:
@@ -118,8 +121,8 @@ class PolygonDrawing(JellyDrawing):
         if not self.freehand:
             return
         self.freehand = False
-        corners = set(simplified([point.point for point in self.points], HAND_TOLERANCE * self.reach))
-        self.points = [point for point in self.points if point.point in corners]
+        corners = simplified([point.point for point in self.points], HAND_TOLERANCE * self.reach)
+        self.points = [Snap(corner) for corner in _without_overshoot(corners)]
         if not self._close():
             self.points = []
 
@@ -167,6 +170,12 @@ class PolygonDrawing(JellyDrawing):
 
     def _sound(self, points: list[Snap]) -> bool:
         return len(points) >= 3
+
+
+def _without_overshoot(corners: list[Point]) -> list[Point]:
+    """An outline drawn by hand, without an end that runs over its own beginning."""
+    kept = (corners[: len(corners) - left_out] for left_out in range(int(OVERSHOOT * len(corners)) + 1))
+    return next((outline for outline in kept if is_simple(outline)), corners)
 
 
 def _fault(corners: list[Point]) -> str:

@@ -95,7 +95,8 @@ class Forecast:
         slots = (np.cumsum(is_first) - 1)[scene.first_of_weld]
         for slot in np.unique(slots[is_falling]).tolist():
             world.pin(slot)
-        self._trouble = yield from _settle(world, part[is_first])
+        part = np.unique(part[is_first], return_inverse=True)[1]
+        self._trouble = yield from _settle(world, part)
         if not self._trouble:
             self.position = world.position[slots]
             self.position[is_falling] = scene.position[is_falling]

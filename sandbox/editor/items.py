@@ -1,16 +1,12 @@
 """Items: what can be selected in a level, and how it is named."""
 
 import functools
-from collections.abc import Callable, Iterable
-from typing import Literal, NamedTuple
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Literal, NamedTuple
 
 from sandbox.level.bodies import AnyBody
-from sandbox.level.collector import collector_paused
 from sandbox.level.model import Level, ParticleDef, SpringDef
 from sandbox.level.quantities import replaced
-
-# Items that an edit changes at once, above which the collector of cycles is paused for it.
-MANY = 1_000
 
 Kind = Literal["body", "particle", "spring"]
 Definition = AnyBody | ParticleDef | SpringDef
@@ -37,15 +33,17 @@ def items_of(level: Level) -> tuple[Item, ...]:
 
 def keys(selection: Selection, kind: Kind) -> frozenset[str | int]:
     """Keys of the selected items of a kind."""
-    return _keys(selection)[kind]
+    return _keys(id(selection), selection)[kind]
 
 
-# A selection is asked many times, by every edit of it, and sorting 20,000 items out takes a fifth of a frame.
+# A selection is asked many times, by every edit of it, and sorting 20,000 items out takes a fifth of a frame. So does
+# comparing it with an equal one, hence the identity, which is compared first.
 @functools.lru_cache(maxsize=4)
-def _keys(selection: Selection) -> dict[Kind, frozenset[str | int]]:
+def _keys(_identity: int, selection: Selection) -> dict[Kind, frozenset[str | int]]:
     found: dict[Kind, list[str | int]] = {"body": [], "particle": [], "spring": []}
+    add = {kind: keys.append for kind, keys in found.items()}
     for kind, key in selection:
-        found[kind].append(key)
+        add[kind](key)
     return {kind: frozenset(keys) for kind, keys in found.items()}
 
 
@@ -58,36 +56,44 @@ def chosen_bodies(level: Level, selection: Selection) -> list[AnyBody]:
 def chosen_particles(level: Level, selection: Selection) -> list[ParticleDef]:
     """The selected loose particles in file order."""
     wanted = keys(selection, "particle")
+    if len(wanted) == len(level.particles):
+        return list(level.particles)
     return [particle for particle in level.particles if particle.id in wanted]
 
 
 def chosen_springs(level: Level, selection: Selection) -> list[SpringDef]:
     """The selected loose springs in file order."""
     wanted = keys(selection, "spring")
+    if len(wanted) == len(level.springs):
+        return list(level.springs)
     return [spring for index, spring in enumerate(level.springs) if index in wanted]
 
 
 def changed(level: Level, selection: Selection, change: Callable[[Definition], Definition]) -> Level:
     """The level with every selected item changed; what is not changed stays the same object."""
     bodies, particles, springs = (keys(selection, kind) for kind in ("body", "particle", "spring"))
-    with collector_paused(len(selection) > MANY):
-        return with_same(
-            level,
-            bodies=tuple([change(body) if body.id in bodies else body for body in level.bodies]),
-            particles=tuple([change(part) if part.id in particles else part for part in level.particles]),
-            springs=tuple([change(part) if k in springs else part for k, part in enumerate(level.springs)]),
-        )
+    return with_same(
+        level,
+        bodies=tuple([change(body) if body.id in bodies else body for body in level.bodies]),
+        particles=tuple([change(part) if part.id in particles else part for part in level.particles]),
+        springs=tuple([change(part) if k in springs else part for k, part in enumerate(level.springs)]),
+    )
 
 
 def exchanged(level: Level, selection: Selection, bodies: Iterable[AnyBody], particles: Iterable[ParticleDef]) -> Level:
     """The level with other bodies and loose particles, in file order, for the selected ones."""
-    new_bodies, new_particles = iter(bodies), iter(particles)
-    old_bodies, old_particles = keys(selection, "body"), keys(selection, "particle")
     return with_same(
         level,
-        bodies=tuple([next(new_bodies) if body.id in old_bodies else body for body in level.bodies]),
-        particles=tuple([next(new_particles) if part.id in old_particles else part for part in level.particles]),
+        bodies=_exchanged(level.bodies, keys(selection, "body"), list(bodies)),
+        particles=_exchanged(level.particles, keys(selection, "particle"), list(particles)),
     )
+
+
+def _exchanged(old: Sequence[Any], wanted: frozenset[str | int], new: Sequence[Any]) -> tuple[Any, ...]:
+    if len(new) == len(old):
+        return tuple(new)
+    turn = iter(new)
+    return tuple([next(turn) if part.id in wanted else part for part in old])
 
 
 def kept_springs(selection: Selection, kept: Iterable[int]) -> Selection:

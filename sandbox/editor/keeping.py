@@ -16,6 +16,8 @@ from sandbox.level.quantities import replaced
 from sandbox.level.shapes import Points
 from sandbox.physics.world import World
 
+_ANOTHER = "what was played is not the level as it is now"
+
 
 def keep_coefficients(document: Document, world: World) -> Document:
     """Take over Cs and Cd of every material as the played world has them. Raises EditError."""
@@ -25,7 +27,8 @@ def keep_coefficients(document: Document, world: World) -> Document:
         material = document.level.materials.get(name, NissenMaterial() if name == DEFAULT_MATERIAL else None)
         if not len(springs) or not isinstance(material, NissenMaterial):
             continue
-        played = NissenMaterial(stiffness=float(world.stiffness[springs[0]]), damping=float(world.damping[springs[0]]))
+        stiffness, damping = float(world.stiffness[springs[0]]), float(world.damping[springs[0]])
+        played = replaced(material, stiffness=stiffness, damping=damping)
         if played != material:
             document = set_material(document, name, played)
     return document
@@ -39,7 +42,7 @@ def keep_pose(document: Document, world: World) -> Document:
     if not np.all(np.abs(now) <= COORDINATE_LIMIT):
         raise EditError("something has flown out of the world; go back to before it did")
     moved = np.any(now != scene.position, axis=1)
-    firsts = np.cumsum([0, *(len(made.mass) for made in scene.parts.bodies)]).tolist()
+    firsts = np.cumsum([0, *scene.parts.bodies.counts]).tolist()
 
     def posed(index: int, body: AnyBody) -> AnyBody:
         mine = slice(firsts[index], firsts[index + 1])
@@ -68,9 +71,12 @@ def keep_pose(document: Document, world: World) -> Document:
 
 
 def keep_cuts(document: Document, world: World) -> Document:
-    """Leave out the springs that were cut while playing. Raises EditError."""
+    """Leave out the springs that were cut while playing, once: springs are told by their numbers. Raises EditError."""
     scene = make_scene(document.level)
     _slots(scene, world)
+    springs = [scene.spring_name(spring) for spring in range(len(scene.rest_length))]
+    if world.spring_names[: len(springs)] != springs:
+        raise EditError(_ANOTHER)
     cut: dict[str, set[int]] = {}
     gone: set[int] = set()
     for spring in np.flatnonzero(~world.spring_active[: len(scene.rest_length)]).tolist():
@@ -97,9 +103,8 @@ def _slots(scene: Scene, world: World) -> Slots:
     """The world's particle for each of the scene (n,). Raises EditError for a world of another level."""
     stays = scene.first_of_weld == np.arange(len(scene.mass))
     names = [scene.names(slot) for slot in np.flatnonzero(stays).tolist()]
-    springs = [scene.spring_name(spring) for spring in range(len(scene.rest_length))]
-    if world.particle_names[: len(names)] != names or world.spring_names[: len(springs)] != springs:
-        raise EditError("what was played is not the level as it is now")
+    if world.particle_names[: len(names)] != names:
+        raise EditError(_ANOTHER)
     slots: Slots = (np.cumsum(stays) - 1)[scene.first_of_weld]
     return slots
 

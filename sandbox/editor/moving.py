@@ -7,9 +7,8 @@ from typing import Literal
 
 import numpy as np
 
-from sandbox.editor.document import Document, EditError, all_validated, check_bodies, subject, validated
+from sandbox.editor.document import Document, EditError, all_validated, check_places, subject, validated
 from sandbox.editor.items import (
-    MANY,
     Definition,
     Item,
     Selection,
@@ -22,11 +21,11 @@ from sandbox.editor.items import (
 from sandbox.editor.names import owner_of
 from sandbox.editor.placement import Motion, can_stretch, mapped_body, mapped_particle, shifted, stretch
 from sandbox.editor.remap import rebuilt
-from sandbox.editor.scene import Scene, make_scene
+from sandbox.editor.scene import Scene, make_scene, positions
 from sandbox.level.bodies import AnyBody
-from sandbox.level.collector import collector_paused
 from sandbox.level.limits import COORDINATE_LIMIT
 from sandbox.level.model import Level, SpringDef
+from sandbox.level.parts import given_length
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import Points
 
@@ -99,18 +98,16 @@ def _moved(document: Document, by: Callable[[list[str]], Points]) -> Document:
     level = document.level
     bodies = chosen_bodies(level, document.selection)
     particles = chosen_particles(level, document.selection)
-    places = np.array([particle.position for particle in particles], dtype=np.float64).reshape(-1, 2)
-    places = places + by([particle.id for particle in particles])
+    places = positions(particles) + by([particle.id for particle in particles])
     outside = np.flatnonzero(np.any(np.abs(places) > COORDINATE_LIMIT, axis=1))
     if len(outside):
         raise _beyond(particles[outside[0]])
     shifts = zip(bodies, by([body.id for body in bodies]).tolist(), strict=True)
     moved = [_within(shifted(body, dx, dy)) for body, (dx, dy) in shifts]
-    check_bodies(level, moved)
-    with collector_paused(len(particles) > MANY):
-        rows = zip(particles, places.tolist(), strict=True)
-        placed = [replaced(particle, position=(x, y)) for particle, (x, y) in rows]
-        return replace(document, level=exchanged(level, document.selection, moved, placed))
+    check_places(moved)
+    rows = zip(particles, zip(*places.T.tolist(), strict=True), strict=True)
+    placed = [replaced(particle, position=place) for particle, place in rows]
+    return replace(document, level=exchanged(level, document.selection, moved, placed))
 
 
 def _finite(what: str, *numbers: float) -> None:
@@ -142,9 +139,8 @@ def _mapped(document: Document, motion: Motion) -> Document:
     mapped = [mapped_body(body, motion) for body in chosen]
     bodies = {body.id: body for body in all_validated([body for body, _ in mapped])}
     images = {body.id: image for body, image in mapped}
-    with collector_paused(len(selection) > MANY):
-        particles = all_validated([mapped_particle(part, motion) for part in chosen_particles(level, selection)])
-        moved = exchanged(level, selection, chosen, particles)
+    particles = all_validated([mapped_particle(part, motion) for part in chosen_particles(level, selection)])
+    moved = exchanged(level, selection, chosen, particles)
     if motion.factor != 1.0 or not motion.is_even:
         moved = _stretched(level, moved, _placed(selection), motion)
     return replace(document, level=rebuilt(moved, bodies, images) if bodies else moved)
@@ -156,21 +152,31 @@ def _stretched(old: Level, new: Level, selection: Selection, motion: Motion) -> 
     scene = make_scene(old)
 
     def part(spring: Definition) -> Definition:
-        if not isinstance(spring, SpringDef) or spring.rest_length is None:
+        if not isinstance(spring, SpringDef):
             return spring
-        return validated(replaced(spring, rest_length=spring.rest_length * _spring_stretch(scene, spring, motion)))
+        return validated(_scaled(spring, _spring_stretch(scene, spring, motion)))
 
     return changed(new, springs, part)
 
 
 def _inside_springs(level: Level, selection: Selection) -> Selection:
-    """Loose springs of a given rest length between two selected things."""
+    """Loose springs of a given rest length, or hydraulics, between two selected things."""
     owners = keys(selection, "body") | keys(selection, "particle")
     return frozenset(
         Item("spring", index)
         for index, spring in enumerate(level.springs)
-        if spring.rest_length is not None and owner_of(spring.a) in owners and owner_of(spring.b) in owners
+        if given_length(spring) is not None and owner_of(spring.a) in owners and owner_of(spring.b) in owners
     )
+
+
+def _scaled(spring: SpringDef, factor: float) -> SpringDef:
+    """A loose spring with the lengths that it is given times a factor."""
+    if spring.rest_length is not None:
+        spring = replaced(spring, rest_length=spring.rest_length * factor)
+    if spring.hydraulic is not None:
+        longest, shortest = spring.hydraulic.longest * factor, spring.hydraulic.shortest * factor
+        spring = replaced(spring, hydraulic=replaced(spring.hydraulic, shortest=shortest, longest=longest))
+    return spring
 
 
 def _spring_stretch(scene: Scene, spring: SpringDef, motion: Motion) -> float:

@@ -321,7 +321,7 @@ def _set_level(field: str, document: Document, value: Any) -> Document:
 
 def _set_time(field: str, document: Document, value: Any) -> Document:
     old = getattr(document.level.settings, field)
-    if field == "gravity":
+    if field in ("gravity", "wind"):
         value = _with_axes(value, old)
     elif field == "substeps" and str(value).isdecimal():
         value = int(value)

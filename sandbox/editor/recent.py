@@ -18,7 +18,7 @@ _PATIENCE = 0.5
 
 def recent_levels(folder: Path | None = None) -> list[Path]:
     """Level files that were used last and are still there, newest first. folder: of the person's data."""
-    return [path for path in _listed(_file(folder)) if path.is_file()]
+    return [path for path in _listed(_file(folder)) if os.path.isfile(path)]
 
 
 def remember(path: str | os.PathLike[str], folder: Path | None = None) -> None:

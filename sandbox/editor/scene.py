@@ -1,7 +1,10 @@
 """Scene: a level as arrays to draw, pick from and measure, made anew after every edit from what did not change."""
 
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import chain
+from operator import is_, itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +15,8 @@ from sandbox.level.bodies import AnyBody, JellyDef, RingDef, WebDef, WheelDef
 from sandbox.level.expansion import Expansion, expansion
 from sandbox.level.layout import Layout
 from sandbox.level.limits import BODY_RADIUS, DEFAULT_MATERIAL
-from sandbox.level.model import Level
+from sandbox.level.model import Level, ParticleDef
+from sandbox.level.parts import given_length
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import distances
 from sandbox.level.welds import united
@@ -23,6 +27,20 @@ Mask = NDArray[np.bool_]
 Box = tuple[float, float, float, float]
 
 
+class _Joined(NamedTuple):
+    """What bodies expand to, and its arrays one after the other; of a body that has an origin, about that."""
+
+    made: list[Expansion]
+    counts: list[int]
+    position: Floats
+    mass: Floats
+    pinned: Mask
+    pairs: Slots
+    numbers: Slots
+    rest_length: Floats
+    spring_counts: list[int]
+
+
 class _Loose(NamedTuple):
     """Arrays of the loose particles."""
 
@@ -30,6 +48,15 @@ class _Loose(NamedTuple):
     mass: Floats
     radius: Floats
     pinned: Mask
+
+
+class _Links(NamedTuple):
+    """Arrays of the loose springs: ends (k, 2), rest_length (k,), NaN = as placed, material (k,) of `materials`."""
+
+    ends: Slots
+    rest_length: Floats
+    material: Slots
+    materials: tuple[str, ...]
 
 
 class _Names:
@@ -53,23 +80,28 @@ class _Names:
             counts == self.counts
             and len(level.springs) == len(old.springs)
             and (level.bodies is old.bodies or _alike(level.bodies, old.bodies))
-            and (level.particles is old.particles or _alike(level.particles, old.particles))
+            and (level.particles is old.particles or [part.id for part in level.particles] == self._particle_ids)
         )
 
+    @cached_property
+    def _particle_ids(self) -> list[str]:
+        return [part.id for part in self.level.particles]
 
-def _alike(new: tuple[Any, ...], old: tuple[Any, ...]) -> bool:
-    return [part.id for part in new] == [part.id for part in old] and [*map(type, new)] == [*map(type, old)]
+
+def _alike(new: tuple[AnyBody, ...], old: tuple[AnyBody, ...]) -> bool:
+    return [body.id for body in new] == [body.id for body in old] and [*map(type, new)] == [*map(type, old)]
 
 
 @dataclass(frozen=True, eq=False)
 class _Parts:
     """What the next scene may take over."""
 
-    bodies: list[Expansion]
+    bodies: _Joined
+    origin: Floats  # (k, 2) [m] of each body
     forms: dict[tuple[Any, ...], Expansion]
     loose: _Loose
     names: _Names
-    ends: Slots  # (k, 2) particles of the loose springs
+    links: _Links
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,110 +186,130 @@ class Scene:
 def make_scene(level: Level, before: Scene | None = None) -> Scene:
     """Expand a sound level; before: the scene of another state of it, of which all that did not change is reused."""
     parts = _parts(level, before)
-    bodies, loose, names = parts.bodies, parts.loose, parts.names
-    firsts = np.cumsum([0, *names.counts])
-    mass = np.concatenate([*(made.mass for made in bodies), loose.mass])
-    position = np.concatenate([*(made.position for made in bodies), loose.position])
-    pinned = np.concatenate([*(made.pinned for made in bodies), loose.pinned])
+    bodies, loose, names, links = parts.bodies, parts.loose, parts.names, parts.links
+    position = np.concatenate([bodies.position + np.repeat(parts.origin, bodies.counts, axis=0), loose.position])
+    pinned = np.concatenate([bodies.pinned, loose.pinned])
     layout = names.layout if level.welds else None
     welds = [(layout.slot(a), layout.slot(b)) for a, b in level.welds] if layout else []
-    first_of_weld = united(len(mass), welds)
+    first_of_weld = united(len(position), welds)
     if welds:
         position = position[first_of_weld]
-        pinned = np.bincount(first_of_weld, weights=pinned, minlength=len(mass))[first_of_weld] > 0
-    ends = [made.pairs + first for made, first in zip(bodies, firsts.tolist(), strict=False)]
-    pairs = np.concatenate([*ends, parts.ends])
-    springs_of_bodies = [len(made.pairs) for made in bodies]
+        pinned = np.bincount(first_of_weld, weights=pinned, minlength=len(pinned))[first_of_weld] > 0
+    placed = np.isnan(links.rest_length)
+    lengths = np.where(placed, distances(position, links.ends), links.rest_length)
+    pairs = np.concatenate([bodies.pairs, links.ends])
     numbers = np.arange(len(names.items), dtype=np.int64)
-    owners = len(level.bodies) + len(level.particles)
-    materials = tuple({DEFAULT_MATERIAL: None} | dict.fromkeys(level.materials))
-    index = {name: number for number, name in enumerate(materials)}
-    used = np.array([index[body.material] for body in level.bodies], dtype=np.int64)
+    of_bodies, owners = len(level.bodies), len(level.bodies) + len(level.particles)
+    used = np.array([links.materials.index(body.material) for body in level.bodies], dtype=np.int64)
     return Scene(
         level=level,
         items=names.items,
         position=position,
-        mass=mass,
-        radius=np.concatenate([np.full(int(firsts[-1]), BODY_RADIUS), loose.radius]),
+        mass=np.concatenate([bodies.mass, loose.mass]),
+        radius=np.concatenate([np.full(len(bodies.mass), BODY_RADIUS), loose.radius]),
         pinned=pinned,
-        particle_item=np.concatenate([np.repeat(numbers[: len(bodies)], names.counts), numbers[len(bodies) : owners]]),
+        particle_item=np.concatenate([np.repeat(numbers[:of_bodies], bodies.counts), numbers[of_bodies:owners]]),
         particle_a=pairs[:, 0],
         particle_b=pairs[:, 1],
-        rest_length=np.concatenate([*(made.rest_length for made in bodies), _loose_lengths(level, position, parts)]),
-        spring_item=np.concatenate([np.repeat(numbers[: len(bodies)], springs_of_bodies), numbers[owners:]]),
-        number=np.concatenate([*(made.numbers for made in bodies), numbers[: len(level.springs)]]),
-        material=np.concatenate(
-            [np.repeat(used, springs_of_bodies), np.array([index[s.material] for s in level.springs], dtype=np.int64)]
-        ),
-        materials=materials,
+        rest_length=np.concatenate([bodies.rest_length, lengths]),
+        spring_item=np.concatenate([np.repeat(numbers[:of_bodies], bodies.spring_counts), numbers[owners:]]),
+        number=np.concatenate([bodies.numbers, numbers[: len(level.springs)]]),
+        material=np.concatenate([np.repeat(used, bodies.spring_counts), links.material]),
+        materials=links.materials,
         welds=np.array(welds, dtype=np.int64).reshape(-1, 2),
         first_of_weld=first_of_weld,
         parts=parts,
     )
 
 
-def transformed(scene: Scene, selection: Selection, matrix: Floats) -> Scene:
-    """The scene with the particles of a selection mapped by matrix (2, 3), as a preview: rest lengths stay."""
-    moved = scene.particles_of(selection)
-    position = scene.position.copy()
-    position[moved] = position[moved] @ matrix[:, :2].T + matrix[:, 2]
-    return replace(scene, position=position[scene.first_of_weld] if len(scene.welds) else position)
-
-
 def _parts(level: Level, before: Scene | None) -> _Parts:
-    old = before.parts if before is not None else None
-    if before is not None and old is not None and level.bodies is before.level.bodies:
-        bodies, forms = old.bodies, old.forms
-    else:
-        bodies, forms = _expand(level, before)
-    if before is not None and old is not None and level.particles is before.level.particles:
-        loose = old.loose
-    else:
-        loose = _loose(level)
-    counts = [len(made.mass) for made in bodies]
-    same_names = old is not None and old.names.serve(level, counts)
-    names = old.names if old is not None and same_names else _Names(level, items_of(level), counts)
-    if before is not None and old is not None and same_names and level.springs is before.level.springs:
-        ends = old.ends
-    else:
-        slots = [(names.layout.slot(s.a), names.layout.slot(s.b)) for s in level.springs]
-        ends = np.array(slots, dtype=np.int64).reshape(-1, 2)
-    return _Parts(bodies, forms, loose, names, ends)
+    if before is None:
+        made, origin, forms = _expand(level, {}, {})
+        bodies, loose = _joined(made), _loose(level)
+        names = _Names(level, items_of(level), bodies.counts)
+        return _Parts(bodies, origin, forms, loose, names, _links(level, names))
+    old = before.parts
+    bodies, origin, forms = old.bodies, old.origin, old.forms
+    if level.bodies is not before.level.bodies:
+        known = dict(zip(map(id, before.level.bodies), bodies.made, strict=True))
+        made, origin, forms = _expand(level, known, forms)
+        is_same = len(made) == len(bodies.made) and all(map(is_, made, bodies.made))
+        bodies = bodies if is_same else _joined(made)
+    loose = old.loose if level.particles is before.level.particles else _loose(level)
+    same_names = old.names.serve(level, bodies.counts)
+    names = old.names if same_names else _Names(level, items_of(level), bodies.counts)
+    same_links = same_names and level.springs is before.level.springs and level.materials is before.level.materials
+    return _Parts(bodies, origin, forms, loose, names, old.links if same_links else _links(level, names))
 
 
-def _loose(level: Level) -> _Loose:
-    loose = level.particles
-    return _Loose(
-        position=np.array([particle.position for particle in loose], dtype=np.float64).reshape(-1, 2),
-        mass=np.array([particle.mass for particle in loose], dtype=np.float64),
-        radius=np.array([particle.radius for particle in loose], dtype=np.float64),
-        pinned=np.array([particle.pinned for particle in loose], dtype=np.bool_),
+def _joined(made: list[Expansion]) -> _Joined:
+    counts = [len(each.mass) for each in made]
+    firsts = np.cumsum([0, *counts]).tolist()
+    none = np.zeros((0, 2), dtype=np.int64)
+    return _Joined(
+        made=made,
+        counts=counts,
+        position=np.concatenate([np.zeros((0, 2)), *(each.position for each in made)]),
+        mass=np.concatenate([np.zeros(0), *(each.mass for each in made)]),
+        pinned=np.concatenate([np.zeros(0, dtype=np.bool_), *(each.pinned for each in made)]),
+        pairs=np.concatenate([none, *(each.pairs + first for each, first in zip(made, firsts, strict=False))]),
+        numbers=np.concatenate([none[:, 0], *(each.numbers for each in made)]),
+        rest_length=np.concatenate([np.zeros(0), *(each.rest_length for each in made)]),
+        spring_counts=[len(each.pairs) for each in made],
     )
 
 
-def _loose_lengths(level: Level, position: Floats, parts: _Parts) -> Floats:
-    given = np.array([np.nan if s.rest_length is None else s.rest_length for s in level.springs], dtype=np.float64)
-    return np.where(np.isnan(given), distances(position, parts.ends), given)
+def _loose(level: Level) -> _Loose:
+    rows = [particle.__dict__ for particle in level.particles]
+    return _Loose(
+        position=positions(level.particles),
+        mass=np.fromiter(map(itemgetter("mass"), rows), np.float64, len(rows)),
+        radius=np.fromiter(map(itemgetter("radius"), rows), np.float64, len(rows)),
+        pinned=np.fromiter(map(itemgetter("pinned"), rows), np.bool_, len(rows)),
+    )
 
 
-def _expand(level: Level, before: Scene | None) -> tuple[list[Expansion], dict[tuple[Any, ...], Expansion]]:
-    """Expansions of the bodies, taken over for those that did not change, and forms that several bodies share."""
-    known: dict[int, Expansion] = {}
-    old_forms: dict[tuple[Any, ...], Expansion] = {}
-    if before is not None:
-        known = {id(body): made for body, made in zip(before.level.bodies, before.parts.bodies, strict=True)}
-        old_forms = before.parts.forms
+def positions(particles: Sequence[ParticleDef]) -> Floats:
+    """Places of loose particles [m] (n, 2)."""
+    places = chain.from_iterable([particle.__dict__["position"] for particle in particles])
+    return np.fromiter(places, np.float64, 2 * len(particles)).reshape(-1, 2)
+
+
+def _links(level: Level, names: _Names) -> _Links:
+    materials = tuple({DEFAULT_MATERIAL: None} | dict.fromkeys(level.materials))
+    index = {name: number for number, name in enumerate(materials)}
+    slots = [(names.layout.slot(spring.a), names.layout.slot(spring.b)) for spring in level.springs]
+    lengths = map(given_length, level.springs)
+    given = [np.nan if length is None else length for length in lengths]
+    return _Links(
+        ends=np.array(slots, dtype=np.int64).reshape(-1, 2),
+        rest_length=np.array(given, dtype=np.float64),
+        material=np.array([index[spring.material] for spring in level.springs], dtype=np.int64),
+        materials=materials,
+    )
+
+
+def _expand(
+    level: Level, known: dict[int, Expansion], old_forms: dict[tuple[Any, ...], Expansion]
+) -> tuple[list[Expansion], Floats, dict[tuple[Any, ...], Expansion]]:
+    """Expansions of the bodies and their origins [m] (k, 2); a form is shared by all bodies that have it.
+
+    known: expansions by the identity of the body, which are taken over, as are the old forms.
+    """
     forms: dict[tuple[Any, ...], Expansion] = {}
-    made = []
+    made, origin = [], []
     for body in level.bodies:
         key = _form_key(body)
-        if key is not None:
-            if key not in forms:
-                forms[key] = old_forms[key] if key in old_forms else expansion(replaced(body, position=(0.0, 0.0)))
-            made.append(known.get(id(body)) or _placed(forms[key], body))
-        else:
+        if key is None:
             made.append(known.get(id(body)) or expansion(body))
-    return made, forms
+            origin.append((0.0, 0.0))
+            continue
+        if key not in forms:
+            forms[key] = old_forms[key] if key in old_forms else expansion(replaced(body, position=(0.0, 0.0)))
+        made.append(forms[key])
+        # A form about (0, 0) moved by its position has the very bits of one that is expanded there.
+        origin.append(body.__dict__["position"])
+    return made, np.array(origin, dtype=np.float64).reshape(-1, 2), forms
 
 
 def _form_key(body: AnyBody) -> tuple[Any, ...] | None:
@@ -269,10 +321,3 @@ def _form_key(body: AnyBody) -> tuple[Any, ...] | None:
 
 # Fields of a body that its particles do not depend on, but for the place that is added to each of them.
 _PLACED = ("type", "id", "position", "velocity", "material", "group", "extras")
-
-
-def _placed(form: Expansion, body: AnyBody) -> Expansion:
-    # A form about (0, 0) moved by its position has the very bits of one that is expanded there.
-    assert isinstance(body, JellyDef | RingDef | WebDef | WheelDef)
-    place = form.position + np.array(body.position)
-    return replace(form, position=place, form=place)

@@ -39,8 +39,8 @@ def rings(radius: float) -> int:
 
 
 def wheel_spokes(radius: float) -> int:
-    """Spokes of a wheel of that radius [m]."""
-    return _fitting(2.0 * math.pi * radius, CELL_LENGTH, SPOKES)
+    """Spokes of a wheel of that radius [m]: an even number, as the box around an odd one is crooked."""
+    return 2 * _fitting(2.0 * math.pi * radius, 2.0 * CELL_LENGTH, (SPOKES[0] // 2, SPOKES[1] // 2))
 
 
 def jelly_spacing(width: float, height: float, cells: int | None) -> float:

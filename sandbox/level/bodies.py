@@ -5,12 +5,17 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Discriminator, Field, Tag
 
+from sandbox.level.driving import MotorDef, MuscleDef
 from sandbox.level.limits import DEFAULT_MATERIAL
 from sandbox.level.quantities import (
     Angle,
     Coefficient,
+    Collides,
+    CollisionGroup,
     Description,
     Extras,
+    Friction,
+    GravityScale,
     Group,
     Id,
     Index,
@@ -19,6 +24,7 @@ from sandbox.level.quantities import (
     Mass,
     Name,
     Point,
+    Restitution,
     Size,
     Spacing,
     Velocity,
@@ -44,6 +50,17 @@ class BodyDef(Description):
         description="Start place of each particle where the body does not start in its own form; "
         "rest lengths stay those of its form. null = its form.",
     )
+    gravity_scale: GravityScale = 1.0
+    drive: MuscleDef | None = Field(
+        default=None, description="Wave that the rest lengths of its springs follow: a muscle; null = none."
+    )
+    particle_radius: Length | None = Field(
+        default=None, description="Radius of its particles, where things touch; null = 0.05."
+    )
+    friction: Friction = None
+    restitution: Restitution = None
+    collides: Collides = True
+    collision_group: CollisionGroup = None
     group: Group = None
     extras: Extras = Field(default={})
 
@@ -129,6 +146,7 @@ class WheelDef(BodyDef):
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
     hub_mass: Mass | None = Field(default=None, description="Mass of the hub; null = `particle_mass`.")
     pin: tuple[Literal["hub"], ...] = Field(default=(), max_length=1, description='"hub": the hub is held.')
+    motor: MotorDef | None = Field(default=None, description="Motor that turns it about its hub; null = none.")
 
 
 class RingDef(BodyDef):

@@ -4,14 +4,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.level.bodies import RingDef
+from sandbox.level.driving import HydraulicDef, MotorDef
 from sandbox.level.elements import areas, bending, bends
 from sandbox.level.expansion import Expansion, expansion
 from sandbox.level.layout import Layout
-from sandbox.level.limits import BODY_RADIUS, DEFAULT_MATERIAL
+from sandbox.level.limits import DEFAULT_MATERIAL
 from sandbox.level.model import HookeMaterial, Level, Material, NissenMaterial
+from sandbox.level.outlines import edges
+from sandbox.level.parts import given_length, parts
+from sandbox.level.surfaces import surface_of, surfaces_of, terrain_of
 from sandbox.level.validate import check_level
 from sandbox.level.welds import welded
+from sandbox.physics.driving import drive_muscles
 from sandbox.physics.elements import AREA, BEND
+from sandbox.physics.equipment import NEVER, Driven, Hydraulics, Motors, Muscles, StrainLimits
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.slots import OWN_MATERIAL
 from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, World
@@ -39,8 +45,11 @@ def build_world(level: Level) -> World:
     for name, slot in layout.second_names():
         world.name_particle(int(slots[slot]), name)
     _add_springs(world, layout, level, bodies, slots, materials)
+    world.limits = strain_limits(materials)
+    _fit(world, layout, level, bodies, slots)
     world.reserve_hands()
     _add_elements(world, layout, level, bodies, slots, materials)
+    world.terrain, world.surface = terrain_of(level), surface_of(level)
     return world
 
 
@@ -48,12 +57,16 @@ def _add_particles(world: World, level: Level, bodies: list[Expansion], slots: S
     """Add the particles that stay (bool, one per particle before welds); slots: which of them each becomes."""
     loose = level.particles
     names = [f"{body.id}.{k}" for body, made in zip(level.bodies, bodies, strict=True) for k in range(len(made.mass))]
-    radius = np.array([BODY_RADIUS] * len(names) + [particle.radius for particle in loose], dtype=np.float64)
+    surfaces = surfaces_of(level, [len(made.mass) for made in bodies])
+    radius = surfaces.pop("radius")
     names += [particle.id for particle in loose]
     position = np.array([p.position for p in loose], dtype=np.float64).reshape(-1, 2)
     velocity = np.array([p.velocity for p in loose], dtype=np.float64).reshape(-1, 2)
     mass = np.array([p.mass for p in loose], dtype=np.float64)
     pinned = np.array([p.pinned for p in loose], dtype=np.bool_)
+    scale = np.array([p.gravity_scale for p in loose], dtype=np.float64)
+    scales = [np.full(len(made.mass), body.gravity_scale) for body, made in zip(level.bodies, bodies, strict=True)]
+    scale = np.concatenate([*scales, scale])
     position = np.concatenate([*(body.position for body in bodies), position])
     velocity = np.concatenate([*(body.velocity for body in bodies), velocity])
     mass = np.concatenate([*(body.mass for body in bodies), mass])
@@ -63,6 +76,9 @@ def _add_particles(world: World, level: Level, bodies: list[Expansion], slots: S
         first = kept[slots[slot]]
         both = mass[first] + mass[slot]
         velocity[first] = (mass[first] * velocity[first] + mass[slot] * velocity[slot]) / both
+        # What pulls at both pulls at the one; equal scales stay what they are, to the bit.
+        if scale[first] != scale[slot]:
+            scale[first] = (mass[first] * scale[first] + mass[slot] * scale[slot]) / both
         mass[first] = both
         radius[first] = max(radius[first], radius[slot])
         pinned[first] |= pinned[slot]
@@ -74,6 +90,8 @@ def _add_particles(world: World, level: Level, bodies: list[Expansion], slots: S
         mass=mass[stays],
         radius=radius[stays] + 0.0,
         pinned=pinned[stays],
+        gravity_scale=scale[stays] + 0.0,
+        **{name: values[stays] for name, values in surfaces.items()},
     )
     for slot in gone:
         world.name_particle(int(slots[slot]), names[slot])
@@ -93,18 +111,77 @@ def _add_springs(
     names = [f"{body.id}:{number}" for body, expanded in made for number in expanded.numbers.tolist()]
     ends = [layout.owners[body.id].first + expanded.pairs for body, expanded in made]
     between = np.array([(layout.slot(s.a), layout.slot(s.b)) for s in loose], dtype=np.int64).reshape(-1, 2)
-    given = np.array([np.nan if s.rest_length is None else s.rest_length for s in loose], dtype=np.float64)
+    lengths = [given_length(spring) for spring in loose]
+    given = np.array([np.nan if length is None else length for length in lengths], dtype=np.float64)
     used = [np.full(len(expanded.pairs), index[body.material]) for body, expanded in made]
     material = np.concatenate([*used, np.array([index[s.material] for s in loose], dtype=np.int64)]).astype(np.int64)
     pairs = slots[np.concatenate([*ends, between])]
+    # A loose spring joins bodies, and is in nobody's way.
+    edge = np.concatenate([*(edges(body, expanded.pairs) for body, expanded in made), np.zeros(len(loose), np.int8)])
     world.add_springs(
         names + [f":{number}" for number in range(len(loose))],
         pairs[:, 0],
         pairs[:, 1],
         rest_length=np.concatenate([*(expanded.rest_length for expanded in bodies), given]) + 0.0,
         material=material,
+        edge=edge if level.has_contacts else 0,
         **coefficients(material, materials),
     )
+
+
+def strain_limits(materials: dict[str, Material]) -> StrainLimits:
+    """The strains at which springs of each material break and yield."""
+
+    def column(name: str) -> NDArray[np.float64]:
+        values = [getattr(material, name) for material in materials.values()]
+        return np.array([NEVER if value is None else value for value in values], dtype=np.float64)
+
+    return StrainLimits(
+        tension=column("tension_limit"),
+        compression=column("compression_limit"),
+        yielding=column("yield_strain"),
+        yield_share=column("yield_limit"),
+    )
+
+
+def _fit(world: World, layout: Layout, level: Level, bodies: list[Expansion], slots: Slots) -> None:
+    """Give the world its muscles, hydraulics and motors."""
+    driven = parts(level)
+    owners = [layout.owners[part.name] for part in driven if isinstance(part.drive, MotorDef)]
+    motors = [part.drive for part in driven if isinstance(part.drive, MotorDef)]
+    rims = [slots[owner.first + 1 : owner.first + owner.size] for owner in owners]
+    turning = Motors(
+        hub=slots[np.array([owner.first for owner in owners], dtype=np.int64)],
+        speed=np.array([motor.speed for motor in motors], dtype=np.float64),
+        torque=np.array([motor.torque for motor in motors], dtype=np.float64),
+        part=np.arange(len(motors), dtype=np.int64),
+        rim_start=np.cumsum([0, *map(len, rims)], dtype=np.int64),
+        rim=np.concatenate([*rims, np.zeros(0, dtype=np.int64)]),
+    )
+    hydraulics = [part.drive for part in driven if isinstance(part.drive, HydraulicDef)]
+    first_loose = sum(len(made.pairs) for made in bodies)
+    holders = [part.owner for part in driven if isinstance(part.drive, HydraulicDef)]
+    lifting = Hydraulics(
+        spring=first_loose + np.array(holders, dtype=np.int64),
+        shortest=np.array([hydraulic.shortest for hydraulic in hydraulics], dtype=np.float64),
+        longest=np.array([hydraulic.longest for hydraulic in hydraulics], dtype=np.float64),
+        rate=np.array([hydraulic.rate for hydraulic in hydraulics], dtype=np.float64),
+        part=len(motors) + np.arange(len(hydraulics), dtype=np.int64),
+    )
+    names = tuple(part.name for part in driven)
+    equipment = Driven(names, _muscles(level, bodies), lifting, turning)
+    world.fit(equipment, [part.start_value for part in driven])
+    drive_muscles(world, 0)
+
+
+def _muscles(level: Level, bodies: list[Expansion]) -> Muscles:
+    """The muscles of every spring, of the bodies in file order and then of the loose springs."""
+    waves = [body.drive for body in level.bodies] + [spring.drive for spring in level.springs]
+    counts = [len(made.pairs) for made in bodies] + [1] * len(level.springs)
+    rows = [(0.0, 0, 0.0) if wave is None else (wave.amplitude, wave.period, wave.phase) for wave in waves]
+    amplitude, period, phase = (np.repeat(column, counts) for column in np.array(rows).reshape(-1, 3).T)
+    spring = np.flatnonzero(period)
+    return Muscles(spring, amplitude[spring], period[spring].astype(np.int64), phase[spring])
 
 
 def _add_elements(

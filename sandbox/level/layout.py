@@ -1,8 +1,9 @@
 """Layout: which slots the bodies, loose particles and loose springs of a level get, and who has which name."""
 
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
+from typing import NamedTuple
 
 from sandbox.level.expansion import named_particles
 from sandbox.level.faults import shown, suggestion
@@ -11,13 +12,12 @@ from sandbox.level.model import Level
 _INDEX = re.compile(r"0|[1-9][0-9]{0,8}")
 
 
-@dataclass(frozen=True)
-class Owner:
+class Owner(NamedTuple):
     """The slots of one body or loose particle: first, how many, and the indices of those with a name of their own."""
 
     first: int
-    count: int
-    named: dict[str, int] = field(default_factory=dict)
+    size: int
+    named: Mapping[str, int] = MappingProxyType({})
     loose: bool = False
 
 
@@ -32,16 +32,16 @@ class Layout:
         self.repeated: list[tuple[str, str]] = []
         first = 0
         for index, (body, count) in enumerate(zip(level.bodies, counts, strict=True)):
-            self._add(body.id, Owner(first, count, named_particles(body)), f"bodies.{index}.id")
+            self._add("bodies", index, body.id, Owner(first, count, named_particles(body)))
             first += count
         for index, particle in enumerate(level.particles):
-            self._add(particle.id, Owner(first, 1, loose=True), f"particles.{index}.id")
+            self._add("particles", index, particle.id, Owner(first, 1, loose=True))
             first += 1
         self.particle_count = first
 
-    def _add(self, name: str, owner: Owner, path: str) -> None:
+    def _add(self, part: str, index: int, name: str, owner: Owner) -> None:
         if name in self.owners:
-            self.repeated.append((path, name))
+            self.repeated.append((f"{part}.{index}.id", name))
         else:
             self.owners[name] = owner
 
@@ -53,20 +53,21 @@ class Layout:
 
     def slot(self, reference: str) -> int:
         """Slot of the particle that `id`, `id.k` or a name such as `id.start` refers to. Raises LookupError."""
-        name, dot, part = reference.partition(".")
+        owner = self.owners.get(reference)
+        if owner is not None and owner.loose:
+            return owner.first
+        name, _, part = reference.partition(".")
         owner = self.owners.get(name)
         if owner is None:
             raise LookupError(f"there is no body or particle {shown(name)}" + suggestion(name, self.owners))
         if owner.loose:
-            if dot:
-                raise LookupError(f'"{name}" is a single particle; write "{name}"')
-            return owner.first
+            raise LookupError(f'"{name}" is a single particle; write "{name}"')
         if part in owner.named:
             return owner.first + owner.named[part]
         if _INDEX.fullmatch(part):
-            if int(part) < owner.count:
+            if int(part) < owner.size:
                 return owner.first + int(part)
-            raise LookupError(f'"{name}" has the particles {name}.0 to {name}.{owner.count - 1}')
-        choices = [f"{name}.0 to {name}.{owner.count - 1}", *(f"{name}.{part}" for part in owner.named)]
+            raise LookupError(f'"{name}" has the particles {name}.0 to {name}.{owner.size - 1}')
+        choices = [f"{name}.0 to {name}.{owner.size - 1}", *(f"{name}.{part}" for part in owner.named)]
         listed = choices[0] if len(choices) == 1 else ", ".join(choices[:-1]) + " or " + choices[-1]
         raise LookupError(f'"{name}" is a body; name one of its particles: {listed}')

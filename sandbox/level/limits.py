@@ -16,6 +16,8 @@ SPRING_LIMIT = 400_000
 # Work of filling polygons in one level: corners in all, and per polygon grid rows x (columns + corners).
 CORNER_LIMIT = 4_096
 POLYGON_WORK_LIMIT = 4_000_000
+TERRAIN_LIMIT = 1_000  # pieces of terrain; their corners count as those of polygons
+COLLISION_GROUP_LIMIT = 60  # groups that bodies collide by: bits of a whole number
 
 # Beyond these, doubles lose the digits that a spring's length needs.
 COORDINATE_LIMIT = 1e6  # [m]
@@ -24,7 +26,19 @@ GRAVITY_LIMIT = 1e6  # [m/s^2]
 MASS_RANGE = (1e-9, 1e9)  # [kg]
 SPACING_RANGE = (1e-6, 1e6)  # [m]
 ANGLE_LIMIT = 1e6  # [rad]
+GRAVITY_SCALE_LIMIT = 1e3  # times gravity, either way
+DRAG_LIMIT = 1e6  # [1/s]
+STRAIN_LIMIT = 1e3  # strain beyond which a material may be said to break
+YIELD_RANGE = (1e-6, 0.5)  # strain; a spring that yields at half its length keeps the rest of it
+YIELD_SHARE_LIMIT = 0.9  # of its length that a spring may yield by; it never yields to nothing
+AMPLITUDE_LIMIT = 0.9  # of its length that a muscle may swing by, for the same reason
+PERIOD_RANGE = (2, 1_000_000)  # ticks of a muscle's wave
+TURN_LIMIT = 1e4  # [rad/s] of a motor
+TORQUE_LIMIT = 1e12  # [N m]
+RATE_LIMIT = 1e6  # [m/s] of a hydraulic
+MOTOR_LIMIT = 100  # motors of a level; each looks through all springs in every step for what its hub is fixed to
 HOOKE_LIMIT = 1e15  # [N/m], [N s/m]
+FRICTION_LIMIT = 100.0  # beyond it nothing slides that did not before
 INFLATION_LIMIT = 100.0  # multiple of a ring's own area
 SECONDS_LIMIT = 3_600.0  # [s] of run that an acceptance check may ask for
 

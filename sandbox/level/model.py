@@ -7,6 +7,7 @@ from pydantic_core import PydanticKnownError
 
 from sandbox.level.bodies import AnyBody
 from sandbox.level.checks import CheckDef
+from sandbox.level.driving import HydraulicDef, MuscleDef
 from sandbox.level.limits import (
     CHECK_LIMIT,
     DEFAULT_MATERIAL,
@@ -18,10 +19,18 @@ from sandbox.level.limits import (
 )
 from sandbox.level.quantities import (
     Coefficient,
+    Collides,
+    CollisionGroup,
+    Compression,
     Coordinate,
+    Corners,
     Description,
+    Drag,
     Extras,
+    Friction,
+    FrictionCoefficient,
     Gravity,
+    GravityScale,
     Group,
     HookeDamping,
     HookeStiffness,
@@ -31,8 +40,13 @@ from sandbox.level.quantities import (
     Mass,
     Name,
     Point,
+    Restitution,
+    Share,
+    Tension,
     Text,
     Velocity,
+    YieldShare,
+    YieldStrain,
     unit,
 )
 from sandbox.physics.settings import AUTO, Substeps
@@ -62,6 +76,12 @@ class Settings(Description):
         le=1.0,
         description="Part of the last step's pulling impulses that the iterative solver reuses.",
     )
+    wind: Velocity = Field(default=(0.0, 0.0), description="Velocity of the air; it acts by `drag` alone.")
+    drag: Drag = Field(
+        default=0.0,
+        description="Rate at which every free particle takes on the wind's velocity, whatever its mass: what it "
+        "differs by falls to 1/(1 + drag h) in a step of h seconds.",
+    )
 
     @field_validator("substeps", mode="before")
     @classmethod
@@ -83,7 +103,24 @@ class Settings(Description):
         raise ValueError("there is no such solver; use one of " + ", ".join(sorted(SOLVERS)))
 
 
-class NissenMaterial(Description):
+class MaterialDef(Description):
+    """What springs of every law have: limits of strain, (length - rest length) / rest length, at the end of a tick."""
+
+    tension_limit: Tension | None = Field(
+        default=None, description="Strain beyond which a stretched spring breaks; null = never."
+    )
+    compression_limit: Compression | None = Field(
+        default=None, description="Strain beyond which a compressed spring breaks, above 0; null = never."
+    )
+    yield_strain: YieldStrain | None = Field(
+        default=None, description="Strain either way beyond which the rest length follows for good; null = elastic."
+    )
+    yield_limit: YieldShare = Field(
+        default=0.25, description="Largest change of the rest length by yielding, as a share of it as built."
+    )
+
+
+class NissenMaterial(MaterialDef):
     """The impulse-based spring (Nissen 2019): Cs and Cd per tick, the same behaviour for every mass."""
 
     stiffness: Coefficient = Field(
@@ -94,7 +131,7 @@ class NissenMaterial(Description):
     )
 
 
-class HookeMaterial(Description):
+class HookeMaterial(MaterialDef):
     """The classic spring, F = -k x - c u, for comparison: it explodes where k or c is too large for mass and step."""
 
     law: Literal["hooke"] = Field(description='"hooke"; without `law` a material is the impulse-based spring.')
@@ -120,8 +157,13 @@ class ParticleDef(Description):
     position: Point = Field(default=(0.0, 0.0), description="Place.")
     velocity: Velocity = Field(default=(0.0, 0.0), description="Start velocity; a pinned particle starts at rest.")
     mass: Mass = Field(default=1.0, description="Mass.")
-    radius: Length = Field(default=0.05, description="Radius of the drawn disc.")
+    radius: Length = Field(default=0.05, description="Radius of its disc.")
     pinned: bool = Field(default=False, description="Whether it is held where it is.")
+    gravity_scale: GravityScale = 1.0
+    friction: Friction = None
+    restitution: Restitution = None
+    collides: Collides = True
+    collision_group: CollisionGroup = None
     group: Group = None
     extras: Extras = Field(default={})
 
@@ -131,9 +173,47 @@ class SpringDef(Description):
 
     a: Name = Field(description="One end: `id`, `id.k`, or a name such as `id.start`.")
     b: Name = Field(description="The other end.")
-    rest_length: Length | None = Field(default=None, description="Rest length; null = as placed.")
+    rest_length: Length | None = Field(
+        default=None, description="Rest length; null = as placed, of a hydraulic its shortest."
+    )
     material: Name = Field(default=DEFAULT_MATERIAL, description="Name of its material.")
+    drive: MuscleDef | None = Field(
+        default=None, description="Wave that its rest length follows: a muscle; null = none."
+    )
+    hydraulic: HydraulicDef | None = Field(
+        default=None, description="Lengths between which it is driven; null = it is no hydraulic."
+    )
     group: Group = None
+    extras: Extras = Field(default={})
+
+
+class ContactsDef(Description):
+    """That things touch each other, and how, unless they say otherwise."""
+
+    friction: FrictionCoefficient = Field(default=0.5, description="Friction of a surface.")
+    restitution: Share = Field(default=0.0, description="Part of its speed with which a surface bounces.")
+
+
+class WallsDef(Description):
+    """Four walls, solid outside, that nothing leaves."""
+
+    box: tuple[Coordinate, Coordinate, Coordinate, Coordinate] = Field(
+        description="Left, bottom, right, top of the room.", json_schema_extra=unit("m")
+    )
+    friction: Friction = None
+    restitution: Restitution = None
+
+
+class TerrainDef(Description):
+    """A piece of terrain, which never moves: a line with two sides, or a solid polygon."""
+
+    id: Id = Field(description="Name of the piece; other pieces, bodies and particles have others.")
+    polyline: Corners | None = Field(default=None, description="Corners of a line; this or `polygon`.")
+    polygon: Corners | None = Field(
+        default=None, description="Corners of a solid shape in order; sides may not touch or cross."
+    )
+    friction: Friction = None
+    restitution: Restitution = None
     extras: Extras = Field(default={})
 
 
@@ -154,6 +234,12 @@ class Level(Description):
         json_schema_extra=unit("m"),
     )
     materials: dict[Name, Material] = Field(default={}, max_length=MATERIAL_LIMIT, description="Materials by name.")
+    contacts: ContactsDef | None = Field(
+        default=None,
+        description="That things touch; null = nothing touches anything, unless there are terrain or walls.",
+    )
+    walls: WallsDef | None = Field(default=None, description="Walls all round; null = none.")
+    terrain: tuple[TerrainDef, ...] = Field(default=(), description="Lines and solid shapes that never move.")
     bodies: tuple[AnyBody, ...] = Field(default=(), description="Bodies, in the order of their particles and springs.")
     particles: tuple[ParticleDef, ...] = Field(default=(), description="Loose particles, after those of the bodies.")
     springs: tuple[SpringDef, ...] = Field(default=(), description="Loose springs, after those of the bodies.")
@@ -166,6 +252,11 @@ class Level(Description):
         default=(), max_length=CHECK_LIMIT, description="What must hold of the level's run."
     )
     extras: Extras = Field(default={})
+
+    @property
+    def has_contacts(self) -> bool:
+        """Whether anything in the level touches anything."""
+        return self.contacts is not None or self.walls is not None or bool(self.terrain)
 
     @field_validator("version")
     @classmethod

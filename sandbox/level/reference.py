@@ -115,6 +115,31 @@ _NAMES = """\
   are. A spring that would lose its length so is refused.
 """
 
+_DRIVEN = """\
+## What breaks, yields and is driven
+
+- Strain is `(length - rest length) / rest length`, of every spring with a rest length above 0, taken once, at the end
+  of a tick. First a spring yields: beyond `yield_strain` its rest length follows, so that the strain is `yield_strain`
+  again, until it has changed by the share `yield_limit`. Then it breaks, if the strain is still beyond
+  `tension_limit` or below minus `compression_limit`. A broken spring is gone for the rest of the run; undo brings it
+  back. Both take energy out and never put any in. A stiff material strains little: Cs = Cd = 1 in the direct solver
+  hardly at all, so limits need a softer one, such as Cs 0.9 and Cd 0.99.
+- A muscle's rest length is `L (1 + amplitude wave)`, where the wave of a tick is made of two parabolas: with
+  `u = tick / period + phase`, without its whole part, it is `16 u (1/2 - u)` while `u < 1/2` and
+  `-16 (u - 1/2) (1 - u)` after. It repeats exactly. A body's `drive` makes muscles of all its springs. What is driven
+  does not yield, but breaks.
+- A hydraulic and a motor are driven by a value of -1..1: 1 while the `key` is held down, -1 while the `reverse_key`
+  is, 0 otherwise; the command `set_drive` gives any value between. A hydraulic's rest length changes by `rate` times
+  the value a second, within `shortest` and `longest`. A motor without keys has the value 1 from the start.
+- A motor brings the wheel's turning rate, against that of its mount, to `speed` times the value, with at most `torque`;
+  at the value 0 the wheel turns freely. The mount is the hub with everything that springs join to it from outside the
+  wheel; it gets the reaction, so that momentum and angular momentum are kept. Where the hub or part of its mount is
+  pinned, the reaction goes to the ground. A wheel whose hub nothing holds has no mount, and its motor does nothing.
+- `wind` and `drag`: in a step of h seconds a free particle's velocity becomes `(v + drag h wind) / (1 + drag h)`, which
+  never overshoots. Drag is a rate for every mass, so heavy and light particles slow down alike.
+- `gravity_scale` of welded particles is their mean by mass.
+"""
+
 # Each is one mistake in the example above; the reference shows what the program says to it.
 _MISTAKES = [
     ('"stiffness": 1.0', '"stiffness": 1.3'),
@@ -132,7 +157,7 @@ _MISTAKES = [
 
 def format_reference() -> str:
     """The reference as Markdown."""
-    return "\n".join([_INTRO, *_tables(), _NAMES, _limits(), _errors()])
+    return "\n".join([_INTRO, *_tables(), _NAMES, _DRIVEN, _limits(), _errors()])
 
 
 def _tables() -> Iterator[str]:
@@ -213,6 +238,7 @@ A file beyond one of these is refused before anything is built; nothing is ever 
 | coordinates, of what bodies expand to as well | {limits.COORDINATE_LIMIT:g} m either way |
 | velocities, a mesh's own added to the body's | {limits.SPEED_LIMIT:g} m/s each way |
 | text, in `extras` as well | {limits.TEXT_LIMIT} characters |
+| motors | {limits.MOTOR_LIMIT} |
 | numbers | finite: no NaN, Infinity, 1e999; true and "1" are no numbers, 1.0 is no whole number |
 | keys | no key twice in one object |
 """

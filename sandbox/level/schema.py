@@ -10,6 +10,9 @@ TITLES = {
     "Settings": "Settings",
     "NissenMaterial": "Material",
     "HookeMaterial": "Hooke material",
+    "ContactsDef": "Contacts",
+    "WallsDef": "Walls",
+    "TerrainDef": "Terrain",
     "RopeDef": "Rope",
     "BridgeDef": "Bridge",
     "GirderDef": "Girder",
@@ -24,6 +27,9 @@ TITLES = {
     "BendingDef": "Bending",
     "ParticleDef": "Loose particle",
     "SpringDef": "Loose spring",
+    "MuscleDef": "Muscle",
+    "HydraulicDef": "Hydraulic",
+    "MotorDef": "Motor",
     "CheckDef": "Acceptance check",
 }
 

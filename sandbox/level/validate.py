@@ -19,6 +19,7 @@ from sandbox.level.bodies import (
     WheelDef,
 )
 from sandbox.level.checks import PARTICLE_METRICS, CheckDef
+from sandbox.level.driven_faults import driven_faults
 from sandbox.level.faults import Fault, LevelError, json_path, shown, suggestion
 from sandbox.level.layout import Layout
 from sandbox.level.limits import (
@@ -35,6 +36,7 @@ from sandbox.level.limits import (
 from sandbox.level.model import Level
 from sandbox.level.polygon import grid_bounds, is_simple
 from sandbox.level.shapes import form_count, girder_offset, turn
+from sandbox.level.surfaces import surface_faults
 from sandbox.level.welds import weld_faults
 
 
@@ -111,12 +113,14 @@ def _all_faults(level: Level, counts: list[tuple[int, int]], layout: Layout) -> 
     for index, body in enumerate(level.bodies):
         path = f"bodies.{index}"
         yield from _material(level, path, body.material)
-        yield from _mesh(path, body) if isinstance(body, MeshDef) else _outline(path, body)
+        yield from _mesh(path, body) if isinstance(body, MeshDef) else outline_faults(path, body)
         if counts[index][0] == 0:
             yield f"{path}.spacing", "no point of the grid lies inside the polygon; make it smaller"
         else:
             yield from _changes(path, body, *counts[index])
+    yield from surface_faults(level)
     yield from _springs(level, layout)
+    yield from driven_faults(level)
     for index, (a, b) in enumerate(level.welds):
         yield from _pair(f"welds.{index}", layout, {"0": a, "1": b})
     for index, check in enumerate(level.checks):
@@ -157,7 +161,7 @@ def _changes(path: str, body: AnyBody, particles: int, springs: int) -> Iterator
         yield f"{path}.pose", f"has {len(body.pose)} items for {particles} particles; give one each"
 
 
-def _outline(path: str, body: AnyBody) -> Iterator[Fault]:
+def outline_faults(path: str, body: AnyBody) -> Iterator[Fault]:
     """Whether what a body expands to stays inside the world."""
     if isinstance(body, BridgeDef):
         if min(body.start[1], body.end[1]) - body.height < -COORDINATE_LIMIT:
@@ -241,7 +245,12 @@ def _check(path: str, check: CheckDef, layout: Layout) -> Iterator[Fault]:
 
 def _extras(level: Level) -> Iterator[Fault]:
     yield from _kept(["extras"], level.extras)
-    for name, items in (("bodies", level.bodies), ("particles", level.particles), ("springs", level.springs)):
+    for name, items in (
+        ("terrain", level.terrain),
+        ("bodies", level.bodies),
+        ("particles", level.particles),
+        ("springs", level.springs),
+    ):
         for index, item in enumerate(items):
             if item.extras:
                 yield from _kept([name, index, "extras"], item.extras)
@@ -265,7 +274,5 @@ def _kept(path: list[Any], value: Any) -> Iterator[Fault]:
     elif isinstance(value, str):
         if len(value) > TEXT_LIMIT:
             yield json_path(path), f"has {len(value)} characters; at most {TEXT_LIMIT} are allowed"
-    elif (isinstance(value, float) and not math.isfinite(value)) or (
-        isinstance(value, int) and value.bit_length() > 1024
-    ):
+    elif not _is_finite(value):
         yield json_path(path), f"{shown(value)} is not a finite number"

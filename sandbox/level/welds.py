@@ -50,12 +50,12 @@ def weld_faults(level: Level, layout: Layout) -> Iterator[Fault]:
     weight = np.zeros(len(firsts))
     for index, body in enumerate(level.bodies):
         owner = layout.owners[body.id]
-        mine = slice(owner.first, owner.first + owner.count)
+        mine = slice(owner.first, owner.first + owner.size)
         if not np.any(is_welded[mine]):
             continue
-        weight[mine] = masses(body, owner.count)
+        weight[mine] = masses(body, owner.size)
         # A spring loses its length only where two particles of its own body are one.
-        if len(np.unique(firsts[mine])) == owner.count:
+        if len(np.unique(firsts[mine])) == owner.size:
             continue
         expanded = expansion(body)
         ends = firsts[owner.first + expanded.pairs]

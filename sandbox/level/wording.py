@@ -7,9 +7,10 @@ from pydantic import BaseModel
 
 from sandbox.level.bodies import KINDS, BoxShape, CircleShape, PolygonShape
 from sandbox.level.checks import CheckDef
+from sandbox.level.driving import HydraulicDef, MotorDef, MuscleDef
 from sandbox.level.faults import Fault, json_path, shown, suggestion
 from sandbox.level.model import HookeMaterial, Level, NissenMaterial, ParticleDef, Settings, SpringDef
-from sandbox.level.quantities import ID_PATTERN
+from sandbox.level.quantities import ID_PATTERN, KEY_PATTERN
 
 Location = tuple[Any, ...]
 
@@ -21,6 +22,8 @@ _MODELS: dict[str, type[BaseModel]] = {
     "springs": SpringDef,
     "checks": CheckDef,
 }
+# Objects inside an item, by the field that holds them.
+_NESTED: dict[str, type[BaseModel]] = {"drive": MuscleDef, "hydraulic": HydraulicDef, "motor": MotorDef}
 _KINDS = "use {} or {}".format(", ".join([*KINDS][:-1]), [*KINDS][-1])
 _SHAPE_FORMS = 'a shape is {"box": [width, height]}, {"circle": radius} or {"polygon": [[x, y], ...]}'
 
@@ -80,6 +83,9 @@ def _kind_fault(parts: list[Any], kind: str, value: Any) -> Fault:
 def _model(location: Location) -> type[BaseModel]:
     if len(location) == 1:
         return Level
+    # Where two parts follow, the kind of body or the item's number goes before.
+    if len(location) > 3 and location[0] in ("bodies", "springs") and location[-2] in _NESTED:
+        return _NESTED[location[-2]]
     if location[0] == "bodies":
         return _SHAPES[location[4]] if len(location) > 5 else KINDS[location[2]]
     return _MATERIALS[location[2]] if location[0] == "materials" else _MODELS[location[0]]
@@ -105,6 +111,8 @@ def _literal(value: Any, context: dict[str, Any]) -> str:
 def _pattern(value: Any, context: dict[str, Any]) -> str:
     if context["pattern"] == ID_PATTERN:
         return f"{shown(value)} holds one of . : , or a control character, or begins with +; an id may not"
+    if context["pattern"] == KEY_PATTERN:
+        return f"{shown(value)} is no key; use a small letter or a digit"
     return f"{shown(value)} holds control characters; take them out"
 
 

@@ -171,28 +171,3 @@ def explicit_mass(first, last, inverse_mass, particle, weight, slope):  # type: 
         present += w * (slope[c, 0] * slope[c, 0] + slope[c, 1] * slope[c, 1])
     most = max(rest, present)
     return (1.0 / most, present / most) if most > 0.0 else (0.0, 0.0)
-
-
-@kernel
-def drop_loose(elements, particle_a, particle_b, spring_active, cut):  # type: ignore[no-untyped-def]
-    """Take out the elements of which a side, that was the spring `cut`, is held by no active spring any more."""
-    a = particle_a[cut]
-    b = particle_b[cut]
-    for s in range(spring_active.shape[0]):
-        if spring_active[s] and (
-            (particle_a[s] == a and particle_b[s] == b) or (particle_a[s] == b and particle_b[s] == a)
-        ):
-            return
-    for k in range(elements.kind.shape[0]):
-        if not elements.active[k]:
-            continue
-        first = elements.first[k]
-        last = first + elements.corners[k]
-        # A bend's two outer corners are no side of it.
-        before = last - 1 if elements.kind[k] == AREA else first
-        for c in range(first, last):
-            p = elements.particle[before]
-            q = elements.particle[c]
-            if (p == a and q == b) or (p == b and q == a):
-                elements.active[k] = False
-            before = c

@@ -66,9 +66,13 @@ def measure_elements(world: World) -> tuple[Floats, Floats, Floats]:
 
 @_unbounded
 def gravity_energy(world: World) -> float:
-    """Sum of -m g . x over the free particles [J]; zero at the origin's height."""
+    """Sum of -m g . x over the free particles [J], g times each one's gravity scale; zero at the origin's height."""
     free = world.particle_active & (world.inverse_mass > 0.0)
-    return float(-np.sum(world.mass[free, None] * world.position[free] * np.asarray(world.settings.gravity)))
+    return float(
+        -np.sum(
+            (world.mass * world.gravity_scale)[free, None] * world.position[free] * np.asarray(world.settings.gravity)
+        )
+    )
 
 
 def total_energy(world: World) -> float:

@@ -78,7 +78,7 @@ def _interpreted(function: Function) -> Function:
     return cast(Function, call)
 
 
-def _compiled(function: Function, **options: bool) -> Function:
+def _compiled(function: Function, **options: Any) -> Function:
     # Determinism: never fastmath, never parallel. Kernels guard every divisor, so the error model decides nothing.
     # The folder is set for this one function: the kernels of others in the same process stay where they are.
     chosen = _numba.config.CACHE_DIR
@@ -109,6 +109,11 @@ def bundle_kernel(function: Function) -> Function:
 def inner_kernel(function: Function) -> Function:
     """Make `function` a part of kernels, which alone may call it: compiled sooner, with no entry for Python."""
     return _compiled(function, no_cpython_wrapper=True, no_cfunc_wrapper=True, **_UNCOUNTED) if COMPILED else function
+
+
+def inlined_kernel(function: Function) -> Function:
+    """Make `function` a part of kernels that is written into them: no call, which copies every array's shape."""
+    return _compiled(function, inline="always", **_UNCOUNTED) if COMPILED else function
 
 
 def scalar_kernel(function: Function) -> Function:

@@ -10,7 +10,10 @@ Substeps = int | Literal["auto"]
 
 @dataclass(frozen=True)
 class WorldSettings:
-    """What a tick needs besides arrays: gravity [m/s^2], tick rate [1/s], substeps and the settings of the solver."""
+    """What a tick needs besides arrays: gravity [m/s^2], tick rate [1/s], substeps, solver, wind [m/s], drag [1/s].
+
+    Drag is the rate at which every free particle takes on the wind's velocity, whatever its mass.
+    """
 
     gravity: tuple[float, float] = (0.0, -9.81)
     tick_rate: int = 60
@@ -18,6 +21,8 @@ class WorldSettings:
     solver: str = "iterative"
     iterations: int = 10
     warm_start: float = 0.5
+    wind: tuple[float, float] = (0.0, 0.0)
+    drag: float = 0.0
 
     @property
     def fewest_substeps(self) -> int:

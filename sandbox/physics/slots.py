@@ -1,46 +1,17 @@
-"""Slots: the arrays of a world as they grow, and what is done to elements."""
-
-from typing import Any
+"""Slots of elements: how they are added to a world's state, changed and dropped."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sandbox.physics.arrays import GUARDED, KINDS, VECTOR_ARRAYS
-from sandbox.physics.elements import AREA, BEND, Elements, drop_loose
+from sandbox.physics.arrays import Floats, StateArrays
+from sandbox.physics.elements import AREA, BEND, Elements
 
-Floats = NDArray[np.float64]
-Slots = NDArray[np.int64]
-
-# An energy bank that the direct solver begins anew at its next step: something outside changed the body.
-BANK_UNOPENED = -1.0
 # The material index of an element with Cs and Cd of its own, which no slider reaches.
 OWN_MATERIAL = -1
 
 
-class ElementSlots:
-    """The part of a World that grows arrays, and that adds and removes elements (see World and elements.py)."""
-
-    position: Floats
-    energy_bank: Floats
-    particle_a: NDArray[np.int32]
-    particle_b: NDArray[np.int32]
-    spring_active: NDArray[np.bool_]
-    element_kind: NDArray[np.int8]
-    element_first: NDArray[np.int32]
-    element_corners: NDArray[np.int32]
-    element_rest: Floats
-    element_stiffness: Floats
-    element_damping: Floats
-    element_material: NDArray[np.int32]
-    element_active: NDArray[np.bool_]
-    corner_particle: NDArray[np.int32]
-    corner_weight: Floats
-    corner_form: Floats
-
-    def __init__(self) -> None:
-        for name, kind in KINDS.items():
-            setattr(self, name, np.zeros((0, 2) if name in VECTOR_ARRAYS else 0, dtype=kind))
-        self.good: dict[str, Floats] = {name: getattr(self, name).copy() for name in GUARDED}
+class ElementSlots(StateArrays):
+    """The part of a World that adds and removes elements (see elements.py), and tunes them with their springs."""
 
     @property
     def element_count(self) -> int:
@@ -107,21 +78,42 @@ class ElementSlots:
         first = self.element_first[element]
         self._disturb(self.corner_particle[first : first + self.element_corners[element]])
 
-    def _drop_elements(self, cut: int) -> None:
-        """Take out the elements that the cut spring was a side of, unless another spring holds that side."""
-        drop_loose(self.elements, self.particle_a, self.particle_b, self.spring_active, cut)
+    def set_coefficients(self, stiffness: float | None, damping: float | None, material: int | None) -> None:
+        """Set Cs, Cd or both, of one material's springs and areas or (None) of all.
 
-    def _disturb(self, *particles: NDArray[np.integer] | int) -> None:
-        for slots in particles:
-            self.energy_bank[slots] = BANK_UNOPENED
+        Hands, Hooke springs and elements with Cs and Cd of their own keep theirs.
+        """
+        for family, materials in (("", self.material), ("element_", self.element_material)):
+            chosen = materials >= 0 if material is None else materials == material
+            for name, value in ((f"{family}stiffness", stiffness), (f"{family}damping", damping)):
+                if value is not None:
+                    getattr(self, name)[chosen] = value
+                self.good[name][chosen] = getattr(self, name)[chosen]
+            if not family:
+                self._disturb(self.particle_a[chosen], self.particle_b[chosen])
+            else:
+                self._disturb(self.corner_particle[np.repeat(chosen, self.element_corners)])
 
-    def _append(self, **arrays: Any) -> None:
-        for name, values in arrays.items():
-            present = getattr(self, name)
-            added = np.asarray(values, dtype=present.dtype)
-            setattr(self, name, np.concatenate([present, added]))
-            if name in GUARDED:
-                self.good[name] = np.concatenate([self.good[name], added])
+    def _drop_elements(self, springs: ArrayLike) -> None:
+        """Take out the elements that these springs were a side of, unless another spring holds that side."""
+        if not self.element_count:
+            return
+        active = self.spring_active
+        taken = np.asarray(springs, dtype=np.int64)
+        cut = _sides(self.particle_a[taken], self.particle_b[taken])
+        loose = np.setdiff1d(cut, _sides(self.particle_a[active], self.particle_b[active]))
+        owner = np.repeat(np.arange(self.element_count), self.element_corners)
+        corner, first = np.arange(len(owner)), self.element_first[owner]
+        before = np.where(corner == first, first + self.element_corners[owner] - 1, corner - 1)
+        # A bend's two outer corners are no side of it.
+        is_side = (self.element_kind[owner] == AREA) | (corner != first)
+        gone = is_side & np.isin(_sides(self.corner_particle[before], self.corner_particle), loose)
+        self.element_active[owner[gone]] = False
+
+
+def _sides(a: NDArray[np.int32], b: NDArray[np.int32]) -> NDArray[np.int64]:
+    """One number for each pair of particles, whichever comes first."""
+    return np.minimum(a, b).astype(np.int64) << 32 | np.maximum(a, b)
 
 
 def _rest_area(places: Floats, inflation: ArrayLike) -> tuple[Floats, Floats]:

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.world import Floats, World
+from sandbox.physics.terrain import Terrain
+from sandbox.physics.world import Floats, Slots, World
 
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
-    """A read-only copy of a world's state: its arrays (see World), settings and tick."""
+    """A read-only copy of a world's state: its arrays (see World), settings and tick; and its terrain."""
 
     position: Floats
     velocity: Floats
@@ -23,12 +24,14 @@ class Snapshot:
     mass: Floats
     inverse_mass: Floats
     radius: Floats
+    gravity_scale: Floats
     particle_active: NDArray[np.bool_]
     slow_velocity: Floats
     energy_bank: Floats
     particle_a: NDArray[np.int32]
     particle_b: NDArray[np.int32]
     rest_length: Floats
+    natural_length: Floats
     stiffness: Floats
     damping: Floats
     law: NDArray[np.int8]
@@ -49,10 +52,21 @@ class Snapshot:
     corner_particle: NDArray[np.int32]
     corner_weight: Floats
     corner_form: Floats
+    part_value: Floats
+    friction: Floats
+    restitution: Floats
+    owner: NDArray[np.int32]
+    group: Slots
+    collides: Slots
+    edge: NDArray[np.int8]
+    contact_particle: NDArray[np.int32]
+    contact_feature: Slots
+    contact_impulse: Floats
     settings: WorldSettings
     tick: int
     hand_particle: int
     hand_spring: int
+    terrain: Terrain
 
 
 def take(world: World) -> Snapshot:
@@ -66,6 +80,7 @@ def take(world: World) -> Snapshot:
         tick=world.tick,
         hand_particle=world.hand_particle,
         hand_spring=world.hand_spring,
+        terrain=world.terrain,
     )
 
 
@@ -79,6 +94,7 @@ def restore(world: World, snapshot: Snapshot) -> None:
     world.hand_particle = snapshot.hand_particle
     world.hand_spring = snapshot.hand_spring
     world.trust()
+    world.see_what_touches()
     world.forget_names_beyond(len(snapshot.mass), len(snapshot.rest_length))
 
 
@@ -111,6 +127,8 @@ def state_hash(world: World | Snapshot, arrays: Mapping[str, str] | None = None)
         state.solver,
         str(state.iterations),
         float(state.warm_start).hex(),
+        *((component + 0.0).hex() for component in state.wind),
+        float(state.drag).hex(),
     )
     text = "\n".join([*(by_array[name] for name in STATE_ARRAYS), str(world.tick), *settings])
     return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()

@@ -4,27 +4,25 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sandbox.physics.breaking import yield_and_break
+from sandbox.physics.driving import drive_springs
 from sandbox.physics.elements import AREA
+from sandbox.physics.equipment import Driven, Hydraulics, Motors, Muscles, StrainLimits
+from sandbox.physics.forces import Before, apply_forces
 from sandbox.physics.jit import kernel
+from sandbox.physics.meeting import leave, meet
+from sandbox.physics.outline import TERRAIN_GROUP
 from sandbox.physics.quarantine import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS, halves
 from sandbox.physics.solvers.direct import pattern_of
 from sandbox.physics.solvers.dissection import dissect
 from sandbox.physics.substeps import halve, substep_count
+from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import Floats, World
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
 PHYSICS_VERSION = 1
-
-
-@kernel
-def _add_gravity(velocity, inverse_mass, active, gravity_x, gravity_y, h):  # type: ignore[no-untyped-def]
-    # v += g h for free particles.
-    for p in range(inverse_mass.shape[0]):
-        if active[p] and inverse_mass[p] > 0.0:
-            velocity[p, 0] += gravity_x * h
-            velocity[p, 1] += gravity_y * h
 
 
 @kernel
@@ -63,6 +61,7 @@ def step(world: World) -> None:
     settings = world.settings
     solver = SOLVERS[settings.solver]
     contain_inputs(world)
+    rest_length = drive_springs(world)
     parts = substep_count(world)
     h = substep_time(settings, parts)
     # Solvers only read them, so a tick in one part needs no copies.
@@ -72,24 +71,47 @@ def step(world: World) -> None:
         springs, elements = substep_coefficients(world, parts), element_coefficients(world, parts)
     # What a solver keeps is an impulse of one step: exact, as parts are a power of two.
     world.scale_impulses(settings.fewest_substeps / parts)
+    world.contacts = None
     for _ in range(parts):
-        _add_gravity(world.velocity, world.inverse_mass, world.particle_active, *settings.gravity, h)
-        solver.solve(world, springs, elements, h)
+        before = Before(world.velocity.copy(), rest_length)
+        apply_forces(world, h)
+        meeting = meet(world, before.velocity, h) if world.has_contacts else None
+        solver.solve(world, springs, elements, h, before)
+        if meeting is not None:
+            leave(world, meeting, h)
         _integrate(world.position, world.velocity, world.particle_active, h)
+        rest_length = world.rest_length
     world.scale_impulses(parts / settings.fewest_substeps)
     world.rest_hands()
     world.tick += 1
     contain_outcome(world)
+    yield_and_break(world)
 
 
-def warm_up(solvers: Sequence[str] = tuple(SOLVERS)) -> None:
-    """Compile every kernel of a tick with these solvers, or load it from the cache, on a world of two particles."""
+def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> None:
+    """Compile every kernel of a tick with these solvers, or load it from the cache, on a world of two particles.
+
+    contacts: also those that a world alone needs in which things touch.
+    """
     for solver in solvers:
-        world = World(WorldSettings(solver=solver, substeps=AUTO))
+        world = World(WorldSettings(solver=solver, substeps=AUTO, drag=1.0))
         world.add_particles(["a", "b", "c"], np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
         world.add_springs(["s", "t"], [0, 0], [1, 1], law=[0, 1])
         world.add_elements(AREA, [[0, 1, 2]])
+        world.limits = StrainLimits(np.ones(1), np.ones(1), np.ones(1), np.zeros(1))
+        one = np.zeros(1, dtype=np.int64)
+        muscles = Muscles(one, np.zeros(1), one + 2, np.zeros(1))
+        hydraulics = Hydraulics(one + 1, np.ones(1), np.ones(1), np.zeros(1), one)
+        motors = Motors(one, np.ones(1), np.ones(1), one, np.array([0, 1]), one + 1)
+        world.fit(Driven(("a",), muscles, hydraulics, motors), [1.0])
         step(world)
+        if contacts:
+            # Two loose ones that touch, and two on a spring, out of their reach.
+            places = np.array([[0.0, 0.0], [0.0, 0.0], [0.5, 0.0], [0.7, 0.0]])
+            world.add_particles(["d", "e", "f", "g"], places, group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
+            world.add_springs(["u"], [5], [6])
+            world.terrain = make_terrain([Chain([[-1.0, 0.0], [1.0, 0.0]])])
+            step(world)
     if "direct" in solvers:
         # That is too small a body to be dissected by itself, or to need a second thread.
         dissect(np.array([0]), np.array([1]), world.position)

@@ -6,13 +6,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sandbox.physics.arrays import CORNER_ARRAYS, GUARDED, PARTICLE_ARRAYS, SPRING_ARRAYS
+from sandbox.physics.arrays import (
+    BANK_UNOPENED,
+    CONTACT_ARRAYS,
+    CORNER_ARRAYS,
+    PART_ARRAYS,
+    PARTICLE_ARRAYS,
+    SPRING_ARRAYS,
+    Floats,
+    Slots,
+)
 from sandbox.physics.elements import BEND
+from sandbox.physics.equipment import Driven, StrainLimits, Surface, unlimited
+from sandbox.physics.names import Names
 from sandbox.physics.settings import AUTO, WorldSettings
-from sandbox.physics.slots import BANK_UNOPENED, ElementSlots
-
-Floats = NDArray[np.float64]
-Slots = NDArray[np.int64]
+from sandbox.physics.slots import ElementSlots
+from sandbox.physics.terrain import NO_TERRAIN, Terrain
 
 LAW_NISSEN = 0
 LAW_HOOKE = 1
@@ -29,66 +38,35 @@ HAND_DAMPING = 0.3
 
 
 class World(ElementSlots):
-    """Particles and springs as a struct of arrays, plus the settings of a tick.
-
-    Arrays, n particles and m springs, float64 unless said: position [m] (n, 2), velocity [m/s] (n, 2), origin [m]
-    (n, 2) = where each was created, which orders the direct solver's elimination, mass [kg], inverse_mass [1/kg]
-    (0 = pinned), radius [m], particle_active (bool); particle_a, particle_b (int32 slots), rest_length [m], stiffness,
-    damping (Cs, Cd per tick), law (int8), hooke_stiffness [N/m], hooke_damping [N s/m],
-    material (int32 index into material_names, -1 = a hand's), spring_active (bool), impulse [N s] (m, 2) = what the
-    iterative solver keeps for its warm start. The direct solver keeps slow_velocity [m/s] (n, 2) = the slow part of the
-    velocity, energy_bank [J] (n,) = what a body's earlier losses still allow it, at its free particle of lowest slot
-    (-1: to be begun anew), tension [N s] (m,) = the impulse by which a spring pulled in the last step, of a whole tick
-    where substeps are "auto", as impulse then is.
-
-    Of t elements (elements.py) with q corners in all: element_kind (int8), element_first, element_corners (int32: where
-    its corners begin, and how many), element_rest (t, 2), element_stiffness, element_damping (Cs, Cd per tick),
-    element_material (int32, -1 = Cs and Cd of its own), element_active (bool); corner_particle (int32),
-    corner_weight (q,), corner_form [m] (q, 2) = where it stands at rest. An element goes with any of the
-    springs along its sides.
+    """Particles and springs as a struct of arrays, see StateArrays, plus the settings of a tick.
 
     Slots are append-only: an index stays a particle's or spring's handle for ever; removing clears the active flag.
-    Pinned particles have velocity 0, except a hand's cursor while it moves.
+    Pinned particles have velocity 0, except a hand's cursor while it moves. limits and driven: equipment, see there.
     """
-
-    position: Floats
-    velocity: Floats
-    origin: Floats
-    mass: Floats
-    inverse_mass: Floats
-    radius: Floats
-    particle_active: NDArray[np.bool_]
-    slow_velocity: Floats
-    energy_bank: Floats
-    particle_a: NDArray[np.int32]
-    particle_b: NDArray[np.int32]
-    rest_length: Floats
-    stiffness: Floats
-    damping: Floats
-    law: NDArray[np.int8]
-    hooke_stiffness: Floats
-    hooke_damping: Floats
-    material: NDArray[np.int32]
-    spring_active: NDArray[np.bool_]
-    impulse: Floats
-    tension: Floats
 
     def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
         super().__init__()
         self._settings = settings or WorldSettings()
         self.tick = 0
         self.material_names = tuple(material_names)
-        self.particle_names: list[str] = []
-        self.spring_names: list[str] = []
-        self._particle_slots: dict[str, int] = {}
-        self._spring_slots: dict[str, int] = {}
+        self.limits: StrainLimits = unlimited(len(self.material_names))
+        self.driven = Driven()
+        # What a particle that is added while the world runs is like to the touch.
+        self.surface = Surface()
+        self._particles, self._springs = Names(), Names()
         self.hand_particle = -1
         self.hand_spring = -1
+        self.terrain: Terrain = NO_TERRAIN
         # What a solver derives from topology and pins alone; never state.
         self.solver_cache: Any = None
-        # What the quarantine has taken back since somebody last looked, and, in `good`, the last good values by array;
-        # never state.
+        # The contacts of the present step, and what finding them derives from topology alone; never state.
+        self.contacts: Any = None
+        self.contact_cache: Any = None
+        # What the quarantine has taken back since somebody last looked; never state.
         self.contained: list[Any] = []
+        # The springs that broke in the last tick; never state.
+        self.broken: Slots = np.zeros(0, dtype=np.int64)
+        self._touching = False
 
     def __getstate__(self) -> dict[str, Any]:
         """What a copy starts from: all but what solvers derive, which may hold a thread."""
@@ -106,6 +84,7 @@ class World(ElementSlots):
             self.energy_bank[:] = BANK_UNOPENED
             self.impulse[:] = 0.0
             self.tension[:] = 0.0
+            self.contact_impulse[:] = 0.0
         if (settings.substeps == AUTO) != (self._settings.substeps == AUTO):
             self.energy_bank[:] = BANK_UNOPENED
             self.scale_impulses(self._settings.fewest_substeps / settings.fewest_substeps)
@@ -116,6 +95,20 @@ class World(ElementSlots):
         if factor != 1.0:
             self.impulse *= factor
             self.tension *= factor
+            self.contact_impulse *= factor
+
+    @property
+    def has_contacts(self) -> bool:
+        """Whether anything in the world can touch anything."""
+        return self._touching
+
+    def see_what_touches(self) -> None:
+        """Note whether anything can touch anything, where particles have come or gone."""
+        self._touching = bool(self.collides.any())
+
+    def keep_contacts(self, particle: NDArray[np.int32], feature: Slots, impulse: Floats) -> None:
+        """Keep the contacts of a step and their impulses [N s] for the next."""
+        self.contact_particle, self.contact_feature, self.contact_impulse = particle, feature, impulse
 
     @property
     def particle_count(self) -> int:
@@ -127,31 +120,43 @@ class World(ElementSlots):
         """Spring slots in use, active or not, hands included."""
         return len(self.rest_length)
 
+    @property
+    def particle_names(self) -> list[str]:
+        """Name of each particle, by slot."""
+        return self._particles.in_order
+
+    @property
+    def spring_names(self) -> list[str]:
+        """Name of each spring, by slot."""
+        return self._springs.in_order
+
     def particle_slot(self, name: str) -> int:
         """Slot of the particle of that name. Raises KeyError."""
-        return self._particle_slots[name]
+        return self._particles.slot(name)
 
     def name_particle(self, slot: int, name: str) -> None:
         """Give a particle a second name to be found by. Raises ValueError where that is taken."""
-        if name in self._particle_slots:
-            raise ValueError(f"the name {name!r} is taken")
-        self._particle_slots[name] = slot
+        self._particles.add_second(slot, name)
 
     def spring_slot(self, name: str) -> int:
         """Slot of the spring of that name. Raises KeyError."""
-        return self._spring_slots[name]
+        return self._springs.slot(name)
 
     def slot_name(self, array: str, slot: int) -> str:
         """What a person calls the owner of a slot of the state array of that name."""
-        if array in SPRING_ARRAYS:
-            return self.spring_names[slot]
         if array in PARTICLE_ARRAYS:
             return self.particle_names[slot]
+        if array in SPRING_ARRAYS:
+            return self.spring_names[slot]
+        if array in PART_ARRAYS:
+            return self.driven.part_names[slot]
+        if array in CONTACT_ARRAYS:
+            return f"contact of {self.particle_names[self.contact_particle[slot]]}"
         if array in CORNER_ARRAYS:
             return f"corner at {self.particle_names[self.corner_particle[slot]]}"
-        middle = self.element_first[slot] + (self.element_kind[slot] == BEND)
-        kind = "bend" if self.element_kind[slot] == BEND else "area"
-        return f"{kind} at {self.particle_names[self.corner_particle[middle]]}"
+        bend = self.element_kind[slot] == BEND
+        middle = self.corner_particle[self.element_first[slot] + bend]
+        return f"{'bend' if bend else 'area'} at {self.particle_names[middle]}"
 
     def is_hand_particle(self, slot: int) -> bool:
         """Whether the slot is a hand's cursor."""
@@ -170,10 +175,17 @@ class World(ElementSlots):
         mass: ArrayLike = 1.0,
         radius: ArrayLike = 0.05,
         pinned: ArrayLike = False,
+        gravity_scale: ArrayLike = 1.0,
+        friction: ArrayLike = 0.0,
+        restitution: ArrayLike = 0.0,
+        owner: ArrayLike | None = None,
+        group: ArrayLike = 0,
+        collides: ArrayLike = 0,
     ) -> int:
         """Append particles, one per name, and return the first slot.
 
-        position [m] (k, 2); velocity [m/s] (k, 2) or one for all; mass [kg], radius [m] and pinned (k,) or one for all.
+        position [m] (k, 2); velocity [m/s] (k, 2) or one for all; the others (k,) or one for all; owner: None = each
+        its own.
         A pinned particle starts at rest. Raises ValueError for a name that is taken or a mass that is not above 0.
         """
         count, first = len(names), self.particle_count
@@ -181,7 +193,7 @@ class World(ElementSlots):
         is_pinned = np.broadcast_to(np.asarray(pinned, dtype=np.bool_), count)
         if not np.all(masses > 0.0):
             raise ValueError("every particle has a mass above 0 kg")
-        _register(self._particle_slots, self.particle_names, names)
+        self._particles.append(names)
         velocities = np.broadcast_to(np.asarray(velocity, dtype=np.float64), (count, 2))
         self._append(
             position=np.asarray(position, dtype=np.float64).reshape(count, 2),
@@ -192,8 +204,15 @@ class World(ElementSlots):
             mass=masses,
             inverse_mass=np.where(is_pinned, 0.0, 1.0 / masses),
             radius=np.broadcast_to(np.asarray(radius, dtype=np.float64), count),
+            gravity_scale=np.broadcast_to(np.asarray(gravity_scale, dtype=np.float64), count),
             particle_active=np.ones(count, dtype=np.bool_),
+            friction=np.broadcast_to(np.asarray(friction, dtype=np.float64), count),
+            restitution=np.broadcast_to(np.asarray(restitution, dtype=np.float64), count),
+            owner=np.broadcast_to(-1 - first - np.arange(count) if owner is None else np.asarray(owner), count),
+            group=np.broadcast_to(group, count),
+            collides=np.broadcast_to(collides, count),
         )
+        self.see_what_touches()
         return first
 
     def add_springs(
@@ -209,6 +228,7 @@ class World(ElementSlots):
         hooke_stiffness: ArrayLike = 0.0,
         hooke_damping: ArrayLike = 0.0,
         material: ArrayLike = 0,
+        edge: ArrayLike = 0,
     ) -> int:
         """Append springs, one per name, and return the first slot.
 
@@ -222,14 +242,16 @@ class World(ElementSlots):
             raise ValueError("a spring names a particle slot that does not exist")
         if np.any(a == b):
             raise ValueError("a spring joins two different particles")
-        _register(self._spring_slots, self.spring_names, names)
+        self._springs.append(names)
         separation = self.position[b] - self.position[a]
         placed = np.sqrt(separation[:, 0] * separation[:, 0] + separation[:, 1] * separation[:, 1])
         given = np.broadcast_to(np.asarray(np.nan if rest_length is None else rest_length, dtype=np.float64), count)
+        rest = np.where(np.isnan(given), placed, given)
         self._append(
             particle_a=a,
             particle_b=b,
-            rest_length=np.where(np.isnan(given), placed, given),
+            rest_length=rest,
+            natural_length=rest,
             stiffness=np.broadcast_to(stiffness, count),
             damping=np.broadcast_to(damping, count),
             law=np.broadcast_to(law, count),
@@ -239,6 +261,7 @@ class World(ElementSlots):
             spring_active=np.ones(count, dtype=np.bool_),
             impulse=np.zeros((count, 2)),
             tension=np.zeros(count),
+            edge=np.broadcast_to(edge, count),
         )
         self._disturb(a, b)
         return first
@@ -289,7 +312,29 @@ class World(ElementSlots):
             self.impulse[slot] = 0.0
             self.tension[slot] = 0.0
             self._disturb(self.particle_a[slot], self.particle_b[slot])
-            self._drop_elements(slot)
+        self._drop_elements(springs)
+
+    def break_springs(self, springs: Slots) -> None:
+        """Take springs out that broke by themselves: what is left of a body goes on with the energy that it has."""
+        self.spring_active[springs] = False
+        self.impulse[springs] = 0.0
+        self.tension[springs] = 0.0
+        self._drop_elements(springs)
+        self.broken = springs
+
+    def fit(self, driven: Driven, values: ArrayLike) -> None:
+        """Give the world its driven parts, with the value (k,) of each, -1..1; done once, when the world is built."""
+        self.driven = driven
+        self.part_value = np.array(values, dtype=np.float64)
+
+    def drive(self, part: int, value: float) -> None:
+        """Drive a part, -1..1: a motor at that share of its speed, a hydraulic at that share of its rate."""
+        self.part_value[part] = value
+
+    def set_rest_lengths(self, springs: Slots, lengths: Floats) -> None:
+        """Give springs other rest lengths [m]; what they yielded by stays what it was."""
+        self.rest_length[springs] = lengths
+        self.good["rest_length"][springs] = lengths
 
     def hold(self, hand: int, particle: int, target: tuple[float, float]) -> None:
         """Join a particle to a hand's cursor at target [m] by a spring of rest length 0."""
@@ -336,30 +381,10 @@ class World(ElementSlots):
         self.impulse[spring] = 0.0
         self.tension[spring] = 0.0
 
-    def set_coefficients(self, stiffness: float | None, damping: float | None, material: int | None) -> None:
-        """Set Cs, Cd or both, of one material's springs and areas or (None) of all.
-
-        Hands, Hooke springs and elements with Cs and Cd of their own keep theirs.
-        """
-        for family, materials in (("", self.material), ("element_", self.element_material)):
-            chosen = materials >= 0 if material is None else materials == material
-            for name, value in ((f"{family}stiffness", stiffness), (f"{family}damping", damping)):
-                if value is not None:
-                    getattr(self, name)[chosen] = value
-                self.good[name][chosen] = getattr(self, name)[chosen]
-            if not family:
-                self._disturb(self.particle_a[chosen], self.particle_b[chosen])
-            else:
-                self._disturb(self.corner_particle[np.repeat(chosen, self.element_corners)])
-
-    def trust(self) -> None:
-        """Take everything as it is now for good."""
-        self.good = {name: getattr(self, name).copy() for name in GUARDED}
-
     def name_slots(self, particles: Sequence[str], springs: Sequence[str]) -> None:
         """Name the slots that a restored state brought along, from the first one without a name on."""
-        _register(self._particle_slots, self.particle_names, particles)
-        _register(self._spring_slots, self.spring_names, springs)
+        self._particles.append(particles)
+        self._springs.append(springs)
 
     def name_hands(self) -> None:
         """Name the hands' slots, where a restored state brought them along."""
@@ -367,23 +392,9 @@ class World(ElementSlots):
 
     def forget_names_beyond(self, particle_count: int, spring_count: int) -> None:
         """Drop the names of slots that a restored state does not have."""
-        for slots, names, count in (
-            (self._particle_slots, self.particle_names, particle_count),
-            (self._spring_slots, self.spring_names, spring_count),
-        ):
-            for name in names[count:]:
-                del slots[name]
-            del names[count:]
+        self._particles.forget_beyond(particle_count)
+        self._springs.forget_beyond(spring_count)
 
 
 def _hand_names() -> list[str]:
     return [f"+hand.{hand}" for hand in range(HAND_COUNT)]
-
-
-def _register(slots: dict[str, int], names: list[str], added: Sequence[str]) -> None:
-    fresh = {name: len(names) + index for index, name in enumerate(added)}
-    taken = next((name for name in added if name in slots), None)
-    if taken is not None or len(fresh) != len(added):
-        raise ValueError(f"the name {taken or 'of two new slots'!r} is taken")
-    slots.update(fresh)
-    names.extend(added)

@@ -12,9 +12,11 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
 from sandbox.level.limits import (
     COORDINATE_LIMIT,
+    DRAG_LIMIT,
     GRAVITY_LIMIT,
     MASS_RANGE,
     PARTICLE_LIMIT,
+    SPEED_LIMIT,
     SPRING_LIMIT,
     SUBSTEPS,
 )
@@ -24,6 +26,9 @@ from sandbox.physics.world import HAND_COUNT, LAW_NISSEN, World
 
 Coordinate = Annotated[float, Field(ge=-COORDINATE_LIMIT, le=COORDINATE_LIMIT, allow_inf_nan=False)]
 Acceleration = Annotated[float, Field(ge=-GRAVITY_LIMIT, le=GRAVITY_LIMIT, allow_inf_nan=False)]
+WindSpeed = Annotated[float, Field(ge=-SPEED_LIMIT, le=SPEED_LIMIT, allow_inf_nan=False)]
+DragRate = Annotated[float, Field(ge=0.0, le=DRAG_LIMIT, allow_inf_nan=False)]
+Signed = Annotated[float, Field(ge=-1.0, le=1.0, allow_inf_nan=False)]
 Fraction = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 Length = Annotated[float, Field(ge=0.0, le=COORDINATE_LIMIT, allow_inf_nan=False)]
 Mass = Annotated[float, Field(ge=MASS_RANGE[0], le=MASS_RANGE[1], allow_inf_nan=False)]
@@ -125,6 +130,22 @@ class SetGravity(_Validated):
 
 
 @dataclass(frozen=True)
+class SetAir(_Validated):
+    """Set the wind [m/s], the drag [1/s] or both (None = leave)."""
+
+    wind: tuple[WindSpeed, WindSpeed] | None = None
+    drag: DragRate | None = None
+
+
+@dataclass(frozen=True)
+class SetDrive(_Validated):
+    """Drive a part, a motor or hydraulic, forward (1), backward (-1), slower, or not at all (0)."""
+
+    part: Slot
+    value: Signed
+
+
+@dataclass(frozen=True)
 class SetSolver(_Validated):
     """Set the solver or any of its settings (None = leave); substeps is a power of two or "auto"."""
 
@@ -146,7 +167,7 @@ class Redo(_Validated):
 
 Command = (
     Grab | MoveGrab | Release | Pin | Unpin | CutSprings | AddParticle | AddSpring | SetCoefficients | SetGravity
-    | SetSolver | Undo | Redo
+    | SetAir | SetDrive | SetSolver | Undo | Redo
 )  # fmt: skip
 
 
@@ -263,6 +284,7 @@ def _add_particle(world: World, command: AddParticle) -> None:
         mass=command.mass,
         radius=command.radius,
         pinned=command.pinned,
+        **asdict(world.surface),
     )
 
 
@@ -294,6 +316,17 @@ def _set_gravity(world: World, command: SetGravity) -> None:
     world.settings = replace(world.settings, gravity=command.gravity)
 
 
+def _set_air(world: World, command: SetAir) -> None:
+    given = {name: value for name, value in asdict(command).items() if value is not None}
+    world.settings = replace(world.settings, **given)
+
+
+def _set_drive(world: World, command: SetDrive) -> None:
+    if command.part >= len(world.part_value):
+        raise CommandError(f"there is no driven part {command.part}")
+    world.drive(command.part, command.value)
+
+
 def _set_solver(world: World, command: SetSolver) -> None:
     if command.solver is not None and command.solver not in SOLVERS:
         raise CommandError(f"there is no solver {command.solver!r}; there are {', '.join(SOLVERS)}")
@@ -314,5 +347,7 @@ _ACTIONS: dict[type, Callable[[World, Any], None]] = {
     AddSpring: _add_spring,
     SetCoefficients: _set_coefficients,
     SetGravity: _set_gravity,
+    SetAir: _set_air,
+    SetDrive: _set_drive,
     SetSolver: _set_solver,
 }

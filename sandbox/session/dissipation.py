@@ -8,6 +8,7 @@ class Dissipation:
     """Energy [J] lost in ticks: `before` each, then `after` it; energy that a tick gained counts against it.
 
     What commands change between ticks is not counted, nor is a tick in which a hand holds something: the hand works.
+    Wind, muscles, hydraulics and motors work too: what they put in counts as gained, what they take out as lost.
     """
 
     def __init__(self) -> None:

@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import os
 import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -14,7 +15,7 @@ from sandbox.level.files import LevelError, parse_level
 from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import PHYSICS_VERSION
-from sandbox.session.commands import Acceleration, Fraction, plain_fault
+from sandbox.session.commands import Acceleration, DragRate, Fraction, WindSpeed, plain_fault
 from sandbox.session.records import ScriptLine
 from sandbox.session.replay import Replay, ReplayError, StoredState, TickHashes
 from sandbox.session.replay_format import FORMAT, HEADER_LIMIT, LINE_LIMIT, VERSION, level_digest, unseal
@@ -71,6 +72,8 @@ class _Settings(_Line):
     solver: Annotated[str, Field(max_length=40)]
     iterations: Annotated[int, Field(ge=1, le=1000)]
     warm_start: Fraction
+    wind: tuple[WindSpeed, WindSpeed]
+    drag: DragRate
 
 
 class _StateLine(_Sealed):
@@ -107,6 +110,13 @@ class _Gathered:
         return self.texts.setdefault(text, text)
 
 
+def begins_as_replay(path: str | os.PathLike[str]) -> bool:
+    """Whether a file's first bytes are a replay's, plain or compressed. Raises OSError."""
+    with open(path, "rb") as file:
+        start = file.read(64)
+    return start.startswith(GZIP_MAGIC) or FORMAT.encode() in start
+
+
 def read_replay(path: str | Path, partial: bool = False) -> Replay:
     """Read a replay file. partial: accept one that is cut off, as far as it goes.
 
@@ -137,7 +147,7 @@ def read_replay(path: str | Path, partial: bool = False) -> Replay:
         raise ReplayError(f"{source}: cut off before tick 0: nothing to verify")
     if gathered.end_hash is None and not partial:
         last = len(gathered.hashes) - 1
-        raise ReplayError(f"{source}: cut off after tick {last}; --partial verifies what is there")
+        raise ReplayError(f"{source}: line {number}: cut off after tick {last}; --partial verifies what is there")
     return Replay(source, level, tuple(gathered.script), tuple(gathered.hashes), gathered.states, gathered.end_hash)
 
 

@@ -19,7 +19,9 @@ from sandbox.session.commands import (
     Pin,
     Redo,
     Release,
+    SetAir,
     SetCoefficients,
+    SetDrive,
     SetGravity,
     SetSolver,
     Undo,
@@ -50,6 +52,8 @@ COMMAND_TYPES: dict[str, type[Command]] = {
     "add_spring": AddSpring,
     "set_coefficients": SetCoefficients,
     "set_gravity": SetGravity,
+    "set_air": SetAir,
+    "set_drive": SetDrive,
     "set_solver": SetSolver,
     "undo": Undo,
     "redo": Redo,
@@ -67,6 +71,8 @@ def to_record(command: Command, world: World) -> dict[str, Any]:
             record[field] = world.particle_names[value]
         elif field == "springs":
             record[field] = [world.spring_names[slot] for slot in value]
+        elif field == "part":
+            record[field] = world.driven.part_names[value]
         elif field == "material":
             record[field] = world.material_names[value]
         else:
@@ -86,6 +92,8 @@ def from_record(record: dict[str, Any], world: World) -> Command:
             values[field] = _slot("particle", values[field], world.particle_slot)
     if isinstance(values.get("springs"), list):
         values["springs"] = [_slot("spring", name, world.spring_slot) for name in values["springs"]]
+    if "part" in values:
+        values["part"] = _slot("driven part", values["part"], world.driven.part_names.index)
     if values.get("material") is not None:
         values["material"] = _slot("material", values["material"], world.material_names.index)
     try:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.level.model import Level
+from sandbox.level.parts import parts
 from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, canonical_bytes, hash_by_array, state_hash
@@ -71,6 +72,12 @@ class Replay:
             snapshot = decode_state(tick, stored.arrays, stored.settings)
         except ValueError as error:
             raise ReplayError(f"{self.source}: line {stored.line}: {error}") from None
+        driven = len(parts(self.level))
+        if len(snapshot.part_value) != driven:
+            raise ReplayError(
+                f"{self.source}: line {stored.line}: state.part_value: has {len(snapshot.part_value)} values, "
+                f"where the level has {driven} driven parts"
+            )
         if state_hash(snapshot) != self.hashes[tick].whole:
             raise ReplayError(
                 f"{self.source}: line {stored.line}: state: is not the one whose hash stands at tick {tick}"

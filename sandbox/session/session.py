@@ -10,7 +10,8 @@ from sandbox.level.model import Level
 from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.snapshot import Snapshot, restore, take
 from sandbox.physics.step import step
-from sandbox.session.commands import Command, CommandError, Grab, Redo, Release, Undo, apply, name_added
+from sandbox.session.breaks import break_lines
+from sandbox.session.commands import Command, CommandError, Grab, Redo, Release, SetDrive, Undo, apply, name_added
 from sandbox.session.recording import Recorder
 from sandbox.session.records import ScriptLine, from_record, to_record
 
@@ -142,6 +143,7 @@ class Session:
         self._step()
         self._last_tick = self.tick
         self.messages.extend(str(hit) for hit in self.world.contained)
+        self.messages.extend(break_lines(self.world))
         if self._recorder is not None:
             self._record(self._recorder.write_tick, self.world)
 
@@ -257,7 +259,7 @@ class Session:
         self._step_again_from(gesture)
 
     def _let_go(self, gesture: int) -> None:
-        """End a drag that is still going on, so that doing it again cannot leave a hand holding."""
+        """End a drag or drive that is still going on, so that doing it again cannot leave it going for ever."""
         grabs = {
             entry.command.grab: entry.gesture
             for entry in self._effective_log()
@@ -266,6 +268,14 @@ class Session:
         for hand, owner in grabs.items():
             if owner == gesture and self.world.is_held(hand):
                 self._log.append(LogEntry(self.tick, gesture, Release(hand), implied=True))
+        driven = {
+            entry.command.part: (entry.gesture, entry.command.value)
+            for entry in self._effective_log()
+            if isinstance(entry.command, SetDrive) and entry.in_effect
+        }
+        for part, (owner, value) in driven.items():
+            if owner == gesture and value != 0.0:
+                self._log.append(LogEntry(self.tick, gesture, SetDrive(part, 0.0), implied=True))
 
     def _step_again_from(self, gesture: int) -> None:
         first = next(entry.tick for entry in self._log if entry.gesture == gesture)

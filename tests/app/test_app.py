@@ -8,10 +8,11 @@ import sys
 import numpy as np
 import pygame
 import pytest
-from conftest import small_level
+from conftest import FRAME, small_level
 
 from sandbox.app.app import run_app
 from sandbox.app.display import has_display
+from sandbox.app.playback import Playback
 from sandbox.app.shortcuts import action_of, shortcuts
 from sandbox.level.files import shipped_levels
 from sandbox.session.reading import read_replay
@@ -102,7 +103,7 @@ def test_the_wheel_zooms_about_the_pointer_and_f_fits_again(driver):
     pixel = (300.0, 400.0)
     driver.move(pixel)
     before, zoom = camera.to_world(pixel), camera.zoom
-    driver.stage.wheel(pixel, 3)
+    driver.stage.camera.turn_wheel(pixel, 3)
     assert camera.zoom > zoom
     assert camera.to_world(pixel) == pytest.approx(before, abs=1e-9)
     driver.key(pygame.K_f)
@@ -345,7 +346,7 @@ def test_the_window_can_be_resized_and_rescaled(driver):
 
 def test_a_window_made_smaller_and_larger_again_shows_what_it_showed(driver):
     size = driver.app.display.size
-    driver.stage.wheel((300.0, 300.0), 2)
+    driver.stage.camera.turn_wheel((300.0, 300.0), 2)
     camera = driver.stage.camera
     centre, zoom = camera.centre, camera.zoom
     for other in ((900, 600), (900, 700), (700, 500), size):
@@ -387,3 +388,14 @@ def test_run_app_closes_after_the_given_time_and_prints_where_the_time_went(caps
     assert run_app(None, profile=True, seconds=0.2) == 0
     printed = capsys.readouterr().out
     assert all(part in printed for part in ("events", "ui", "flip", "frames a second"))
+
+
+def test_a_level_in_which_things_touch_waits_until_contacts_are_prepared(driver):
+    assert driver.app.ready
+    driver.app.start(Playback(small_level(contacts={})))
+    driver.app.frame(FRAME)
+    assert not driver.app.ready
+    assert driver.playback.session.tick == 0
+    driver.frames(5)
+    assert driver.app.ready
+    assert driver.playback.session.tick > 0

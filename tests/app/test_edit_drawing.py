@@ -1,8 +1,11 @@
 """Drawing in the editor: what the mouse or the keyboard draws is in the level, and undo takes it back."""
 
+import math
+
 import pygame
 import pytest
 
+from sandbox.editor.drawing_options import described
 from sandbox.level.bodies import BridgeDef, GirderDef, JellyDef, RopeDef, WebDef, WheelDef
 
 CTRL = pygame.KMOD_CTRL
@@ -51,6 +54,26 @@ def test_a_polygon_is_drawn_by_clicks_and_closed_by_enter(edit):
     driver.key(pygame.K_RETURN)
     (body,) = driver.editor.document.level.bodies
     assert len(body.shape.polygon) == 3
+
+
+def stroke(overlap):
+    """A circle by hand of radius 1 m about (0.13, 1.21), which goes on over its beginning and a little inward."""
+    turns = [k / 40 for k in range(round(40 * (1 + overlap)) + 1)]
+    return [
+        (0.13 + (1 - 0.1 * turn) * math.cos(math.tau * turn), 1.21 + (1 - 0.1 * turn) * math.sin(math.tau * turn))
+        for turn in turns
+    ]
+
+
+@pytest.mark.parametrize("overlap", [-0.02, 0.0, 0.1])
+def test_a_stroke_by_hand_is_closed_where_it_meets_or_runs_over_its_beginning(edit, overlap):
+    driver = edit()
+    driver.key(pygame.K_y)
+    driver.drag(*stroke(overlap))
+    (body,) = driver.editor.document.level.bodies
+    x, y = zip(*body.shape.polygon, strict=True)
+    assert len(x) > 8
+    assert (max(x) - min(x), max(y) - min(y)) == pytest.approx((2, 2), abs=0.2)
 
 
 def test_backspace_takes_the_last_corner_back_and_deletes_nothing(edit):
@@ -154,6 +177,19 @@ def test_the_wheel_over_an_option_and_the_arrows_in_it_step_its_value(edit):
     assert driver.editor.document.level.particles[0].mass == 100.0
 
 
+def test_the_wheel_turned_before_the_next_frame_steps_the_option_that_the_mouse_has_reached(edit):
+    driver = edit()
+    driver.key(pygame.K_a)
+    fields = driver.editor.options.fields
+    mass, radius = fields["mass"].entry, fields["radius"].entry
+    driver.move(mass.rect.center)
+    before = mass.get_text(), radius.get_text()
+    driver.post(pygame.MOUSEMOTION, pos=radius.rect.center, rel=(0, 0), buttons=(0, 0, 0))
+    driver.post(pygame.MOUSEWHEEL, x=0, y=1, precise_x=0.0, precise_y=1.0)
+    driver.frames()
+    assert mass.get_text() == before[0] and float(radius.get_text()) > float(before[1])
+
+
 def test_the_material_of_what_is_drawn_is_chosen_from_a_menu(edit):
     driver = edit()
     driver.key(pygame.K_r)
@@ -215,3 +251,42 @@ def test_every_tool_has_a_button_in_the_palette(edit):
     for name, button in driver.editor.palette.tools.items():
         driver.click_widget(button)
         assert driver.editor.tool == name
+
+
+@pytest.mark.parametrize("scale", [1.0, 1.6, 2.0])
+@pytest.mark.parametrize("tool", ["rope", "bridge", "web", "wheel"])
+def test_all_options_can_be_reached_at_every_scale_and_none_lies_beyond_the_window(edit, tool, scale):
+    driver = edit()
+    driver.app.scale = scale
+    driver.editor.choose_tool(tool)
+    driver.app.rebuild()
+    driver.frames(2)
+    options, reached, pages = driver.editor.options, [], 0
+    names = list(described(driver.editor.hand.drawing.options))
+    while not set(names) <= set(reached):
+        shown = {name: field.entry for name, field in options.fields.items()} | options.flags | options.menus
+        assert all(options.back.rect.contains(widget.rect) for widget in shown.values())
+        lefts = sorted(widget.rect.left for widget in shown.values())
+        rights = sorted(widget.rect.right for widget in shown.values())
+        assert all(right < left for right, left in zip(rights, lefts[1:], strict=False))
+        assert shown and not set(shown) & set(reached)
+        assert options.more is None or rights[-1] < options.more.rect.left
+        reached += shown
+        pages += 1
+        if len(reached) < len(names):
+            driver.click_widget(options.more)
+    assert (pages > 1) == (options.more is not None)
+    assert scale == 1.0 or pages > 1
+
+
+def test_the_options_that_come_next_are_reached_by_keyboard_too(edit):
+    driver = edit()
+    driver.app.scale = 1.6
+    driver.editor.choose_tool("wheel")
+    driver.app.rebuild()
+    driver.frames(2)
+    options = driver.editor.options
+    first = set(options.fields)
+    driver.app.ui.focus_on(options.more)
+    driver.key(pygame.K_RETURN)
+    assert set(options.fields).isdisjoint(first) and driver.app.ui.focus is options.more

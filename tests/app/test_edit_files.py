@@ -1,11 +1,14 @@
 """Files of the editor: new, open, save, revert, changes that are not saved, other windows, and work found again."""
 
 import json
+import os
 
 import pygame
 import pytest
 from conftest import small_level
 
+from sandbox.app.edit import documents as documents_module
+from sandbox.app.edit.documents import OFFERED
 from sandbox.editor.autosave import Autosave, orphans
 from sandbox.editor.storage import LevelFile
 from sandbox.level.canonical import level_text
@@ -33,6 +36,14 @@ def draw(driver):
     driver.key(pygame.K_a)
     driver.click_at(3, 3)
     driver.key(pygame.K_v)
+
+
+def lose(level, path=None):
+    """Leave an autosave behind, as a session that ends badly does."""
+    lost = Autosave()
+    lost.note(level, path, "Draw rope")
+    lost.settle()
+    lost.close()
 
 
 def test_an_edit_shows_in_the_title_and_saving_writes_it_as_it_is(driver, path):
@@ -190,11 +201,8 @@ def test_the_gallery_opens_a_shipped_level_as_a_copy_and_my_levels_to_edit(edit,
 
 
 def test_work_of_a_session_that_ended_badly_is_offered_and_comes_back_unsaved(open_app, path):
-    lost = Autosave()
     level = small_level(name="Lost work")
-    lost.note(level, path, "Draw rope")
-    lost.settle()
-    lost.close()
+    lose(level, path)
     driver = open_app(small_level())
     driver.app.documents.offer_recovery()
     driver.frames()
@@ -242,3 +250,104 @@ def test_a_folder_that_the_autosave_cannot_write_is_said_and_editing_goes_on(edi
     driver.frames(2)
     assert any("cannot be kept" in text for text in driver.notices)
     assert len(driver.editor.document.level.particles) == 1
+
+
+def test_work_on_the_file_that_is_open_comes_back_into_that_file(driver, path):
+    lose(small_level(name="Lost work"), path)
+    driver.app.documents.offer_recovery()
+    driver.choose(next(button.text for button in driver.app.ui.buttons() if "Lost work" in button.text))
+    assert driver.editor.level_file.path == path and not driver.editor.history.is_saved
+    driver.key(pygame.K_s, CTRL)
+    assert read_level(path).name == "Lost work"
+
+
+def test_saving_under_a_new_name_tells_where_the_file_cannot_be_locked(driver, path, tmp_path):
+    (tmp_path / "blocked").write_text("a file, no folder")
+    driver.editor.level_file.folder = tmp_path / "blocked"
+    driver.app.documents.save_as()
+    driver.type(str(tmp_path / "other"))
+    driver.choose("Save")
+    told = [text for text in driver.notices if "cannot be locked against other windows" in text]
+    assert len(told) == 1 and told[0].startswith(str(tmp_path / "other.json"))
+    driver.app.status.notices.clear()
+    driver.key(pygame.K_s, CTRL)
+    assert not any("cannot be locked" in text for text in driver.notices)
+
+
+def test_discarding_what_is_offered_keeps_what_is_not(edit):
+    for number in range(OFFERED + 1):
+        lose(small_level(name=f"Level {number}"))
+    driver = edit()
+    driver.app.documents.offer_recovery()
+    driver.choose("Discard all of these")
+    assert len(orphans()) == 1
+
+
+@pytest.mark.parametrize("answer", ["Discard the changes", "Cancel"])
+def test_a_question_about_changes_outlives_a_new_layout(driver, path, answer):
+    draw(driver)
+    driver.post(pygame.QUIT)
+    driver.frames()
+    driver.app.rebuild()
+    driver.frames()
+    assert driver.app.ui.has_sheet
+    driver.choose(answer)
+    driver.app.rebuild()
+    driver.frames()
+    assert not driver.app.ui.has_sheet and driver.app.running == (answer == "Cancel")
+
+
+def test_the_offer_of_lost_work_outlives_a_new_layout(edit):
+    lose(small_level(name="Lost work"))
+    driver = edit()
+    driver.app.documents.offer_recovery()
+    driver.app.rebuild()
+    driver.frames()
+    assert any("Lost work" in button.text for button in driver.app.ui.buttons())
+
+
+def test_a_level_that_was_read_again_leaves_nothing_to_recover(driver):
+    draw(driver)
+    driver.app.documents.revert()
+    driver.app.documents._autosave.settle()
+    driver.app.documents.close()
+    assert orphans() == []
+
+
+def test_all_that_opening_what_is_valid_leaves_out_is_shown(edit, tmp_path, monkeypatch):
+    shown = []
+    monkeypatch.setattr(documents_module, "show_lines", lambda ui, title, lines, other: shown.extend(lines))
+    data = json.loads(level_text(small_level()))
+    data["nonsense"], data["bodies"][1]["material"] = 1, "wood"
+    path = tmp_path / "faulty.json"
+    path.write_text(json.dumps(data))
+    edit().app.documents.open(path)
+    assert any("nonsense" in line for line in shown) and any("wood" in line for line in shown)
+
+
+@pytest.mark.parametrize(
+    ("ask", "typed"),
+    [("save_as", "~nobody-of-that-name/x"), ("open_file", "~nobody-of-that-name/x"), ("open_file", "x" * 300)],
+)
+def test_names_that_lead_nowhere_are_answered_in_a_line(edit, ask, typed):
+    driver = edit()
+    draw(driver)
+    driver.app.act(ask)
+    driver.type(typed)
+    driver.key(pygame.K_RETURN)
+    assert driver.app.ui.has_sheet and not driver.editor.history.is_saved
+
+
+@pytest.mark.skipif(os.name != "posix", reason="names are bytes on POSIX alone")
+def test_a_file_whose_name_is_no_text_is_opened_and_saved(edit, tmp_path):
+    path = os.fsdecode(os.fsencode(tmp_path) + b"/b\xffd.json")
+    write_level(small_level(), path)
+    driver = edit()
+    driver.app.documents.open(path)
+    driver.frames(2)
+    draw(driver)
+    driver.key(pygame.K_s, CTRL)
+    assert read_level(path) == driver.editor.document.level
+    driver.app.act("save_as")
+    driver.frames(2)
+    assert driver.app.ui.has_sheet

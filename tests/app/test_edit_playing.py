@@ -5,7 +5,7 @@ import pytest
 from conftest import small_level
 
 from sandbox.level.files import write_level
-from sandbox.session.commands import SetCoefficients
+from sandbox.session.commands import CutSprings, SetCoefficients
 from sandbox.session.reading import read_replay
 from sandbox.session.replay import verify
 
@@ -64,6 +64,7 @@ def test_the_settled_pose_is_kept_and_undo_takes_it_back(driver):
 def test_coefficients_cuts_and_pins_are_kept_together(driver):
     driver.key(pygame.K_e)
     driver.playback.submit(SetCoefficients(stiffness=0.11, damping=0.22, material=None))
+    driver.playback.submit(CutSprings(springs=(1,)))
     driver.key(pygame.K_p)
     driver.app.act("pause")
     driver.click(driver.pixel_of("pair.1"))
@@ -71,9 +72,13 @@ def test_coefficients_cuts_and_pins_are_kept_together(driver):
     driver.choose("All of it")
     level = driver.editor.document.level
     assert level.materials["steel"].stiffness == 0.11 and level.materials["rubber"].damping == 0.22
+    assert level.bodies[0].cut == (1,)
+    assert len(driver.editor.history.labels) == 2
+    driver.key(pygame.K_k, CTRL)
+    driver.choose("Pose: where everything is now")
     driver.key(pygame.K_e)
     assert driver.editor.scene.pinned[driver.editor.scene.slot("pair.1")]
-    assert len(driver.editor.history.labels) == 2
+    assert driver.editor.history.index == len(driver.editor.history.labels) - 1
 
 
 def test_only_a_document_can_keep_something(open_app):

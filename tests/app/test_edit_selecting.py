@@ -184,7 +184,8 @@ def test_delete_duplicate_and_next_item_work_by_key(driver):
 
 def test_all_of_a_material_is_selected(driver):
     driver.key(pygame.K_m, CTRL)
-    driver.choose("rubber")
+    driver.key(pygame.K_END)
+    driver.key(pygame.K_RETURN)
     assert selected(driver) == {PAIR}
 
 
@@ -204,3 +205,33 @@ def test_undo_and_redo_keep_the_selection(driver):
     for key in (pygame.K_z, pygame.K_y):
         driver.key(key, CTRL)
         assert selected(driver) == {ROPE, PAIR}
+
+
+def test_a_body_that_is_taken_anywhere_moves_by_whole_steps_of_the_grid(edit):
+    driver = edit()
+    driver.key(pygame.K_q)
+    driver.drag((-1, 0), (0, 0), (0.5, 0))
+    driver.key(pygame.K_v)
+    rim = driver.editor.scene.position[5].tolist()
+    grid = driver.editor.grid
+    driver.click_at(*rim)
+    driver.drag(rim, (rim[0], rim[1] + grid), (rim[0] + 1.9 * grid, rim[1] + 1.1 * grid))
+    (wheel,) = driver.editor.document.level.bodies
+    assert wheel.position == pytest.approx((-1 + 2 * grid, grid), abs=1e-9)
+
+
+def test_all_of_many_materials_can_be_chosen_to_select_by(edit):
+    materials = {f"material {number}": {"stiffness": 0.3, "damping": 0.3} for number in range(30)}
+    bodies = [
+        {"type": "rope", "id": f"rope {number}", "start": [0, number], "end": [4, number], "segments": 4,
+         "material": f"material {number}"}
+        for number in range(30)
+    ]  # fmt: skip
+    driver = edit(small_level(materials=materials, bodies=bodies))
+    driver.app.act("select_material")
+    driver.key(pygame.K_END)
+    driver.app.rebuild()
+    driver.key(pygame.K_END)
+    driver.key(pygame.K_RETURN)
+    assert driver.editor.document.selection == {Item("body", "rope 29")}
+    assert not driver.app.ui.has_sheet

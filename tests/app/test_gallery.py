@@ -1,10 +1,15 @@
 """The gallery: levels with pictures, saved replays, and opening them."""
 
+import os
+
 import numpy as np
 import pygame
-from conftest import Driver
+import pytest
+from conftest import Driver, small_level
 
 from sandbox.app.recordings import chosen_path, free_path, plain_name
+from sandbox.editor.recent import remember
+from sandbox.level.canonical import level_text
 from sandbox.level.files import shipped_levels
 
 
@@ -97,3 +102,24 @@ def test_names_of_recordings_are_safe_and_never_taken(tmp_path):
             assert "\n" not in str(error)
         else:
             raise AssertionError(typed)
+
+
+def test_files_whose_names_are_no_utf_8_have_cards_with_escapes(driver, documents, tmp_path):
+    named = {name: tmp_path / os.fsdecode(name) for name in (b"well\xff.json", b"broken\xff.json")}
+    try:
+        named[b"well\xff.json"].write_text(level_text(small_level()))
+    except OSError:
+        pytest.skip("this file system takes UTF-8 names alone")
+    named[b"broken\xff.json"].write_text("{")
+    for path in named.values():
+        remember(path)
+    documents.mkdir(exist_ok=True)
+    (documents / os.fsdecode(b"run\xff.replay.jsonl")).write_text("")
+    driver.app.open_gallery("mine")
+    driver.frames(3)
+    assert [card.name for card in driver.app.gallery.cards] == ["broken\\udcff", "Small"]
+    assert driver.app.gallery.cards[1].text.startswith("well\\udcff.json")
+    driver.app.open_gallery("recordings")
+    assert driver.app.gallery.cards[0].name == "run\\udcff.replay.jsonl"
+    driver.click_widget(driver.app.gallery.cards[0])
+    assert driver.app.ui.has_sheet

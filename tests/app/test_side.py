@@ -10,7 +10,7 @@ from sandbox.app.edit.rows import RowList
 from sandbox.app.edit.side import PAGES
 from sandbox.editor.items import Item
 from sandbox.level.canonical import level_text
-from sandbox.level.files import parse_level
+from sandbox.level.files import parse_level, read_level
 
 ROPE, PAIR = Item("body", "rope"), Item("body", "pair")
 LOOSE = {
@@ -61,7 +61,8 @@ def press(driver, widget):
 
 
 def click_row(driver, rows: RowList, index):
-    driver.click(rows.rect_of(index).center)
+    middle = (rows._tops[index] + rows._tops[index + 1]) / 2
+    driver.click((rows.rect.centerx, rows.rect.top + middle - rows._offset))
     driver.frames(2)
 
 
@@ -139,6 +140,21 @@ def test_another_page_takes_what_was_typed(driver):
     assert body(driver).particle_mass == 7.0
 
 
+def test_saving_and_leaving_count_what_is_being_typed(driver, documents):
+    documents.mkdir()
+    driver.editor.level_file.save_as(level(driver), documents / "x.json")
+    choose(driver, ROPE)
+    driver.app.ui.focus_on(entry(driver, "segments").entry)
+    driver.type("8")
+    driver.key(pygame.K_s, pygame.KMOD_CTRL)
+    assert read_level(documents / "x.json").bodies[0].segments == 8
+    driver.app.ui.focus_on(entry(driver, "segments").entry)
+    driver.type("9")
+    driver.key(pygame.K_q, pygame.KMOD_CTRL)
+    assert driver.app.ui.has_sheet and driver.app.running
+    assert body(driver).segments == 9
+
+
 def test_a_box_is_ticked_by_mouse_and_by_key(driver):
     choose(driver, ROPE)
     boxes = form(driver).boxes["pin"]
@@ -208,7 +224,7 @@ def test_tab_goes_through_the_fields_and_keeps_them_in_sight(driver):
     choose(driver, ROPE)
     driver.app.ui.focus_on(entry(driver, "id").entry)
     seen = []
-    for _ in range(18):
+    for _ in range(20):
         driver.key(pygame.K_TAB)
         focus = driver.app.ui.focus
         seen.append(focus)
@@ -474,3 +490,25 @@ def test_no_text_whatever_breaks_a_field(driver, tab, number, text):
     saved = level(driver)
     assert parse_level(level_text(saved).encode(), "saved") == saved
     driver.editor.step_to(0)
+
+
+@pytest.mark.parametrize("name", ["\u202e", "\u200b\u200b"])
+def test_names_without_a_width_can_be_opened_shown_and_typed_over(edit, tmp_path, name):
+    names = {"name": name, "description": name, "materials": {name: {"stiffness": 0.3, "damping": 0.3}}}
+    bodies = [{"type": "rope", "id": name, "start": [0, 0], "end": [4, 0], "segments": 4, "material": name}]
+    path = tmp_path / f"{name}.json"
+    path.write_text(level_text(small_level(**names, bodies=bodies)))
+    driver = edit()
+    driver.app.files.open_path(path)
+    driver.frames(2)
+    choose(driver, Item("body", name))
+    for tab in PAGES:
+        open_tab(driver, tab)
+    driver.key(pygame.K_a)
+    driver.click_at(3, 3)
+    driver.app.quit()
+    driver.choose("Cancel")
+    driver.app.open_gallery("mine")
+    driver.frames(3)
+    assert [card.name for card in driver.app.gallery.cards] == [name]
+    assert driver.app.title() == "Levels - Spring Sandbox"

@@ -16,6 +16,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "physics"))
 
 from physics_scenes import grid_with_diagonals
 
+from sandbox.physics.forces import Before
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.solvers import single_pass
 from sandbox.physics.step import element_coefficients, step, substep_coefficients, substep_time
@@ -31,9 +32,10 @@ def seconds_per_pass(passes: int) -> float:
     step(world)
     springs, elements = substep_coefficients(world), element_coefficients(world)
     h, times = substep_time(world.settings), []
+    before = Before(world.velocity, world.rest_length)
     for _ in range(passes):
         start = time.perf_counter()
-        single_pass.solve(world, springs, elements, h)
+        single_pass.solve(world, springs, elements, h, before)
         times.append(time.perf_counter() - start)
     return statistics.median(times)
 

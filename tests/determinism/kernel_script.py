@@ -1,5 +1,7 @@
 """Steps one world with everything in it and prints its hash at each tick; run in processes of their own.
 
+Some of its springs yield and break.
+
 python kernel_script.py SOLVER SUBSTEPS TICKS [--without-numba | --broken-numba | --without-cache]
 """
 
@@ -48,17 +50,25 @@ def busy_world(solver: str, substeps: int):
 
     Some of its cells keep an area, narrow and wide, and some of its rows an angle.
     """
+    import numpy as np
+
     from sandbox.physics.elements import AREA, BEND
+    from sandbox.physics.equipment import Driven, Hydraulics, Motors, Muscles, StrainLimits
     from sandbox.physics.settings import WorldSettings
     from sandbox.physics.world import LAW_HOOKE, World
 
-    settings = WorldSettings((0.3, -9.81), substeps=substeps, solver=solver, iterations=6, warm_start=0.5)
+    settings = WorldSettings(
+        (0.3, -9.81), substeps=substeps, solver=solver, iterations=6, warm_start=0.5, wind=(3.0, 0.5), drag=0.4
+    )
     world = World(settings)
     side = 6
     points = [(0.5 * x, 0.45 * y) for y in range(side) for x in range(side)]
     masses = [0.1 + 0.37 * k * k for k in range(side * side)]
     pinned = [k in (side * (side - 1), side * side - 1) for k in range(side * side)]
-    world.add_particles([f"net.{k}" for k in range(side * side)], points, mass=masses, pinned=pinned)
+    scale = [1.0 - 0.05 * k for k in range(side * side)]
+    world.add_particles(
+        [f"net.{k}" for k in range(side * side)], points, mass=masses, pinned=pinned, gravity_scale=scale
+    )
     pairs = []
     for k in range(side * side):
         right, up = k % side < side - 1, k // side < side - 1
@@ -75,8 +85,46 @@ def busy_world(solver: str, substeps: int):
     world.add_elements(AREA, [(k, k + 1, k + side) for k in cells], stiffness=0.05, damping=0.07)
     world.add_elements(AREA, [(0, 1, 2, 8, 14, 13, 12, 6)], inflation=1.3, stiffness=0.04, damping=0.06)
     world.add_elements(BEND, [(k, k + 1, k + 2) for k in range(18, 22)], stiffness=0.05, damping=0.02, material=-1)
+    world.limits = StrainLimits(*np.array([[0.6], [0.5], [0.15], [0.2]]))
+    muscles = Muscles(np.array([3, 30]), np.array([0.3, 0.2]), np.array([7, 12]), np.array([0.0, 0.3]))
+    hydraulics = Hydraulics(np.array([40]), np.array([0.2]), np.array([0.9]), np.array([1.7]), np.array([1]))
+    rim = np.array([8, 9, 13, 15, 19, 20, 21])
+    motors = Motors(np.array([14]), np.array([5.0]), np.array([90.0]), np.array([0]), np.array([0, 7]), rim)
+    world.fit(Driven(("motor", "jack"), muscles, hydraulics, motors), [0.7, 1.0])
     world.reserve_hands()
     return world
+
+
+def touching_world(solver: str, substeps: int):
+    """Discs that fall on a mesh whose springs are edges, between terrain and walls."""
+    from sandbox.physics.outline import ALL_GROUPS, LINE
+    from sandbox.physics.terrain import Chain, make_terrain
+
+    world = busy_world(solver, substeps)
+    world.edge[:] = LINE
+    world.group[:36], world.collides[:36], world.owner[:36] = 2, ALL_GROUPS, 1
+    names, points = [f"disc.{k}" for k in range(6)], [(0.3 + 0.41 * k, 2.9 + 0.2 * (k % 2)) for k in range(6)]
+    world.add_particles(
+        names, points, radius=0.15, friction=0.4, restitution=[0.6, 0.0] * 3, group=2, collides=ALL_GROUPS,
+        velocity=(1.5, -9.0), gravity_scale=2.0,
+    )  # fmt: skip
+    bowl = Chain([(-1.0, -0.6), (3.5, -1.5), (3.5, -0.2), (1.2, -0.9)], "solid")
+    line = Chain([(-0.5, 2.0), (-0.6, 0.5)], restitution=1.0)
+    world.terrain = make_terrain([bowl, line, Chain([(-2.0, -2.0), (5.0, -2.0), (5.0, 9.0), (-2.0, 9.0)], "hollow")])
+    return world
+
+
+def touches(solver: str, substeps: int, ticks: int):
+    """Hash after each tick of a world in which things touch."""
+    from sandbox.physics.snapshot import state_hash
+    from sandbox.physics.step import step
+
+    world, met = touching_world(solver, substeps), 0
+    for _ in range(ticks):
+        step(world)
+        met += len(world.contact_particle)
+        yield state_hash(world)
+    assert met > 40
 
 
 def hashes(solver: str, substeps: int, ticks: int):
@@ -97,6 +145,8 @@ def hashes(solver: str, substeps: int, ticks: int):
         if tick == 31:
             world.unpin(15)
             world.cut([20, 21])
+        if tick == 27:
+            world.drive(1, -0.3)
         if tick == 24:
             world.set_coefficients(0.11, 0.05, None)
         step(world)
@@ -124,4 +174,5 @@ if __name__ == "__main__":
 
     print("compiled" if COMPILED else "interpreted")
     print("\n".join(hashes(chosen, substeps if substeps == "auto" else int(substeps), int(ticks))))
+    print("\n".join(touches(chosen, substeps if substeps == "auto" else int(substeps), int(ticks))))
     print("\n".join(blow_up(chosen, 2 * int(ticks))))

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 SCRIPT = Path(__file__).with_name("kernel_script.py")
-SOLVERS = ("single_pass", "iterative")
+SOLVERS = ("single_pass", "iterative", "direct")
 TICKS = 40
 
 needs_numba = pytest.mark.skipif(

@@ -122,6 +122,29 @@ def test_an_orphan_goes_once_the_window_that_took_its_level_has_written_it(autos
     assert (again.name, again.edited, again.label) == ("lost", tmp_path / "x.json", "Recover")
 
 
+def test_an_orphan_stays_while_only_what_was_noted_before_it_is_written(autosave, folder, tmp_path, monkeypatch):
+    lost = Autosave(folder)
+    lost.note(named("lost"), tmp_path / "x.json", "Move")
+    lost.close()
+    (orphan,) = orphans(folder)
+    begun, may_end, write_file = threading.Event(), threading.Event(), module.write_file
+
+    def slow(*given):
+        begun.set()
+        assert may_end.wait(10)
+        write_file(*given)
+
+    monkeypatch.setattr(module, "_PAUSES", (0.0, 0.0))
+    monkeypatch.setattr(module, "write_file", slow)
+    autosave.note(named("before"), None, "Open")
+    assert begun.wait(10)
+    autosave.adopt(orphan, orphan.level())
+    monkeypatch.setattr(module, "write_file", full)
+    may_end.set()
+    autosave.settle()
+    assert orphan.path.exists()
+
+
 def full(*_):
     raise OSError(errno.ENOSPC, "No space left on device")
 

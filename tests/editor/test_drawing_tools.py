@@ -362,3 +362,12 @@ def test_steps_of_options_go_through_round_values_and_end_at_the_limits():
     assert stepped(mass, mass.most, 1) == mass.most and stepped(mass, mass.least, -1) == mass.least
     assert stepped(slack, 0.0, -1) == -0.05 and stepped(slack, slack.least, -1) == slack.least
     assert stepped(links, 1, -1) == 1 and stepped(links, 1, 1) == 2
+
+
+@pytest.mark.parametrize("radius", [0.3, 0.9, 1.0, 1.1, 1.3, 7.0])
+def test_a_wheel_gets_an_even_number_of_spokes_so_that_the_box_around_it_has_its_middle(empty, radius):
+    scene = make_scene(drawn("wheel", empty, (0.0, 0.0), (radius, 0.0)).level)
+    left, bottom, right, top = scene.bounds()
+    spokes = scene.level.bodies[0].segments
+    assert spokes % 2 == 0 and 8 <= spokes <= 32
+    assert (left + right, bottom + top) == pytest.approx((0.0, 0.0), abs=1e-9)

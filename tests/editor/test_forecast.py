@@ -52,6 +52,15 @@ def test_a_slack_rope_between_two_pins_will_hang_in_a_catenary():
     assert forecast.position[10] == pytest.approx((1.5, -sag), abs=0.02)
 
 
+def test_a_part_behind_a_weld_is_a_part_of_its_own():
+    other = rope().model_copy(update={"id": "other", "pin": ()})
+    ball = ParticleDef(id="ball", position=(9.0, 0.0), pinned=True)
+    level = level_of(bodies=(rope(), other), particles=(ball,), welds=(("rope.end", "other.end"),))
+    forecast = finished(level)
+    assert forecast.at_rest
+    assert forecast.position[-1] == pytest.approx((9.0, 0.0))
+
+
 def test_playing_from_the_forecast_moves_nothing():
     level = level_of(bodies=(rope(pin=("start", "end"), rest_length=0.165),))
     forecast = finished(level)

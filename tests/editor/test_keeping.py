@@ -88,6 +88,10 @@ def test_cuts_are_kept_and_loose_springs_that_were_cut_are_gone():
     assert (kept.level.bodies[0].cut, kept.level.bodies[3].cut) == ((0, 4), (3, 4))
     assert len(kept.level.springs) == 3
     assert kept.selection == {Item("spring", 2)}
+    for keep in (keep_coefficients, keep_pose, keep_pins):
+        assert keep(kept, world).level.springs == kept.level.springs
+    with pytest.raises(EditError, match="not the level as it is now"):
+        keep_cuts(kept, world)
 
 
 def test_pins_are_kept_also_of_welded_particles():

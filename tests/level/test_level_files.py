@@ -5,7 +5,7 @@ import os
 import stat
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from malformed_levels import GOOD, encoded
 
@@ -192,7 +192,7 @@ def test_a_file_here_wins_over_a_shipped_level_of_its_name(tmp_path, monkeypatch
 def test_a_name_that_is_nowhere_is_answered_with_what_is_shipped(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert refusal(load_level, "girdr").endswith('no shipped level of that name; did you mean "girder"?')
-    assert "shipped are girder, hooke_comparison" in refusal(load_level, "zzz")
+    assert "shipped are beating_heart, breaking_bridge" in refusal(load_level, "zzz")
     assert refusal(load_level, "folder/rope") == "folder/rope: there is no such file"
     assert "no such file" in refusal(load_level, "")
 
@@ -283,8 +283,16 @@ def changed_bodies(draw, name, material):
 @st.composite
 def levels(draw):
     names = draw(st.lists(ids, min_size=3, max_size=8, unique=True))
-    material = some({}, stiffness=coefficients, damping=coefficients)
-    classic = some({"law": st.just("hooke")}, k=st.floats(0, 1e15), c=st.floats(0, 1e15))
+    breaking = {
+        "tension_limit": st.floats(1e-6, 1e3),
+        "compression_limit": st.floats(1e-6, 1.0),
+        "yield_strain": st.floats(1e-6, 0.5),
+        "yield_limit": st.floats(0, 0.9),
+    }
+    material = some({}, stiffness=coefficients, damping=coefficients, **breaking)
+    classic = some({"law": st.just("hooke")}, k=st.floats(0, 1e15), c=st.floats(0, 1e15), **breaking)
+    wave = some({"amplitude": st.floats(0, 0.9), "period": st.integers(2, 10**6)}, phase=coefficients)
+    jack = some({"shortest": st.just(0.5), "longest": st.just(2.0), "rate": st.floats(0, 1e6)}, key=st.just("q"))
     materials = draw(st.dictionaries(ids, material | classic, max_size=3))
     chosen = st.sampled_from(["default", *materials])
     optional = {
@@ -294,6 +302,7 @@ def levels(draw):
         "mass": masses,
         "radius": st.floats(0, 10),
         "extras": extras,
+        "gravity_scale": st.floats(-1e3, 1e3),
     }
     settings = some(
         {},
@@ -302,6 +311,8 @@ def levels(draw):
         substeps=st.sampled_from([1, 2, 64, "auto"]),
         solver=st.sampled_from(["single_pass", "iterative"]),
         warm_start=coefficients,
+        wind=points,
+        drag=st.floats(0, 1e6),
     )
     head = {"format": st.just("spring-sandbox/level"), "version": st.just(1), "name": ids, "settings": settings}
     return draw(some(head, description=texts, tags=st.lists(texts, max_size=3), extras=extras)) | {
@@ -309,7 +320,8 @@ def levels(draw):
         "bodies": [draw(changed_bodies(name, draw(chosen))) for name in names[3:]],
         "particles": [draw(some({"id": st.just(name)}, pinned=st.booleans(), **optional)) for name in names[:3]],
         "springs": [
-            {"a": names[0], "b": names[1], "material": draw(chosen)},
+            {"a": names[0], "b": names[1], "material": draw(chosen)} | draw(some({}, drive=wave)),
+            {"a": names[1], "b": names[2], "hydraulic": draw(jack)},
             {"a": names[2], "b": names[0], "rest_length": draw(st.floats(0, 1e6))},
         ],
         "welds": draw(st.lists(st.sampled_from([[names[1], f"{name}.0"] for name in [*names[3:]]]), max_size=4))
@@ -318,6 +330,7 @@ def levels(draw):
     }
 
 
+@settings(deadline=None)
 @given(levels())
 def test_any_level_is_loaded_as_it_was_saved(data):
     level = parse_level(encoded(data), "x.json")

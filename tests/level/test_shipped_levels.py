@@ -52,6 +52,7 @@ def test_the_shipped_example_holds_the_format_s_example():
 def test_the_promised_levels_are_shipped():
     promised = {"rope_bridge_jelly", "rope", "wrecking_ball", "suspension_bridge", "truss_bridge", "girder", "mast"}
     promised |= {"quad_mesh", "spider_web", "jelly_cube", "jelly_wheel", "side_by_side", "hooke_comparison"}
+    promised |= {"breaking_bridge", "catapult", "ferris_wheel", "curtain", "beating_heart"}
     assert promised <= set(LEVELS)
 
 

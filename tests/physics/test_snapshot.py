@@ -8,6 +8,7 @@ from physics_scenes import grid, network, run, scaled
 
 from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.elements import AREA, BEND
+from sandbox.physics.equipment import Driven
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
@@ -20,6 +21,7 @@ def busy_world(solver="iterative"):
     world.law[3], world.hooke_stiffness[3], world.hooke_damping[3] = LAW_HOOKE, 50.0, 0.1
     world.add_elements(AREA, [[0, 1, 6], [6, 7, 12]], stiffness=0.1)
     world.add_elements(BEND, [[0, 1, 2]], damping=0.1, material=-1)
+    world.fit(Driven(("part",)), [0.5])
     world.reserve_hands()
     world.hold(0, 12, (2.0, 2.5))
     run(world, 5)
@@ -92,6 +94,7 @@ def test_a_snapshot_is_a_read_only_copy():
 @pytest.mark.parametrize("name", STATE_ARRAYS)
 def test_each_array_changes_the_hash_and_its_own_hash_alone(name):
     world = busy_world()
+    world.keep_contacts(np.zeros(1, dtype=np.int32), np.ones(1, dtype=np.int64), np.ones((1, 2)))
     before, by_array = state_hash(world), hash_by_array(world)
     array = getattr(world, name)
     if array.dtype.kind == "f":
@@ -114,6 +117,8 @@ def test_each_array_changes_the_hash_and_its_own_hash_alone(name):
         {"solver": "single_pass"},
         {"iterations": 11},
         {"warm_start": 0.25},
+        {"wind": (0.0, 1e-300)},
+        {"drag": 0.5},
     ],
 )
 def test_each_setting_changes_the_hash(change):
@@ -132,7 +137,8 @@ def test_the_tick_changes_the_hash():
 
 def test_all_settings_are_covered_by_the_test_of_settings():
     assert {field.name for field in dataclasses.fields(WorldSettings)} == {
-        "gravity", "tick_rate", "substeps", "solver", "iterations", "warm_start",
+        "gravity", "tick_rate", "substeps", "solver", "iterations", "warm_start", "wind",
+        "drag",
     }  # fmt: skip
 
 

@@ -33,7 +33,7 @@ def test_slots_are_appended_and_named():
 def test_every_array_keeps_its_type_and_one_item_per_slot():
     world = held_rope()
     world.add_elements(AREA, [[0, 1, 2, 3]])
-    counts = (5 + HAND_COUNT, 4 + HAND_COUNT, 1, 4)
+    counts = (5 + HAND_COUNT, 4 + HAND_COUNT, 1, 4, 0, 0)
     for family, count in zip(FAMILIES, counts, strict=True):
         for name in family:
             array = getattr(world, name)

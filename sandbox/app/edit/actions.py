@@ -6,9 +6,11 @@ from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 from sandbox.app.camera import Box
-from sandbox.app.dialogs import choose, fill_in
+from sandbox.app.colours import material_colours
+from sandbox.app.dialogs import choose, choose_row, fill_in
 from sandbox.app.edit.bar import TOOLS
 from sandbox.app.edit.hands import DrawHand
+from sandbox.app.edit.rows import Row
 from sandbox.app.shortcuts import shortcuts
 from sandbox.editor.copying import array_circle, array_line, duplicate
 from sandbox.editor.deleting import break_apart, delete
@@ -180,16 +182,18 @@ def _ask_parts(screen: "EditScreen") -> None:
     names = ("group", "ungroup", "break_apart", "unjoin")
     labels = ("Group", "Ungroup", "Break bodies apart", "Take joints apart")
     choices = [(label, screen.actions[name]) for label, name in zip(labels, names, strict=True)]
-    choose(screen.ui, "Parts", "Groups are selected and moved together. A body that is broken apart "
+    choose(screen.ui, "Parts", "A double click selects a whole group. A body that is broken apart "
            "becomes loose particles and springs.", choices)  # fmt: skip
 
 
 def _ask_material(screen: "EditScreen") -> None:
-    def do(name: str) -> None:
-        screen.select(items_of_material(screen.document.level, name))
+    colours = material_colours(screen.scene.materials)
 
-    choices = [(name, partial(do, name)) for name in screen.scene.materials[:20]]
-    choose(screen.ui, "Select by material", "Everything of which material?", choices, columns=2)
+    def take(index: int) -> None:
+        screen.select(items_of_material(screen.document.level, list(colours)[index]))
+
+    rows = [Row(name, swatch=colour) for name, colour in colours.items()]
+    choose_row(screen.ui, "Select everything of which material?", rows, take)
 
 
 def _unjoined(document: Document) -> Document:
@@ -275,7 +279,7 @@ def _adjust_or_zoom(screen: "EditScreen", by: int) -> None:
     if isinstance(screen.hand, DrawHand) and screen.hand.drawing.under_way:
         screen.hand.adjust(by)
     else:
-        screen.zoom(2 * by)
+        screen.camera.zoom_at(screen.cursor, 2 * by)
 
 
 def _delete_or_back(screen: "EditScreen") -> None:

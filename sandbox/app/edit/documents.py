@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from sandbox.app.dialogs import ask, choose, show_lines
 from sandbox.app.edit.screen import EditScreen
@@ -15,7 +15,7 @@ from sandbox.editor.document import Document, empty_level
 from sandbox.editor.history import History
 from sandbox.editor.recent import remember
 from sandbox.editor.storage import ChangedOnDisk, FileExists, LevelFile, LevelInUse, StorageError
-from sandbox.level.faults import LevelError
+from sandbox.level.faults import LevelError, one_line
 from sandbox.level.files import load_level
 from sandbox.level.model import Level
 
@@ -37,8 +37,6 @@ class Documents:
         self._autosave: Autosave | None = None
         self._told_of_change = False
         self._told_fault: str | None = None
-        # The box that asks about changes, while it is open: it is not asked twice.
-        self._question: Any = None
 
     # Opening.
 
@@ -88,19 +86,19 @@ class Documents:
             level_file, level = opener(path)
         except LevelInUse as error:
             choices = [("Open a copy", lambda: self._open(path, LevelFile.copy_of))]
-            choose(self.app.ui, f"{path.name} is in use", str(error), choices)
+            choose(self.app.ui, f"{_called(path)} is in use", f"{error}.", choices)
             return
         except LevelError as error:
             self._offer_salvage(path, error.faults)
             return
         self._show(level, level_file, "Open")
         if level_file.path is None:
-            self.app.say(f"A copy of {path.name}: it is saved under a new name.")
+            self.app.say(f"A copy of {_called(path)}: it is saved under a new name.")
 
     def _offer_salvage(self, path: Path, faults: list[str]) -> None:
-        title = f"{path.name} cannot be opened"
+        title = f"{_called(path)} cannot be opened"
         try:
-            level_file, level, _ = LevelFile.salvaged(path)
+            level_file, level, left_out = LevelFile.salvaged(path)
         except LevelError:
             level = None
         if level is None:
@@ -109,10 +107,11 @@ class Documents:
         found = level
 
         def open_valid() -> None:
-            self._show(found, level_file, f"Open what is valid of {path.name}")
-            self.app.say(f"{path.name} stays as it is; what was valid of it is saved under a new name.")
+            self._show(found, level_file, f"Open what is valid of {_called(path)}")
+            self.app.say(f"{_called(path)} stays as it is; what was valid of it is saved under a new name.")
 
-        show_lines(self.app.ui, title, faults, ("Open what is valid", open_valid))
+        # Reading stops at the first kind of fault; what is left out is more, and the person has to agree to all of it.
+        show_lines(self.app.ui, title, left_out or faults, ("Open what is valid", open_valid))
 
     def _show(self, level: Level, level_file: LevelFile, label: str) -> None:
         if self.editor is not None:
@@ -152,11 +151,15 @@ class Documents:
         """Write, and go on; where a file is in the way, the person is asked."""
         editor = self.editor
         assert editor is not None
+        before = editor.level_file.path
         try:
             warning = write(replace)
         except (FileExists, ChangedOnDisk) as error:
             title = "Replace the file?" if isinstance(error, FileExists) else "The file has changed"
-            choices = [("Replace it", lambda: self._write(write, then, True)), ("Save as …", self.save_as)]
+            choices = [
+                ("Replace it", lambda: self._write(write, then, True)),
+                ("Save as …", lambda: self._ask_name(then)),
+            ]
             choose(self.app.ui, title, f"{error}.", choices)
             return
         except StorageError as error:
@@ -168,7 +171,9 @@ class Documents:
         assert path is not None
         remember(path)
         self.give_up()
-        self.app.say(warning or f"Saved as {path}")
+        self.app.say(one_line(warning or f"Saved as {path}"))
+        if path != before and editor.level_file.warning:
+            self.app.say(editor.level_file.warning)
         then()
 
     def _ask_name(self, then: Callable[[], object]) -> None:
@@ -181,10 +186,10 @@ class Documents:
         except OSError as error:
             folder = Path.cwd()
             self.app.say(f"The documents' folder cannot be used: {error.strerror or error}.")
-        suggestion = present.stem if present is not None else plain_name(editor.document.level.name)
+        suggestion = one_line(present.stem) if present is not None else plain_name(editor.document.level.name)
 
         def path_of(typed: str) -> Path:
-            path = folder / Path(typed).expanduser()
+            path = folder / os.path.expanduser(typed)
             return path if path.suffix == ".json" else path.with_name(f"{path.name}.json")
 
         def answer(typed: str) -> str | None:
@@ -196,7 +201,15 @@ class Documents:
             path = path_of(typed)
             self._write(lambda replace: editor.level_file.save_as(editor.document.level, path, replace), then)
 
-        ask(self.app.ui, "Save the level as", f"In {folder}, or a whole path.", suggestion, "Save", answer, then=write)
+        ask(
+            self.app.ui,
+            "Save the level as",
+            f"In {one_line(str(folder))}, or a whole path.",
+            suggestion,
+            "Save",
+            answer,
+            then=write,
+        )
 
     def revert(self) -> None:
         """Read the level from its file again, as a step that can be undone."""
@@ -212,6 +225,7 @@ class Documents:
         editor.cancel()
         editor.apply("Revert to the file", Document(level))
         editor.history.mark_saved()
+        self.give_up()
         self._told_of_change = False
 
     def if_saved(self, then: Callable[[], object]) -> None:
@@ -220,12 +234,11 @@ class Documents:
         if editor is None or editor.history.is_saved:
             then()
             return
-        if self._question is not None and self._question.alive():
+        if self.app.ui.has_question:
             return
+        title = f"Save “{editor.document.level.name}”?"
         choices = [("Save", lambda: self._save(then)), ("Discard the changes", then)]
-        self._question = choose(
-            self.app.ui, f"Save “{editor.document.level.name}”?", "It has changes that are not saved.", choices
-        )
+        choose(self.app.ui, title, "It has changes that are not saved.", choices, is_question=True)
 
     def give_up(self) -> None:
         """Keep nothing in the autosave: the person has saved, or does not want it."""
@@ -263,29 +276,30 @@ class Documents:
         path = editor.level_file.path
         choices = [("Read it again", self.revert), ("Keep what is here", lambda: None)]
         text = "Another program has changed it. Reading it again is a step that can be undone."
-        choose(self.app.ui, f"{path.name if path else 'The file'} has changed", text, choices)
+        choose(self.app.ui, f"{_called(path) if path else 'The file'} has changed", text, choices)
 
     def offer_recovery(self) -> None:
         """Offer what a session that ended badly has left in the autosave."""
         found = orphans()
+        offered = found[:OFFERED]
         if not found:
             return
 
         def discard() -> None:
-            for orphan in found:
+            for orphan in offered:
                 orphan.dismiss()
 
         choices: list[tuple[str, Callable[[], object]]] = [
-            (f"Recover {_described(orphan)}", partial(self._recover, orphan)) for orphan in found[:OFFERED]
+            (f"Recover {_described(orphan)}", partial(self._recover, orphan)) for orphan in offered
         ]
         more = f" {len(found) - OFFERED} more come at the next start." if len(found) > OFFERED else ""
-        choices.append(("Discard all of them", discard))
+        choices.append(("Discard all of these" if len(offered) > 1 else "Discard it", discard))
         text = f"The editor was not closed properly, and what was not saved has been kept.{more}"
-        choose(self.app.ui, "Recover your work?", text, choices)
+        choose(self.app.ui, "Recover your work?", text, choices, is_question=True)
 
     def _recover(self, orphan: Orphan) -> None:
         try:
-            level = orphan.salvaged()[0] if orphan.fault else orphan.level()
+            level, left_out = orphan.salvaged() if orphan.fault else (orphan.level(), [])
         except StorageError as error:
             show_lines(self.app.ui, "Not recovered", [str(error)])
             return
@@ -293,19 +307,35 @@ class Documents:
             show_lines(self.app.ui, "Not recovered", [orphan.fault or "Nothing of it is valid."])
             return
         recovered = level
-        self.if_saved(lambda: self._show_recovered(orphan, recovered))
+
+        def recover() -> None:
+            self._show_recovered(orphan, recovered)
+            if left_out:
+                show_lines(self.app.ui, "This could not be recovered", left_out)
+
+        if orphan.edited is not None and self._has_open(orphan.edited):
+            recover()
+        else:
+            self.if_saved(recover)
 
     def _show_recovered(self, orphan: Orphan, level: Level) -> None:
-        try:
-            level_file, before = LevelFile.open(orphan.edited) if orphan.edited else (LevelFile(), empty_level())
-        except (StorageError, LevelError) as error:
-            level_file, before = LevelFile(), empty_level()
-            self.app.say(f"{error} What is recovered is saved under a new name.")
-        self._show(before, level_file, "Open")
+        if orphan.edited is not None and self._has_open(orphan.edited):
+            self.back()
+        else:
+            self._show_edited(orphan.edited)
         assert self.editor is not None and self._autosave is not None
         self.editor.apply("Recover", Document(level))
         self.editor.fit()
         self._autosave.adopt(orphan, level)
+
+    def _show_edited(self, path: Path | None) -> None:
+        """Show the file that a lost session edited, or an empty sheet."""
+        try:
+            level_file, before = LevelFile.open(path) if path is not None else (LevelFile(), empty_level())
+        except (StorageError, LevelError) as error:
+            level_file, before = LevelFile(), empty_level()
+            self.app.say(f"{str(error).splitlines()[0]}. What is recovered is saved under a new name.")
+        self._show(before, level_file, "Open")
 
     # Playing.
 
@@ -322,6 +352,11 @@ class Documents:
         """Back from playing to the document as it was."""
         if self.editor is not None:
             self.app.show_screen(self.editor)
+
+
+def _called(path: Path) -> str:
+    """The name of a file, also where the system's own cannot be shown."""
+    return one_line(path.name)
 
 
 def _described(orphan: Orphan) -> str:

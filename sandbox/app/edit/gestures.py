@@ -1,6 +1,7 @@
 """Gestures of the select tool: moving, scaling, turning, and choosing by a box or a lasso."""
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -13,7 +14,7 @@ from sandbox.editor.document import Document, EditError
 from sandbox.editor.moving import move, rotate, scale
 from sandbox.editor.pick import Mode, combined, items_in_box, items_in_lasso
 from sandbox.editor.placing import weld
-from sandbox.editor.snap import Snap, snap
+from sandbox.editor.snap import PLACE_DECIMALS, Snap, snap
 
 if TYPE_CHECKING:
     from sandbox.app.edit.screen import EditScreen
@@ -76,8 +77,18 @@ class Moving:
         wanted = (self._anchor[0] + point[0] - self._start[0], self._anchor[1] + point[1] - self._start[1])
         along = self._anchor if modifiers & pygame.KMOD_SHIFT else None
         self._snap = self._screen.snapped(wanted, modifiers, along, self._screen.document.selection)
-        self._by = (self._snap.point[0] - self._anchor[0], self._snap.point[1] - self._anchor[1])
+        if self._snap.kind == "grid" and self._taken.kind != "end":
+            self._by = self._steps(wanted)
+            self._snap = replace(self._snap, point=(self._anchor[0] + self._by[0], self._anchor[1] + self._by[1]))
+        else:
+            self._by = (self._snap.point[0] - self._anchor[0], self._snap.point[1] - self._anchor[1])
         self.matrix = np.array([[1.0, 0.0, self._by[0]], [0.0, 1.0, self._by[1]]])
+
+    def _steps(self, wanted: Point) -> Point:
+        """The way in whole steps of the grid, for what is not taken by an end: what stands on the grid stays on it."""
+        grid = self._screen.grid
+        dx, dy = (round((to - start) / grid) * grid for to, start in zip(wanted, self._anchor, strict=True))
+        return round(dx, PLACE_DECIMALS) + 0.0, round(dy, PLACE_DECIMALS) + 0.0
 
     def end(self) -> None:
         """Move, and join where an end came onto a particle."""

@@ -12,8 +12,7 @@ from sandbox.app.edit.handles import Handles
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.gesture import Drawing
 from sandbox.editor.grouping import with_groups
-from sandbox.editor.items import Item
-from sandbox.editor.moving import can_scale_unevenly
+from sandbox.editor.items import Item, keys
 from sandbox.editor.pick import combined, item_at
 from sandbox.editor.snap import Snap
 
@@ -103,9 +102,9 @@ class SelectHand:
         screen = self._screen
         selection = screen.document.selection
         box = screen.selection_box
-        if box is None or all(item.kind == "spring" for item in selection):
+        if box is None or len(keys(selection, "spring")) == len(selection):
             return None
-        return Handles(box, screen.camera, screen.scale, can_scale_unevenly(screen.document))
+        return Handles(box, screen.camera, screen.scale, screen.scales_apart)
 
     def down(self, point: Point, modifiers: int, clicks: int) -> None:
         """Take a handle, an item, or begin a box."""
@@ -114,8 +113,7 @@ class SelectHand:
         name = handles.at(screen.camera.to_pixels(point)) if handles is not None else None
         self._pressed, self._clicked, self._gesture, self._double = point, None, None, clicks == 2
         if handles is not None and name is not None:
-            even = not can_scale_unevenly(screen.document)
-            self._gesture = Transforming(screen, handles, name, point, even)
+            self._gesture = Transforming(screen, handles, name, point, not screen.scales_apart)
             return
         item = item_at(screen.scene, point, screen.reach)
         self._clicked = item

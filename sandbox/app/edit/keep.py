@@ -15,8 +15,9 @@ Keeper = Callable[[Document, World], Document]
 KEEPERS: tuple[tuple[str, Keeper], ...] = (
     ("Cs and Cd of the materials", keep_coefficients),
     ("Pose: where everything is now", keep_pose),
-    ("Cuts", keep_cuts),
     ("Pins", keep_pins),
+    # Last, as the springs have other numbers then.
+    ("Cuts", keep_cuts),
 )
 
 
@@ -43,7 +44,6 @@ def ask_to_keep(app: "App") -> None:
         (name, lambda name=name, keeper=keeper: keep(f"Keep {name[0].lower()}{name[1:]}", (keeper,)))  # type: ignore[misc]
         for name, keeper in KEEPERS
     ]
-    # Pins before the pose: what is held is moved to where it is held.
     everything = tuple(keeper for _, keeper in KEEPERS)
     choices.append(("All of it", lambda: keep("Keep all of the run", everything)))
     choose(app.ui, "Keep in the document", "What of this run shall the level begin with?", choices)

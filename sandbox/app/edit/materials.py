@@ -20,7 +20,7 @@ from sandbox.editor.materials import add_material, assign, delete_material, rena
 from sandbox.editor.pick import items_of_material
 from sandbox.editor.typed import line_text, number_text, read_line, read_number
 from sandbox.level.limits import DEFAULT_MATERIAL
-from sandbox.level.model import HookeMaterial, Level, Material, NissenMaterial
+from sandbox.level.model import HookeMaterial, Level, Material, MaterialDef, NissenMaterial
 from sandbox.level.quantities import replaced
 from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
 
@@ -84,7 +84,7 @@ class MaterialsPage:
         self._widgets += self.law.buttons.values()
         self._y += ROW + GAP + 4
         for name, about in abouts(type(material)).items():
-            if name != "law":
+            if name in SHORT:
                 self._add_coefficient(name, about)
         if isinstance(material, NissenMaterial):
             self._add_field("frequency", "Frequency [Hz]", self._type_frequency, "How fast such a spring swings.")
@@ -222,7 +222,8 @@ class MaterialsPage:
     def _choose_law(self, law: str) -> None:
         is_hooke = isinstance(self._material, HookeMaterial)
         if (law == "hooke") != is_hooke:
-            self._put("law", HookeMaterial(law="hooke") if law == "hooke" else NissenMaterial())
+            limits = {name: getattr(self._material, name) for name in MaterialDef.model_fields}
+            self._put("law", HookeMaterial(law="hooke", **limits) if law == "hooke" else NissenMaterial(**limits))
 
     def _number(self, label: str, text: str) -> float | None:
         try:

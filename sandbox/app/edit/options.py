@@ -1,6 +1,7 @@
 """The row below the bar: what the tool can be told, or place and size of the selection as numbers."""
 
 import math
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -25,17 +26,28 @@ ENTRY_WIDTH = 62.0
 MENU_WIDTH = 108.0
 HEIGHT = 26.0
 GAP = 12.0
+LABEL_GAP = 6.0
+NUMBER_WIDTH = 76.0
+MORE_WIDTH = 64.0
+
+# A label and what is beside it: the width that they take with the gaps after them, and what makes them.
+Item = tuple[float, Callable[[], None]]
 
 
 class OptionsRow:
-    """Fields of the tool in use, in a rectangle of pixels; made anew when the tool or the materials change."""
+    """Fields of the tool in use, in a rectangle of pixels; made anew when the tool or the materials change.
+
+    Where they do not fit side by side, a button turns to those that come next.
+    """
 
     def __init__(self, screen: "EditScreen", place: pygame.Rect) -> None:
         self._screen, self._ui = screen, screen.ui
         self.back = self._ui.panel(place)
         self._made_for: tuple[object, ...] = ()
         self._x = 0.0
+        self._page = 0
         self._made: list[Any] = []
+        self.more: Any = None
         self.fields: dict[str, Field] = {}
         self.flags: dict[str, Any] = {}
         self.menus: dict[str, Picker] = {}
@@ -48,35 +60,59 @@ class OptionsRow:
         hand = screen.hand
         made_for = (screen.tool, materials) if isinstance(hand, DrawHand) else ("select", chosen)
         if made_for != self._made_for:
-            self._made_for = made_for
-            self._remake(hand, materials)
+            self._made_for, self._page = made_for, 0
+            self._remake()
         if isinstance(hand, DrawHand):
             self._show_options(hand)
         elif chosen:
             self._show_selection()
 
-    def _remake(self, hand: object, materials: tuple[str, ...]) -> None:
+    def _remake(self) -> None:
         for widget in self._made:
             self._ui.remove(widget)
-        self._made, self.fields, self.flags, self.menus, self._x = [], {}, {}, {}, GAP
+        self._made, self.fields, self.flags, self.menus, self.more, self._x = [], {}, {}, {}, None, GAP
+        hand, chosen = self._screen.hand, bool(self._screen.document.selection)
+        items: list[Item] = []
         if isinstance(hand, DrawHand):
             self._add_label(self._screen.tool.capitalize() if self._screen.tool != "box" else "Jelly", "@heading")
-            for name, about in described(hand.drawing.options).items():
-                self._add_option(hand, name, about, materials)
-        elif self._screen.document.selection:
-            for name, label, tip in (
-                ("x", "x", "Middle of the selection [m]"),
-                ("y", "y", "Middle of the selection [m]"),
-                ("width", "width", "Width of the selection [m]"),
-                ("height", "height", "Height of the selection [m]"),
-                ("turn", "turn by", "Angle to turn the selection by [degrees], counter-clockwise"),
-            ):
-                self._add_label(label, "@muted")
-                self._add_field(name, partial(self._type_number, name), 76.0, tip)
-                if name in ("y", "height"):
-                    self._x += GAP
+            items = [self._option(hand, name, about) for name, about in described(hand.drawing.options).items()]
+        elif chosen:
+            items = self._numbers()
         else:
             self._add_label("Nothing is selected. Draw with the tools at the left, or click a part.", "@muted")
+        pages = self._pages([width for width, _ in items])
+        self._page %= len(pages)
+        for index in pages[self._page]:
+            items[index][1]()
+        if len(pages) > 1:
+            self._add_more(len(pages))
+
+    def _pages(self, widths: list[float]) -> list[list[int]]:
+        """Which items stand side by side: all where they fit, else as many as fit beside the button for more."""
+        room = self.back.rect.width / self._ui.scale - self._x + LABEL_GAP
+        if sum(widths) <= room:
+            return [list(range(len(widths)))]
+        pages: list[list[int]] = [[]]
+        for index, width in enumerate(widths):
+            taken = sum(widths[other] for other in pages[-1])
+            if pages[-1] and taken + width > room - MORE_WIDTH - GAP:
+                pages.append([])
+            pages[-1].append(index)
+        return pages
+
+    def _add_more(self, count: int) -> None:
+        left = self.back.rect.width / self._ui.scale - MORE_WIDTH - GAP
+        place = self._ui.rect(left, (OPTIONS_HEIGHT - HEIGHT) / 2, MORE_WIDTH, HEIGHT)
+        tip = f"What else there is: part {self._page + 1} of {count} is shown"
+        self.more = self._ui.button(place, "More", self._turn_page, self.back, style="@segment", tip=tip)
+        self._made.append(self.more)
+
+    def _turn_page(self) -> None:
+        has_keyboard = self._ui.focus is self.more
+        self._page += 1
+        self._remake()
+        if has_keyboard:
+            self._ui.focus_on(self.more)
 
     def focus(self) -> None:
         """Give the keyboard to the first field."""
@@ -85,58 +121,79 @@ class OptionsRow:
 
     # Adding widgets from the left.
 
-    def _room(self, width: float) -> bool:
-        return self._ui.px(self._x + width) <= self.back.rect.width
-
     def _rect(self, width: float) -> pygame.Rect:
         place = self._ui.rect(self._x, (OPTIONS_HEIGHT - HEIGHT) / 2, width, HEIGHT)
         self._x += width
         return place
 
-    def _add_label(self, text: str, style: str) -> None:
-        width = self._ui.font(12).size(text)[0] / self._ui.scale + 4
-        if self._room(width):
-            self._made.append(self._ui.label(self._rect(width), text, self.back, style))
-            self._x += 6
+    def _text_width(self, text: str) -> float:
+        return self._ui.font(12).size(text)[0] / self._ui.scale
 
-    def _add_field(self, name: str, commit: Any, width: float, tip: str) -> None:
-        if not self._room(width):
-            return
+    def _add_label(self, text: str, style: str = "@muted") -> None:
+        self._made.append(self._ui.label(self._rect(self._text_width(text) + 4), text, self.back, style))
+        self._x += LABEL_GAP
+
+    def _labelled(self, label: str, width: float, add: Callable[[], None], gap: float = GAP) -> Item:
+        def make() -> None:
+            self._add_label(label)
+            add()
+            self._x += gap
+
+        return self._text_width(label) + 4 + LABEL_GAP + width + gap, make
+
+    def _add_field(self, name: str, commit: Callable[[str], bool], width: float, tip: str) -> None:
         field = self._ui.field(self._rect(width), "", commit, self.back, 24)
         field.entry.set_tooltip(tip)
         self.fields[name] = field
         self._made.append(field.entry)
-        self._x += GAP
 
-    def _add_option(self, hand: DrawHand, name: str, about: About, materials: tuple[str, ...]) -> None:
-        unit = f" [{about.unit}]" if about.unit else ""
+    def _numbers(self) -> list[Item]:
+        """Place and size of the selection."""
+        items = []
+        for name, label, tip in (
+            ("x", "x", "Middle of the selection [m]"),
+            ("y", "y", "Middle of the selection [m]"),
+            ("width", "width", "Width of the selection [m]"),
+            ("height", "height", "Height of the selection [m]"),
+            ("turn", "turn by", "Angle to turn the selection by [degrees], counter-clockwise"),
+        ):
+            add = partial(self._add_field, name, partial(self._type_number, name), NUMBER_WIDTH, tip)
+            items.append(self._labelled(label, NUMBER_WIDTH, add, 2 * GAP if name in ("y", "height") else GAP))
+        return items
+
+    def _option(self, hand: DrawHand, name: str, about: About) -> Item:
         if about.kind == "flag":
-            width = self._ui.font(12).size(about.label)[0] / self._ui.scale + 22
-            if self._room(width):
-                toggle = partial(self._toggle, hand, name)
-                button = self._ui.button(
-                    self._rect(width), about.label, toggle, self.back, style="@segment", tip=about.text
-                )
-                self.flags[name] = button
-                self._made.append(button)
-                self._x += 6
-            return
-        self._add_label(about.label + unit, "@muted")
-        if about.kind != "material":
-            tip = f"{about.text} The wheel or Up and Down change it."
-            self._add_field(name, partial(self._type_option, hand, name, about), ENTRY_WIDTH, tip)
-            if name in self.fields:
-                self.fields[name].turn = partial(self._turn_option, hand, name, about)
-        elif self._room(MENU_WIDTH):
-            chosen = getattr(hand.drawing.options, name)
-            if chosen not in materials:
-                chosen = materials[-1] if len(materials) > 1 else DEFAULT_MATERIAL
-                self._set(hand, name, chosen)
-            picker = Picker(self._ui, self._rect(MENU_WIDTH), partial(self._choose, hand, name), self.back)
-            picker.set_tooltip(about.text)
-            self.menus[name] = picker
-            self._made.append(picker)
-            self._x += GAP
+            width = self._text_width(about.label) + 22
+            return width + LABEL_GAP, partial(self._add_flag, hand, name, about, width)
+        label = about.label + (f" [{about.unit}]" if about.unit else "")
+        if about.kind == "material":
+            self._settle_material(hand, name)
+            return self._labelled(label, MENU_WIDTH, partial(self._add_picker, hand, name, about))
+        return self._labelled(label, ENTRY_WIDTH, partial(self._add_value, hand, name, about))
+
+    def _add_flag(self, hand: DrawHand, name: str, about: About, width: float) -> None:
+        toggle = partial(self._toggle, hand, name)
+        button = self._ui.button(self._rect(width), about.label, toggle, self.back, style="@segment", tip=about.text)
+        self.flags[name] = button
+        self._made.append(button)
+        self._x += LABEL_GAP
+
+    def _add_value(self, hand: DrawHand, name: str, about: About) -> None:
+        tip = f"{about.text} The wheel or Up and Down change it."
+        self._add_field(name, partial(self._type_option, hand, name, about), ENTRY_WIDTH, tip)
+        self.fields[name].turn = partial(self._turn_option, hand, name, about)
+
+    def _settle_material(self, hand: DrawHand, name: str) -> None:
+        """Draw with a material that the level has."""
+        materials = self._screen.scene.materials
+        if getattr(hand.drawing.options, name) not in materials:
+            self._set(hand, name, materials[-1] if len(materials) > 1 else DEFAULT_MATERIAL)
+
+    def _add_picker(self, hand: DrawHand, name: str, about: About) -> None:
+        picker = Picker(self._ui, self._rect(MENU_WIDTH), partial(self._choose, hand, name), self.back)
+        picker.set_tooltip(about.text)
+        self.menus[name] = picker
+        self._made.append(picker)
 
     # Showing.
 

@@ -90,11 +90,6 @@ class RowList(Painted):
 
     # Where things are.
 
-    def rect_of(self, index: int) -> pygame.Rect:
-        """Where a row is in the window."""
-        top, bottom = self._tops[index], self._tops[index + 1]
-        return pygame.Rect(self.rect.left, self.rect.top + top - round(self._offset), self.rect.width, bottom - top)
-
     def _row_at(self, pos: tuple[int, int]) -> int | None:
         x, y = self.ui.manager.calculate_scaled_mouse_position(pos)
         if not self.hover_point(x, y):

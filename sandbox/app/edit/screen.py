@@ -1,9 +1,8 @@
 """EditScreen: a level that is edited: canvas and rulers, palette, bar, tool options, and the panel at the side."""
 
-import gc
 import math
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections import deque
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import pygame
@@ -24,7 +23,7 @@ from sandbox.app.edit.watch import Watch
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Pixel, Pointer
 from sandbox.app.shortcuts import Mode
-from sandbox.app.stage import PICK_RADIUS, WHEEL_ZOOM
+from sandbox.app.stage import PICK_RADIUS
 from sandbox.app.status import STATUS_HEIGHT
 from sandbox.app.toolbar import BAR_HEIGHT
 from sandbox.app.widgets import Ui
@@ -49,6 +48,8 @@ SIDE_WIDTH = 292.0
 NUDGE_LEAP = 10
 # Of more items than this the panel at the side follows a frame later.
 LARGE_SELECTION = 1_000
+# Scenes of so many states are kept, for who goes back to them; one of 20,000 particles takes some megabytes.
+SCENES_KEPT = 4
 # View [m] of a level in which nothing is yet.
 FIRST_VIEW: Box = (-6.0, -3.0, 6.0, 4.0)
 
@@ -71,8 +72,9 @@ class EditScreen:
         self.show_side = True
         self.cursor: Point | None = None
         self.pointer: Pixel | None = None
-        self._scene: Scene | None = None
+        self._scenes: deque[Scene] = deque(maxlen=SCENES_KEPT)
         self._box: tuple[Scene, Selection, Box | None] | None = None
+        self._apart: tuple[Document, bool] | None = None
         self._seen: Document | None = None
         self._is_side_late = False
         self.watch = Watch(self)
@@ -95,10 +97,11 @@ class EditScreen:
     @property
     def scene(self) -> Scene:
         """The level as arrays."""
-        level = self.document.level
-        if self._scene is None or self._scene.level is not level:
-            self._scene = make_scene(level, self._scene)
-        return self._scene
+        level, scenes = self.document.level, self._scenes
+        if not scenes or scenes[-1].level is not level:
+            known = next((scene for scene in scenes if scene.level is level), None)
+            scenes.append(known or make_scene(level, scenes[-1] if scenes else None))
+        return scenes[-1]
 
     @property
     def selection_box(self) -> Box | None:
@@ -111,8 +114,7 @@ class EditScreen:
     def edit(self, label: str, function: Callable[[Document], Document], merge: str | None = None) -> bool:
         """Make an edit a step of the history; False, and a line for the person, where it cannot be made."""
         try:
-            with _no_collection():
-                document = function(self.document)
+            document = function(self.document)
         except EditError as error:
             self.say(str(error))
             return False
@@ -212,7 +214,10 @@ class EditScreen:
     @property
     def scales_apart(self) -> bool:
         """Whether width and height of the selection can be changed each by itself."""
-        return can_scale_unevenly(self.document)
+        document = self.document
+        if self._apart is None or self._apart[0] is not document:
+            self._apart = (document, can_scale_unevenly(document))
+        return self._apart[1]
 
     # Tools.
 
@@ -272,15 +277,12 @@ class EditScreen:
         else:
             self.hand.up(point, modifiers)
 
-    def wheel(self, pixel: Pixel, notches: float) -> None:
-        """Zoom about a pixel, or scroll the panel under it."""
-        self.camera.zoom_about(pixel, WHEEL_ZOOM**notches)
+    def press_key(self, key: int, modifiers: int) -> bool:
+        """No key of a level works while it is edited."""
+        return False
 
-    def zoom(self, notches: float) -> None:
-        """Zoom about the keyboard cursor, or the middle."""
-        left, top, width, height = self.camera.viewport
-        middle = (left + width / 2, top + height / 2)
-        self.wheel(middle if self.cursor is None else self.camera.to_pixels(self.cursor), notches)
+    def release_key(self, key: int) -> None:
+        """Nothing was held."""
 
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
         """Nudge the selection by a step of the grid, ten with Shift; without one, move the keyboard cursor."""
@@ -289,7 +291,7 @@ class EditScreen:
             self.edit("Nudge", lambda document: move(document, dx * step, dy * step), merge="nudge")
             return
         left, top, width, height = self.camera.viewport
-        x, y = self.cursor or self.snapped(self.camera.to_world((left + width / 2, top + height / 2)), 0).point
+        x, y = self.cursor or self.snapped(self.camera.to_world(self.camera.middle), 0).point
         (low_x, high_y), (high_x, low_y) = (
             self.camera.to_world(corner) for corner in ((left, top), (left + width, top + height))
         )
@@ -376,14 +378,3 @@ class EditScreen:
         if self.hand.matrix is not None or isinstance(self.hand, DrawHand):
             self.hand.cancel()
         self.history.end_merge()
-
-
-@contextmanager
-def _no_collection() -> Iterator[None]:
-    """No search for garbage among the objects of all states, which takes longer than the edit of a large level."""
-    gc.disable()
-    try:
-        yield
-    finally:
-        gc.freeze()
-        gc.enable()

@@ -5,10 +5,24 @@ ones, less the slow part of the velocity: that damps fast vibration and leaves s
 the body's energy stays within what it had plus what its bank holds of earlier losses; else f itself is minimised.
 """
 
-import numpy as np
+from collections.abc import Callable
 
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.physics.forces import Before
 from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.settings import AUTO
+from sandbox.physics.solvers.body import (
+    BANK_SHARE,
+    BOUNCY_BANK_SHARE,
+    SLOW_SHARE,
+    body_energy,
+    body_hidden,
+    load_body,
+    load_rows,
+    open_bank,
+)
 from sandbox.physics.solvers.goal import aim_at_form, find_tangled, let_go
 from sandbox.physics.solvers.halves import hire
 from sandbox.physics.solvers.measure import cap, extremes
@@ -17,8 +31,6 @@ from sandbox.physics.solvers.network import (
     hold_spin,
     kinetic,
     linearise,
-    load_springs,
-    potential,
     refine,
     solve_linear,
     update_impulses,
@@ -27,8 +39,6 @@ from sandbox.physics.solvers.pattern import Pattern, has_elements, is_current, m
 from sandbox.physics.solvers.shapes import (
     HIGHEST_COEFFICIENT,
     linearise_shapes,
-    load_shapes,
-    shape_potential,
     update_shapes,
 )
 from sandbox.physics.solvers.single_pass import Pair, apply_explicit
@@ -43,46 +53,16 @@ MISFIT_RATE = 0.36
 # Linear solves of a step at most. With 2, whipping ropes stretch up to 10 times as much and a hundredth of their steps
 # has to be minimised; a fourth is hardly ever asked for.
 LINEAR_SOLVES = 3
-# s += SLOW_SHARE (v' - s), per step. Higher leaves fast vibration undamped, lower damps slow turning.
-SLOW_SHARE = 0.3
-# The velocities foreseen before a first solve are v + CHANGE_AHEAD (v - s): of an even change, s lags behind by that of
-# 1 / CHANGE_AHEAD steps. Without it, or with less, smooth turning takes two solves where one is enough.
-CHANGE_AHEAD = SLOW_SHARE / (1.0 - SLOW_SHARE)
-# A body's bank holds at most this share of its energy: where every spring has Cs <= Cd, and where one has not (its
-# energy in this measure swings by up to 3 within a period). 0 would reject most steps at Cs = Cd = 1.
-BANK_SHARE = 0.05
-BOUNCY_BANK_SHARE = 3.0
 # Relative error of an energy summed over a large body; less rejects steps for rounding alone.
 ENERGY_ROUNDING = 1e-12
 # Halvings of the velocities before a body is stopped.
 LAST_HALVINGS = 60
 # The measures of springs where the number of parts is fixed: none.
 NOTHING = np.zeros(0)
+# The bodies that are solved elsewhere: none.
+NOBODY = np.zeros(0, dtype=np.bool_)
 
-
-@inner_kernel
-def _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, free_count, rows):  # type: ignore[no-untyped-def]
-    for r in range(rows.particle.shape[0]):
-        p = rows.particle[r]
-        rows.mass[r] = mass[p]
-        rows.inertia[r] = mass[p]
-        for axis in range(2):
-            rows.position[r, axis] = position[p, axis]
-            rows.moved[r, axis] = position[p, axis]
-            rows.target[r, axis] = velocity[p, axis]
-            rows.aim[r, axis] = velocity[p, axis]
-            rows.start[r, axis] = velocity[p, axis]
-            rows.slow[r, axis] = slow_velocity[p, axis]
-        if r < free_count:
-            rows.start[r, 0] -= gravity_x * h
-            rows.start[r, 1] -= gravity_y * h
-        else:
-            rows.moved[r, 0] += velocity[p, 0] * h
-            rows.moved[r, 1] += velocity[p, 1] * h
-        for axis in range(2):
-            rows.trial[r, axis] = rows.start[r, axis]
-            if r < free_count:
-                rows.trial[r, axis] += CHANGE_AHEAD * (rows.start[r, axis] - rows.slow[r, axis])
+Push = Callable[[World, Pattern, Floats, Floats, Floats, Floats, int, float, Before], NDArray[np.bool_]]
 
 
 @inner_kernel
@@ -117,68 +97,15 @@ def _take_candidate(  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _potential(first, last, low, high, position, velocity, springs, shapes, rest_length, time, h):  # type: ignore[no-untyped-def]
-    return potential(
-        first, last, position, velocity, springs, springs.measured, rest_length, time, h
-    ) + shape_potential(low, high, position, velocity, shapes, shapes.measured, time, h)  # fmt: skip
-
-
-@inner_kernel
-def _hidden(first, last, low, high, position, velocity, springs, shapes, rest_length, time, h):  # type: ignore[no-untyped-def]
-    # What the most k adds to the measure.
-    return potential(
-        first, last, position, velocity, springs, springs.hidden, rest_length, time, h
-    ) + shape_potential(low, high, position, velocity, shapes, shapes.hidden, time, h)  # fmt: skip
-
-
-@inner_kernel
-def _energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h):  # type: ignore[no-untyped-def]
-    # H = KE(v') + PE(x + h v')
-    return kinetic(first_row, last_row, rows.mass, rows.trial) + _potential(
-        first, last, low, high, rows.position, rows.trial, springs, shapes, rest_length, h, h
-    )
-
-
-@inner_kernel
-def _open_bank(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, low, high, rows, springs, shapes, bank, lowest, bouncy, spread, kinetic_after,
-    moved, rest_length, h,
-):  # fmt: skip
-    # The body's bank before the step. It is begun anew where a particle says so (-1): after any change from outside.
-    begun = True
-    for r in range(first_row, last_row):
-        p = rows.particle[r]
-        if bank[p] < 0.0:
-            begun = False
-            bank[p] = 0.0
-    held = bank[lowest] if begun else 0.0
-    if spread:
-        # Of the start, and of the work of hands.
-        hidden = _hidden(first, last, low, high, rows.position, rows.start, springs, shapes, rest_length, 0.0, h)
-        hidden_moved = _hidden(first, last, low, high, rows.moved, rows.moved, springs, shapes, rest_length, 0.0, h)
-        held += max(0.0, hidden_moved - hidden)
-        if not begun:
-            held += hidden
-    if not bouncy:
-        return held
-    before = kinetic(first_row, last_row, rows.mass, rows.start)
-    present = _potential(first, last, low, high, rows.position, rows.start, springs, shapes, rest_length, 0.0, h)
-    if not begun:
-        held += BOUNCY_BANK_SHARE * (before + present)
-    # Work done by gravity and by hands since then counts as energy of the start.
-    return max(0.0, held + BOUNCY_BANK_SHARE * (kinetic_after - before + moved - present))
-
-
-@inner_kernel
 def _step_body(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, tangled, aimed,
-    lowest, bank, bouncy, spread, moved, h,
+    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, rest_before, free,
+    tangled, aimed, lowest, bank, bouncy, spread, moved, h,
 ):  # fmt: skip
     kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
     before = kinetic_after + moved
-    held = _open_bank(
+    held = open_bank(
         first_row, last_row, first, last, low, high, rows, springs, shapes, bank, lowest, bouncy, spread,
-        kinetic_after, moved, rest_length, h,
+        kinetic_after, moved, rest_length, rest_before, h,
     )  # fmt: skip
     allowed = before * (1.0 + ENERGY_ROUNDING) + held
     after = 0.0
@@ -207,7 +134,7 @@ def _step_body(  # type: ignore[no-untyped-def]
             copy(first_row, last_row, rows.target, rows.trial)
     if not after <= allowed:
         minimise(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, h)
-        after = _energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h)
+        after = body_energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h)
         if not after <= allowed:
             after = _brake(
                 first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, allowed, h
@@ -215,7 +142,7 @@ def _step_body(  # type: ignore[no-untyped-def]
     share = BOUNCY_BANK_SHARE if bouncy else BANK_SHARE
     limit = share * before
     if spread:
-        limit += _hidden(first, last, low, high, rows.position, rows.trial, springs, shapes, rest_length, h, h)
+        limit += body_hidden(first, last, low, high, rows.position, rows.trial, springs, shapes, rest_length, h, h)
     saved = held + before - after
     # A tangled body keeps all that it lost for the way back to its form; one that hands move, no more than others do.
     if not (tangled and free):
@@ -231,14 +158,14 @@ def _brake(  # type: ignore[no-untyped-def]
     after = 0.0
     for _halving in range(LAST_HALVINGS):
         scale(first_row, last_row, 0.5, rows.trial)
-        after = _energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h)
+        after = body_energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h)
         if after <= allowed:
             break
     if not after <= allowed:
         for r in range(first_row, last_row):
             rows.trial[r, 0] = 0.0
             rows.trial[r, 1] = 0.0
-        after = _energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h)
+        after = body_energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h)
     keep_tension(first, last, rows, springs, h)
     return after
 
@@ -246,43 +173,35 @@ def _brake(  # type: ignore[no-untyped-def]
 @kernel
 def _solve_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, particle_active, rest_length, stiffness,
-    damping, material, tension, numbers, least, most, parts, gravity_x, gravity_y, h,
+    damping, material, tension, numbers, least, most, parts, before, rest_before, h, touched,
 ):  # fmt: skip
     bodies, rows, springs, shapes, matrix, goals = contents(numbers)
-    _load_rows(position, velocity, mass, slow_velocity, gravity_x, gravity_y, h, matrix.diagonal.shape[0], rows)
+    load_rows(position, velocity, mass, slow_velocity, before, h, matrix.diagonal.shape[0], rows)
     for body in range(bodies.lowest.shape[0]):
+        if touched.shape[0] > 0 and touched[body]:
+            continue
         first_row = bodies.row_start[body]
         last_row = bodies.row_start[body + 1]
         first = bodies.spring_start[body]
         last = bodies.spring_start[body + 1]
         low = bodies.shape_start[body]
         high = bodies.shape_start[body + 1]
-        body_mass = 0.0
-        for r in range(first_row, last_row):
-            body_mass += rows.mass[r]
-        # Gravity moves a body without anchors as a whole: started there, it falls without rounding.
         free = not bodies.anchored[body]
-        if free:
-            copy(first_row, last_row, rows.target, rows.trial)
-        bouncy, spread, moved = load_springs(
-            first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,
-            least, most, parts, h, matrix.diagonal.shape[0],
+        bouncy, spread, moved = load_body(
+            first_row, last_row, first, last, low, high, free, inverse_mass, rest_length, stiffness, damping, material,
+            tension, rows, springs, shapes, least, most, parts, h, matrix.diagonal.shape[0],
         )  # fmt: skip
         tangled = False
         aimed = False
         if high > low:
-            more_bouncy, more_spread, more_moved = load_shapes(low, high, inverse_mass, rows, shapes, parts, h)
-            bouncy = bouncy or more_bouncy
-            spread = spread or more_spread
-            moved += more_moved
             tangled = find_tangled(body, low, high, rows, shapes, goals)
             if tangled:
                 aimed = aim_at_form(
                     body, last_row - first_row, not free, rows, shapes, goals, h, matrix.diagonal.shape[0]
                 )  # fmt: skip
         _step_body(
-            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, tangled,
-            aimed, bodies.lowest[body], energy_bank, bouncy, spread, moved, h,
+            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, rest_before, free,
+            tangled, aimed, bodies.lowest[body], energy_bank, bouncy, spread, moved, h,
         )  # fmt: skip
         for r in range(first_row, last_row):
             velocity[rows.particle[r], 0] = rows.trial[r, 0]
@@ -310,8 +229,11 @@ def pattern_of(world: World) -> Pattern:
     return pattern
 
 
-def solve(world: World, springs: Pair, elements: Pair, h: float) -> None:
-    """Bring the velocities to the end of a step of h [s]; slow_velocity, energy_bank and tension go with them."""
+def solve(world: World, springs: Pair, elements: Pair, h: float, before: Before, push: Push | None = None) -> None:
+    """Bring the velocities to the end of a step of h [s]; slow_velocity, energy_bank and tension go with them.
+
+    push: solves the bodies that contacts push and tells which they are (bodies,); the others never hear of it.
+    """
     pattern = pattern_of(world)
     if pattern.has_hooke:
         apply_explicit(world, pattern.hooke, springs, h)
@@ -323,11 +245,11 @@ def solve(world: World, springs: Pair, elements: Pair, h: float) -> None:
         least, most = extremes(world.stiffness, world.damping)
     if len(pattern.shapes.slot):
         load_constants(pattern, world, elements, parts)
-    gravity_x, gravity_y = world.settings.gravity
+    touched = NOBODY if push is None else push(world, pattern, stiffness, damping, least, most, parts, h, before)
     _solve_bodies(
         world.position, world.velocity, world.mass, world.inverse_mass, world.slow_velocity, world.energy_bank,
         world.particle_active, world.rest_length, stiffness, damping, world.material, world.tension,
-        pattern.numbers, least, most, parts, gravity_x, gravity_y, h,
+        pattern.numbers, least, most, parts, before.velocity, before.rest_length, h, touched,
     )  # fmt: skip
 
 

@@ -10,7 +10,18 @@ import numpy as np
 
 from sandbox.physics.elements import AREA, BEND, element_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, reduced_mass
+from sandbox.physics.forces import Before
 from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.shapes import NO_CONTACTS
+from sandbox.physics.solvers.contact_sweep import (
+    add_change,
+    load_biases,
+    load_responses,
+    loose_blocks,
+    new_push,
+    start_impulses,
+    sweep,
+)
 from sandbox.physics.solvers.single_pass import Pair, apply_explicit
 from sandbox.physics.world import LAW_HOOKE, Floats, World
 
@@ -23,8 +34,8 @@ AREA_SHARE = 0.5
 class Wanted(NamedTuple):
     """Scratch of the elements: corners' places and gradients (q, 2), and of each (t,) what `_iterate_elements` says.
 
-    wanted = -(Cs C / h + Cd dC/dt) m. Of a bend, damped = Cd m, kept = 1 - Cd and whole = kept + Cd m / present mass; of
-    an area, as of a spring, damped = m, kept = 0 and whole = 1, then 1 / AREA_SHARE. impulse = the sum of its j.
+    wanted = -(Cs C / h + Cd dC/dt) m. Of a bend, damped = Cd m, kept = 1 - Cd, whole = kept + Cd m / present mass; of an
+    area, as of a spring, damped = m, kept = 0 and whole = 1, then 1 / AREA_SHARE. impulse = the sum of its j.
     """
 
     place: Floats
@@ -108,7 +119,7 @@ def _iterate_springs(count, inverse_mass, end_a, end_b, slot, normal, wanted, ma
 def _iterate(  # type: ignore[no-untyped-def]
     position, velocity, inverse_mass, particle_a, particle_b, rest_length, stiffness, damping, law, spring_active, h,
     iterations, warm_start, accumulated, end_a, end_b, slot, normal, wanted, mass, change, elements,
-    element_stiffness, element_damping, element_wanted,
+    element_stiffness, element_damping, element_wanted, contacts, push, blocks,
 ):  # fmt: skip
     # r = -(Cs x / h + Cd u), the wanted change of relative velocity.
     count = 0
@@ -146,21 +157,24 @@ def _iterate(  # type: ignore[no-untyped-def]
     _prepare_elements(
         position, velocity, inverse_mass, elements, element_stiffness, element_damping, h, element_wanted
     )  # fmt: skip
+    load_responses(contacts, push, inverse_mass, blocks)
+    start_impulses(contacts, change, inverse_mass, blocks)
     for _ in range(iterations):
         _iterate_springs(count, inverse_mass, end_a, end_b, slot, normal, wanted, mass, change, accumulated)
         _iterate_elements(inverse_mass, elements, element_wanted, change)
-    for i in range(inverse_mass.shape[0]):
-        if inverse_mass[i] > 0.0:
-            velocity[i, 0] += change[i, 0]
-            velocity[i, 1] += change[i, 1]
+        sweep(contacts, push, velocity, change, inverse_mass, blocks)
+    add_change(velocity, change, inverse_mass)
 
 
-def solve(world: World, springs: Pair, elements: Pair, h: float) -> None:
+def solve(world: World, springs: Pair, elements: Pair, h: float, before: Before) -> None:
     """Bring the velocities to the end of a step of h [s]; world.impulse keeps the sums for the next warm start."""
     hooke = world.spring_active & (world.law == LAW_HOOKE)
     if hooke.any():
         apply_explicit(world, hooke, springs, h)
-    count = world.spring_count
+    count, contacts = world.spring_count, world.contacts or NO_CONTACTS
+    blocks = loose_blocks(world.particle_count if world.contacts else 0)
+    push = new_push(len(contacts.particle))
+    load_biases(contacts, push, h)
     end_a, end_b, slot = np.zeros((3, count), dtype=np.int64)
     place, slope = np.zeros((2, len(world.corner_particle), 2))
     wanted = Wanted(place, slope, *np.zeros((5, world.element_count)))
@@ -169,4 +183,5 @@ def solve(world: World, springs: Pair, elements: Pair, h: float) -> None:
         springs[0], springs[1], world.law, world.spring_active, h, world.settings.iterations,
         world.settings.warm_start, world.impulse, end_a, end_b, slot, np.zeros((count, 2)), np.zeros(count),
         np.zeros(count), np.zeros((world.particle_count, 2)), world.elements, elements[0], elements[1], wanted,
+        contacts, push, blocks,
     )  # fmt: skip

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from sandbox.physics.elements import element_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, reduced_mass, spring_impulse
+from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
+from sandbox.physics.solvers.contact_sweep import load_biases, loose_blocks, new_push, sweep_masses
 from sandbox.physics.world import Floats, World
 
 # Cs and Cd of springs (m,) or elements (t,).
@@ -90,9 +92,19 @@ def apply_explicit(
     )  # fmt: skip
 
 
-def solve(world: World, springs: Pair, elements: Pair, h: float) -> None:
-    """Bring the velocities to the end of a step of h [s]."""
+def solve(world: World, springs: Pair, elements: Pair, h: float, before: Before) -> None:
+    """Bring the velocities to the end of a step of h [s]; contacts are swept after springs and elements."""
+    contacts = world.contacts
+    if contacts is None:
+        apply_explicit(world, world.spring_active, springs, h, elements)
+        return
+    push = new_push(len(contacts.particle))
+    load_biases(contacts, push, h)
     apply_explicit(world, world.spring_active, springs, h, elements)
+    sweep_masses(
+        contacts, push, world.velocity, np.zeros((world.particle_count, 2)), world.inverse_mass,
+        loose_blocks(world.particle_count), world.settings.iterations,
+    )  # fmt: skip
 
 
 def spring_constant(stiffness: Any, damping: Any, mass: Any, h: float) -> Any:

@@ -1,0 +1,162 @@
+"""What acts on particles before the springs do: gravity, the air, motors. To the springs it is work from outside."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.world import Floats, World
+
+# Below this moment of inertia [kg m^2] a group of particles has no direction to be turned in.
+LEAST_INERTIA = 1e-150
+
+
+class Before(NamedTuple):
+    """What a step begins with, before forces and drives: velocity [m/s] (n, 2) and rest_length [m] (m,).
+
+    A solver that tests energies measures by it what forces and drives have done.
+    """
+
+    velocity: Floats
+    rest_length: Floats
+
+
+@kernel
+def _add_gravity(velocity, inverse_mass, gravity_scale, active, gravity_x, gravity_y, h):  # type: ignore[no-untyped-def]
+    # v += g h for free particles, times their gravity scale.
+    for p in range(inverse_mass.shape[0]):
+        if active[p] and inverse_mass[p] > 0.0:
+            velocity[p, 0] += gravity_x * gravity_scale[p] * h
+            velocity[p, 1] += gravity_y * gravity_scale[p] * h
+
+
+@kernel
+def _add_air(velocity, inverse_mass, active, wind_x, wind_y, drag, h):  # type: ignore[no-untyped-def]
+    # v' = v + h drag (wind - v'), implicit: v += (1 - 1 / (1 + drag h)) (wind - v), which never overshoots.
+    share = drag * h / (1.0 + drag * h)
+    for p in range(inverse_mass.shape[0]):
+        if active[p] and inverse_mass[p] > 0.0:
+            velocity[p, 0] += share * (wind_x - velocity[p, 0])
+            velocity[p, 1] += share * (wind_y - velocity[p, 1])
+
+
+@inner_kernel
+def _spin(group, first, last, position, velocity, mass, inverse_mass):  # type: ignore[no-untyped-def]
+    # Centre of mass, angular velocity about it and moment of inertia of a group; infinite (-1) where one is pinned.
+    total = 0.0
+    x = 0.0
+    y = 0.0
+    u = 0.0
+    v = 0.0
+    for i in range(first, last):
+        p = group[i]
+        if inverse_mass[p] == 0.0:
+            return 0.0, 0.0, 0.0, -1.0
+        total += mass[p]
+        x += mass[p] * position[p, 0]
+        y += mass[p] * position[p, 1]
+        u += mass[p] * velocity[p, 0]
+        v += mass[p] * velocity[p, 1]
+    if not total > 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    x /= total
+    y /= total
+    u /= total
+    v /= total
+    inertia = 0.0
+    momentum = 0.0
+    for i in range(first, last):
+        p = group[i]
+        dx = position[p, 0] - x
+        dy = position[p, 1] - y
+        inertia += mass[p] * (dx * dx + dy * dy)
+        momentum += mass[p] * (dx * (velocity[p, 1] - v) - dy * (velocity[p, 0] - u))
+    if not inertia > LEAST_INERTIA:
+        return 0.0, 0.0, 0.0, 0.0
+    return x, y, momentum / inertia, inertia
+
+
+@inner_kernel
+def _turn(group, first, last, position, velocity, x, y, change):  # type: ignore[no-untyped-def]
+    # Change a group's angular velocity about its centre of mass: no impulse along any direction, for sum m r = 0.
+    for i in range(first, last):
+        p = group[i]
+        dx = position[p, 0] - x
+        dy = position[p, 1] - y
+        velocity[p, 0] -= change * dy
+        velocity[p, 1] += change * dx
+
+
+@inner_kernel
+def _find_mount(hub, stamp, particle_a, particle_b, spring_active, material, mark, mount):  # type: ignore[no-untyped-def]
+    # The hub and what springs join to it besides its wheel, which is marked with the stamp; how many they are.
+    mount[0] = hub
+    mark[hub] = stamp
+    count = 1
+    for s in range(spring_active.shape[0]):
+        if not spring_active[s] or material[s] < 0:
+            continue
+        other = -1
+        if particle_a[s] == hub:
+            other = particle_b[s]
+        elif particle_b[s] == hub:
+            other = particle_a[s]
+        if other >= 0 and mark[other] != stamp:
+            mark[other] = stamp
+            mount[count] = other
+            count += 1
+    return count
+
+
+@kernel
+def _run_motors(  # type: ignore[no-untyped-def]
+    position, velocity, mass, inverse_mass, particle_a, particle_b, spring_active, material, hub, speed, torque, part,
+    rim_start, rim, part_value, mark, mount, h,
+):  # fmt: skip
+    # The angular impulse P [N m s] that brings the wheel to its speed against its mount, at most torque h:
+    # P = (speed - (omega_wheel - omega_mount)) / (1 / I_wheel + 1 / I_mount), +P on the wheel and -P on the mount.
+    for k in range(hub.shape[0]):
+        value = part_value[part[k]]
+        if value == 0.0:
+            continue
+        for i in range(rim_start[k], rim_start[k + 1]):
+            mark[rim[i]] = k + 1
+        count = _find_mount(hub[k], k + 1, particle_a, particle_b, spring_active, material, mark, mount)
+        wheel_x, wheel_y, wheel_turn, wheel_inertia = _spin(
+            rim, rim_start[k], rim_start[k + 1], position, velocity, mass, inverse_mass
+        )
+        mount_x, mount_y, mount_turn, mount_inertia = _spin(mount, 0, count, position, velocity, mass, inverse_mass)
+        # Without anything to push against, as with a wheel all alone, a motor does nothing.
+        if wheel_inertia == 0.0 or mount_inertia == 0.0:
+            continue
+        of_wheel = 1.0 / wheel_inertia if wheel_inertia > 0.0 else 0.0
+        of_mount = 1.0 / mount_inertia if mount_inertia > 0.0 else 0.0
+        if of_wheel + of_mount == 0.0:
+            continue
+        impulse = (value * speed[k] - (wheel_turn - mount_turn)) / (of_wheel + of_mount)
+        impulse = min(max(impulse, -torque[k] * h), torque[k] * h)
+        if of_wheel > 0.0:
+            _turn(rim, rim_start[k], rim_start[k + 1], position, velocity, wheel_x, wheel_y, impulse * of_wheel)
+        if of_mount > 0.0:
+            _turn(mount, 0, count, position, velocity, mount_x, mount_y, -impulse * of_mount)
+
+
+def apply_forces(world: World, h: float) -> None:
+    """Bring the velocities of free particles from the start of a step of h [s] to where its springs begin.
+
+    A motor's reaction goes to its hub and what springs join to it, so that momentum and angular momentum are kept;
+    where one of these is pinned, it goes to the ground.
+    """
+    settings, motors = world.settings, world.driven.motors
+    _add_gravity(
+        world.velocity, world.inverse_mass, world.gravity_scale, world.particle_active, *settings.gravity, h
+    )  # fmt: skip
+    if settings.drag > 0.0:
+        _add_air(world.velocity, world.inverse_mass, world.particle_active, *settings.wind, settings.drag, h)
+    if len(motors.hub):
+        mark, mount = np.zeros((2, world.particle_count), dtype=np.int64)
+        _run_motors(
+            world.position, world.velocity, world.mass, world.inverse_mass, world.particle_a, world.particle_b,
+            world.spring_active, world.material, motors.hub, motors.speed, motors.torque, motors.part,
+            motors.rim_start, motors.rim, world.part_value, mark, mount, h,
+        )  # fmt: skip

@@ -1,0 +1,41 @@
+"""The page of keys: whole where the window has room, scrolled to where it has not, never squeezed."""
+
+import pygame
+import pytest
+
+from sandbox.app.edit.scroll import ScrollBar
+from sandbox.app.help import ShortcutTable
+
+
+def table(driver):
+    sprites = driver.app.ui.manager.get_sprite_group().sprites()
+    return next(sprite for sprite in sprites if isinstance(sprite, ShortcutTable))
+
+
+@pytest.mark.parametrize("mode", ["edit", "play"])
+def test_all_keys_are_seen_at_once_in_the_usual_window(edit, mode):
+    driver = edit()
+    driver.app.display.window.size = (1280, 720)
+    driver.frames(2)
+    if mode == "play":
+        driver.app.act("play")
+    driver.key(pygame.K_F1)
+    shown = table(driver)
+    assert driver.app.mode == mode and shown.ui_container.rect.contains(shown.rect)
+    assert not isinstance(driver.app.ui.focus, ScrollBar)
+    driver.key(pygame.K_RETURN)
+    assert not driver.app.ui.has_sheet
+
+
+def test_a_small_window_scrolls_to_the_last_key_by_the_keyboard(edit):
+    driver = edit()
+    driver.app.display.window.size = (640, 440)
+    driver.frames(2)
+    driver.key(pygame.K_F1)
+    bar, shown = driver.app.ui.focus, table(driver)
+    top = shown.rect.top
+    assert isinstance(bar, ScrollBar) and bar.needed
+    driver.key(pygame.K_END)
+    assert shown.rect.top < top and shown.rect.bottom <= bar.rect.bottom + 1
+    driver.key(pygame.K_ESCAPE)
+    assert not driver.app.ui.has_sheet
