@@ -34,8 +34,8 @@ AREA_SHARE = 0.5
 class Wanted(NamedTuple):
     """Scratch of the elements: corners' places and gradients (q, 2), and of each (t,) what `_iterate_elements` says.
 
-    wanted = -(Cs C / h + Cd dC/dt) m. Of a bend, damped = Cd m, kept = 1 - Cd, whole = kept + Cd m / present mass; of an
-    area, as of a spring, damped = m, kept = 0 and whole = 1, then 1 / AREA_SHARE. impulse = the sum of its j.
+    wanted = -(Cs C / h + Cd dC/dt) m; impulse = the sum of its j. Of a bend, damped = Cd m, kept = 1 - Cd and whole =
+    kept + Cd m / present mass. Of an area, as of a spring, damped = m, kept = 0 and whole = 1, then 1 / AREA_SHARE.
     """
 
     place: Floats
