@@ -14,6 +14,16 @@ from sandbox.physics.jit import bundle_kernel, inner_kernel
 from sandbox.physics.shapes import weight_of
 from sandbox.physics.solvers import direct
 from sandbox.physics.solvers.contact_clusters import find_touching
+from sandbox.physics.solvers.contact_energy import (
+    brake,
+    hold,
+    judge,
+    measure_body,
+    open_loose,
+    save,
+    stop_loose,
+    stop_rows,
+)
 from sandbox.physics.solvers.contact_sweep import (
     load_biases,
     load_responses,
@@ -22,13 +32,8 @@ from sandbox.physics.solvers.contact_sweep import (
 )
 from sandbox.physics.solvers.direct import (
     AHEAD,
-    BANK_SHARE,
-    BOUNCY_BANK_SHARE,
-    ENERGY_ROUNDING,
-    LAST_HALVINGS,
     LINEAR_SOLVES,
     MISFIT_RATE,
-    body_energy,
     copy_rows,
     keep_tension,
     load_rows,
@@ -128,8 +133,8 @@ def _push_all(touching, contacts, push, blocks, inverse_mass):  # type: ignore[n
 
 
 @inner_kernel
-def _answer(touching, items, rest_length, h):  # type: ignore[no-untyped-def]
-    # v' = free + A^-1 J^T lambda of every body; its energy and misfit.
+def _answer(touching, items, position, collides, terrain, rest_length, h):  # type: ignore[no-untyped-def]
+    # v' = free + A^-1 J^T lambda of every body, stopped at terrain; its energy and misfit.
     bodies, rows, springs, matrix = items
     for k in range(touching.body.shape[0]):
         body = touching.body[k]
@@ -144,102 +149,25 @@ def _answer(touching, items, rest_length, h):  # type: ignore[no-untyped-def]
         held, misfit, _ = update_impulses(first, last, rows, springs, rest_length, h, matrix.diagonal.shape[0])
         for s in range(first, last):
             springs.tension[s] = max(0.0, -springs.impulse[s])
-        touching.after[k] = kinetic(first_row, last_row, rows.mass, rows.trial) + held
+        if stop_rows(first_row, last_row, rows, collides, terrain, h):
+            held = potential(
+                first, last, rows.position, rows.trial, springs, springs.measured, rest_length, h, h
+            )  # fmt: skip
+            keep_tension(first, last, rows, springs, h)
+        measure_body(touching, k, items, held)
         touching.misfit[k] = misfit
+    stop_loose(touching, position, collides, terrain, h)
 
 
 @inner_kernel
-def _judge(touching, contacts, push, blocks, mass, inverse_mass):  # type: ignore[no-untyped-def]
-    # Energy test of every cluster; whether any fails.
-    for cluster in range(touching.total.shape[0]):
-        touching.total[cluster] = 0.0
-        touching.allowed[cluster] = 0.0
-    for k in range(touching.body.shape[0]):
-        touching.total[touching.cluster[k]] += touching.after[k]
-        touching.allowed[touching.cluster[k]] += touching.before[k] * (1.0 + ENERGY_ROUNDING) + touching.held[k]
-    for i in range(touching.loose.shape[0]):
-        p = touching.loose[i]
-        ux, uy = touching.given[p, 0], touching.given[p, 1]
-        vx, vy = ux + touching.change[p, 0], uy + touching.change[p, 1]
-        touching.total[touching.loose_cluster[i]] += 0.5 * mass[p] * (vx * vx + vy * vy)
-        touching.allowed[touching.loose_cluster[i]] += 0.5 * mass[p] * (ux * ux + uy * uy) * (1.0 + ENERGY_ROUNDING)
-    # What overlaps is pushed apart by work that a contact does.
-    for c in range(contacts.particle.shape[0]):
-        if push.bias[c] < 0.0 and contacts.gap[c] < 0.0:
-            cluster = _cluster_of(contacts, c, touching, blocks, inverse_mass)
-            if cluster >= 0:
-                touching.allowed[cluster] -= contacts.impulse[c, 0] * push.bias[c]
-    failing = False
-    for cluster in range(touching.total.shape[0]):
-        touching.fails[cluster] = not touching.total[cluster] <= touching.allowed[cluster]
-        failing = failing or touching.fails[cluster]
-    return failing
-
-
-@inner_kernel
-def _cluster_of(contacts, c, touching, blocks, inverse_mass):  # type: ignore[no-untyped-def]
-    for end in range(3):
-        p, _ = weight_of(contacts, c, end)
-        if p >= 0 and inverse_mass[p] > 0.0:
-            if blocks.block[p] >= 0:
-                return touching.cluster[blocks.block[p]]
-            low = 0
-            high = touching.loose.shape[0] - 1
-            while low < high:
-                middle = (low + high) // 2
-                if touching.loose[middle] < p:
-                    low = middle + 1
-                else:
-                    high = middle
-            return touching.loose_cluster[low]
-    return -1
-
-
-@inner_kernel
-def _brake(touching, items, contacts, push, blocks, mass, inverse_mass, rest_length, h):  # type: ignore[no-untyped-def]
-    # Halve the velocities of clusters that fail until they pass; at rest they do.
-    bodies, rows, springs, _ = items
-    for halving in range(LAST_HALVINGS + 1):
-        factor = 0.5 if halving < LAST_HALVINGS else 0.0
-        for k in range(touching.body.shape[0]):
-            if touching.fails[touching.cluster[k]]:
-                body = touching.body[k]
-                first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
-                first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
-                for r in range(first_row, last_row):
-                    rows.trial[r, 0] *= factor
-                    rows.trial[r, 1] *= factor
-                touching.after[k] = body_energy(first_row, last_row, first, last, rows, springs, rest_length, h)
-                keep_tension(first, last, rows, springs, h)
-        for i in range(touching.loose.shape[0]):
-            if touching.fails[touching.loose_cluster[i]]:
-                p = touching.loose[i]
-                for axis in range(2):
-                    v = touching.given[p, axis] + touching.change[p, axis]
-                    touching.change[p, axis] = factor * v - touching.given[p, axis]
-        if not _judge(touching, contacts, push, blocks, mass, inverse_mass):
-            break
-
-
-@inner_kernel
-def _finish(touching, items, velocity, energy_bank, tension, rest_length, h):  # type: ignore[no-untyped-def]
-    # Velocities, tensions, and banks, which together hold no more than the cluster has lost.
+def _finish(touching, items, velocity, tension):  # type: ignore[no-untyped-def]
     bodies, rows, springs, _ = items
     for k in range(touching.body.shape[0]):
         body = touching.body[k]
-        first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
-        first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
-        limit = (BOUNCY_BANK_SHARE if touching.bouncy[k] else BANK_SHARE) * touching.before[k]
-        if touching.spread[k]:
-            limit += potential(first, last, rows.position, rows.trial, springs, springs.hidden, rest_length, h, h)
-        left = max(0.0, touching.allowed[touching.cluster[k]] - touching.total[touching.cluster[k]])
-        saved = min(min(touching.held[k] + touching.before[k] - touching.after[k], limit), left)
-        energy_bank[bodies.lowest[body]] = saved if saved > 0.0 else 0.0
-        touching.allowed[touching.cluster[k]] -= max(0.0, saved)
-        for r in range(first_row, last_row):
+        for r in range(bodies.row_start[body], bodies.row_start[body + 1]):
             velocity[rows.particle[r], 0] = rows.trial[r, 0]
             velocity[rows.particle[r], 1] = rows.trial[r, 1]
-        for s in range(first, last):
+        for s in range(bodies.spring_start[body], bodies.spring_start[body + 1]):
             tension[springs.slot[s]] = springs.tension[s]
     for i in range(touching.loose.shape[0]):
         p = touching.loose[i]
@@ -250,7 +178,8 @@ def _finish(touching, items, velocity, energy_bank, tension, rest_length, h):  #
 @bundle_kernel
 def _push_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, rest_length, stiffness, damping, material,
-    tension, numbers, least, most, parts, before, rest_before, h, touching, blocks, columns, contacts, push,
+    tension, collides, numbers, least, most, parts, before, rest_before, h, touching, blocks, columns, contacts, push,
+    terrain,
 ):  # fmt: skip
     items = numbers.items
     _, rows, _, matrix = items
@@ -259,25 +188,29 @@ def _push_bodies(  # type: ignore[no-untyped-def]
         touching, items, energy_bank, inverse_mass, rest_length, rest_before, stiffness, damping, material, tension,
         least, most, parts, h,
     )  # fmt: skip
+    open_loose(touching, mass, energy_bank)
     failing = False
-    for solve in range(LINEAR_SOLVES + NEWTON_ROUNDS):
+    for solve in range(LINEAR_SOLVES + 1 + NEWTON_ROUNDS):
         if solve < LINEAR_SOLVES:
             _solve_due(touching, items, blocks, columns, h, AHEAD, AHEAD)
+        elif solve == LINEAR_SOLVES:
+            hold(touching, contacts, push, inverse_mass, h)
         else:
             _solve_due(touching, items, blocks, columns, h, 1.0, 0.0)
         _push_all(touching, contacts, push, blocks, inverse_mass)
-        _answer(touching, items, rest_length, h)
-        failing = _judge(touching, contacts, push, blocks, mass, inverse_mass)
+        _answer(touching, items, position, collides, terrain, rest_length, h)
+        failing = judge(touching, mass, before)
         again = False
         for k in range(touching.body.shape[0]):
             inexact = solve < LINEAR_SOLVES - 1 and touching.misfit[k] > MISFIT_RATE * h * h
             touching.due[k] = inexact or touching.fails[touching.cluster[k]]
             again = again or touching.due[k]
-        if not again:
+        if not (again or failing):
             break
     if failing:
-        _brake(touching, items, contacts, push, blocks, mass, inverse_mass, rest_length, h)
-    _finish(touching, items, velocity, energy_bank, tension, rest_length, h)
+        brake(touching, items, position, mass, before, collides, terrain, rest_length, h)
+    save(touching, items, contacts, push, inverse_mass, rest_length, energy_bank, h)
+    _finish(touching, items, velocity, tension)
 
 
 def _push(
@@ -304,8 +237,8 @@ def _push(
     columns = np.zeros(4 * int(sizes.max(initial=0)))
     _push_bodies(
         world.position, world.velocity, world.mass, world.inverse_mass, world.slow_velocity, world.energy_bank,
-        world.rest_length, stiffness, damping, world.material, world.tension, pattern.numbers, least, most, parts,
-        before.velocity, before.rest_length, h, touching, blocks, columns, contacts, push,
+        world.rest_length, stiffness, damping, world.material, world.tension, world.collides, pattern.numbers, least,
+        most, parts, before.velocity, before.rest_length, h, touching, blocks, columns, contacts, push, world.terrain,
     )  # fmt: skip
     return touched
 
