@@ -15,9 +15,10 @@ from sandbox.physics.world import Floats, Slots, World
 class Touching(NamedTuple):
     """The bodies and the loose particles that something touches, in this order a cluster's members; and scratch.
 
-    By member: cluster, before, held, after, limit [J]; member: of each particle (n,), -1: none; row likewise. By body:
-    misfit; due: to be solved again; spread, bouncy: of its springs. total, allowed [J], fails by cluster. free, pushed
-    [m/s] by row. given, change [m/s] by particle: velocities without contacts, and what those add.
+    By member: cluster, before, held, after, limit [J], fresh = its bank is begun in this step; member: of each particle
+    (n,), -1: none; row likewise. By body: misfit; due: to be solved again; spread, bouncy: of its springs. By cluster:
+    total, allowed [J], fails. By row: free, pushed [m/s]. By particle: given, change [m/s]: velocities without contacts,
+    and what those add.
     """
 
     body: Slots
@@ -29,6 +30,7 @@ class Touching(NamedTuple):
     held: Floats
     after: Floats
     limit: Floats
+    fresh: NDArray[np.bool_]
     misfit: Floats
     due: NDArray[np.bool_]
     bouncy: NDArray[np.bool_]
@@ -121,10 +123,11 @@ def find_touching(world: World, pattern: Pattern, contacts: Contacts) -> tuple[T
     size = len(body)
     member = block.copy()
     member[loose] = size + np.arange(len(loose))
-    numbers, flags, sums = np.zeros((4, size + len(loose))), np.zeros((3, size), dtype=np.bool_), np.zeros((2, clusters))
+    members = size + len(loose)
+    flags, sums = np.zeros((3, size), dtype=np.bool_), np.zeros((2, clusters))
     touching = Touching(
-        body, loose, cluster.astype(np.int64), member, row, *numbers, np.zeros(size), *flags, *sums,
-        np.zeros(clusters, dtype=np.bool_), np.zeros((free_count, 2)), np.zeros((free_count, 2)),
+        body, loose, cluster.astype(np.int64), member, row, *np.zeros((4, members)), np.zeros(members, dtype=np.bool_),
+        np.zeros(size), *flags, *sums, np.zeros(clusters, dtype=np.bool_), *np.zeros((2, free_count, 2)),
         world.velocity.copy(), np.zeros((count, 2)),
     )  # fmt: skip
     return touching, blocks

@@ -16,6 +16,7 @@ from sandbox.physics.solvers import direct
 from sandbox.physics.solvers.contact_clusters import find_touching
 from sandbox.physics.solvers.contact_energy import (
     brake,
+    grant,
     hold,
     judge,
     measure_body,
@@ -76,6 +77,9 @@ def _begin(  # type: ignore[no-untyped-def]
         touching.bouncy[k] = bouncy
         touching.spread[k] = spread
         touching.before[k] = kinetic_after + moved
+        for r in range(first_row, last_row):
+            if energy_bank[rows.particle[r]] < 0.0:
+                touching.fresh[k] = True
         touching.held[k] = open_bank(
             first_row, last_row, first, last, rows, springs, energy_bank, bodies.lowest[body], bouncy, spread,
             kinetic_after, moved, rest_length, rest_before, h,
@@ -198,6 +202,8 @@ def _push_bodies(  # type: ignore[no-untyped-def]
         else:
             _solve_due(touching, items, blocks, columns, h, 1.0, 0.0)
         _push_all(touching, contacts, push, blocks, inverse_mass)
+        if solve == 0:
+            grant(touching, contacts, push, inverse_mass, h)
         _answer(touching, items, position, collides, terrain, rest_length, h)
         failing = judge(touching, mass, before)
         again = False

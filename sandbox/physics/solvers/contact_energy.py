@@ -94,6 +94,27 @@ def open_loose(touching, mass, energy_bank):  # type: ignore[no-untyped-def]
         ux, uy = touching.given[p, 0], touching.given[p, 1]
         touching.before[k] = 0.5 * mass[p] * (ux * ux + uy * uy)
         touching.held[k] = max(0.0, energy_bank[p])
+        touching.fresh[k] = energy_bank[p] < 0.0
+
+
+@inner_kernel
+def _stored(contacts, c, push, h):  # type: ignore[no-untyped-def]
+    # What the overlap of a contact stores [J].
+    if not (contacts.gap[c] < 0.0 and push.along[c] > 0.0):
+        return 0.0
+    depth = min(-contacts.gap[c] / h, FASTEST_PUSH)
+    return STORED * depth * depth / push.along[c]
+
+
+@inner_kernel
+def grant(touching, contacts, push, inverse_mass, h):  # type: ignore[no-untyped-def]
+    """Where a bank is begun, what overlaps then and there store counts as energy of the start."""
+    for c in range(contacts.particle.shape[0]):
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p >= 0 and inverse_mass[p] > 0.0 and touching.fresh[touching.member[p]]:
+                touching.held[touching.member[p]] += _stored(contacts, c, push, h)
+                break
 
 
 @inner_kernel
@@ -158,7 +179,7 @@ def _slow(first_row, last_row, rows, inner, factor, anchored):  # type: ignore[n
 
 @inner_kernel
 def brake(touching, items, position, mass, start, collides, terrain, rest_length, h):  # type: ignore[no-untyped-def]
-    """Slow down what moves within the bodies of clusters that fail, then all of them, until they pass; at rest they do."""
+    """Slow down what moves within the bodies of clusters that fail, then the bodies; at rest they pass."""
     bodies, rows, springs, _ = items
     for halving in range(LAST_HALVINGS + 1):
         inner = 0.5 if halving < INNER_HALVINGS else 0.0
@@ -200,9 +221,8 @@ def _limit(touching, items, contacts, push, inverse_mass, rest_length, h):  # ty
             )
     for c in range(contacts.particle.shape[0]):
         k = member_of(contacts, c, touching, inverse_mass)
-        if contacts.gap[c] < 0.0 and k >= 0 and push.along[c] > 0.0:
-            depth = min(-contacts.gap[c] / h, FASTEST_PUSH)
-            touching.limit[k] += STORED * depth * depth / push.along[c]
+        if k >= 0:
+            touching.limit[k] += _stored(contacts, c, push, h)
 
 
 @inner_kernel
