@@ -18,12 +18,13 @@ from sandbox.level.bodies import (
     GirderDef,
     JellyDef,
     MeshDef,
+    RingDef,
     RopeDef,
     WebDef,
     WheelDef,
 )
 from sandbox.level.limits import PARTICLE_LIMIT
-from sandbox.level.polygon import polygon_grid
+from sandbox.level.polygon import largest_part, polygon_grid
 
 Points = NDArray[np.float64]
 Pairs = NDArray[np.int64]
@@ -53,6 +54,8 @@ def form_count(body: AnyBody) -> tuple[int, int]:
             return 1 + body.spokes * body.rings, 2 * body.spokes * body.rings
         case WheelDef():
             return 1 + 2 * body.segments, 6 * body.segments
+        case RingDef():
+            return body.segments, body.segments
         case MeshDef():
             return len(body.particles), len(body.springs)
         case JellyDef():
@@ -72,6 +75,9 @@ def expand(body: AnyBody) -> tuple[Points, Pairs]:
             return _web(body)
         case WheelDef():
             return _wheel(body)
+        case RingDef():
+            centre = np.array(body.position, dtype=np.float64)
+            return centre + body.radius * _spokes(body.angle, body.segments), _ring(0, body.segments)
         case MeshDef():
             pairs = np.array(body.springs, dtype=np.int64).reshape(-1, 2)
             return np.array(body.particles, dtype=np.float64).reshape(-1, 2), pairs
@@ -185,9 +191,29 @@ def jelly_cells(body: JellyDef) -> NDArray[np.bool_]:
         reach = _reach(body.shape, body.spacing)
         steps = np.arange(-reach, reach + 1, dtype=np.float64)
         ratio = body.shape.circle / body.spacing + BORDER
-        return steps[:, None] * steps[:, None] + steps[None, :] * steps[None, :] <= ratio * ratio
+        return largest_part(steps[:, None] * steps[:, None] + steps[None, :] * steps[None, :] <= ratio * ratio)
     assert not isinstance(body.shape, BoxShape)
-    return polygon_grid(body.shape.polygon, body.spacing)[2]
+    return largest_part(polygon_grid(body.shape.polygon, body.spacing)[2])
+
+
+def jelly_triangles(body: JellyDef) -> Pairs:
+    """Triangles (t, 3) of a jelly's particles, counter-clockwise: two of each cell of its grid, one of three corners.
+
+    Cells are cut along one diagonal and the other in turns, as a chessboard is coloured: no way of shearing is easier.
+    """
+    cells = np.ones(box_grid(body)[::-1], dtype=np.bool_) if isinstance(body.shape, BoxShape) else jelly_cells(body)
+    numbers = _numbers(cells)
+    corners = np.stack([numbers[:-1, :-1], numbers[:-1, 1:], numbers[1:, 1:], numbers[1:, :-1]], axis=-1)
+    row, column = np.indices(corners.shape[:2])
+    corners = corners.reshape(-1, 4)
+    missing = corners < 0
+    # A missing corner is cut off; of whole cells the first or the second.
+    cut = np.where(missing.any(axis=1), np.argmax(missing, axis=1), ((row + column) % 2).reshape(-1))
+    ahead = cut[:, None] + np.array([1, 2, 3])
+    inner = np.take_along_axis(corners, ahead % 4, axis=1)
+    outer = np.take_along_axis(corners, (cut[:, None] + np.array([3, 4, 5])) % 4, axis=1)
+    both = np.stack([inner, outer], axis=1).reshape(-1, 3)
+    return both[(both >= 0).all(axis=1)]
 
 
 def _count_jelly(body: JellyDef) -> tuple[int, int]:
@@ -236,10 +262,10 @@ def _jelly(body: JellyDef) -> tuple[Points, Pairs]:
     else:
         left, bottom = 0, 0
         if isinstance(body.shape, CircleShape):
-            cells = jelly_cells(body)
             left = bottom = -_reach(body.shape, body.spacing)
         else:
-            left, bottom, cells = polygon_grid(body.shape.polygon, body.spacing)
+            left, bottom, _ = polygon_grid(body.shape.polygon, body.spacing)
+        cells = jelly_cells(body)
         across = (left + np.arange(cells.shape[1], dtype=np.float64)) * body.spacing
         up = (bottom + np.arange(cells.shape[0], dtype=np.float64)) * body.spacing
     row, column = np.nonzero(cells)

@@ -28,10 +28,9 @@ def meet(world: World, start: Floats, h: float) -> Meeting:
     start [m/s] (n, 2): the velocities before gravity and all else from outside.
     """
     contacts, ahead = find_contacts(world, start, h), np.zeros((world.particle_count, 2))
-    bound = bound_contacts(contacts, world.inverse_mass, outline_of(world).near_start)
-    loose = np.flatnonzero(~bound)
-    if len(loose):
-        settle_loose(world, contacts, loose, start, h, ahead)
+    bound, cluster = bound_contacts(contacts, world.inverse_mass, outline_of(world).near_start)
+    if not bound.all():
+        settle_loose(world, contacts, np.flatnonzero(~bound), cluster, start, h, ahead)
         world.contacts = Contacts._make(array[bound] for array in contacts)
     else:
         world.contacts = contacts

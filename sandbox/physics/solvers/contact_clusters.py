@@ -16,9 +16,9 @@ class Touching(NamedTuple):
     """The bodies and the loose particles that something touches, in this order a cluster's members; and scratch.
 
     By member: cluster, before, held, after, limit [J], fresh = its bank is begun in this step; member: of each particle
-    (n,), -1: none; row likewise. By body: misfit; due: to be solved again; spread, bouncy: of its springs. By cluster:
-    total, allowed [J], fails. By row: free, pushed [m/s]. By particle: given, change [m/s]: velocities without contacts,
-    and what those add.
+    (n,), -1: none; row likewise. By body: misfit; due: to be solved again; bouncy, spread: of its springs and elements;
+    tangled, aimed: see goal.py. By cluster: total, allowed [J], fails. By row: free, pushed [m/s]. By particle: given,
+    change [m/s]: velocities without contacts, and what those add.
     """
 
     body: Slots
@@ -35,6 +35,8 @@ class Touching(NamedTuple):
     due: NDArray[np.bool_]
     bouncy: NDArray[np.bool_]
     spread: NDArray[np.bool_]
+    tangled: NDArray[np.bool_]
+    aimed: NDArray[np.bool_]
     total: Floats
     allowed: Floats
     fails: NDArray[np.bool_]
@@ -75,8 +77,8 @@ def _join(contacts, block, inverse_mass, label):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _bind(contacts, inverse_mass, near_start, label, sprung, bound):  # type: ignore[no-untyped-def]
-    # bound (k,): contacts of clusters in which a spring holds anything that can move.
+def _bind(contacts, inverse_mass, near_start, label, sprung, bound, cluster):  # type: ignore[no-untyped-def]
+    # cluster (k,) of each contact; bound (k,): those in whose cluster a spring holds anything that can move.
     for p in range(label.shape[0]):
         if near_start[p] != near_start[p + 1] and inverse_mass[p] > 0.0:
             sprung[label[p]] = True
@@ -84,17 +86,21 @@ def _bind(contacts, inverse_mass, near_start, label, sprung, bound):  # type: ig
         for end in range(3):
             p, _ = weight_of(contacts, c, end)
             if p >= 0 and inverse_mass[p] > 0.0:
+                cluster[c] = label[p]
                 bound[c] = sprung[label[p]]
 
 
-def bound_contacts(contacts: Contacts, inverse_mass: Floats, near_start: Slots) -> NDArray[np.bool_]:
-    """Whether each contact hangs together, by others, with a particle that a spring moves."""
-    count = len(inverse_mass)
+def bound_contacts(contacts: Contacts, inverse_mass: Floats, near_start: Slots) -> tuple[NDArray[np.bool_], Slots]:
+    """Whether each contact hangs together, by others, with a particle that a spring moves; the number of its cluster.
+
+    near_start: where the springs of each particle begin, see Shapes.
+    """
+    count, size = len(inverse_mass), len(contacts.particle)
     label, sprung = np.arange(count), np.zeros(count, dtype=np.bool_)
-    bound = np.zeros(len(contacts.particle), dtype=np.bool_)
+    bound, cluster = np.zeros(size, dtype=np.bool_), np.zeros(size, dtype=np.int64)
     _join(contacts, np.full(count, -1, dtype=np.int64), inverse_mass, label)
-    _bind(contacts, inverse_mass, near_start, label, sprung, bound)
-    return bound
+    _bind(contacts, inverse_mass, near_start, label, sprung, bound, cluster)
+    return bound, cluster
 
 
 def find_touching(world: World, pattern: Pattern, contacts: Contacts) -> tuple[Touching, Blocks]:
@@ -124,7 +130,7 @@ def find_touching(world: World, pattern: Pattern, contacts: Contacts) -> tuple[T
     member = block.copy()
     member[loose] = size + np.arange(len(loose))
     members = size + len(loose)
-    flags, sums = np.zeros((3, size), dtype=np.bool_), np.zeros((2, clusters))
+    flags, sums = np.zeros((5, size), dtype=np.bool_), np.zeros((2, clusters))
     touching = Touching(
         body, loose, cluster.astype(np.int64), member, row, *np.zeros((4, members)), np.zeros(members, dtype=np.bool_),
         np.zeros(size), *flags, *sums, np.zeros(clusters, dtype=np.bool_), *np.zeros((2, free_count, 2)),

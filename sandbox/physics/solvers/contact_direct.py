@@ -10,9 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.forces import Before
-from sandbox.physics.jit import bundle_kernel, inner_kernel
+from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.shapes import weight_of
 from sandbox.physics.solvers import direct
+from sandbox.physics.solvers.body import (
+    body_potential,
+    load_body,
+    load_rows,
+    open_bank,
+)
 from sandbox.physics.solvers.contact_clusters import find_touching
 from sandbox.physics.solvers.contact_energy import (
     brake,
@@ -31,26 +37,23 @@ from sandbox.physics.solvers.contact_sweep import (
     new_push,
     solve_contacts,
 )
-from sandbox.physics.solvers.direct import (
-    AHEAD,
-    LINEAR_SOLVES,
-    MISFIT_RATE,
-    copy_rows,
-    keep_tension,
-    load_rows,
-    open_bank,
-)
-from sandbox.physics.solvers.network import kinetic, linearise, load_springs, potential, solve_linear, update_impulses
+from sandbox.physics.solvers.direct import AHEAD, LINEAR_SOLVES, MISFIT_RATE
+from sandbox.physics.solvers.goal import aim_at_form, find_tangled, let_go
+from sandbox.physics.solvers.minimise import copy, keep_tension
+from sandbox.physics.solvers.network import hold_spin, kinetic, linearise, solve_linear, update_impulses
 from sandbox.physics.solvers.pattern import Pattern
 from sandbox.physics.solvers.response import load_block, respond
+from sandbox.physics.solvers.shapes import linearise_shapes, update_shapes
+from sandbox.physics.solvers.single_pass import Pair
 from sandbox.physics.world import Floats, World
 
-# Sweeps over the contacts for each linear solve, where bodies touch, and where loose particles alone do. More costs
-# time, fewer leaves piles soft and restless.
+# Sweeps over the contacts for each linear solve. More costs time, fewer leaves piles soft and restless.
 SWEEPS = 20
-LOOSE_SWEEPS = 10
-# Newton rounds on f for bodies whose energy the linear solves leave too high; after them they are braked.
-NEWTON_ROUNDS = 4
+# What all sweeps of a step of h [s] may cost: h WORK pushes of an impulse at a particle, some 10 ms of a tick at 60 Hz.
+# Where it is spent the step ends, in its energy test; a solve has this many sweeps in any case. Less leaves crowds
+# soft, more makes tangles slow.
+WORK = 7.2e7
+FEWEST_SWEEPS = 4
 
 
 @inner_kernel
@@ -58,20 +61,18 @@ def _begin(  # type: ignore[no-untyped-def]
     touching, items, energy_bank, inverse_mass, rest_length, rest_before, stiffness, damping, material, tension, least,
     most, parts, h,
 ):  # fmt: skip
-    # Load the springs and the energies of every body that is touched.
-    bodies, rows, springs, matrix = items
+    # Load the springs, elements and energies of every body that is touched, and join what is tangled to its form.
+    bodies, rows, springs, shapes, matrix, goals = items
+    free_count = matrix.diagonal.shape[0]
     for k in range(touching.body.shape[0]):
         body = touching.body[k]
         first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
         first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
-        body_mass = 0.0
-        for r in range(first_row, last_row):
-            body_mass += rows.mass[r]
-        if not bodies.anchored[body]:
-            copy_rows(first_row, last_row, rows.target, rows.trial)
-        bouncy, spread, moved = load_springs(
-            first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,
-            least, most, parts, h, matrix.diagonal.shape[0],
+        low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
+        free = not bodies.anchored[body]
+        bouncy, spread, moved = load_body(
+            first_row, last_row, first, last, low, high, free, inverse_mass, rest_length, stiffness, damping,
+            material, tension, rows, springs, shapes, least, most, parts, h, free_count,
         )  # fmt: skip
         kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
         touching.bouncy[k] = bouncy
@@ -81,32 +82,52 @@ def _begin(  # type: ignore[no-untyped-def]
             if energy_bank[rows.particle[r]] < 0.0:
                 touching.fresh[k] = True
         touching.held[k] = open_bank(
-            first_row, last_row, first, last, rows, springs, energy_bank, bodies.lowest[body], bouncy, spread,
-            kinetic_after, moved, rest_length, rest_before, h,
+            first_row, last_row, first, last, low, high, rows, springs, shapes, energy_bank, bodies.lowest[body],
+            bouncy, spread, kinetic_after, moved, rest_length, rest_before, h,
         )  # fmt: skip
+        touching.tangled[k] = high > low and find_tangled(body, low, high, rows, shapes, goals)
+        touching.aimed[k] = touching.tangled[k] and aim_at_form(
+            body, last_row - first_row, not free, rows, shapes, goals, h, free_count
+        )
         touching.due[k] = True
 
 
 @inner_kernel
 def _solve_due(touching, items, blocks, columns, h, ahead, behind):  # type: ignore[no-untyped-def]
     # Linearise and factor the bodies that are due: their velocities without contacts, and their responses.
-    bodies, rows, springs, matrix = items
+    bodies, rows, springs, shapes, matrix, _ = items
     for k in range(touching.body.shape[0]):
         if not touching.due[k]:
             continue
         body = touching.body[k]
         first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
         first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
+        low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
         linearise(first, last, rows, springs, h, ahead, behind)
-        solve_linear(first_row, last_row, first, last, rows, springs, matrix)
-        for r in range(first_row, last_row):
-            touching.free[r, 0] = rows.trial[r, 0] + rows.change[r, 0]
-            touching.free[r, 1] = rows.trial[r, 1] + rows.change[r, 1]
-        load_block(k, first_row, last_row, touching.row, blocks, columns, rows, matrix, touching.pushed)
+        if high > low:
+            linearise_shapes(low, high, rows, shapes, h, ahead, behind)
+        solve_linear(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix)
+        _leave_free(first_row, last_row, high > low and not bodies.anchored[body], rows, touching.free)
+        load_block(
+            k, first_row, last_row, low, high, touching.row, blocks, columns, rows, shapes, matrix, touching.pushed
+        )
         for i in range(blocks.start[k], blocks.start[k + 1]):
             p = blocks.point[i]
             touching.given[p, 0] = touching.free[touching.row[p], 0]
             touching.given[p, 1] = touching.free[touching.row[p], 1]
+
+
+@inner_kernel
+def _leave_free(first_row, last_row, turns, rows, free):  # type: ignore[no-untyped-def]
+    # What a body does without contacts, which gain it no spin; `trial` stays where the body was linearised.
+    copy(first_row, last_row, rows.trial, rows.best)
+    for r in range(first_row, last_row):
+        rows.trial[r, 0] += rows.change[r, 0]
+        rows.trial[r, 1] += rows.change[r, 1]
+    if turns:
+        hold_spin(first_row, last_row, rows)
+    copy(first_row, last_row, rows.trial, free)
+    copy(first_row, last_row, rows.best, rows.trial)
 
 
 @inner_kernel
@@ -117,9 +138,21 @@ def _clear(vector):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _push_all(touching, contacts, push, blocks, inverse_mass):  # type: ignore[no-untyped-def]
+def _cost_of(contacts, blocks):  # type: ignore[no-untyped-def]
+    # What one sweep costs: the particles that answer to every impulse.
+    cost = 0
+    for c in range(contacts.particle.shape[0]):
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p >= 0:
+                k = blocks.block[p]
+                cost += 1 if k < 0 else blocks.start[k + 1] - blocks.start[k]
+    return cost
+
+
+@inner_kernel
+def _push_all(touching, contacts, push, blocks, inverse_mass, sweeps):  # type: ignore[no-untyped-def]
     # Sweep all contacts; the impulses of bodies are left in `pushed`.
-    sweeps = SWEEPS if touching.body.shape[0] > 0 else LOOSE_SWEEPS
     load_responses(contacts, push, inverse_mass, blocks)
     _clear(touching.change)
     solve_contacts(contacts, push, touching.given, touching.change, inverse_mass, blocks, sweeps)
@@ -139,23 +172,29 @@ def _push_all(touching, contacts, push, blocks, inverse_mass):  # type: ignore[n
 @inner_kernel
 def _answer(touching, items, position, collides, terrain, rest_length, h):  # type: ignore[no-untyped-def]
     # v' = free + A^-1 J^T lambda of every body, stopped at terrain; its energy and misfit.
-    bodies, rows, springs, matrix = items
+    bodies, rows, springs, shapes, matrix, _ = items
+    free_count = matrix.diagonal.shape[0]
     for k in range(touching.body.shape[0]):
         body = touching.body[k]
         first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
         first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
-        respond(first_row, last_row, rows, matrix, touching.pushed)
+        low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
+        respond(first_row, last_row, low, high, rows, shapes, matrix, touching.pushed)
         for r in range(first_row, last_row):
             for axis in range(2):
                 v = touching.free[r, axis] + touching.pushed[r, axis]
                 rows.change[r, axis] = v - rows.trial[r, axis]
                 rows.trial[r, axis] = v
-        held, misfit, _ = update_impulses(first, last, rows, springs, rest_length, h, matrix.diagonal.shape[0])
+        held, misfit, _ = update_impulses(first, last, rows, springs, rest_length, h, free_count)
+        if high > low:
+            held_by_shapes, missed = update_shapes(low, high, rows, shapes, h, free_count)
+            held += held_by_shapes
+            misfit = max(misfit, missed)
         for s in range(first, last):
             springs.tension[s] = max(0.0, -springs.impulse[s])
         if stop_rows(first_row, last_row, rows, collides, terrain, h):
-            held = potential(
-                first, last, rows.position, rows.trial, springs, springs.measured, rest_length, h, h
+            held = body_potential(
+                first, last, low, high, rows.position, rows.trial, springs, shapes, rest_length, h, h
             )  # fmt: skip
             keep_tension(first, last, rows, springs, h)
         measure_body(touching, k, items, held)
@@ -165,7 +204,7 @@ def _answer(touching, items, position, collides, terrain, rest_length, h):  # ty
 
 @inner_kernel
 def _finish(touching, items, velocity, tension):  # type: ignore[no-untyped-def]
-    bodies, rows, springs, _ = items
+    bodies, rows, springs, _, _, _ = items
     for k in range(touching.body.shape[0]):
         body = touching.body[k]
         for r in range(bodies.row_start[body], bodies.row_start[body + 1]):
@@ -179,39 +218,53 @@ def _finish(touching, items, velocity, tension):  # type: ignore[no-untyped-def]
         velocity[p, 1] = touching.given[p, 1] + touching.change[p, 1]
 
 
-@bundle_kernel
+@inner_kernel
+def _let_go(touching, bodies, rows):  # type: ignore[no-untyped-def]
+    # What is tangled and fails goes on without its goal.
+    for k in range(touching.body.shape[0]):
+        if touching.due[k] and touching.aimed[k]:
+            body = touching.body[k]
+            let_go(bodies.row_start[body], bodies.row_start[body + 1], rows)
+            touching.aimed[k] = False
+
+
+@kernel
 def _push_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, rest_length, stiffness, damping, material,
     tension, collides, numbers, least, most, parts, before, rest_before, h, touching, blocks, columns, contacts, push,
     terrain,
 ):  # fmt: skip
-    items = numbers.items
-    _, rows, _, matrix = items
+    items = contents(numbers)
+    bodies, rows, _, _, matrix, _ = items
     load_rows(position, velocity, mass, slow_velocity, before, h, matrix.diagonal.shape[0], rows)
     _begin(
         touching, items, energy_bank, inverse_mass, rest_length, rest_before, stiffness, damping, material, tension,
         least, most, parts, h,
     )  # fmt: skip
     open_loose(touching, mass, energy_bank)
+    affordable = int(WORK * h) // max(1, _cost_of(contacts, blocks))
     failing = False
-    for solve in range(LINEAR_SOLVES + 1 + NEWTON_ROUNDS):
+    for solve in range(LINEAR_SOLVES + 2):
         if solve < LINEAR_SOLVES:
             _solve_due(touching, items, blocks, columns, h, AHEAD, AHEAD)
         elif solve == LINEAR_SOLVES:
             hold(touching, contacts, push, inverse_mass, h)
         else:
+            _let_go(touching, bodies, rows)
             _solve_due(touching, items, blocks, columns, h, 1.0, 0.0)
-        _push_all(touching, contacts, push, blocks, inverse_mass)
+        sweeps = max(FEWEST_SWEEPS, min(SWEEPS, affordable))
+        _push_all(touching, contacts, push, blocks, inverse_mass, sweeps)
+        affordable -= sweeps
         if solve == 0:
             grant(touching, contacts, push, inverse_mass, h)
         _answer(touching, items, position, collides, terrain, rest_length, h)
         failing = judge(touching, mass, before)
-        again = False
+        again = failing
         for k in range(touching.body.shape[0]):
             inexact = solve < LINEAR_SOLVES - 1 and touching.misfit[k] > MISFIT_RATE * h * h
             touching.due[k] = inexact or touching.fails[touching.cluster[k]]
             again = again or touching.due[k]
-        if not (again or failing):
+        if not again or affordable <= 0:
             break
     if failing:
         brake(touching, items, position, mass, before, collides, terrain, rest_length, h)
@@ -249,6 +302,6 @@ def _push(
     return touched
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Before) -> None:
+def solve(world: World, springs: Pair, elements: Pair, h: float, before: Before) -> None:
     """Bring the velocities to the end of a step of h [s], contacts included; what nothing touches goes its own way."""
-    direct.solve(world, stiffness, damping, h, before, None if world.contacts is None else _push)
+    direct.solve(world, springs, elements, h, before, None if world.contacts is None else _push)

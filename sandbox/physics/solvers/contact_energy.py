@@ -10,15 +10,10 @@ from sandbox.physics.jit import inner_kernel
 from sandbox.physics.outline import TERRAIN_GROUP
 from sandbox.physics.shapes import weight_of
 from sandbox.physics.solvers.contact_sweep import FASTEST_PUSH, OVERLAP_SHARE, SOFTNESS
-from sandbox.physics.solvers.direct import (
-    BANK_SHARE,
-    BOUNCY_BANK_SHARE,
-    ENERGY_ROUNDING,
-    LAST_HALVINGS,
-    body_energy,
-    keep_tension,
-)
-from sandbox.physics.solvers.network import kinetic, potential
+from sandbox.physics.solvers.body import BANK_SHARE, BOUNCY_BANK_SHARE, body_energy, body_hidden
+from sandbox.physics.solvers.direct import ENERGY_ROUNDING, LAST_HALVINGS
+from sandbox.physics.solvers.minimise import keep_tension
+from sandbox.physics.solvers.network import kinetic
 
 # Halvings of what moves within bodies that fail the test, before they are slowed down as a whole.
 INNER_HALVINGS = 8
@@ -76,7 +71,7 @@ def less_work(first_row, last_row, rows, bouncy):  # type: ignore[no-untyped-def
 @inner_kernel
 def measure_body(touching, k, items, held):  # type: ignore[no-untyped-def]
     """Note the measure of one body after the step, whose springs then hold so much [J]."""
-    bodies, rows, _, _ = items
+    bodies, rows, _, _, _, _ = items
     first_row, last_row = bodies.row_start[touching.body[k]], bodies.row_start[touching.body[k] + 1]
     touching.after[k] = (
         kinetic(first_row, last_row, rows.mass, rows.trial)
@@ -180,7 +175,7 @@ def _slow(first_row, last_row, rows, inner, factor, anchored):  # type: ignore[n
 @inner_kernel
 def brake(touching, items, position, mass, start, collides, terrain, rest_length, h):  # type: ignore[no-untyped-def]
     """Slow down what moves within the bodies of clusters that fail, then the bodies; at rest they pass."""
-    bodies, rows, springs, _ = items
+    bodies, rows, springs, shapes, _, _ = items
     for halving in range(LAST_HALVINGS + 1):
         inner = 0.5 if halving < INNER_HALVINGS else 0.0
         factor = 1.0 if halving <= INNER_HALVINGS else (0.5 if halving < LAST_HALVINGS else 0.0)
@@ -191,7 +186,10 @@ def brake(touching, items, position, mass, start, collides, terrain, rest_length
                 first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
                 _slow(first_row, last_row, rows, inner, factor, bodies.anchored[body])
                 stop_rows(first_row, last_row, rows, collides, terrain, h)
-                held = body_energy(first_row, last_row, first, last, rows, springs, rest_length, h)
+                low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
+                held = body_energy(
+                    first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h
+                )  # fmt: skip
                 touching.after[k] = held - less_work(first_row, last_row, rows, touching.bouncy[k])
                 keep_tension(first, last, rows, springs, h)
         for i in range(touching.loose.shape[0]):
@@ -207,7 +205,7 @@ def brake(touching, items, position, mass, start, collides, terrain, rest_length
 @inner_kernel
 def _limit(touching, items, contacts, push, inverse_mass, rest_length, h):  # type: ignore[no-untyped-def]
     # The most that the bank of each body and loose particle may hold: a share of its energy, and what overlaps store.
-    bodies, rows, springs, _ = items
+    bodies, rows, springs, shapes, _, _ = items
     for k in range(touching.cluster.shape[0]):
         touching.limit[k] = BANK_SHARE * touching.before[k]
         if k >= touching.body.shape[0]:
@@ -215,10 +213,12 @@ def _limit(touching, items, contacts, push, inverse_mass, rest_length, h):  # ty
         if touching.bouncy[k]:
             touching.limit[k] = BOUNCY_BANK_SHARE * touching.before[k]
         if touching.spread[k]:
-            first, last = bodies.spring_start[touching.body[k]], bodies.spring_start[touching.body[k] + 1]
-            touching.limit[k] += potential(
-                first, last, rows.position, rows.trial, springs, springs.hidden, rest_length, h, h
-            )
+            body = touching.body[k]
+            first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
+            low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
+            touching.limit[k] += body_hidden(
+                first, last, low, high, rows.position, rows.trial, springs, shapes, rest_length, h, h
+            )  # fmt: skip
     for c in range(contacts.particle.shape[0]):
         k = member_of(contacts, c, touching, inverse_mass)
         if k >= 0:
@@ -231,7 +231,11 @@ def save(touching, items, contacts, push, inverse_mass, rest_length, energy_bank
     _limit(touching, items, contacts, push, inverse_mass, rest_length, h)
     for k in range(touching.cluster.shape[0]):
         cluster = touching.cluster[k]
-        saved = max(0.0, min(touching.allowed[cluster] - touching.total[cluster], touching.limit[k]))
+        limit = touching.limit[k]
+        # As in direct.py: a tangled body keeps all that it lost for the way back to its form.
+        if k < touching.body.shape[0] and touching.tangled[k] and not items[0].anchored[touching.body[k]]:
+            limit = max(limit, touching.held[k] + touching.before[k] - touching.after[k])
+        saved = max(0.0, min(touching.allowed[cluster] - touching.total[cluster], limit))
         touching.allowed[cluster] -= saved
         if k < touching.body.shape[0]:
             energy_bank[items[0].lowest[touching.body[k]]] = saved
