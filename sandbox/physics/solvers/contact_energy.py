@@ -9,8 +9,8 @@ from sandbox.physics.guard import STOPS, stopped
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.outline import TERRAIN_GROUP
 from sandbox.physics.shapes import weight_of
-from sandbox.physics.solvers.contact_sweep import FASTEST_PUSH, OVERLAP_SHARE, SOFTNESS
 from sandbox.physics.solvers.body import BANK_SHARE, BOUNCY_BANK_SHARE, body_energy, body_hidden
+from sandbox.physics.solvers.contact_sweep import FASTEST_PUSH, OVERLAP_SHARE, SOFTNESS
 from sandbox.physics.solvers.direct import ENERGY_ROUNDING, LAST_HALVINGS
 from sandbox.physics.solvers.minimise import keep_tension
 from sandbox.physics.solvers.network import kinetic
