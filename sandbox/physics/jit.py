@@ -127,6 +127,8 @@ def waiting_kernel(function: Function) -> Function:
 
 
 if COMPILED:
+    from numba.core import cgutils
+    from numba.core.runtime.context import NRTContext
     from numba.experimental import structref
 
     @structref.register
@@ -138,11 +140,28 @@ if COMPILED:
 
     structref.define_proxy(_Bundle, _BundleType, ["items"])
 
+    @_numba.extending.intrinsic
+    def contents(typing_context: Any, bundle_type: Any) -> Any:
+        """The items of a bundle, lent: a kernel that counts who holds them takes 25 ns for each array."""
+
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            holder = cgutils.create_struct_proxy(bundle_type)(context, builder, value=arguments[0])
+            data_type = bundle_type.get_data_type()
+            data = NRTContext(context, True).meminfo_data(builder, holder.meminfo)
+            kind = context.data_model_manager[data_type].get_value_type()
+            data = builder.bitcast(data, kind.as_pointer())
+            return cgutils.create_struct_proxy(data_type)(context, builder, ref=data).items
+
+        return bundle_type.field_dict["items"](bundle_type), generate
+
 else:
 
     class _Bundle:  # type: ignore[no-redef]
         def __init__(self, items: tuple[Any, ...]) -> None:
             self.items = tuple(map(_viewed, items))
+
+    def contents(bundle: Any) -> Any:
+        return bundle.items
 
 
 @bundle_kernel
