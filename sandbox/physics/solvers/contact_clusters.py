@@ -132,9 +132,12 @@ def find_touching(world: World, pattern: Pattern, contacts: Contacts) -> tuple[T
     member[loose] = size + np.arange(len(loose))
     members = size + len(loose)
     flags, sums = np.zeros((5, size), dtype=np.bool_), np.zeros((2, clusters))
-    touching = Touching(
-        body, loose, cluster.astype(np.int64), member, row, *np.zeros((4, members)), np.zeros(members, dtype=np.bool_),
-        np.zeros(size), *flags, *sums, np.zeros(clusters, dtype=np.bool_), *np.zeros((2, free_count, 2)),
-        world.velocity.copy(), np.zeros((count, 2)),
+    energies, vectors = np.zeros((4, members)), np.zeros((2, free_count, 2))
+    touching = Touching._make(
+        [
+            body, loose, cluster.astype(np.int64), member, row, *energies, np.zeros(members, dtype=np.bool_),
+            np.zeros(size), *flags, *sums, np.zeros(clusters, dtype=np.bool_), *vectors, world.velocity.copy(),
+            np.zeros((count, 2)),
+        ]
     )  # fmt: skip
     return touching, blocks
