@@ -114,7 +114,8 @@ def look_at(p, e, shapes, near, count):  # type: ignore[no-untyped-def]
     if shapes.inverse[p] + shapes.inverse[a] + shapes.inverse[b] == 0.0:
         return count
     own = shapes.owner[a] == shapes.owner[p]
-    if own and shapes.edge_start[p] == shapes.edge_start[p + 1]:
+    # A tangled jelly would be kept so by its own edges.
+    if own and (shapes.tangled[p] or shapes.edge_start[p] == shapes.edge_start[p + 1]):
         return count
     if are_joined(p, a, shapes) or are_joined(p, b, shapes):
         return count
