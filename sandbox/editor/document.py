@@ -94,10 +94,9 @@ def all_validated(definitions: Sequence[Described]) -> tuple[Described, ...]:
     """As `validated`, of many bodies, of many loose particles or of many loose springs."""
     rows = []
     for definition in definitions:
-        data = dict(definition.__dict__)
-        if isinstance(data.get("shape"), Description):
-            data["shape"] = dict(data["shape"].__dict__)
-        rows.append(data)
+        fields = definition.__dict__.items()
+        # An object inside would be taken over unseen.
+        rows.append({name: dict(value.__dict__) if isinstance(value, Description) else value for name, value in fields})
     first = rows[0] if rows else {}
     part = "bodies" if "type" in first else "particles" if "id" in first else "springs"
     try:

@@ -18,7 +18,7 @@ from sandbox.level.quantities import replaced
 
 # Fields of bodies that their form does not depend on; a change of any other may take pins, cuts and references along.
 _FORMLESS = frozenset(BodyDef.model_fields) | {"particle_mass", "end_mass", "hub_mass", "masses", "velocities"}
-_FORMLESS |= {"pin", "rest_length"}
+_FORMLESS |= {"pin", "rest_length", "motor"}
 # Parts of a level that other edits change.
 _NO_FIELDS = frozenset(set(Level.model_fields) - {"name", "description", "author", "licence", "tags", "view", "extras"})
 
@@ -57,9 +57,16 @@ def change_field(document: Document, items: Iterable[Item], field: str, change: 
 
     Else as `set_field`.
     """
+    return change_items(document, items, field, lambda part: change(getattr(part, field)))
+
+
+def change_items(
+    document: Document, items: Iterable[Item], field: str, change: Callable[[Definition], Any]
+) -> Document:
+    """Give a field of each item, which all have it, what `change` makes of the whole item. Raises EditError."""
 
     def with_change(part: Definition) -> Definition:
-        value = _with_tuples(change(getattr(part, field)))
+        value = _with_tuples(change(part))
         new = getattr(validated(replaced(part, **{field: value})), field)
         return part if getattr(part, field) == new else _with_field(part, field, new)
 

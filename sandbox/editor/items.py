@@ -69,6 +69,14 @@ def chosen_springs(level: Level, selection: Selection) -> list[SpringDef]:
     return [spring for index, spring in enumerate(level.springs) if index in wanted]
 
 
+def chosen_items(level: Level, selection: Selection) -> dict[Item, Definition]:
+    """The selected items with their definitions, by kind and in file order."""
+    found: dict[Item, Definition] = {Item("body", body.id): body for body in chosen_bodies(level, selection)}
+    found |= {Item("particle", particle.id): particle for particle in chosen_particles(level, selection)}
+    springs = keys(selection, "spring")
+    return found | {Item("spring", k): spring for k, spring in enumerate(level.springs) if k in springs}
+
+
 def changed(level: Level, selection: Selection, change: Callable[[Definition], Definition]) -> Level:
     """The level with every selected item changed; what is not changed stays the same object."""
     bodies, particles, springs = (keys(selection, kind) for kind in ("body", "particle", "spring"))

@@ -20,6 +20,24 @@ def number_text(value: float) -> str:
     return text if float(text) == value else repr(value)
 
 
+def significant(value: float, digits: int) -> float:
+    """A number rounded to so many digits, as a person reads it."""
+    return float(f"{value:.{digits}g}")
+
+
+def stepped(value: float, steps: int, low: float | None, high: float | None, *, whole: bool = False) -> float:
+    """A number that many steps up or down, within its limits: whole ones by 1, others by a tenth of their first digit.
+
+    Near 0 steps are no smaller than a hundredth, or than a thousandth of the way between the limits.
+    """
+    least, most = -math.inf if low is None else low, math.inf if high is None else high
+    if whole:
+        return int(min(max(value + steps, least), most))
+    smallest = min(0.01, (most - least) / 1000.0)
+    step = max(10.0 ** (math.floor(math.log10(abs(value))) - 1), smallest) if value else smallest
+    return min(max(significant(round(value / step) * step + steps * step, DIGITS), least), most)
+
+
 def list_text(values: Sequence[Any]) -> str:
     """A list as in a file without its outer brackets; words are set apart by commas alone where that can be undone."""
     if values and all(isinstance(value, str) for value in values):
