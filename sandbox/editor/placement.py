@@ -168,7 +168,7 @@ def _changes(body: AnyBody, motion: Motion) -> dict[str, Any]:
             return _centred(body, motion) | {"radius": body.radius * motion.factor}
         case WheelDef():
             sizes = {"radius": body.radius * motion.factor, "thickness": body.thickness * motion.factor}
-            return _centred(body, motion) | sizes
+            return _centred(body, motion) | sizes | _turned_motor(body, motion)
         case JellyDef():
             return _jelly(body, motion)
         case MeshDef():
@@ -188,6 +188,13 @@ def stretch(a: Point, b: Point, motion: Motion) -> float:
 
 def _centred(body: WebDef | WheelDef | JellyDef, motion: Motion) -> dict[str, Any]:
     return {"position": motion.point(body.position), "angle": motion.turned(body.angle)}
+
+
+def _turned_motor(body: WheelDef, motion: Motion) -> dict[str, Any]:
+    """A motor turns the other way in a mirror."""
+    if body.motor is None or not motion.is_mirror:
+        return {}
+    return {"motor": replaced(body.motor, speed=-body.motor.speed)}
 
 
 def _jelly(body: JellyDef, motion: Motion) -> dict[str, Any]:

@@ -70,6 +70,10 @@ FIELDS = {
     "hub_mass": st.none() | FACTORS,
     "masses": st.sampled_from([None, [1.0], [1.0, 2.0, 3.0]]),
     "particles": st.sampled_from([[[0, 0], [1, 0]], [[0, 0], [2, 0], [3, 1]], [[0, 0], [2, 0], [3, 1], [4, 4]]]),
+    "gravity_scale": FACTORS,
+    "drive": st.sampled_from([None, {"amplitude": 0.2, "period": 60}, {"amplitude": 2.0, "period": 1}]),
+    "motor": st.sampled_from([None, {"speed": -3.0, "torque": 5.0, "key": "d"}, {"speed": 1.0}]),
+    "hydraulic": st.sampled_from([None, {"shortest": 0.5, "longest": 2.0, "rate": 1.0, "key": "u"}]),
     "springs": st.sampled_from([[], [[0, 1]], [[1, 2], [2, 0]], [[0, 7]]]),
 }
 

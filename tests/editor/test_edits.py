@@ -145,6 +145,12 @@ def test_a_body_broken_apart_is_the_same_world_by_other_names():
         break_apart(chosen("hook"))
 
 
+def test_what_is_broken_apart_falls_and_swings_as_before():
+    after = break_apart(chosen("ball", "wheel")).level
+    assert {spring.drive for spring in after.springs if spring.group == "ball"} == {zoo().bodies[7].drive}
+    assert {particle.gravity_scale for particle in after.particles if particle.group == "wheel"} == {0.5}
+
+
 def test_what_is_too_large_for_a_file_is_not_broken_apart(monkeypatch):
     monkeypatch.setattr("sandbox.editor.document.FILE_LIMIT", 10_000)
     monkeypatch.setattr("sandbox.editor.document.MEASURED_SIZE", 50)

@@ -126,16 +126,11 @@ class ScenePainter:
         if not hidden:
             yield from self._slices(layer, camera, Part(scene, particles, springs, ACCENT), plain)
 
-    def paint_moved(
-        self, surface: pygame.Surface, camera: Camera, scene: Scene, chosen: Chosen, matrix: NDArray[np.float64]
-    ) -> None:
-        """Draw the selection where a matrix (2, 3) takes it, and the springs of others that hang on it."""
+    def paint_moved(self, surface: pygame.Surface, camera: Camera, moved: Scene, chosen: Chosen) -> None:
+        """Draw the selection in a scene where it has been moved, and the springs of others that hang on it."""
         particles, springs = chosen
-        position = scene.position.copy()
-        position[particles] = position[particles] @ matrix[:, :2].T + matrix[:, 2]
-        moved = replace(scene, position=position[scene.first_of_weld] if len(scene.welds) else position)
         nobody = np.zeros(len(particles), dtype=np.bool_)
-        self.paint(surface, camera, Part(moved, nobody, hanging_springs(scene, particles) & ~springs))
+        self.paint(surface, camera, Part(moved, nobody, hanging_springs(moved, particles) & ~springs))
         self.paint(surface, camera, Part(moved, particles, springs, ACCENT))
 
     def paint_hovered(self, surface: pygame.Surface, camera: Camera, scene: Scene, item: Item) -> None:
@@ -238,6 +233,13 @@ def draw_grid(surface: pygame.Surface, camera: Camera, scale: float) -> None:
                     surface.fill(tone, (round(at[0]), top, 1, height))
                 else:
                     surface.fill(tone, (left, round(at[1]), width, 1))
+
+
+def moved_by(scene: Scene, chosen: Chosen, matrix: NDArray[np.float64]) -> Scene:
+    """The scene with what is chosen where a matrix (2, 3) takes it."""
+    position = scene.position.copy()
+    position[chosen.particles] = position[chosen.particles] @ matrix[:, :2].T + matrix[:, 2]
+    return replace(scene, position=position[scene.first_of_weld] if len(scene.welds) else position)
 
 
 def hanging_springs(scene: Scene, particles: Mask) -> Mask:
