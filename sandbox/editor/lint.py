@@ -10,6 +10,7 @@ import numpy as np
 
 from sandbox.editor.finding import Finding, Rule, called, falling_particles, listed, middle_of, place_of
 from sandbox.editor.lint_checks import hopeless_checks
+from sandbox.editor.lint_driven import idle_motors
 from sandbox.editor.lint_places import crossing_bodies, overlapping_particles
 from sandbox.editor.lint_solver import springs_past_limits
 from sandbox.editor.scene import Scene
@@ -25,6 +26,7 @@ def findings(level: Level, scene: Scene) -> Iterator[Finding | None]:
         springs_past_limits(level, scene),
         falling_parts(level, scene),
         idle_items(scene),
+        idle_motors(scene),
         overlapping_particles(scene),
         crossing_bodies(scene),
     )

@@ -14,11 +14,13 @@ from sandbox.editor.lint import findings
 from sandbox.editor.placing import weld
 from sandbox.editor.scene import make_scene
 from sandbox.editor.snap import Snap
-from sandbox.level.bodies import BoxShape, BridgeDef, JellyDef, RopeDef
+from sandbox.level.bodies import BoxShape, BridgeDef, JellyDef, RopeDef, WheelDef
 from sandbox.level.build import build_world
 from sandbox.level.checks import CheckDef
+from sandbox.level.driving import MotorDef
 from sandbox.level.files import read_level
 from sandbox.level.model import Level, NissenMaterial, ParticleDef, Settings, SpringDef
+from sandbox.level.quantities import replaced
 from sandbox.physics.stability import report, spring_loads
 
 LEVELS = sorted((Path(__file__).resolve().parents[2] / "levels").glob("*.json"))
@@ -107,6 +109,22 @@ def test_springs_and_pins_that_do_nothing_are_found():
         ("hint", {Item("spring", 0)}, (0.5, 0.0)),
         ("hint", {Item("particle", "nail")}, (5.0, 0.0)),
     ]
+
+
+def test_a_motor_whose_hub_is_fixed_to_nothing_is_found():
+    wheel = WheelDef(
+        type="wheel", id="w", position=(0.0, 0.0), radius=1.0, thickness=0.3, segments=6, pin=("hub",),
+        motor=MotorDef(speed=1.0, torque=5.0),
+    )  # fmt: skip
+    loose = replaced(wheel, pin=(), pinned=(3,))
+    level = level_of(bodies=(loose, rope(y=5.0)))
+    assert ['the motor of "w"' in text and "fixed to nothing" in text for text in texts(level)] == [True]
+    held = (
+        level_of(bodies=(wheel,)),
+        replaced(level, springs=(SpringDef(a="rope.end", b="w.hub"),)),
+        replaced(level, welds=(("rope.end", "w.hub"),)),
+    )
+    assert not any("motor" in text for each in held for text in texts(each))
 
 
 def test_particles_that_lie_on_each_other_are_found_until_they_are_joined():
