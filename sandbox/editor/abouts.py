@@ -24,6 +24,7 @@ Kind = Literal[
     "form",
     "part",
     "key",
+    "touches",
     "extras",
 ]
 
@@ -38,6 +39,9 @@ _TITLES = {
     "pinned": "Held",
     "cut": "Cut springs",
     "drive": "Muscle",
+    "collision_group": "In group",
+    "collides": "Touches",
+    "particle_radius": "Disc radius",
     "licence": "Licence",
     "warm_start": "Warm start",
 }
@@ -117,6 +121,8 @@ def _kind(name: str, value: dict[str, Any]) -> Kind:
     items = value.get("items", {})
     if name in _KEYS:
         return "key"
+    if name == "collides":
+        return "touches"
     if name in ("material", "shape", "extras"):
         return {"material": "material", "shape": "form", "extras": "extras"}[name]  # type: ignore[return-value]
     if "enum" in value:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.grouping import taken_groups
+from sandbox.editor.groups import without_lost_groups
 from sandbox.editor.items import Item, chosen_bodies, keys
 from sandbox.editor.names import free_ids, owner_of, rewired, taken_ids
 from sandbox.editor.scene import make_scene
@@ -28,11 +29,12 @@ def delete(document: Document) -> Document:
         bodies=tuple(body for body in level.bodies if body.id not in bodies),
         particles=tuple(particle for particle in level.particles if particle.id not in particles),
         springs=tuple(spring for index, spring in enumerate(level.springs) if index not in springs),
+        terrain=tuple(piece for piece in level.terrain if piece.id not in keys(selection, "terrain")),
     )
     gone = bodies | particles
     if gone:
         level, _ = rewired(level, lambda reference: None if owner_of(reference) in gone else reference)
-    return Document(level)
+    return Document(without_lost_groups(level))
 
 
 def break_apart(document: Document) -> Document:
@@ -56,7 +58,16 @@ def break_apart(document: Document) -> Document:
         names |= {f"{body.id}.{index}": name for index, name in enumerate(ids)}
         names |= {f"{body.id}.{part}": ids[index] for part, index in named_particles(body).items()}
         first = scene.slot(f"{body.id}.0")
-        particle = ParticleDef(id="-", radius=BODY_RADIUS, group=group, gravity_scale=body.gravity_scale)
+        particle = ParticleDef(
+            id="-",
+            radius=BODY_RADIUS if body.particle_radius is None else body.particle_radius,
+            gravity_scale=body.gravity_scale,
+            friction=body.friction,
+            restitution=body.restitution,
+            collides=body.collides,
+            collision_group=body.collision_group,
+            group=group,
+        )
         particles += _loose(made, scene.position[first : first + len(ids)], ids, particle)
         springs += _loose_springs(
             made, ids, SpringDef(a="-", b="-", material=body.material, group=group, drive=body.drive)

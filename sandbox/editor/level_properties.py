@@ -1,6 +1,6 @@
 """Properties of the level itself, of how its time passes, and of its checks."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -9,13 +9,18 @@ from sandbox.editor.document import Document
 from sandbox.editor.fields import set_level_field, set_setting
 from sandbox.editor.items import chosen_bodies, chosen_particles
 from sandbox.editor.materials import set_checks
-from sandbox.editor.property import Property, Section, with_axes
+from sandbox.editor.property import Property, Section, part_properties, with_axes
+from sandbox.editor.scene import make_scene
 from sandbox.level.bodies import AnyBody
 from sandbox.level.checks import PARTICLE_METRICS, CheckDef
 from sandbox.level.model import Level, Settings
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import count
 
+# Walls of a level in which nothing is yet [m]; around something they leave this share of its size, and of at least 1 m.
+FIRST_ROOM = (-6.0, 0.0, 6.0, 6.0)
+ROOM_SHARE, SMALLEST_ROOM = 0.25, 1.0
+ROOM_DECIMALS = 2
 _LEVEL_FIELDS = ("name", "description", "author", "licence", "tags", "view")
 
 
@@ -30,7 +35,34 @@ def level_properties(document: Document) -> tuple[Section, ...]:
     for name, each in abouts(Settings).items():
         value = getattr(level.settings, name)
         settings.append(Property(name, each, str(value) if each.kind == "choice" else value, partial(_set_time, name)))
-    return Section("Level", tuple(of_level)), Section("Time and solver", tuple(settings))
+    return (
+        Section("Level", tuple(of_level)),
+        Section("Time and solver", tuple(settings)),
+        Section("Contacts", tuple(_object(document, "contacts") + _object(document, "walls"))),
+    )
+
+
+def _object(document: Document, name: str) -> list[Property]:
+    """Properties of an object that a level may have."""
+
+    def change(document: Document, new: Callable[[Any], Any]) -> Document:
+        return set_level_field(document, name, new(getattr(document.level, name)))
+
+    def add(document: Document) -> Document:
+        return change(document, lambda old: _FIRST[name](document) if old is None else old)
+
+    return part_properties(name, abouts(Level)[name], [getattr(document.level, name)], change, add)
+
+
+def _first_walls(document: Document) -> dict[str, Any]:
+    """Walls around the level's view, or around everything with some room."""
+    level = document.level
+    box = level.view or make_scene(level).bounds() or FIRST_ROOM
+    room = 0.0 if level.view is not None else ROOM_SHARE * max(box[2] - box[0], box[3] - box[1], SMALLEST_ROOM)
+    return {"box": tuple(round(c + s * room, ROOM_DECIMALS) for c, s in zip(box, (-1, -1, 1, 1), strict=True))}
+
+
+_FIRST: dict[str, Callable[[Document], dict[str, Any]]] = {"contacts": lambda _: {}, "walls": _first_walls}
 
 
 def _set_level(field: str, document: Document, value: Any) -> Document:

@@ -13,15 +13,19 @@ from sandbox.editor.fields import change_field, set_field
 from sandbox.editor.items import Definition, Item, Selection, chosen_items
 from sandbox.editor.names import owner_of
 from sandbox.editor.property import MIXED, Property, Section, part_properties, same, with_axes
+from sandbox.editor.terrain import FORMS, Form, Point, corners_of, form_of, outlined, with_corners
 from sandbox.level.bodies import SHAPES, BoxShape, CircleShape, JellyDef, PolygonShape, Shape, file_order
-from sandbox.level.model import Level, ParticleDef, SpringDef
+from sandbox.level.model import Level, ParticleDef, SpringDef, TerrainDef
 from sandbox.level.schema import TITLES
 from sandbox.level.shapes import count
 
+# Fields of terrain of which one is null.
+_OUTLINES = ("polyline", "polygon")
 # Sections of the fields that are not of a body's form, in their order.
 _SECTIONS = {
     "Mass": ("mass", "particle_mass", "end_mass", "hub_mass", "masses", "gravity_scale"),
     "Springs": ("material", "rest_length", "cut"),
+    "Contact": ("particle_radius", "friction", "restitution", "collides", "collision_group"),
     "Start": ("pin", "pinned", "velocity", "velocities", "pose"),
     "Drive": ("drive", "hydraulic", "motor"),
     "Other": ("group", "extras"),
@@ -44,6 +48,8 @@ def properties(document: Document) -> tuple[Section, ...]:
     if len(parts) == 1:
         facts = _facts(level, next(iter(selection)), parts[0])
         made = [*facts, *made] if isinstance(parts[0], SpringDef) else [*made, *facts]
+    if all(isinstance(part, TerrainDef) for part in parts):
+        made += _outline_properties(selection, [part for part in parts if isinstance(part, TerrainDef)])
     by_section: dict[str, list[Property]] = {"": [], **{title: [] for title in _SECTIONS}}
     for each in made:
         by_section[_section_of(each.field)].append(each)
@@ -73,7 +79,7 @@ def _common(kinds: Iterable[Any], number: int) -> dict[str, About]:
     first, *others = (abouts(kind) for kind in kinds)
     found = {}
     for name in file_order(first):
-        if name == "type" or (name == "id" and number > 1) or first[name].kind == "part":
+        if name in ("type", *_OUTLINES) or (name == "id" and number > 1) or first[name].kind == "part":
             continue
         same = [other[name] for other in others if name in other and _alike(other[name], first[name])]
         if len(same) == len(others):
@@ -144,7 +150,7 @@ def _facts(level: Level, item: Item, part: Definition) -> list[Property]:
     facts = []
     if isinstance(part, SpringDef):
         facts.append(("name", "Name", f":{item.key}", "Name of the spring."))
-    elif not isinstance(part, ParticleDef):
+    elif not isinstance(part, ParticleDef | TerrainDef):
         particles, springs = count(part)
         facts.append(
             (
@@ -162,6 +168,26 @@ def _facts(level: Level, item: Item, part: Definition) -> list[Property]:
 
 def _counted(number: int, noun: str) -> str:
     return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
+
+
+# The outline of terrain.
+
+
+def _outline_properties(selection: Selection, pieces: Sequence[TerrainDef]) -> list[Property]:
+    """Whether it is a line or solid, and its corners."""
+    kind = About("choice", "Kind", tooltip="A line with two sides, or solid inside.", choices=FORMS)
+
+    def choose(document: Document, wanted: Form) -> Document:
+        return outlined(document, selection, lambda piece: with_corners(piece, corners_of(piece), wanted))
+
+    def write(document: Document, corners: Sequence[Point]) -> Document:
+        return outlined(document, selection, lambda piece: with_corners(piece, corners))
+
+    about = replace(abouts(TerrainDef)["polygon"], title="Corners", optional=False, tooltip="Corners in order.")
+    return [
+        Property("form", kind, same(form_of(piece) for piece in pieces), choose),
+        Property("corners", about, same(corners_of(piece) for piece in pieces), write),
+    ]
 
 
 # The shape of a jelly.

@@ -18,8 +18,10 @@ from sandbox.editor.typed import (
     read_list,
     read_number,
     read_pairs,
+    read_touched,
     read_words,
     stepped,
+    touched_text,
 )
 from sandbox.level.quantities import Description
 
@@ -79,7 +81,7 @@ class Property:
             return None
         read: dict[str, Callable[[str, str], Any]] = {
             "number": read_number, "integer": read_integer, "list": read_list, "pairs": read_pairs,
-            "words": read_words,
+            "words": read_words, "touches": read_touched,
         }  # fmt: skip
         if about.kind in read:
             return read[about.kind](about.title, text)
@@ -109,6 +111,8 @@ def _text(about: About, value: Any) -> str:
         return number_text(value)
     if about.kind in ("list", "pairs", "words"):
         return list_text(value)
+    if about.kind == "touches":
+        return touched_text(value)
     if about.kind == "extras":
         return json.dumps(value, ensure_ascii=False)
     return line_text(str(value))

@@ -10,6 +10,8 @@ from sandbox.level.faults import shown
 
 # Digits that a number is shown with where they say all of it.
 DIGITS = 9
+# What is typed for all groups, and for none.
+EVERYTHING, NOTHING = "everything", "nothing"
 
 
 def number_text(value: float) -> str:
@@ -120,6 +122,21 @@ def read_words(title: str, text: str) -> list[str]:
     if not all(isinstance(word, str) for word in words):
         _refuse(title, text, "a list of words")
     return list(words)
+
+
+def touched_text(collides: bool | Sequence[str]) -> str:
+    """What something touches, in words: everything, nothing, or groups."""
+    if isinstance(collides, bool):
+        return EVERYTHING if collides else NOTHING
+    return list_text(collides) if collides else NOTHING
+
+
+def read_touched(title: str, text: str) -> bool | list[str]:
+    """What a text of `touched_text` stands for. Raises EditError."""
+    words = read_words(title, text)
+    if text.strip().casefold() in (EVERYTHING, NOTHING, ""):
+        return text.strip().casefold() == EVERYTHING
+    return words
 
 
 def _refuse(title: str, text: str, wanted: str) -> NoReturn:

@@ -83,9 +83,10 @@ def test_every_field_of_every_kind_of_item_can_be_reached(level):
 
 
 def test_every_field_of_the_level_and_its_settings_can_be_reached(level):
-    first, second = level_properties(Document(level))
+    first, second, third = level_properties(Document(level))
     parts = {"format", "version", "settings", "materials", "bodies", "particles", "springs", "welds", "checks"}
-    assert {each.field for each in first.properties} == set(Level.model_fields) - parts - {"extras"}
+    shown = {each.field for section in (first, third) for each in section.properties}
+    assert shown == set(Level.model_fields) - parts - {"extras", "terrain"}
     assert {each.field for each in second.properties} == set(Settings.model_fields)
 
 
@@ -171,7 +172,7 @@ def test_lists_are_typed_with_and_without_brackets(level):
         ("rope", "pinned", "start", 'Held particles: "start" is not a list such as 0, 4, 5'),
         ("rope", "pinned", "[" * 3000, None),
         ("mesh", "particles", "[0, 0], 7", None),
-        ("rope", "id", "deck", '"deck" is taken; every body and loose particle needs an id of its own'),
+        ("rope", "id", "deck", '"deck" is taken; all bodies, loose particles and terrain need ids of their own'),
         ("rope", "id", "a.b", None),
         ("wheel", "thickness", "2", '"wheel": thickness: 2.0 is not below the radius, 2.0'),
     ],
