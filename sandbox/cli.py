@@ -257,7 +257,7 @@ def _run_with_bar(
     from sandbox.session.commands import CommandError
     from sandbox.session.summary import run
 
-    warm_up((session.world.settings.solver,))
+    warm_up((session.world.settings.solver,), session.world.has_contacts)
     with interrupted_between_ticks() as look_up, progress(ticks) as bar:
 
         def after(world: "World") -> None:

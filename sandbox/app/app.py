@@ -1,6 +1,5 @@
 """App: the window, its loop, its pages, and the screen that fills it."""
 
-import threading
 import time
 from collections import deque
 from collections.abc import Callable
@@ -18,9 +17,9 @@ from sandbox.app.gallery import Gallery
 from sandbox.app.help import show_help
 from sandbox.app.idle import IdleCollector
 from sandbox.app.input import Input
-from sandbox.app.lines import warm_up_lines
 from sandbox.app.play import PlayScreen
 from sandbox.app.playback import Playback
+from sandbox.app.preparing import Preparation
 from sandbox.app.profile import Profile
 from sandbox.app.progress import Progress
 from sandbox.app.screen import Screen
@@ -28,7 +27,6 @@ from sandbox.app.shortcuts import Mode
 from sandbox.app.status import NOTICES, Notice, StatusLine, draw_spinner
 from sandbox.app.widgets import Ui
 from sandbox.level.model import Level
-from sandbox.physics.step import warm_up
 from sandbox.session.replay import Replay
 
 FRAME_RATE = 60
@@ -61,8 +59,7 @@ class App:
         self._counted = [0.0, 0, 0, 0.0]
         self._seconds = 0.0
         self._build_ui()
-        self.warming = threading.Thread(target=_warm_up_kernels, daemon=True)
-        self.warming.start()
+        self.preparation = Preparation()
         if replay is not None:
             self.start(Playback(replay.level, replay))
         elif level is not None:
@@ -203,7 +200,7 @@ class App:
             self.input.process(events)
             if self.display.refresh():
                 self.rebuild()
-        self.ready = self.ready or not self.warming.is_alive()
+        self.ready = self.preparation.is_ready(self.play is not None and self.play.has_contacts)
         if self.screen is not None:
             self.screen.update(frame_time, self.input.pointer_over_world(), self.profile, self.ready)
         with self.profile.part("ui"):
@@ -263,11 +260,6 @@ class App:
         words = [*self.screen.title(), *(["dialog"] if self.ui.has_sheet else [])]
         words += [] if self.ready else ["preparing"]
         return " - ".join([*words, "Spring Sandbox"])
-
-
-def _warm_up_kernels() -> None:
-    warm_up()
-    warm_up_lines()
 
 
 def run_app(

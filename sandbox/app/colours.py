@@ -26,6 +26,8 @@ PARTICLE: Colour = (226, 231, 239)
 PINNED: Colour = (94, 208, 178)
 WELD: Colour = (240, 214, 104)
 DRIVE: Colour = (255, 118, 186)
+TERRAIN: Colour = (150, 138, 118)
+TERRAIN_FILL: Colour = (44, 42, 42)
 
 # Springs by material while a level is edited; the material `default` is grey, then they repeat.
 MATERIAL_COLOURS: tuple[Colour, ...] = (

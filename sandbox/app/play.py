@@ -54,6 +54,11 @@ class PlayScreen:
         return self.stage.playback
 
     @property
+    def has_contacts(self) -> bool:
+        """Whether things touch in the run."""
+        return self.playback.session.world.has_contacts
+
+    @property
     def viewport(self) -> tuple[int, int, int, int]:
         """The part of the window that shows the world, in pixels."""
         ui, (width, height) = self._ui, self._ui.size

@@ -18,6 +18,7 @@ from sandbox.app.colours import (
     packed,
     strain_colours,
 )
+from sandbox.app.ground import draw_terrain
 from sandbox.app.lines import Canvas
 from sandbox.app.playback import interpolated
 from sandbox.app.profile import Profile
@@ -75,6 +76,7 @@ class Renderer:
             pixels = camera.project(position)
             surface.fill(BACKGROUND)
             self._draw_grid(canvas, camera)
+            draw_terrain(canvas, camera, current.terrain, self.scale)
             with profile.part("springs"):
                 self._draw_springs(canvas, camera, current, position, pixels)
             with profile.part("particles"):

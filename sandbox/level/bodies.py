@@ -9,8 +9,11 @@ from sandbox.level.driving import MotorDef, MuscleDef
 from sandbox.level.limits import DEFAULT_MATERIAL
 from sandbox.level.quantities import (
     Angle,
+    Collides,
+    CollisionGroup,
     Description,
     Extras,
+    Friction,
     GravityScale,
     Group,
     Id,
@@ -19,6 +22,7 @@ from sandbox.level.quantities import (
     Mass,
     Name,
     Point,
+    Restitution,
     Size,
     Spacing,
     Velocity,
@@ -48,6 +52,13 @@ class BodyDef(Description):
     drive: MuscleDef | None = Field(
         default=None, description="Wave that the rest lengths of its springs follow: a muscle; null = none."
     )
+    particle_radius: Length | None = Field(
+        default=None, description="Radius of its particles, where things touch; null = 0.05."
+    )
+    friction: Friction = None
+    restitution: Restitution = None
+    collides: Collides = True
+    collision_group: CollisionGroup = None
     group: Group = None
     extras: Extras = Field(default={})
 

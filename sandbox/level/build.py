@@ -6,9 +6,11 @@ from numpy.typing import NDArray
 from sandbox.level.driving import HydraulicDef, MotorDef
 from sandbox.level.expansion import Expansion, expansion
 from sandbox.level.layout import Layout
-from sandbox.level.limits import BODY_RADIUS, DEFAULT_MATERIAL
+from sandbox.level.limits import DEFAULT_MATERIAL
 from sandbox.level.model import HookeMaterial, Level, Material, NissenMaterial
+from sandbox.level.outlines import edges
 from sandbox.level.parts import given_length, parts
+from sandbox.level.surfaces import surface_of, surfaces_of, terrain_of
 from sandbox.level.validate import check_level
 from sandbox.level.welds import welded
 from sandbox.physics.driving import drive_muscles
@@ -42,6 +44,7 @@ def build_world(level: Level) -> World:
     world.limits = strain_limits(materials)
     _fit(world, layout, level, bodies, slots)
     world.reserve_hands()
+    world.terrain, world.surface = terrain_of(level), surface_of(level)
     return world
 
 
@@ -49,7 +52,8 @@ def _add_particles(world: World, level: Level, bodies: list[Expansion], slots: S
     """Add the particles that stay (bool, one per particle before welds); slots: which of them each becomes."""
     loose = level.particles
     names = [f"{body.id}.{k}" for body, made in zip(level.bodies, bodies, strict=True) for k in range(len(made.mass))]
-    radius = np.array([BODY_RADIUS] * len(names) + [particle.radius for particle in loose], dtype=np.float64)
+    surfaces = surfaces_of(level, [len(made.mass) for made in bodies])
+    radius = surfaces.pop("radius")
     names += [particle.id for particle in loose]
     position = np.array([p.position for p in loose], dtype=np.float64).reshape(-1, 2)
     velocity = np.array([p.velocity for p in loose], dtype=np.float64).reshape(-1, 2)
@@ -82,6 +86,7 @@ def _add_particles(world: World, level: Level, bodies: list[Expansion], slots: S
         radius=radius[stays] + 0.0,
         pinned=pinned[stays],
         gravity_scale=scale[stays] + 0.0,
+        **{name: values[stays] for name, values in surfaces.items()},
     )
     for slot in gone:
         world.name_particle(int(slots[slot]), names[slot])
@@ -106,12 +111,15 @@ def _add_springs(
     used = [np.full(len(expanded.pairs), index[body.material]) for body, expanded in made]
     material = np.concatenate([*used, np.array([index[s.material] for s in loose], dtype=np.int64)]).astype(np.int64)
     pairs = slots[np.concatenate([*ends, between])]
+    # A loose spring joins bodies, and is in nobody's way.
+    edge = np.concatenate([*(edges(body, expanded.pairs) for body, expanded in made), np.zeros(len(loose), np.int8)])
     world.add_springs(
         names + [f":{number}" for number in range(len(loose))],
         pairs[:, 0],
         pairs[:, 1],
         rest_length=np.concatenate([*(expanded.rest_length for expanded in bodies), given]) + 0.0,
         material=material,
+        edge=edge if level.has_contacts else 0,
         **coefficients(material, materials),
     )
 

@@ -9,7 +9,7 @@ from sandbox.level.model import Level, Settings
 # A value goes on one line where it fits into this many columns; otherwise its items go one to a line.
 _WIDTH = 100
 # Parts of a level whose items always go one to a line, so that adding one changes one line.
-_LISTED = ("materials", "bodies", "particles", "springs", "welds", "checks")
+_LISTED = ("materials", "terrain", "bodies", "particles", "springs", "welds", "checks")
 
 
 def level_data(level: Level) -> dict[str, Any]:

@@ -16,6 +16,8 @@ SPRING_LIMIT = 400_000
 # Work of filling polygons in one level: corners in all, and per polygon grid rows x (columns + corners).
 CORNER_LIMIT = 4_096
 POLYGON_WORK_LIMIT = 4_000_000
+TERRAIN_LIMIT = 1_000  # pieces of terrain; their corners count as those of polygons
+COLLISION_GROUP_LIMIT = 60  # groups that bodies collide by: bits of a whole number
 
 # Beyond these, doubles lose the digits that a spring's length needs.
 COORDINATE_LIMIT = 1e6  # [m]
@@ -36,6 +38,7 @@ TORQUE_LIMIT = 1e12  # [N m]
 RATE_LIMIT = 1e6  # [m/s] of a hydraulic
 MOTOR_LIMIT = 100  # motors of a level; each looks through all springs in every step for what its hub is fixed to
 HOOKE_LIMIT = 1e15  # [N/m], [N s/m]
+FRICTION_LIMIT = 100.0  # beyond it nothing slides that did not before
 SECONDS_LIMIT = 3_600.0  # [s] of run that an acceptance check may ask for
 
 FORMAT = "spring-sandbox/level"

@@ -19,11 +19,16 @@ from sandbox.level.limits import (
 )
 from sandbox.level.quantities import (
     Coefficient,
+    Collides,
+    CollisionGroup,
     Compression,
     Coordinate,
+    Corners,
     Description,
     Drag,
     Extras,
+    Friction,
+    FrictionCoefficient,
     Gravity,
     GravityScale,
     Group,
@@ -35,6 +40,8 @@ from sandbox.level.quantities import (
     Mass,
     Name,
     Point,
+    Restitution,
+    Share,
     Tension,
     Text,
     Velocity,
@@ -150,9 +157,13 @@ class ParticleDef(Description):
     position: Point = Field(default=(0.0, 0.0), description="Place.")
     velocity: Velocity = Field(default=(0.0, 0.0), description="Start velocity; a pinned particle starts at rest.")
     mass: Mass = Field(default=1.0, description="Mass.")
-    radius: Length = Field(default=0.05, description="Radius of the drawn disc.")
+    radius: Length = Field(default=0.05, description="Radius of its disc.")
     pinned: bool = Field(default=False, description="Whether it is held where it is.")
     gravity_scale: GravityScale = 1.0
+    friction: Friction = None
+    restitution: Restitution = None
+    collides: Collides = True
+    collision_group: CollisionGroup = None
     group: Group = None
     extras: Extras = Field(default={})
 
@@ -176,6 +187,37 @@ class SpringDef(Description):
     extras: Extras = Field(default={})
 
 
+class ContactsDef(Description):
+    """That things touch each other, and how, unless they say otherwise."""
+
+    friction: FrictionCoefficient = Field(default=0.5, description="Friction of a surface.")
+    restitution: Share = Field(default=0.0, description="Part of its speed with which a surface bounces.")
+
+
+class WallsDef(Description):
+    """Four walls, solid outside, that nothing leaves."""
+
+    box: tuple[Coordinate, Coordinate, Coordinate, Coordinate] = Field(
+        description="Left, bottom, right, top of the room.", json_schema_extra=unit("m")
+    )
+    friction: Friction = None
+    restitution: Restitution = None
+
+
+class TerrainDef(Description):
+    """A piece of terrain, which never moves: a line with two sides, or a solid polygon."""
+
+    id: Id = Field(description="Name of the piece; other pieces, bodies and particles have others.")
+    polyline: Corners | None = Field(default=None, description="Corners of a line; this or `polygon`.")
+    polygon: Corners | None = Field(
+        default=None, description="Corners of a solid shape in order; sides may not touch or cross."
+    )
+    friction: Friction = None
+    restitution: Restitution = None
+    group: Group = None
+    extras: Extras = Field(default={})
+
+
 class Level(Description):
     """A level: who made it, how time passes, and what is in it."""
 
@@ -193,6 +235,12 @@ class Level(Description):
         json_schema_extra=unit("m"),
     )
     materials: dict[Name, Material] = Field(default={}, max_length=MATERIAL_LIMIT, description="Materials by name.")
+    contacts: ContactsDef | None = Field(
+        default=None,
+        description="That things touch; null = nothing touches anything, unless there are terrain or walls.",
+    )
+    walls: WallsDef | None = Field(default=None, description="Walls all round; null = none.")
+    terrain: tuple[TerrainDef, ...] = Field(default=(), description="Lines and solid shapes that never move.")
     bodies: tuple[AnyBody, ...] = Field(default=(), description="Bodies, in the order of their particles and springs.")
     particles: tuple[ParticleDef, ...] = Field(default=(), description="Loose particles, after those of the bodies.")
     springs: tuple[SpringDef, ...] = Field(default=(), description="Loose springs, after those of the bodies.")
@@ -205,6 +253,11 @@ class Level(Description):
         default=(), max_length=CHECK_LIMIT, description="What must hold of the level's run."
     )
     extras: Extras = Field(default={})
+
+    @property
+    def has_contacts(self) -> bool:
+        """Whether anything in the level touches anything."""
+        return self.contacts is not None or self.walls is not None or bool(self.terrain)
 
     @field_validator("version")
     @classmethod

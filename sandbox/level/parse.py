@@ -24,6 +24,7 @@ from sandbox.level.limits import (
     PARTICLE_LIMIT,
     SPRING_LIMIT,
     TAG_LIMIT,
+    TERRAIN_LIMIT,
 )
 from sandbox.level.migrate import migrated
 from sandbox.level.model import Level
@@ -39,6 +40,7 @@ _LARGE = 1024 * 1024  # [bytes]
 _BODY_LISTS = ("particles", "masses", "velocities", "pinned", "pose")
 BODY_LIMITS = {"springs": SPRING_LIMIT, "cut": SPRING_LIMIT} | dict.fromkeys(_BODY_LISTS, PARTICLE_LIMIT)
 LEVEL_LIMITS = {
+    "terrain": TERRAIN_LIMIT,
     "bodies": PARTICLE_LIMIT,
     "particles": PARTICLE_LIMIT,
     "springs": SPRING_LIMIT,

@@ -2,13 +2,15 @@
 
 from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from sandbox.level.limits import (
     AMPLITUDE_LIMIT,
     ANGLE_LIMIT,
     COORDINATE_LIMIT,
+    CORNER_LIMIT,
     DRAG_LIMIT,
+    FRICTION_LIMIT,
     GRAVITY_LIMIT,
     GRAVITY_SCALE_LIMIT,
     HOOKE_LIMIT,
@@ -114,3 +116,32 @@ Seconds = Annotated[float, Field(ge=0.0, le=SECONDS_LIMIT, json_schema_extra=uni
 Index = Annotated[int, Field(ge=0)]
 Extras = Annotated[dict[str, Any], Field(description="Data of other tools; kept and ignored.")]
 Group = Annotated[Name | None, Field(description="Group that it is selected and moved with in the editor.")]
+Corners = Annotated[tuple[Point, ...], Field(min_length=2, max_length=CORNER_LIMIT)]
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+FrictionCoefficient = Annotated[float, Field(ge=0.0, le=FRICTION_LIMIT)]
+
+
+def _groups(value: Any) -> Any:
+    # Before the type is looked at: of a choice of types, the library would list a fault for each.
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, list | tuple) and all(isinstance(name, str) for name in value):
+        return tuple(value)
+    raise ValueError("use true, false or a list of groups")
+
+
+Collides = Annotated[
+    bool | tuple[Name, ...],
+    BeforeValidator(_groups),
+    Field(description="What it touches where the level has contacts: everything, nothing, or these groups."),
+]
+CollisionGroup = Annotated[
+    Name | None, Field(description="Group that others name in `collides`; null = the group `default`.")
+]
+Friction = Annotated[
+    FrictionCoefficient | None, Field(description="Friction of its surface; null = that of the level's contacts.")
+]
+Restitution = Annotated[
+    Share | None,
+    Field(description="Part of its speed with which it bounces; null = that of the level's contacts."),
+]

@@ -12,7 +12,7 @@ from sandbox.level.checks import CheckDef
 from sandbox.level.faults import Fault, LevelError, json_path, shown
 from sandbox.level.limits import FAULT_LIMIT, FILE_LIMIT, FORMAT, VERSION
 from sandbox.level.migrate import migrated
-from sandbox.level.model import Level, ParticleDef, SpringDef
+from sandbox.level.model import Level, ParticleDef, SpringDef, TerrainDef
 from sandbox.level.parse import BODY_LIMITS, LEVEL_LIMITS
 from sandbox.level.scan import scan
 from sandbox.level.validate import level_faults
@@ -20,7 +20,7 @@ from sandbox.level.wording import place, worded
 
 _NAME = "Untitled"
 _HEAD = {"format": FORMAT, "version": VERSION, "name": _NAME}
-_LISTS = ("tags", "bodies", "particles", "springs", "welds", "checks")
+_LISTS = ("tags", "terrain", "bodies", "particles", "springs", "welds", "checks")
 # Lists whose items mean nothing to each other, so that one alone can go.
 _INDEPENDENT = ("springs", "pinned", "cut", "pin")
 # Items that are looked at together while all of them are valid, which is many times faster.
@@ -31,7 +31,12 @@ _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 # What parts of these lists cannot be without; what a body needs depends on its kind.
 _REQUIRED = {
     key: frozenset(name for name, field in model.model_fields.items() if field.is_required())
-    for key, model in (("particles", ParticleDef), ("springs", SpringDef), ("checks", CheckDef))
+    for key, model in (
+        ("terrain", TerrainDef),
+        ("particles", ParticleDef),
+        ("springs", SpringDef),
+        ("checks", CheckDef),
+    )
 }
 
 Path = Sequence[Any]

@@ -35,6 +35,7 @@ from sandbox.level.limits import (
 from sandbox.level.model import Level
 from sandbox.level.polygon import grid_bounds, is_simple
 from sandbox.level.shapes import form_count, girder_offset, turn
+from sandbox.level.surfaces import surface_faults
 from sandbox.level.welds import weld_faults
 
 
@@ -116,6 +117,7 @@ def _all_faults(level: Level, counts: list[tuple[int, int]], layout: Layout) -> 
             yield f"{path}.spacing", "no point of the grid lies inside the polygon; make it smaller"
         else:
             yield from _changes(path, body, *counts[index])
+    yield from surface_faults(level)
     yield from _springs(level, layout)
     yield from driven_faults(level)
     for index, (a, b) in enumerate(level.welds):
@@ -242,7 +244,12 @@ def _check(path: str, check: CheckDef, layout: Layout) -> Iterator[Fault]:
 
 def _extras(level: Level) -> Iterator[Fault]:
     yield from _kept(["extras"], level.extras)
-    for name, items in (("bodies", level.bodies), ("particles", level.particles), ("springs", level.springs)):
+    for name, items in (
+        ("terrain", level.terrain),
+        ("bodies", level.bodies),
+        ("particles", level.particles),
+        ("springs", level.springs),
+    ):
         for index, item in enumerate(items):
             if item.extras:
                 yield from _kept([name, index, "extras"], item.extras)

@@ -1,7 +1,7 @@
 """The arrays of a world's state: their names, their types, and their order."""
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
@@ -17,6 +17,11 @@ PARTICLE_ARRAYS = {
     "particle_active": np.bool_,
     "slow_velocity": np.float64,
     "energy_bank": np.float64,
+    "friction": np.float64,
+    "restitution": np.float64,
+    "owner": np.int32,
+    "group": np.int64,
+    "collides": np.int64,
 }
 SPRING_ARRAYS = {
     "particle_a": np.int32,
@@ -32,21 +37,30 @@ SPRING_ARRAYS = {
     "spring_active": np.bool_,
     "impulse": np.float64,
     "tension": np.float64,
+    "edge": np.int8,
 }
 PART_ARRAYS = {"part_value": np.float64}
-# Arrays that go together: one row for each particle, each spring, each driven part.
-FAMILIES = (PARTICLE_ARRAYS, SPRING_ARRAYS, PART_ARRAYS)
-KINDS = PARTICLE_ARRAYS | SPRING_ARRAYS | PART_ARRAYS
+CONTACT_ARRAYS = {
+    "contact_particle": np.int32,
+    "contact_feature": np.int64,
+    "contact_impulse": np.float64,
+}
+# Arrays that go together: one row for each particle, each spring, each driven part, each contact.
+FAMILIES = (PARTICLE_ARRAYS, SPRING_ARRAYS, PART_ARRAYS, CONTACT_ARRAYS)
+KINDS = PARTICLE_ARRAYS | SPRING_ARRAYS | PART_ARRAYS | CONTACT_ARRAYS
 # Every array of a world's state, in the order in which it is hashed and stored: part of the replay contract.
 STATE_ARRAYS = tuple(KINDS)
 # Constants of springs that the quarantine can take back.
 GUARDED_CONSTANTS = ("rest_length", "stiffness", "damping", "hooke_stiffness", "hooke_damping")
 GUARDED = ("position", "velocity", "mass", *GUARDED_CONSTANTS)
-VECTOR_ARRAYS = frozenset({"position", "velocity", "origin", "slow_velocity", "impulse"})
+VECTOR_ARRAYS = frozenset({"position", "velocity", "origin", "slow_velocity", "impulse", "contact_impulse"})
+
+# An energy bank that the direct solver begins anew at its next step: something outside changed the body.
+BANK_UNOPENED = -1.0
 
 
 class StateArrays:
-    """The state of n particles, m springs and k driven parts as a struct of arrays, float64 unless said.
+    """The state of n particles, m springs, k driven parts and c contacts as a struct of arrays, float64 unless said.
 
     position [m] (n, 2), velocity [m/s] (n, 2), origin [m] (n, 2) = where each was created, which orders the direct
     solver's elimination, mass [kg], inverse_mass [1/kg] (0 = pinned), radius [m], gravity_scale = how many times the
@@ -58,6 +72,12 @@ class StateArrays:
     = what a body's earlier losses still allow it, at its free particle of lowest slot (-1: to be begun anew), tension
     [N s] (m,) = the impulse by which a spring pulled in the last step, of a whole tick where substeps are "auto", as
     impulse then is. part_value (k,) = how a driven part is driven, -1..1.
+
+    For contacts: friction and restitution (n,), owner (int32) = the body that a particle belongs to, negative: its own,
+    group (int64) = one bit, collides (int64) = the bits of the groups that it touches, TERRAIN_GROUP for terrain, 0 =
+    nothing; edge (int8) of a spring = no line that others meet, one with two sides, or the outline of a solid body on
+    its left or right. Of the c contacts of the last step: contact_particle (int32), contact_feature (int64, see
+    contacts.py), contact_impulse [N s] (c, 2), along and across.
     """
 
     position: Floats
@@ -84,7 +104,35 @@ class StateArrays:
     impulse: Floats
     tension: Floats
     part_value: Floats
+    friction: Floats
+    restitution: Floats
+    owner: NDArray[np.int32]
+    group: Slots
+    collides: Slots
+    edge: NDArray[np.int8]
+    contact_particle: NDArray[np.int32]
+    contact_feature: Slots
+    contact_impulse: Floats
 
     def __init__(self) -> None:
         for name, kind in KINDS.items():
             setattr(self, name, np.zeros((0, 2) if name in VECTOR_ARRAYS else 0, dtype=kind))
+        # The last good values of what the quarantine guards; never state.
+        self.good: dict[str, Floats] = {}
+        self.trust()
+
+    def trust(self) -> None:
+        """Take everything as it is now for good."""
+        self.good = {name: getattr(self, name).copy() for name in GUARDED}
+
+    def _append(self, **arrays: ArrayLike) -> None:
+        for name, values in arrays.items():
+            present = getattr(self, name)
+            added = np.asarray(values, dtype=present.dtype)
+            setattr(self, name, np.concatenate([present, added]))
+            if name in GUARDED:
+                self.good[name] = np.concatenate([self.good[name], added])
+
+    def _disturb(self, *particles: NDArray[np.integer] | int) -> None:
+        for slots in particles:
+            self.energy_bank[slots] = BANK_UNOPENED

@@ -1,4 +1,4 @@
-"""Equipment of a world: limits of its materials and its driven parts. Constant while it runs, so no state."""
+"""Equipment of a world: limits of its materials, its driven parts, its surface. Constant while it runs, so no state."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -39,6 +39,16 @@ def unlimited(materials: int) -> StrainLimits:
     """Limits of so many materials that neither break nor yield."""
     never = np.full(materials, NEVER)
     return StrainLimits(never, never, never, np.zeros(materials))
+
+
+@dataclass(frozen=True)
+class Surface:
+    """What a particle is like to the touch: friction, restitution, group and collides, see StateArrays."""
+
+    friction: float = 0.0
+    restitution: float = 0.0
+    group: int = 0
+    collides: int = 0
 
 
 def _slots() -> Slots:

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.world import Floats, World
+from sandbox.physics.terrain import Terrain
+from sandbox.physics.world import Floats, Slots, World
 
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
-    """A read-only copy of a world's state: its arrays (see World), settings and tick."""
+    """A read-only copy of a world's state: its arrays (see World), settings and tick; and its terrain."""
 
     position: Floats
     velocity: Floats
@@ -41,10 +42,20 @@ class Snapshot:
     impulse: Floats
     tension: Floats
     part_value: Floats
+    friction: Floats
+    restitution: Floats
+    owner: NDArray[np.int32]
+    group: Slots
+    collides: Slots
+    edge: NDArray[np.int8]
+    contact_particle: NDArray[np.int32]
+    contact_feature: Slots
+    contact_impulse: Floats
     settings: WorldSettings
     tick: int
     hand_particle: int
     hand_spring: int
+    terrain: Terrain
 
 
 def take(world: World) -> Snapshot:
@@ -58,6 +69,7 @@ def take(world: World) -> Snapshot:
         tick=world.tick,
         hand_particle=world.hand_particle,
         hand_spring=world.hand_spring,
+        terrain=world.terrain,
     )
 
 
@@ -71,6 +83,7 @@ def restore(world: World, snapshot: Snapshot) -> None:
     world.hand_particle = snapshot.hand_particle
     world.hand_spring = snapshot.hand_spring
     world.trust()
+    world.see_what_touches()
     world.forget_names_beyond(len(snapshot.mass), len(snapshot.rest_length))
 
 

@@ -5,16 +5,21 @@ from collections.abc import Sequence
 import numpy as np
 
 from sandbox.physics.breaking import yield_and_break
+from sandbox.physics.contacts import find_contacts
 from sandbox.physics.driving import drive_springs
 from sandbox.physics.equipment import Driven, Hydraulics, Motors, Muscles, StrainLimits
 from sandbox.physics.forces import Before, apply_forces
+from sandbox.physics.guard import stop_at_terrain
 from sandbox.physics.jit import kernel
+from sandbox.physics.outline import TERRAIN_GROUP
 from sandbox.physics.quarantine import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS, halves
+from sandbox.physics.solvers.contact_sweep import keep_impulses
 from sandbox.physics.solvers.direct import pattern_of
 from sandbox.physics.solvers.dissection import dissect
 from sandbox.physics.substeps import halve, substep_count
+from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import Floats, World
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
@@ -61,7 +66,11 @@ def step(world: World) -> None:
     for _ in range(parts):
         before = Before(world.velocity.copy(), rest_length)
         apply_forces(world, h)
+        world.contacts = find_contacts(world, h) if world.has_contacts else None
         solver.solve(world, stiffness, damping, h, before)
+        if world.contacts is not None:
+            keep_impulses(world, world.contacts)
+            stop_at_terrain(world, h)
         _integrate(world.position, world.velocity, world.particle_active, h)
         rest_length = world.rest_length
     world.scale_impulses(parts / settings.fewest_substeps)
@@ -71,8 +80,11 @@ def step(world: World) -> None:
     yield_and_break(world)
 
 
-def warm_up(solvers: Sequence[str] = tuple(SOLVERS)) -> None:
-    """Compile every kernel of a tick with these solvers, or load it from the cache, on a world of two particles."""
+def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> None:
+    """Compile every kernel of a tick with these solvers, or load it from the cache, on a world of two particles.
+
+    contacts: also those that a world alone needs in which things touch.
+    """
     for solver in solvers:
         world = World(WorldSettings(solver=solver, substeps=AUTO, drag=1.0))
         world.add_particles(["a", "b"], np.array([[0.0, 0.0], [1.0, 0.0]]))
@@ -84,6 +96,10 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS)) -> None:
         motors = Motors(one, np.ones(1), np.ones(1), one, np.array([0, 1]), one + 1)
         world.fit(Driven(("a",), muscles, hydraulics, motors), [1.0])
         step(world)
+        if contacts:
+            world.add_particles(["c", "d"], np.zeros((2, 2)), group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
+            world.terrain = make_terrain([Chain([[-1.0, 0.0], [1.0, 0.0]])])
+            step(world)
     if "direct" in solvers:
         # That is too small a body to be dissected by itself, or to need a second thread.
         dissect(np.array([0]), np.array([1]), world.position)

@@ -6,9 +6,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sandbox.physics.arrays import GUARDED, Floats, Slots, StateArrays
-from sandbox.physics.equipment import Driven, StrainLimits, unlimited
+from sandbox.physics.arrays import (
+    BANK_UNOPENED,
+    PART_ARRAYS,
+    PARTICLE_ARRAYS,
+    SPRING_ARRAYS,
+    Floats,
+    Slots,
+    StateArrays,
+)
+from sandbox.physics.equipment import Driven, StrainLimits, Surface, unlimited
+from sandbox.physics.names import Names
 from sandbox.physics.settings import AUTO, WorldSettings
+from sandbox.physics.terrain import NO_TERRAIN, Terrain
 
 LAW_NISSEN = 0
 LAW_HOOKE = 1
@@ -22,9 +32,6 @@ HAND_MATERIAL = -1
 # article's 1/(n+1) stays bounded while it is held; higher values grip harder and use that margin up.
 HAND_STIFFNESS = 0.2
 HAND_DAMPING = 0.3
-
-# An energy bank that the direct solver begins anew at its next step: something outside changed the body.
-BANK_UNOPENED = -1.0
 
 
 class World(StateArrays):
@@ -40,22 +47,23 @@ class World(StateArrays):
         self.material_names = tuple(material_names)
         self.limits: StrainLimits = unlimited(len(self.material_names))
         self.driven = Driven()
-        self.particle_names: list[str] = []
-        self.spring_names: list[str] = []
-        self._particle_slots: dict[str, int] = {}
-        self._spring_slots: dict[str, int] = {}
+        # What a particle that is added while the world runs is like to the touch.
+        self.surface = Surface()
+        self._particles, self._springs = Names(), Names()
         self.hand_particle = -1
         self.hand_spring = -1
+        self.terrain: Terrain = NO_TERRAIN
         # What a solver derives from topology and pins alone; never state.
         self.solver_cache: Any = None
-        # What the quarantine has taken back since somebody last looked, and, in `good`, the last good values by array;
-        # never state.
+        # The contacts of the present step, and what finding them derives from topology alone; never state.
+        self.contacts: Any = None
+        self.contact_cache: Any = None
+        # What the quarantine has taken back since somebody last looked; never state.
         self.contained: list[Any] = []
         # The springs that broke in the last tick; never state.
         self.broken: Slots = np.zeros(0, dtype=np.int64)
+        self._touching = False
         super().__init__()
-        self.good: dict[str, Floats] = {}
-        self.trust()
 
     def __getstate__(self) -> dict[str, Any]:
         """What a copy starts from: all but what solvers derive, which may hold a thread."""
@@ -73,6 +81,7 @@ class World(StateArrays):
             self.energy_bank[:] = BANK_UNOPENED
             self.impulse[:] = 0.0
             self.tension[:] = 0.0
+            self.contact_impulse[:] = 0.0
         if (settings.substeps == AUTO) != (self._settings.substeps == AUTO):
             self.energy_bank[:] = BANK_UNOPENED
             self.scale_impulses(self._settings.fewest_substeps / settings.fewest_substeps)
@@ -83,6 +92,20 @@ class World(StateArrays):
         if factor != 1.0:
             self.impulse *= factor
             self.tension *= factor
+            self.contact_impulse *= factor
+
+    @property
+    def has_contacts(self) -> bool:
+        """Whether anything in the world can touch anything."""
+        return self._touching
+
+    def see_what_touches(self) -> None:
+        """Note whether anything can touch anything, where particles have come or gone."""
+        self._touching = bool(self.collides.any())
+
+    def keep_contacts(self, particle: NDArray[np.int32], feature: Slots, impulse: Floats) -> None:
+        """Keep the contacts of a step and their impulses [N s] for the next."""
+        self.contact_particle, self.contact_feature, self.contact_impulse = particle, feature, impulse
 
     @property
     def particle_count(self) -> int:
@@ -94,19 +117,37 @@ class World(StateArrays):
         """Spring slots in use, active or not, hands included."""
         return len(self.rest_length)
 
+    @property
+    def particle_names(self) -> list[str]:
+        """Name of each particle, by slot."""
+        return self._particles.in_order
+
+    @property
+    def spring_names(self) -> list[str]:
+        """Name of each spring, by slot."""
+        return self._springs.in_order
+
+    def slot_name(self, array: str, slot: int) -> str:
+        """What a person calls the owner of a slot of the state array of that name."""
+        if array in PARTICLE_ARRAYS:
+            return self.particle_names[slot]
+        if array in SPRING_ARRAYS:
+            return self.spring_names[slot]
+        if array in PART_ARRAYS:
+            return self.driven.part_names[slot]
+        return f"a contact of {self.particle_names[self.contact_particle[slot]]}"
+
     def particle_slot(self, name: str) -> int:
         """Slot of the particle of that name. Raises KeyError."""
-        return self._particle_slots[name]
+        return self._particles.slot(name)
 
     def name_particle(self, slot: int, name: str) -> None:
         """Give a particle a second name to be found by. Raises ValueError where that is taken."""
-        if name in self._particle_slots:
-            raise ValueError(f"the name {name!r} is taken")
-        self._particle_slots[name] = slot
+        self._particles.add_second(slot, name)
 
     def spring_slot(self, name: str) -> int:
         """Slot of the spring of that name. Raises KeyError."""
-        return self._spring_slots[name]
+        return self._springs.slot(name)
 
     def is_hand_particle(self, slot: int) -> bool:
         """Whether the slot is a hand's cursor."""
@@ -126,11 +167,16 @@ class World(StateArrays):
         radius: ArrayLike = 0.05,
         pinned: ArrayLike = False,
         gravity_scale: ArrayLike = 1.0,
+        friction: ArrayLike = 0.0,
+        restitution: ArrayLike = 0.0,
+        owner: ArrayLike | None = None,
+        group: ArrayLike = 0,
+        collides: ArrayLike = 0,
     ) -> int:
         """Append particles, one per name, and return the first slot.
 
-        position [m] (k, 2); velocity [m/s] (k, 2) or one for all; mass [kg], radius [m], pinned and gravity_scale (k,)
-        or one for all.
+        position [m] (k, 2); velocity [m/s] (k, 2) or one for all; the others (k,) or one for all; owner: None = each
+        its own.
         A pinned particle starts at rest. Raises ValueError for a name that is taken or a mass that is not above 0.
         """
         count, first = len(names), self.particle_count
@@ -138,7 +184,7 @@ class World(StateArrays):
         is_pinned = np.broadcast_to(np.asarray(pinned, dtype=np.bool_), count)
         if not np.all(masses > 0.0):
             raise ValueError("every particle has a mass above 0 kg")
-        _register(self._particle_slots, self.particle_names, names)
+        self._particles.append(names)
         velocities = np.broadcast_to(np.asarray(velocity, dtype=np.float64), (count, 2))
         self._append(
             position=np.asarray(position, dtype=np.float64).reshape(count, 2),
@@ -151,7 +197,13 @@ class World(StateArrays):
             radius=np.broadcast_to(np.asarray(radius, dtype=np.float64), count),
             gravity_scale=np.broadcast_to(np.asarray(gravity_scale, dtype=np.float64), count),
             particle_active=np.ones(count, dtype=np.bool_),
+            friction=np.broadcast_to(np.asarray(friction, dtype=np.float64), count),
+            restitution=np.broadcast_to(np.asarray(restitution, dtype=np.float64), count),
+            owner=np.broadcast_to(-1 - first - np.arange(count) if owner is None else np.asarray(owner), count),
+            group=np.broadcast_to(group, count),
+            collides=np.broadcast_to(collides, count),
         )
+        self.see_what_touches()
         return first
 
     def add_springs(
@@ -167,6 +219,7 @@ class World(StateArrays):
         hooke_stiffness: ArrayLike = 0.0,
         hooke_damping: ArrayLike = 0.0,
         material: ArrayLike = 0,
+        edge: ArrayLike = 0,
     ) -> int:
         """Append springs, one per name, and return the first slot.
 
@@ -180,7 +233,7 @@ class World(StateArrays):
             raise ValueError("a spring names a particle slot that does not exist")
         if np.any(a == b):
             raise ValueError("a spring joins two different particles")
-        _register(self._spring_slots, self.spring_names, names)
+        self._springs.append(names)
         separation = self.position[b] - self.position[a]
         placed = np.sqrt(separation[:, 0] * separation[:, 0] + separation[:, 1] * separation[:, 1])
         given = np.broadcast_to(np.asarray(np.nan if rest_length is None else rest_length, dtype=np.float64), count)
@@ -199,6 +252,7 @@ class World(StateArrays):
             spring_active=np.ones(count, dtype=np.bool_),
             impulse=np.zeros((count, 2)),
             tension=np.zeros(count),
+            edge=np.broadcast_to(edge, count),
         )
         self._disturb(a, b)
         return first
@@ -327,14 +381,10 @@ class World(StateArrays):
             self.good[name][chosen] = getattr(self, name)[chosen]
         self._disturb(self.particle_a[chosen], self.particle_b[chosen])
 
-    def trust(self) -> None:
-        """Take everything as it is now for good."""
-        self.good = {name: getattr(self, name).copy() for name in GUARDED}
-
     def name_slots(self, particles: Sequence[str], springs: Sequence[str]) -> None:
         """Name the slots that a restored state brought along, from the first one without a name on."""
-        _register(self._particle_slots, self.particle_names, particles)
-        _register(self._spring_slots, self.spring_names, springs)
+        self._particles.append(particles)
+        self._springs.append(springs)
 
     def name_hands(self) -> None:
         """Name the hands' slots, where a restored state brought them along."""
@@ -342,35 +392,9 @@ class World(StateArrays):
 
     def forget_names_beyond(self, particle_count: int, spring_count: int) -> None:
         """Drop the names of slots that a restored state does not have."""
-        for slots, names, count in (
-            (self._particle_slots, self.particle_names, particle_count),
-            (self._spring_slots, self.spring_names, spring_count),
-        ):
-            for name in names[count:]:
-                del slots[name]
-            del names[count:]
-
-    def _disturb(self, *particles: NDArray[np.integer] | int) -> None:
-        for slots in particles:
-            self.energy_bank[slots] = BANK_UNOPENED
-
-    def _append(self, **arrays: ArrayLike) -> None:
-        for name, values in arrays.items():
-            present = getattr(self, name)
-            added = np.asarray(values, dtype=present.dtype)
-            setattr(self, name, np.concatenate([present, added]))
-            if name in GUARDED:
-                self.good[name] = np.concatenate([self.good[name], added])
+        self._particles.forget_beyond(particle_count)
+        self._springs.forget_beyond(spring_count)
 
 
 def _hand_names() -> list[str]:
     return [f"+hand.{hand}" for hand in range(HAND_COUNT)]
-
-
-def _register(slots: dict[str, int], names: list[str], added: Sequence[str]) -> None:
-    fresh = {name: len(names) + index for index, name in enumerate(added)}
-    taken = next((name for name in added if name in slots), None)
-    if taken is not None or len(fresh) != len(added):
-        raise ValueError(f"the name {taken or 'of two new slots'!r} is taken")
-    slots.update(fresh)
-    names.extend(added)

@@ -284,6 +284,7 @@ def _add_particle(world: World, command: AddParticle) -> None:
         mass=command.mass,
         radius=command.radius,
         pinned=command.pinned,
+        **asdict(world.surface),
     )
 
 

@@ -147,7 +147,7 @@ def read_replay(path: str | Path, partial: bool = False) -> Replay:
         raise ReplayError(f"{source}: cut off before tick 0: nothing to verify")
     if gathered.end_hash is None and not partial:
         last = len(gathered.hashes) - 1
-        raise ReplayError(f"{source}: cut off after tick {last}; --partial verifies what is there")
+        raise ReplayError(f"{source}: line {number}: cut off after tick {last}; --partial verifies what is there")
     return Replay(source, level, tuple(gathered.script), tuple(gathered.hashes), gathered.states, gathered.end_hash)
 
 

@@ -1,6 +1,6 @@
 """Replay: a recorded run read back, and verify, which runs it again and names the first bit that differs."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sandbox.level.model import Level
 from sandbox.level.parts import parts
-from sandbox.physics.arrays import PARTICLE_ARRAYS, SPRING_ARRAYS, STATE_ARRAYS
+from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, canonical_bytes, hash_by_array, state_hash
 from sandbox.physics.world import World
@@ -211,10 +211,6 @@ def _first_difference(tick: int, array: str, expected: NDArray[Any], world: Worl
     if flat is None:
         return Divergence(tick, array, None, "equal", "equal", note="the two runs agree here")
     place = tuple(int(part) for part in np.unravel_index(flat, actual.shape))
-    names: Sequence[str] = world.driven.part_names
-    if array in PARTICLE_ARRAYS:
-        names = world.particle_names
-    elif array in SPRING_ARRAYS:
-        names = world.spring_names
     index = place[0] if len(place) == 1 else (place[0], place[1])
-    return Divergence(tick, array, index, expected[place].item(), actual[place].item(), names[place[0]])
+    name = world.slot_name(array, place[0])
+    return Divergence(tick, array, index, expected[place].item(), actual[place].item(), name)

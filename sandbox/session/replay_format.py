@@ -24,6 +24,7 @@ from sandbox.level.model import Level
 from sandbox.physics.arrays import FAMILIES, KINDS, STATE_ARRAYS, VECTOR_ARRAYS
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.world import HAND_COUNT, HAND_MATERIAL, World, WorldSettings
 
 FORMAT = "spring-sandbox/replay"
@@ -92,7 +93,7 @@ def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> S
     for group in FAMILIES:
         if len({len(arrays[name]) for name in group}) != 1:
             raise ValueError(f"state: {', '.join(group)} are not equally long")
-    for name in ("particle_a", "particle_b"):
+    for name in ("particle_a", "particle_b", "contact_particle"):
         if np.any((arrays[name] < 0) | (arrays[name] >= len(arrays["mass"]))):
             raise ValueError(f"state.{name}: names a particle that does not exist")
     hands = np.flatnonzero(arrays["material"] == HAND_MATERIAL)
@@ -104,7 +105,14 @@ def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> S
         raise ValueError("state.particle_a: a hand has no particle of its own")
     if settings.solver not in SOLVERS:
         raise ValueError(f"settings.solver: there is no solver {settings.solver!r}")
-    return Snapshot(**arrays, settings=settings, tick=tick, hand_particle=hand_particle, hand_spring=hand_spring)
+    return Snapshot(
+        **arrays,
+        settings=settings,
+        tick=tick,
+        hand_particle=hand_particle,
+        hand_spring=hand_spring,
+        terrain=NO_TERRAIN,
+    )
 
 
 def _decode_array(name: str, text: str) -> Any:

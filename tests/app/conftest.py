@@ -42,8 +42,7 @@ class Driver:
 
     def __init__(self, level=None, replay=None):
         self.app = App(Display(1.0), level, replay)
-        self.app.warming.join()
-        self.frames()
+        self.frames(2)
 
     @property
     def stage(self):
@@ -71,6 +70,7 @@ class Driver:
 
     def frames(self, count=1):
         for _ in range(count):
+            self.app.preparation.finish()
             self.app.frame(FRAME)
 
     def post(self, kind, **data):

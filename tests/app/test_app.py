@@ -8,10 +8,11 @@ import sys
 import numpy as np
 import pygame
 import pytest
-from conftest import small_level
+from conftest import FRAME, small_level
 
 from sandbox.app.app import run_app
 from sandbox.app.display import has_display
+from sandbox.app.playback import Playback
 from sandbox.app.shortcuts import action_of, shortcuts
 from sandbox.level.files import shipped_levels
 from sandbox.session.reading import read_replay
@@ -387,3 +388,14 @@ def test_run_app_closes_after_the_given_time_and_prints_where_the_time_went(caps
     assert run_app(None, profile=True, seconds=0.2) == 0
     printed = capsys.readouterr().out
     assert all(part in printed for part in ("events", "ui", "flip", "frames a second"))
+
+
+def test_a_level_in_which_things_touch_waits_until_contacts_are_prepared(driver):
+    assert driver.app.ready
+    driver.app.start(Playback(small_level(contacts={})))
+    driver.app.frame(FRAME)
+    assert not driver.app.ready
+    assert driver.playback.session.tick == 0
+    driver.frames(5)
+    assert driver.app.ready
+    assert driver.playback.session.tick > 0

@@ -87,6 +87,38 @@ def busy_world(solver: str, substeps: int):
     return world
 
 
+def touching_world(solver: str, substeps: int):
+    """Discs that fall on a mesh whose springs are edges, between terrain and walls."""
+    from sandbox.physics.outline import ALL_GROUPS, LINE
+    from sandbox.physics.terrain import Chain, make_terrain
+
+    world = busy_world(solver, substeps)
+    world.edge[:] = LINE
+    world.group[:36], world.collides[:36], world.owner[:36] = 2, ALL_GROUPS, 1
+    names, points = [f"disc.{k}" for k in range(6)], [(0.3 + 0.41 * k, 2.9 + 0.2 * (k % 2)) for k in range(6)]
+    world.add_particles(
+        names, points, radius=0.15, friction=0.4, restitution=[0.6, 0.0] * 3, group=2, collides=ALL_GROUPS,
+        velocity=(1.5, -9.0), gravity_scale=2.0,
+    )  # fmt: skip
+    bowl = Chain([(-1.0, -0.6), (3.5, -1.5), (3.5, -0.2), (1.2, -0.9)], "solid")
+    line = Chain([(-0.5, 2.0), (-0.6, 0.5)], restitution=1.0)
+    world.terrain = make_terrain([bowl, line, Chain([(-2.0, -2.0), (5.0, -2.0), (5.0, 9.0), (-2.0, 9.0)], "hollow")])
+    return world
+
+
+def touches(solver: str, substeps: int, ticks: int):
+    """Hash after each tick of a world in which things touch."""
+    from sandbox.physics.snapshot import state_hash
+    from sandbox.physics.step import step
+
+    world, met = touching_world(solver, substeps), 0
+    for _ in range(ticks):
+        step(world)
+        met += len(world.contact_particle)
+        yield state_hash(world)
+    assert met > 40
+
+
 def hashes(solver: str, substeps: int, ticks: int):
     """Hash of the state after each tick of a script of hands, pins, cuts and sliders."""
     from sandbox.physics.snapshot import state_hash
@@ -134,4 +166,5 @@ if __name__ == "__main__":
 
     print("compiled" if COMPILED else "interpreted")
     print("\n".join(hashes(chosen, substeps if substeps == "auto" else int(substeps), int(ticks))))
+    print("\n".join(touches(chosen, substeps if substeps == "auto" else int(substeps), int(ticks))))
     print("\n".join(blow_up(chosen, 2 * int(ticks))))

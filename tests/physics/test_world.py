@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from physics_scenes import STILL, grid_with_diagonals, network, rope, run, scaled
 
-from sandbox.physics.arrays import PARTICLE_ARRAYS, SPRING_ARRAYS, STATE_ARRAYS
+from sandbox.physics.arrays import FAMILIES, STATE_ARRAYS
 from sandbox.physics.energy import kinetic_energy, spring_energy
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
@@ -31,12 +31,12 @@ def test_slots_are_appended_and_named():
 
 def test_every_array_keeps_its_type_and_one_item_per_slot():
     world = held_rope()
-    for name in STATE_ARRAYS:
-        array = getattr(world, name)
-        assert array.flags.c_contiguous
-        counts = {**dict.fromkeys(PARTICLE_ARRAYS, 5 + HAND_COUNT), **dict.fromkeys(SPRING_ARRAYS, 4 + HAND_COUNT)}
-        assert len(array) == counts.get(name, 0)
     assert (world.particle_count, world.spring_count) == (5 + HAND_COUNT, 4 + HAND_COUNT)
+    for family, size in zip(FAMILIES, (5 + HAND_COUNT, 4 + HAND_COUNT, 0, 0), strict=True):
+        for name in family:
+            array = getattr(world, name)
+            assert array.flags.c_contiguous
+            assert len(array) == size
     assert world.particle_a.dtype == np.int32 and world.position.dtype == np.float64
 
 

@@ -5,7 +5,10 @@ ones, less the slow part of the velocity: that damps fast vibration and leaves s
 the body's energy stays within what it had plus what its bank holds of earlier losses; else f itself is minimised.
 """
 
+from collections.abc import Callable
+
 import numpy as np
+from numpy.typing import NDArray
 
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import bundle_kernel, inner_kernel
@@ -57,10 +60,15 @@ NEWTON_TOLERANCE = 1e-6
 LAST_HALVINGS = 60
 # The measures of springs where the number of parts is fixed: none.
 NOTHING = np.zeros(0)
+# The bodies that are solved elsewhere: none.
+NOBODY = np.zeros(0, dtype=np.bool_)
+
+Push = Callable[[World, Pattern, Floats, Floats, Floats, Floats, int, float, Before], NDArray[np.bool_]]
 
 
 @inner_kernel
-def _load_rows(position, velocity, mass, slow_velocity, before, h, free_count, rows):  # type: ignore[no-untyped-def]
+def load_rows(position, velocity, mass, slow_velocity, before, h, free_count, rows):  # type: ignore[no-untyped-def]
+    """Bring every row to the start of a step of h [s], with a first guess of its end in `trial`."""
     for r in range(rows.particle.shape[0]):
         p = rows.particle[r]
         rows.mass[r] = mass[p]
@@ -80,7 +88,8 @@ def _load_rows(position, velocity, mass, slow_velocity, before, h, free_count, r
 
 
 @inner_kernel
-def _copy(first, last, source, destination):  # type: ignore[no-untyped-def]
+def copy_rows(first, last, source, destination):  # type: ignore[no-untyped-def]
+    """Copy the rows first..last of one array to another."""
     for r in range(first, last):
         destination[r, 0] = source[r, 0]
         destination[r, 1] = source[r, 1]
@@ -118,17 +127,17 @@ def _take_candidate(first_row, last_row, first, last, rows, springs, matrix, res
 @inner_kernel
 def _start_minimisation(first_row, last_row, first, last, rows, springs, h):  # type: ignore[no-untyped-def]
     # From the best of the candidate, v* and all at rest; f there.
-    _copy(first_row, last_row, rows.trial, rows.best)
+    copy_rows(first_row, last_row, rows.trial, rows.best)
     lowest = objective(first_row, last_row, first, last, rows, springs, h)
-    _copy(first_row, last_row, rows.target, rows.trial)
+    copy_rows(first_row, last_row, rows.target, rows.trial)
     value = objective(first_row, last_row, first, last, rows, springs, h)
     if not lowest <= value:
         lowest = value
-        _copy(first_row, last_row, rows.trial, rows.best)
+        copy_rows(first_row, last_row, rows.trial, rows.best)
     _scale(first_row, last_row, 0.0, rows.trial)
     value = objective(first_row, last_row, first, last, rows, springs, h)
     if lowest <= value:
-        _copy(first_row, last_row, rows.best, rows.trial)
+        copy_rows(first_row, last_row, rows.best, rows.trial)
         value = lowest
     return value
 
@@ -139,7 +148,7 @@ def _minimise(first_row, last_row, first, last, rows, springs, matrix, h):  # ty
     value = _start_minimisation(first_row, last_row, first, last, rows, springs, h)
     for _ in range(NEWTON_ROUNDS):
         linearise(first, last, rows, springs, h, 1.0, 0.0)
-        _copy(first_row, last_row, rows.trial, rows.best)
+        copy_rows(first_row, last_row, rows.trial, rows.best)
         solve_linear(first_row, last_row, first, last, rows, springs, matrix)
         slope = _slope(first_row, last_row, first, last, rows, springs)
         if not slope < 0.0:
@@ -157,11 +166,11 @@ def _minimise(first_row, last_row, first, last, rows, springs, matrix, h):  # ty
                 break
             length *= 0.5
         if not better:
-            _copy(first_row, last_row, rows.best, rows.trial)
+            copy_rows(first_row, last_row, rows.best, rows.trial)
             break
         if not -slope > NEWTON_TOLERANCE * value:
             break
-    _keep_tension(first, last, rows, springs, h)
+    keep_tension(first, last, rows, springs, h)
 
 
 @inner_kernel
@@ -187,14 +196,16 @@ def _slope(first_row, last_row, first, last, rows, springs):  # type: ignore[no-
 
 
 @inner_kernel
-def _keep_tension(first, last, rows, springs, h):  # type: ignore[no-untyped-def]
+def keep_tension(first, last, rows, springs, h):  # type: ignore[no-untyped-def]
+    """Keep the tension of one body's springs at `trial`."""
     linearise(first, last, rows, springs, h, 1.0, 0.0)
     for k in range(first, last):
         springs.tension[k] = max(0.0, -springs.impulse[k])
 
 
 @inner_kernel
-def _energy(first_row, last_row, first, last, rows, springs, rest_length, h):  # type: ignore[no-untyped-def]
+def body_energy(first_row, last_row, first, last, rows, springs, rest_length, h):  # type: ignore[no-untyped-def]
+    """Energy of one body after the step [J]: kinetic at `trial`, and that of its springs."""
     # H = KE(v') + PE(x + h v')
     return kinetic(first_row, last_row, rows.mass, rows.trial) + potential(
         first, last, rows.position, rows.trial, springs, springs.measured, rest_length, h, h
@@ -202,10 +213,11 @@ def _energy(first_row, last_row, first, last, rows, springs, rest_length, h):  #
 
 
 @inner_kernel
-def _open_bank(  # type: ignore[no-untyped-def]
+def open_bank(  # type: ignore[no-untyped-def]
     first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, spread, kinetic_after, moved, rest_length,
     rest_before, h,
 ):  # fmt: skip
+    """What one body's bank holds before the step [J]; moved: its springs' energy once pins and drives have moved."""
     # The body's bank before the step. It is begun anew where a particle says so (-1): after any change from outside.
     # A body that broke off begins with none: what is saved stays with the particle that was the lowest, once.
     begun = True
@@ -240,7 +252,7 @@ def _step_body(  # type: ignore[no-untyped-def]
 ):  # fmt: skip
     kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
     before = kinetic_after + moved
-    held = _open_bank(
+    held = open_bank(
         first_row, last_row, first, last, rows, springs, bank, lowest, bouncy, spread, kinetic_after, moved,
         rest_length, rest_before, h,
     )  # fmt: skip
@@ -250,17 +262,17 @@ def _step_body(  # type: ignore[no-untyped-def]
         within = after <= allowed
         if within and not misfit > MISFIT_RATE * h * h:
             break
-        _copy(first_row, last_row, rows.trial, rows.best)
+        copy_rows(first_row, last_row, rows.trial, rows.best)
         once = after
         after, misfit = _take_candidate(first_row, last_row, first, last, rows, springs, matrix, rest_length, h)
         if within and not after <= allowed:
-            _copy(first_row, last_row, rows.best, rows.trial)
-            _keep_tension(first, last, rows, springs, h)
+            copy_rows(first_row, last_row, rows.best, rows.trial)
+            keep_tension(first, last, rows, springs, h)
             after = once
             break
     if not after <= allowed:
         _minimise(first_row, last_row, first, last, rows, springs, matrix, h)
-        after = _energy(first_row, last_row, first, last, rows, springs, rest_length, h)
+        after = body_energy(first_row, last_row, first, last, rows, springs, rest_length, h)
         if not after <= allowed:
             after = _brake(first_row, last_row, first, last, rows, springs, rest_length, allowed, h)
     share = BOUNCY_BANK_SHARE if bouncy else BANK_SHARE
@@ -277,26 +289,28 @@ def _brake(first_row, last_row, first, last, rows, springs, rest_length, allowed
     after = 0.0
     for _halving in range(LAST_HALVINGS):
         _scale(first_row, last_row, 0.5, rows.trial)
-        after = _energy(first_row, last_row, first, last, rows, springs, rest_length, h)
+        after = body_energy(first_row, last_row, first, last, rows, springs, rest_length, h)
         if after <= allowed:
             break
     if not after <= allowed:
         for r in range(first_row, last_row):
             rows.trial[r, 0] = 0.0
             rows.trial[r, 1] = 0.0
-        after = _energy(first_row, last_row, first, last, rows, springs, rest_length, h)
-    _keep_tension(first, last, rows, springs, h)
+        after = body_energy(first_row, last_row, first, last, rows, springs, rest_length, h)
+    keep_tension(first, last, rows, springs, h)
     return after
 
 
 @bundle_kernel
 def _solve_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, particle_active, rest_length, stiffness,
-    damping, material, tension, numbers, least, most, parts, before, rest_before, h,
+    damping, material, tension, numbers, least, most, parts, before, rest_before, h, touched,
 ):  # fmt: skip
     bodies, rows, springs, matrix = numbers.items
-    _load_rows(position, velocity, mass, slow_velocity, before, h, matrix.diagonal.shape[0], rows)
+    load_rows(position, velocity, mass, slow_velocity, before, h, matrix.diagonal.shape[0], rows)
     for body in range(bodies.lowest.shape[0]):
+        if touched.shape[0] > 0 and touched[body]:
+            continue
         first_row = bodies.row_start[body]
         last_row = bodies.row_start[body + 1]
         first = bodies.spring_start[body]
@@ -306,7 +320,7 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
             body_mass += rows.mass[r]
         # Gravity moves a body without anchors as a whole: started there, it falls without rounding.
         if not bodies.anchored[body]:
-            _copy(first_row, last_row, rows.target, rows.trial)
+            copy_rows(first_row, last_row, rows.target, rows.trial)
         bouncy, spread, moved = load_springs(
             first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,
             least, most, parts, h, matrix.diagonal.shape[0],
@@ -338,8 +352,11 @@ def pattern_of(world: World) -> Pattern:
     return pattern
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Before) -> None:
-    """Bring the velocities to the end of a step of h [s]; slow_velocity, energy_bank and tension go with them."""
+def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Before, push: Push | None = None) -> None:
+    """Bring the velocities to the end of a step of h [s]; slow_velocity, energy_bank and tension go with them.
+
+    push: solves the bodies that contacts push and tells which they are (bodies,); the others never hear of it.
+    """
     pattern = pattern_of(world)
     if pattern.has_hooke:
         apply_explicit(world, pattern.hooke, stiffness, damping, h)
@@ -348,10 +365,11 @@ def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Be
         parts = round(1.0 / (h * world.settings.tick_rate))
         stiffness, damping = cap(stiffness, damping, parts)
         least, most = extremes(world)
+    touched = NOBODY if push is None else push(world, pattern, stiffness, damping, least, most, parts, h, before)
     _solve_bodies(
         world.position, world.velocity, world.mass, world.inverse_mass, world.slow_velocity, world.energy_bank,
         world.particle_active, world.rest_length, stiffness, damping, world.material, world.tension,
-        pattern.numbers, least, most, parts, before.velocity, before.rest_length, h,
+        pattern.numbers, least, most, parts, before.velocity, before.rest_length, h, touched,
     )  # fmt: skip
 
 

@@ -59,8 +59,8 @@ class Fronts(NamedTuple):
 
 
 @inner_kernel
-def _subtract_pair(target, row, source, upper, lower, a, b, begin, end):  # type: ignore[no-untyped-def]
-    # target[row + j] -= a source[upper + j] + b source[lower + j]
+def subtract_pair(target, row, source, upper, lower, a, b, begin, end):  # type: ignore[no-untyped-def]
+    """target[row + j] -= a source[upper + j] + b source[lower + j] for begin <= j < end, all unsigned."""
     for j in range(begin, end):
         target[row + j] -= a * source[upper + j] + b * source[lower + j]
 
@@ -125,7 +125,7 @@ def _eliminate_panel(numbers, base, width, begin, end, panel, stride, inverse): 
         for i in range(p + TWO, end):
             a = numbers[row + i] * inverse_x
             b = numbers[lower + i] * inverse_y
-            _subtract_pair(numbers, base + i * width, numbers, row, lower, a, b, i, width)
+            subtract_pair(numbers, base + i * width, numbers, row, lower, a, b, i, width)
     for q in range(PANEL):
         if begin + q < end:
             row = base + (begin + q) * width
@@ -264,7 +264,7 @@ def _substitute_forward(numbers, base, pivots, width, inverses, first_inverse, v
         x = vector[p] * inverses[first_inverse + p]
         vector[p + ONE] -= x * numbers[row + p + ONE]
         y = vector[p + ONE] * inverses[first_inverse + p + ONE]
-        _subtract_pair(vector, ZERO, numbers, row, row + width, x, y, p + TWO, width)
+        subtract_pair(vector, ZERO, numbers, row, row + width, x, y, p + TWO, width)
 
 
 @inner_kernel

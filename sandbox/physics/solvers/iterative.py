@@ -8,6 +8,16 @@ import numpy as np
 from sandbox.physics.equation import direction, reduced_mass
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
+from sandbox.physics.shapes import NO_CONTACTS
+from sandbox.physics.solvers.contact_sweep import (
+    add_change,
+    load_biases,
+    load_responses,
+    loose_blocks,
+    new_push,
+    start_impulses,
+    sweep,
+)
 from sandbox.physics.solvers.single_pass import apply_explicit
 from sandbox.physics.world import LAW_HOOKE, Floats, World
 
@@ -15,7 +25,7 @@ from sandbox.physics.world import LAW_HOOKE, Floats, World
 @kernel
 def _iterate(  # type: ignore[no-untyped-def]
     position, velocity, inverse_mass, particle_a, particle_b, rest_length, stiffness, damping, law, spring_active, h,
-    iterations, warm_start, accumulated, end_a, end_b, slot, normal, wanted, mass, change,
+    iterations, warm_start, accumulated, end_a, end_b, slot, normal, wanted, mass, change, contacts, push, blocks,
 ):  # fmt: skip
     # r = -(Cs x / h + Cd u), the wanted change of relative velocity.
     count = 0
@@ -50,6 +60,8 @@ def _iterate(  # type: ignore[no-untyped-def]
             change[a, 1] -= j * ny * inverse_mass[a]
             change[b, 0] += j * nx * inverse_mass[b]
             change[b, 1] += j * ny * inverse_mass[b]
+    load_responses(contacts, push, inverse_mass, blocks)
+    start_impulses(contacts, change, inverse_mass, blocks)
     # j = -(n . (dv_b - dv_a) - r) m_r, applied at once to the velocity change dv.
     for _ in range(iterations):
         for c in range(count):
@@ -69,22 +81,23 @@ def _iterate(  # type: ignore[no-untyped-def]
             s = slot[c]
             accumulated[s, 0] += jx
             accumulated[s, 1] += jy
-    for i in range(inverse_mass.shape[0]):
-        if inverse_mass[i] > 0.0:
-            velocity[i, 0] += change[i, 0]
-            velocity[i, 1] += change[i, 1]
+        sweep(contacts, push, velocity, change, inverse_mass, blocks)
+    add_change(velocity, change, inverse_mass)
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float, _: Before) -> None:
+def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Before) -> None:
     """Bring the velocities to the end of a step of h [s]; world.impulse keeps the sums for the next warm start."""
     hooke = world.spring_active & (world.law == LAW_HOOKE)
     if hooke.any():
         apply_explicit(world, hooke, stiffness, damping, h)
-    springs = world.spring_count
+    springs, contacts = world.spring_count, world.contacts or NO_CONTACTS
+    blocks = loose_blocks(world.particle_count if world.contacts else 0)
+    push = new_push(len(contacts.particle))
+    load_biases(contacts, push, world.velocity, before.velocity, h)
     _iterate(
         world.position, world.velocity, world.inverse_mass, world.particle_a, world.particle_b, world.rest_length,
         stiffness, damping, world.law, world.spring_active, h, world.settings.iterations, world.settings.warm_start,
         world.impulse, np.zeros(springs, dtype=np.int64), np.zeros(springs, dtype=np.int64),
         np.zeros(springs, dtype=np.int64), np.zeros((springs, 2)), np.zeros(springs), np.zeros(springs),
-        np.zeros((world.particle_count, 2)),
+        np.zeros((world.particle_count, 2)), contacts, push, blocks,
     )  # fmt: skip

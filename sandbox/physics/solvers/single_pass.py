@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sandbox.physics.equation import direction, reduced_mass, spring_impulse
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
+from sandbox.physics.solvers.contact_sweep import load_biases, loose_blocks, new_push, sweep_masses
 from sandbox.physics.world import Floats, World
 
 
@@ -57,9 +58,19 @@ def apply_explicit(world: World, chosen: NDArray[np.bool_], stiffness: Floats, d
     )  # fmt: skip
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float, _: Before) -> None:
-    """Bring the velocities to the end of a step of h [s]."""
+def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Before) -> None:
+    """Bring the velocities to the end of a step of h [s]; contacts are swept after the springs."""
+    contacts = world.contacts
+    if contacts is None:
+        apply_explicit(world, world.spring_active, stiffness, damping, h)
+        return
+    push = new_push(len(contacts.particle))
+    load_biases(contacts, push, world.velocity, before.velocity, h)
     apply_explicit(world, world.spring_active, stiffness, damping, h)
+    sweep_masses(
+        contacts, push, world.velocity, np.zeros((world.particle_count, 2)), world.inverse_mass,
+        loose_blocks(world.particle_count), world.settings.iterations,
+    )  # fmt: skip
 
 
 def spring_constant(stiffness: Any, damping: Any, mass: Any, h: float) -> Any:

@@ -1,0 +1,36 @@
+"""Names: what the slots of one kind are called, and the slots of those names."""
+
+from collections.abc import Sequence
+
+
+class Names:
+    """Names of slots from 0 on, each given once; in_order: by slot. A slot may have second names to be found by."""
+
+    def __init__(self) -> None:
+        self.in_order: list[str] = []
+        self._slots: dict[str, int] = {}
+
+    def slot(self, name: str) -> int:
+        """The slot of that name. Raises KeyError."""
+        return self._slots[name]
+
+    def append(self, names: Sequence[str]) -> None:
+        """Name the next slots. Raises ValueError for a name that is taken."""
+        fresh = {name: len(self.in_order) + index for index, name in enumerate(names)}
+        taken = next((name for name in names if name in self._slots), None)
+        if taken is not None or len(fresh) != len(names):
+            raise ValueError(f"the name {taken or 'of two new slots'!r} is taken")
+        self._slots.update(fresh)
+        self.in_order.extend(names)
+
+    def add_second(self, slot: int, name: str) -> None:
+        """Give a slot a second name. Raises ValueError where that is taken."""
+        if name in self._slots:
+            raise ValueError(f"the name {name!r} is taken")
+        self._slots[name] = slot
+
+    def forget_beyond(self, count: int) -> None:
+        """Drop the names of all slots but the first `count`."""
+        for name in self.in_order[count:]:
+            del self._slots[name]
+        del self.in_order[count:]

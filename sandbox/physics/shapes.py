@@ -1,0 +1,87 @@
+"""What contacts are found among, and what is found: arrays for the kernels of a step."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.physics.world import Floats, Slots
+
+# Edges near one particle, at most; further ones are not looked at.
+MOST_NEAR = 64
+
+
+class Shapes(NamedTuple):
+    """What can touch: particles, then the vertices of terrain; edges between them, then those of terrain.
+
+    By vertex: place [m], motion [m/s], origin [m], radius [m], friction, restitution, owner, group, collides, inverse
+    [1/kg]. By edge: edge_a, edge_b, side (1: solid on the left, 0: two sides), number = its spring, or of terrain.
+    Edges of vertex v: edge_of[edge_start[v]:edge_start[v + 1]]; particles that a spring joins to p: near_of likewise.
+    shielded (n,): see outline.py.
+    """
+
+    place: Floats
+    motion: Floats
+    origin: Floats
+    radius: Floats
+    friction: Floats
+    restitution: Floats
+    owner: Slots
+    group: Slots
+    collides: Slots
+    inverse: Floats
+    edge_a: Slots
+    edge_b: Slots
+    side: Slots
+    number: Slots
+    edge_start: Slots
+    edge_of: Slots
+    near_start: Slots
+    near_of: Slots
+    shielded: NDArray[np.bool_]
+
+
+class Near(NamedTuple):
+    """Edges near one particle: which, place along it, distance and signed distance [m], region (-1, 1: at an end)."""
+
+    edge: Slots
+    share: Floats
+    distance: Floats
+    signed: Floats
+    region: Slots
+
+
+class Contacts(NamedTuple):
+    """Contacts in ascending order of particle: particle, feature = 3 number + kind, the particles it pushes against.
+
+    end_a, end_b: the other disc and -1, or the ends of an edge; -1, -1: terrain. share: place along the edge. normal:
+    towards the particle. gap [m]; impulse [N s] (k, 2) along normal and tangent.
+    """
+
+    particle: Slots
+    feature: Slots
+    end_a: Slots
+    end_b: Slots
+    share: Floats
+    normal: Floats
+    gap: Floats
+    friction: Floats
+    restitution: Floats
+    impulse: Floats
+
+
+def room_for(count: int) -> Contacts:
+    """Contacts to be filled in."""
+    slots, numbers, pairs = np.zeros((4, count), dtype=np.int64), np.zeros((4, count)), np.zeros((2, count, 2))
+    return Contacts(
+        slots[0], slots[1], slots[2], slots[3], numbers[0], pairs[0], numbers[1], numbers[2], numbers[3], pairs[1]
+    )
+
+
+def room_near() -> Near:
+    """Edges near a particle, to be filled in."""
+    slots, numbers = np.zeros((2, MOST_NEAR), dtype=np.int64), np.zeros((3, MOST_NEAR))
+    return Near(slots[0], numbers[0], numbers[1], numbers[2], slots[1])
+
+
+NO_CONTACTS = room_for(0)

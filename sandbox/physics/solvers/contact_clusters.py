@@ -1,0 +1,105 @@
+"""Which bodies and loose particles contacts touch, and which of them touch each other."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.shapes import Contacts
+from sandbox.physics.solvers.contact_sweep import Blocks, weight_of
+from sandbox.physics.solvers.pattern import Pattern
+from sandbox.physics.world import Floats, Slots, World
+
+
+class Touching(NamedTuple):
+    """The bodies that something touches, by block: body, cluster; the loose particles, their cluster; and scratch.
+
+    row: of each particle (n,), -1: none. before, held, after [J] and misfit by block; due: to be solved again; spread,
+    bouncy: of its springs. total, allowed [J], fails by cluster. free, pushed [m/s] by row. given, change [m/s] by
+    particle: velocities without contacts, and what those add.
+    """
+
+    body: Slots
+    cluster: Slots
+    loose: Slots
+    loose_cluster: Slots
+    row: Slots
+    before: Floats
+    held: Floats
+    after: Floats
+    misfit: Floats
+    due: NDArray[np.bool_]
+    bouncy: NDArray[np.bool_]
+    spread: NDArray[np.bool_]
+    total: Floats
+    allowed: Floats
+    fails: NDArray[np.bool_]
+    free: Floats
+    pushed: Floats
+    given: Floats
+    change: Floats
+
+
+@inner_kernel
+def _root(label, node):  # type: ignore[no-untyped-def]
+    while label[node] != node:
+        label[node] = label[label[node]]
+        node = label[node]
+    return node
+
+
+@kernel
+def _join(contacts, block, inverse_mass, label):  # type: ignore[no-untyped-def]
+    # Label the nodes that touch each other alike: particles (n,), then blocks; what cannot move joins nothing.
+    count = block.shape[0]
+    for c in range(contacts.particle.shape[0]):
+        first = -1
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p < 0 or inverse_mass[p] == 0.0:
+                continue
+            node = _root(label, p if block[p] < 0 else count + block[p])
+            if first < 0:
+                first = node
+            elif node < first:
+                label[first] = node
+                first = node
+            else:
+                label[node] = first
+    for node in range(label.shape[0]):
+        label[node] = _root(label, node)
+
+
+def find_touching(world: World, pattern: Pattern, contacts: Contacts) -> tuple[Touching, Blocks]:
+    """What contacts touch, and the room for the responses of bodies."""
+    rows, bodies, count = pattern.rows, pattern.bodies, world.particle_count
+    free_count = int(bodies.row_start[-1])
+    row = np.full(count, -1, dtype=np.int64)
+    row[rows.particle[:free_count]] = np.arange(free_count)
+    ends = np.concatenate([contacts.particle, contacts.end_a, contacts.end_b])
+    ends = np.unique(ends[ends >= 0])
+    ends = ends[world.inverse_mass[ends] > 0.0]
+    points = np.sort(row[ends[row[ends] >= 0]])
+    loose = ends[row[ends] < 0]
+    body_of_point = np.searchsorted(bodies.row_start, points, side="right") - 1
+    body, first, sizes = np.unique(body_of_point, return_index=True, return_counts=True)
+    block, place = np.full((2, count), -1, dtype=np.int64)
+    particles = rows.particle[points]
+    block[particles] = np.repeat(np.arange(len(body)), sizes)
+    place[particles] = np.arange(len(points)) - np.repeat(first, sizes)
+    base = np.append(0, np.cumsum(4 * sizes * sizes)).astype(np.int64)
+    blocks = Blocks(block, place, np.append(first, len(points)), particles, base, np.zeros(base[-1]))
+    label = np.arange(count + len(body))
+    _join(contacts, block, world.inverse_mass, label)
+    _, cluster = np.unique(label[np.append(count + np.arange(len(body)), loose)], return_inverse=True)
+    clusters = int(cluster.max()) + 1 if len(cluster) else 0
+    size = len(body)
+    numbers, flags, sums = np.zeros((4, size)), np.zeros((3, size), dtype=np.bool_), np.zeros((2, clusters))
+    touching = Touching(
+        body, cluster[:size].astype(np.int64), loose, cluster[size:].astype(np.int64), row,
+        numbers[0], numbers[1], numbers[2], numbers[3], flags[0], flags[1], flags[2],
+        sums[0], sums[1], np.zeros(clusters, dtype=np.bool_), np.zeros((free_count, 2)), np.zeros((free_count, 2)),
+        world.velocity.copy(), np.zeros((count, 2)),
+    )  # fmt: skip
+    return touching, blocks

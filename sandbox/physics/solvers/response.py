@@ -1,0 +1,103 @@
+"""Response of a factored body: how its particles answer to impulses at some of them."""
+
+from sandbox.physics.jit import inner_kernel, unsigned
+from sandbox.physics.solvers.direct import copy_rows
+from sandbox.physics.solvers.factor import back_substitute
+from sandbox.physics.solvers.fronts import ONE, TWO, ZERO, subtract_pair
+from sandbox.physics.solvers.halves import solve_fronts
+
+
+@inner_kernel
+def respond(first_row, last_row, rows, matrix, vector):  # type: ignore[no-untyped-def]
+    """Solve A x = vector for the rows of one body, in place, with the factor that a linear solve has left.
+
+    Of a large body it takes `change`, the one array that a helping thread knows.
+    """
+    if matrix.fronts.of_row[first_row] >= 0:
+        copy_rows(first_row, last_row, vector, rows.change)
+        solve_fronts(True, first_row, last_row, matrix.fronts, rows.change)
+        copy_rows(first_row, last_row, rows.change, vector)
+        return
+    back_substitute(first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, vector)
+
+
+@inner_kernel
+def load_block(k, first_row, last_row, row, blocks, columns, rows, matrix, vector):  # type: ignore[no-untyped-def]
+    """The response W = P A^-1 P^T of block k, whose points are in the order of their rows; columns, vector: scratch."""
+    first = blocks.start[k]
+    points = blocks.start[k + 1] - first
+    if matrix.fronts.of_row[first_row] >= 0:
+        _load_column_wise(blocks, first, points, blocks.base[k], first_row, last_row, row, rows, matrix, vector)
+        return
+    width = 2 * points
+    for at in range((last_row - first_row) * 2 * width):
+        columns[at] = 0.0
+    for i in range(points):
+        at = (row[blocks.point[first + i]] - first_row) * 2 * width + 2 * i
+        columns[at] = 1.0
+        columns[at + width + 1] = 1.0
+    _forward(first_row, last_row, first, points, row, blocks.point, columns, matrix)
+    _gather(k, first_row, last_row, first, points, row, blocks, columns, matrix)
+
+
+@inner_kernel
+def _forward(first_row, last_row, first, points, row, point, columns, matrix):  # type: ignore[no-untyped-def]
+    # Y = L^-1 P^T, two rows of it for each row of the body; a column begins at its own point.
+    width = unsigned(2 * points)
+    begun = 0
+    for j in range(first_row, last_row):
+        while begun < points and row[point[first + begun]] <= j:
+            begun += 1
+        if begun == 0:
+            continue
+        end = unsigned(2 * begun)
+        upper = unsigned(j - first_row) * TWO * width
+        lower = upper + width
+        slant = matrix.diagonal[j, 1]
+        subtract_pair(columns, lower, columns, upper, upper, slant, 0.0, ZERO, end)
+        for at in range(matrix.column_start[j], matrix.column_start[j + 1]):
+            target = unsigned(matrix.row[at] - first_row) * TWO * width
+            subtract_pair(columns, target, columns, upper, lower, matrix.lower[at, 0], matrix.lower[at, 1], ZERO, end)
+            subtract_pair(
+                columns, target + width, columns, upper, lower, matrix.lower[at, 2], matrix.lower[at, 3], ZERO, end
+            )
+
+
+@inner_kernel
+def _gather(k, first_row, last_row, first, points, row, blocks, columns, matrix):  # type: ignore[no-untyped-def]
+    # W = Y^T D^-1 Y: its lower half, then the upper.
+    width = unsigned(2 * points)
+    base = unsigned(blocks.base[k])
+    for at in range(blocks.base[k], blocks.base[k] + 4 * points * points):
+        blocks.numbers[at] = 0.0
+    begun = 0
+    for j in range(first_row, last_row):
+        while begun < points and row[blocks.point[first + begun]] <= j:
+            begun += 1
+        upper = unsigned(j - first_row) * TWO * width
+        lower = upper + width
+        for c in range(2 * begun):
+            i = unsigned(c)
+            a = -columns[upper + i] * matrix.diagonal[j, 0]
+            b = -columns[lower + i] * matrix.diagonal[j, 2]
+            subtract_pair(blocks.numbers, base + i * width, columns, upper, lower, a, b, ZERO, i + ONE)
+    for i in range(2 * points):
+        for j in range(i):
+            blocks.numbers[blocks.base[k] + j * 2 * points + i] = blocks.numbers[blocks.base[k] + i * 2 * points + j]
+
+
+@inner_kernel
+def _load_column_wise(blocks, first, points, base, first_row, last_row, row, rows, matrix, vector):  # type: ignore[no-untyped-def]
+    # A large body has its factor in fronts: one solution for each column.
+    for i in range(points):
+        for axis in range(2):
+            for r in range(first_row, last_row):
+                vector[r, 0] = 0.0
+                vector[r, 1] = 0.0
+            vector[row[blocks.point[first + i]], axis] = 1.0
+            respond(first_row, last_row, rows, matrix, vector)
+            for j in range(points):
+                at = base + (2 * j) * 2 * points + 2 * i + axis
+                r = row[blocks.point[first + j]]
+                blocks.numbers[at] = vector[r, 0]
+                blocks.numbers[at + 2 * points] = vector[r, 1]

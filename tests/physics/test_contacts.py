@@ -1,0 +1,211 @@
+"""Contacts: what touches stays out, slides, bounces and comes to rest, in every solver."""
+
+import math
+
+import numpy as np
+import pytest
+
+from sandbox.physics.energy import kinetic_energy, total_energy
+from sandbox.physics.outline import ALL_GROUPS
+from sandbox.physics.settings import AUTO
+from sandbox.physics.snapshot import restore, state_hash, take
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.step import step
+from sandbox.physics.terrain import Chain
+from tests.physics.contact_scenes import BODIES, FLOOR, GROUND, add_chain, add_discs, add_jelly, rugged, world
+from tests.physics.physics_scenes import run, scaled
+
+every_solver = pytest.mark.parametrize("solver", SOLVERS)
+
+
+@every_solver
+def test_a_disc_rests_on_the_floor_without_sinking_or_creeping(solver):
+    w = world(FLOOR, solver=solver)
+    add_discs(w, [(0.0, 0.3)])
+    run(w, 120)
+    before = w.position.copy()
+    run(w, 60)
+    assert 0.099 < w.position[0, 1] <= 0.1001
+    assert np.abs(w.position - before).max() < 1e-5
+
+
+@every_solver
+@pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
+def test_a_dropped_disc_bounces_to_the_height_that_its_restitution_says(solver, restitution):
+    w = world(FLOOR, solver=solver)
+    add_discs(w, [(0.0, 1.1)], restitution=restitution, mass=2.0)
+    heights = []
+    for _ in range(120):
+        step(w)
+        heights.append(w.position[0, 1] - 0.1)
+    landing = int(np.argmin(heights[:40]))
+    assert max(heights[landing : landing + 75]) == pytest.approx(restitution**2, abs=0.05)
+
+
+@every_solver
+@pytest.mark.parametrize("degrees", [-2.0, -1.0, 1.0, 2.0])
+def test_a_disc_slides_down_a_slope_if_and_only_if_that_exceeds_the_friction_angle(solver, degrees):
+    angle = math.atan(0.5) + math.radians(degrees)
+    along = np.array([math.cos(angle), math.sin(angle)])
+    w = world(Chain([-60.0 * along, 60.0 * along]), solver=solver)
+    add_discs(w, [(-0.1 * along[1], 0.1 * along[0])])
+    start = w.position.copy()
+    run(w, 120)
+    travel = -float((w.position - start)[0] @ along)
+    free = 0.5 * 9.81 * (math.sin(angle) - 0.5 * math.cos(angle)) * 4.0
+    assert travel == pytest.approx(max(0.0, free), rel=0.02, abs=1e-6)
+
+
+@pytest.mark.parametrize("degrees", [-2.0, 2.0])
+def test_a_block_of_jelly_slides_if_and_only_if_the_slope_exceeds_the_friction_angle(degrees):
+    angle = math.atan(0.5) + math.radians(degrees)
+    along = np.array([math.cos(angle), math.sin(angle)])
+    w = world(Chain([-60.0 * along, 60.0 * along]))
+    add_jelly(w, (-0.275 * along[1], 0.275 * along[0]), size=(0.9, 0.5), angle=angle)
+    start = w.position.mean(axis=0)
+    run(w, 120)
+    travel = -float((w.position.mean(axis=0) - start) @ along)
+    free = 0.5 * 9.81 * (math.sin(angle) - 0.5 * math.cos(angle)) * 4.0
+    assert travel == pytest.approx(max(0.0, free), rel=0.05, abs=2e-3)
+
+
+@pytest.mark.parametrize("solver", ["iterative", "direct"])
+def test_bodies_that_collide_keep_their_momentum_and_gain_no_energy(solver):
+    w = world(solver=solver, gravity=(0.0, 0.0))
+    add_jelly(w, (0.0, 0.0), size=(0.5, 0.5), velocity=(10.0, 1.0))
+    add_jelly(w, (1.2, 0.1), size=(0.5, 0.5), angle=0.4, velocity=(-10.0, 0.0))
+    add_discs(w, [(0.0, 2.0)], radius=0.3, mass=5.0, velocity=[(0.0, -9.0)], restitution=0.5)
+    momentum, energy = (w.mass[:, None] * w.velocity).sum(axis=0), total_energy(w)
+    met = 0
+    for _ in range(scaled(120, 30)):
+        step(w)
+        met += len(w.contacts.gap)
+        assert total_energy(w) <= energy * (1.0 + 1e-9)
+    assert met > 20
+    assert np.abs((w.mass[:, None] * w.velocity).sum(axis=0) - momentum).max() < 1e-10
+
+
+@every_solver
+@pytest.mark.parametrize("kind", ["line", "solid"])
+def test_chains_of_balls_dropped_at_100_metres_a_second_stay_above_the_ground(solver, kind):
+    generator = np.random.default_rng(5)
+    ground, surface = rugged(generator, kind)
+    w = world(ground, solver=solver)
+    for x in np.linspace(-450.0, 450.0, scaled(60, 6)):
+        add_chain(w, generator, (x, generator.uniform(5.0, 9.0)), (generator.uniform(-30.0, 30.0), -100.0))
+    w.set_coefficients(0.2, 0.2, None)
+    for _ in range(scaled(60, 12)):
+        step(w)
+        assert np.all(w.position[:, 1] > np.interp(w.position[:, 0], surface[:, 0], surface[:, 1]))
+
+
+def test_a_heap_of_discs_comes_to_rest():
+    w = world(Chain([(-1.5, 8.0), (-1.5, 0.0), (1.5, 0.0), (1.5, 8.0)]))
+    generator = np.random.default_rng(1)
+    k = np.arange(scaled(120, 12))
+    points = np.stack([-1.2 + 0.29 * (k % 8) + 0.1 * (k // 8 % 2), 0.4 + 0.25 * (k // 8)], axis=1)
+    radius = generator.uniform(0.07, 0.1, len(k))
+    add_discs(w, points + generator.uniform(0.0, 0.05, points.shape), radius=radius, mass=100.0 * radius**2)
+    peak = 0.0
+    for _ in range(scaled(420, 60)):
+        step(w)
+        peak = max(peak, kinetic_energy(w))
+    before = w.position.copy()
+    run(w, 60)
+    assert kinetic_energy(w) < 1e-4 * peak
+    assert np.abs(w.position - before).max() < 1e-3
+    assert -w.contacts.gap.min() < 0.05 * 0.07
+
+
+def test_a_stack_of_jelly_cubes_stands():
+    w = world(GROUND)
+    for k in range(8):
+        add_jelly(w, (0.02 * (-1) ** k, 0.5 + 0.96 * k), stiffness=0.99, damping=0.999)
+    run(w, scaled(240, 3))
+    top = w.position[-100:].mean(axis=0)
+    assert top == pytest.approx((0.0, 7.1), abs=0.15)
+
+
+def test_a_jelly_falls_on_another_and_neither_enters_it():
+    w = world(GROUND)
+    lower, upper = add_jelly(w, (0.0, 0.5)), add_jelly(w, (0.15, 1.8), angle=0.15)
+    run(w, scaled(180, 60))
+    assert w.position[upper, 1].mean() > w.position[lower, 1].mean() + 0.7
+    assert -w.contacts.gap.min() < 0.05 * 0.05
+
+
+def test_a_disc_inside_solid_ground_is_brought_out():
+    w = world(GROUND)
+    add_discs(w, [(0.3, -0.4), (2.0, -0.01)])
+    run(w, 60)
+    assert np.all(w.position[:, 1] > 0.09)
+
+
+def test_a_disc_inside_a_jelly_is_brought_out_within_a_second():
+    w = world(gravity=(0.0, 0.0))
+    jelly = add_jelly(w, (0.0, 0.0))
+    disc = add_discs(w, [(0.1, 0.2)], radius=0.05)
+    run(w, 60)
+    low, high = w.position[jelly].min(axis=0), w.position[jelly].max(axis=0)
+    assert not np.all((w.position[disc] > low) & (w.position[disc] < high))
+
+
+def test_nothing_leaves_walls():
+    w = world(Chain([(-2.0, 0.0), (2.0, 0.0), (2.0, 3.0), (-2.0, 3.0)], "hollow"), gravity=(0.0, 0.0))
+    generator = np.random.default_rng(3)
+    add_discs(w, generator.uniform((-1.8, 0.2), (1.8, 2.8), (20, 2)), velocity=generator.uniform(-80, 80, (20, 2)),
+              restitution=0.9)  # fmt: skip
+    for _ in range(120):
+        step(w)
+        assert np.all((np.abs(w.position[:, 0]) < 2.0) & (w.position[:, 1] > 0.0) & (w.position[:, 1] < 3.0))
+
+
+def test_groups_decide_who_touches_whom():
+    w = world(FLOOR)
+    add_discs(w, [(0.0, 0.5)])
+    w.add_particles(["ghost"], [(1.0, 0.5)], radius=0.1, group=BODIES, collides=0)
+    w.add_particles(["other"], [(0.0, 1.0)], radius=0.1, group=4, collides=ALL_GROUPS - BODIES)
+    run(w, 90)
+    assert w.position[0, 1] == pytest.approx(0.1, abs=1e-3)
+    assert w.position[1, 1] < -5.0
+    assert w.position[2, 1] == pytest.approx(0.1, abs=1e-3)
+
+
+def test_what_nothing_touches_moves_as_in_a_world_without_contacts():
+    alone, beside = world(), world(FLOOR)
+    for w in (alone, beside):
+        add_jelly(w, (0.0, 20.0), angle=0.3)
+    alone.collides[:] = 0
+    alone.see_what_touches()
+    add_discs(beside, [(30.0, 0.1)])
+    for _ in range(30):
+        step(alone)
+        step(beside)
+    assert not alone.has_contacts
+    assert len(beside.contacts.gap) == 1
+    assert np.array_equal(alone.position, beside.position[: alone.particle_count])
+
+
+@every_solver
+@pytest.mark.parametrize("substeps", [4, AUTO])
+def test_a_run_goes_on_from_a_snapshot_with_the_same_bits(solver, substeps):
+    w = world(GROUND, solver=solver, substeps=substeps)
+    add_jelly(w, (0.0, 0.6), size=(0.4, 0.4), stiffness=0.1, damping=0.1)
+    add_discs(w, [(0.0, 1.2), (0.05, 1.5)])
+    run(w, 25)
+    kept = take(w)
+    run(w, 15)
+    expected = state_hash(w)
+    restore(w, kept)
+    run(w, 15)
+    assert len(w.contact_particle) > 2
+    assert state_hash(w) == expected
+
+
+def test_a_large_jelly_rests_on_the_ground_by_the_same_contacts():
+    w = world(GROUND)
+    jelly = add_jelly(w, (0.0, 1.08), size=(2.0, 2.0), stiffness=0.99, damping=0.999)
+    assert jelly.stop - jelly.start > 400
+    run(w, scaled(90, 4))
+    assert 0.0 < w.position[:, 1].min() < 0.1
+    assert np.abs(w.velocity).max() < 2.0
