@@ -320,7 +320,7 @@ def test_groups_are_selected_whole():
     assert with_groups(grouped.level, frozenset([body("rope")])) == document.selection
     assert ungroup(grouped).level.bodies[0].group is None
     assert ungroup(chosen("rope")).level == zoo()
-    assert len(with_groups(zoo(), frozenset([body("deck")]))) == 3
+    assert len(with_groups(zoo(), frozenset([body("deck")]))) == 4
 
 
 def test_the_order_of_drawing_is_that_of_the_file():

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from sandbox.editor.abouts import abouts
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.items import Item, items_of
+from sandbox.editor.items import Item, definitions, items_of
 from sandbox.editor.level_properties import add_check, check_properties, delete_check, level_properties
 from sandbox.editor.properties import properties
 from sandbox.editor.property import MIXED, Property
@@ -40,6 +40,9 @@ LEVEL = {
         {"type": "mesh", "id": "mesh", "particles": [[30, 0], [31, 0]], "masses": [1.0, 2.0], "springs": [[0, 1]],
          "velocities": [[0, 0], [0, 1]], "pinned": [0], "extras": {"by": "hand"}},
     ],
+    "walls": {"box": [-50, -50, 50, 50]},
+    "terrain": [{"id": "ground", "polygon": [[0, -9], [9, -9], [9, -8], [0, -8]], "friction": 0.5},
+                {"id": "edge", "polyline": [[0, -20], [9, -21], [12, -20]], "restitution": 0.5}],
     "particles": [{"id": "ball", "position": [4, 3], "mass": 5.0}, {"id": "nail", "position": [6, 3], "pinned": True}],
     "springs": [{"a": "ball", "b": "rope.end", "material": "hook"}, {"a": "nail", "b": "ball"},
                 {"a": "nail", "b": "disc.0", "hydraulic": {"shortest": 1, "longest": 2, "rate": 1, "key": "u"}}],
@@ -75,9 +78,9 @@ def test_nothing_selected_has_no_properties(level):
 
 
 def test_every_field_of_every_kind_of_item_can_be_reached(level):
-    for item, part in zip(items_of(level), (*level.bodies, *level.particles, *level.springs), strict=True):
+    for item, part in zip(items_of(level), definitions(level), strict=True):
         shown = {name.partition(".")[0] for name in fields(Document(level, frozenset([item])))}
-        assert type(part).model_fields.keys() - shown - {"type"} <= {"extras"}, item
+        assert type(part).model_fields.keys() - shown - {"type", "polyline", "polygon"} <= {"extras"}, item
     assert "extras" in fields(chosen(level, "mesh"))
     assert {type(part) for part in level.bodies} == set(KINDS.values())
 
@@ -85,7 +88,7 @@ def test_every_field_of_every_kind_of_item_can_be_reached(level):
 def test_every_field_of_the_level_and_its_settings_can_be_reached(level):
     first, second, third = level_properties(Document(level))
     parts = {"format", "version", "settings", "materials", "bodies", "particles", "springs", "welds", "checks"}
-    shown = {each.field for section in (first, third) for each in section.properties}
+    shown = {each.field.partition(".")[0] for section in (first, third) for each in section.properties}
     assert shown == set(Level.model_fields) - parts - {"extras", "terrain"}
     assert {each.field for each in second.properties} == set(Settings.model_fields)
 
