@@ -15,6 +15,7 @@ from sandbox.editor.drawing_bodies import (
 )
 from sandbox.editor.drawing_jelly import BoxDrawing, CircleDrawing, PolygonDrawing
 from sandbox.editor.drawing_options import ParticleOptions, PinOptions, SpringOptions
+from sandbox.editor.drawing_terrain import GroundDrawing, LineDrawing, WallsDrawing
 from sandbox.editor.gesture import Drawing, staged
 from sandbox.editor.items import Selection
 from sandbox.editor.placing import add_particle, add_spring, set_pinned, weld
@@ -131,4 +132,7 @@ DRAWINGS: dict[str, type[Drawing[Any]]] = {
     "polygon": PolygonDrawing,
     "wheel": WheelDrawing,
     "pin": PinDrawing,
+    "ground": GroundDrawing,
+    "line": LineDrawing,
+    "walls": WallsDrawing,
 }

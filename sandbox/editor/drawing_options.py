@@ -6,7 +6,7 @@ from dataclasses import replace as _replace
 from typing import Any, Literal, TypeVar
 
 from sandbox.editor.document import EditError
-from sandbox.level.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL, MASS_RANGE, PARTICLE_LIMIT
+from sandbox.level.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL, FRICTION_LIMIT, MASS_RANGE, PARTICLE_LIMIT
 
 Kind = Literal["count", "number", "flag", "material"]
 
@@ -47,6 +47,10 @@ def _mass(default: float | None, label: str = "mass", text: str = "Mass of each 
 
 def _size(label: str, text: str) -> Any:
     return _option(None, About("number", label, text, "m", 1e-6, optional=True))
+
+
+def _surface(label: str, text: str, most: float) -> Any:
+    return _option(None, About("number", label, text, "", 0.0, most, optional=True))
 
 
 def _flag(default: bool, label: str, text: str) -> Any:
@@ -139,8 +143,24 @@ class JellyOptions:
     material: str = _material("jelly")
 
 
+@dataclass(frozen=True)
+class SurfaceOptions:
+    """Terrain or walls; None: friction and restitution of the level's contacts."""
+
+    friction: float | None = _surface("friction", "Friction of its surface; empty = the level's.", FRICTION_LIMIT)
+    restitution: float | None = _surface("bounce", "Share of its speed that bounces; empty = the level's.", 1.0)
+
+
 Options = (
-    PinOptions | ParticleOptions | SpringOptions | RopeOptions | TrussOptions | WebOptions | WheelOptions | JellyOptions
+    SurfaceOptions
+    | PinOptions
+    | ParticleOptions
+    | SpringOptions
+    | RopeOptions
+    | TrussOptions
+    | WebOptions
+    | WheelOptions
+    | JellyOptions
 )
 AnyOptions = TypeVar("AnyOptions", bound=Options)
 

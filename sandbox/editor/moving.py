@@ -114,8 +114,8 @@ def _moved(document: Document, by: Callable[[list[str]], Points]) -> Document:
     shifts = zip(bodies, by([body.id for body in bodies]).tolist(), strict=True)
     moved = [_within(shifted(body, dx, dy)) for body, (dx, dy) in shifts]
     terrain = chosen_terrain(level, document.selection)
-    shifts = zip(terrain, by([piece.id for piece in terrain]).tolist(), strict=True)
-    ground = [_within(shifted(piece, dx, dy)) for piece, (dx, dy) in shifts]
+    ways = zip(terrain, by([piece.id for piece in terrain]).tolist(), strict=True)
+    ground = [_within(shifted(piece, dx, dy)) for piece, (dx, dy) in ways]
     check_places(moved)
     rows = zip(particles, zip(*places.T.tolist(), strict=True), strict=True)
     placed = [replaced(particle, position=place) for particle, place in rows]

@@ -87,7 +87,7 @@ def _common(kinds: Iterable[Any], number: int) -> dict[str, About]:
     return found
 
 
-def _objects(kinds: Iterable[type[Any]]) -> dict[str, About]:
+def _objects(kinds: Iterable[Any]) -> dict[str, About]:
     """The fields of any of the kinds that hold an object or none."""
     known = (about for kind in kinds for about in abouts(kind).items())
     return {name: about for name, about in known if about.kind == "part"}

@@ -7,7 +7,9 @@ import numpy as np
 import pygame
 
 from sandbox.app.camera import Point
+from sandbox.app.colours import ACCENT
 from sandbox.app.edit.canvas import Chosen, Part, ScenePainter, moved_by
+from sandbox.app.edit.ground import Ground
 from sandbox.app.edit.hands import SelectHand
 from sandbox.app.edit.marks import DriveMarks
 from sandbox.app.edit.overlay import SPOT_SECONDS, draw_cursor, draw_label, draw_spot
@@ -82,6 +84,10 @@ class View:
         if self._ghost is None or self._ghost.level is not ghost.level:
             self._ghost = make_scene(ghost.level, screen.scene)
         drawn, new = self._ghost, ghost.selection
+        walls = ghost.level.walls
+        if walls is not None and walls is not screen.document.level.walls:
+            self._painter.paint_walls(surface, screen.camera, walls.box, ACCENT)
+        self._painter.paint_ground(surface, screen.camera, Ground(drawn, drawn.chosen(new), ghost=True))
         part = Part(drawn, drawn.particles_of(new), drawn.springs_of(new), ghost=True)
         self._painter.paint(surface, screen.camera, part)
 
