@@ -30,6 +30,8 @@ Kind = Literal[
 
 # What a description says of null.
 _EMPTY = re.compile(r"empty = ([^.;]+)")
+# Shorter words where the description's do not fit into a field.
+_SHORTER = {"that of the level's contacts": "the level's", "as placed, of a hydraulic its shortest": "as placed"}
 _KEYS = ("key", "reverse_key")
 _TITLES = {
     "a": "End a",
@@ -106,7 +108,7 @@ def _about(name: str, schema: dict[str, Any], part: type[BaseModel] | None) -> A
         above="exclusiveMinimum" in numbers,
         choices=tuple(map(str, value.get("enum", value.get("items", {}).get("enum", _constant(value))))),
         optional=optional,
-        empty=empty[1].replace("_", " ") if empty and optional else "",
+        empty=_SHORTER.get(empty[1], empty[1].replace("_", " ")) if empty and optional else "",
         model=part,
     )
     return About(**{**about.__dict__, "tooltip": _tooltip(about, text)})

@@ -25,9 +25,9 @@ _OUTLINES = ("polyline", "polygon")
 _SECTIONS = {
     "Mass": ("mass", "particle_mass", "end_mass", "hub_mass", "masses", "gravity_scale"),
     "Springs": ("material", "rest_length", "cut"),
-    "Contact": ("particle_radius", "friction", "restitution", "collides", "collision_group"),
     "Start": ("pin", "pinned", "velocity", "velocities", "pose"),
     "Drive": ("drive", "hydraulic", "motor"),
+    "Contact": ("particle_radius", "friction", "restitution", "collides", "collision_group"),
     "Other": ("group", "extras"),
 }
 

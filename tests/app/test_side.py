@@ -297,7 +297,7 @@ def test_tab_goes_through_the_fields_and_keeps_them_in_sight(driver):
     choose(driver, ROPE)
     driver.app.ui.focus_on(entry(driver, "id").entry)
     seen = []
-    for _ in range(20):
+    for _ in range(30):
         driver.key(pygame.K_TAB)
         focus = driver.app.ui.focus
         seen.append(focus)
