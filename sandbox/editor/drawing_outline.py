@@ -69,8 +69,7 @@ class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
         if not self.freehand:
             return
         self.freehand = False
-        corners = simplified([point.point for point in self.points], HAND_TOLERANCE * self.reach)
-        self.points = [Snap(corner) for corner in self.trimmed(corners)]
+        self.points = [Snap(corner) for corner in self.tidied([point.point for point in self.points])]
         if not self.close():
             self.points = []
 
@@ -106,8 +105,9 @@ class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
             return "the outline touches or crosses itself; draw it without, Backspace takes the last corner back"
         return ""
 
-    def trimmed(self, corners: list[Point]) -> list[Point]:
+    def tidied(self, stroke: list[Point]) -> list[Point]:
         """Corners of an outline drawn by hand, without an end that runs over its own beginning."""
+        corners = simplified(stroke, HAND_TOLERANCE * self.reach)
         kept = (corners[: len(corners) - left_out] for left_out in range(int(OVERSHOOT * len(corners)) + 1))
         return next((outline for outline in kept if is_simple(outline)), corners)
 

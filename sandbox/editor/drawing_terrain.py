@@ -3,11 +3,12 @@
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.drawing_bodies import direction, rounded
 from sandbox.editor.drawing_options import SurfaceOptions
-from sandbox.editor.drawing_outline import OutlineDrawing
+from sandbox.editor.drawing_outline import HAND_TOLERANCE, OutlineDrawing
 from sandbox.editor.gesture import Drawing
 from sandbox.editor.snap import Point, Snap
 from sandbox.editor.terrain import add_terrain, set_walls, with_corners
 from sandbox.level.model import TerrainDef, WallsDef
+from sandbox.level.polygon import simplified
 
 
 class GroundDrawing(OutlineDrawing[SurfaceOptions]):
@@ -46,9 +47,10 @@ class LineDrawing(GroundDrawing):
         """A line needs two corners."""
         return "a line needs two corners or more" if len(corners) < self.fewest else ""
 
-    def trimmed(self, corners: list[Point]) -> list[Point]:
-        """A line may cross itself."""
-        return corners
+    def tidied(self, stroke: list[Point]) -> list[Point]:
+        """Corners of a line drawn by hand, to its very end."""
+        corners = simplified(stroke, HAND_TOLERANCE * self.reach)
+        return corners if corners[-1] == stroke[-1] else [*corners, stroke[-1]]
 
     def close_round(self) -> bool:
         """End the line where it began."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from sandbox.editor.finding import Finding, Rule, called, falling_particles, listed, middle_of, place_of
 from sandbox.editor.lint_checks import hopeless_checks
+from sandbox.editor.lint_contacts import buried_particles, overlapping_discs
 from sandbox.editor.lint_driven import idle_motors
 from sandbox.editor.lint_places import crossing_bodies, overlapping_particles
 from sandbox.editor.lint_solver import springs_past_limits
@@ -28,7 +29,9 @@ def findings(level: Level, scene: Scene) -> Iterator[Finding | None]:
         idle_items(scene),
         idle_motors(scene),
         overlapping_particles(scene),
-        crossing_bodies(scene),
+        crossing_bodies(level, scene),
+        buried_particles(level, scene),
+        overlapping_discs(level, scene),
     )
     return itertools.chain.from_iterable(listed(rule) for rule in rules)
 
