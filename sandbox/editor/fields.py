@@ -39,7 +39,7 @@ def set_field(document: Document, items: Iterable[Item], field: str, value: Any)
         return rename(document, next(iter(chosen)), value)
     if field == "type":
         raise EditError("the kind of a body stays; draw another one")
-    value = _with_tuples(value) if field != "extras" else value
+    value = with_tuples(value) if field != "extras" else value
     read: dict[type, Any] = {}
 
     def with_value(part: Definition) -> Definition:
@@ -69,7 +69,7 @@ def change_items(
     """Give a field of each item, which all have it, what `change` makes of the whole item. Raises EditError."""
 
     def with_change(part: Definition) -> Definition:
-        value = _with_tuples(change(part))
+        value = with_tuples(change(part))
         new = getattr(validated(replaced(part, **{field: value})), field)
         return part if getattr(part, field) == new else _with_field(part, field, new)
 
@@ -114,7 +114,7 @@ def set_level_field(document: Document, field: str, value: Any) -> Document:
     if field in _NO_FIELDS:
         raise EditError(f"{field} is not changed here")
     level = document.level
-    data = {"format": level.format, "version": VERSION, "name": level.name, field: _with_tuples(value)}
+    data = {"format": level.format, "version": VERSION, "name": level.name, field: with_tuples(value)}
     new = getattr(_read(data, 0), field)
     if new == getattr(level, field):
         return document
@@ -124,16 +124,17 @@ def set_level_field(document: Document, field: str, value: Any) -> Document:
 def set_setting(document: Document, field: str, value: Any) -> Document:
     """Give a field of the level's settings a value. Raises EditError."""
     level = document.level
-    settings = {**level.settings.__dict__, field: _with_tuples(value)}
+    settings = {**level.settings.__dict__, field: with_tuples(value)}
     new = _read({"format": level.format, "version": VERSION, "name": "-", "settings": settings}, 1).settings
     return document if new == level.settings else replace(document, level=replaced(level, settings=new))
 
 
-def _with_tuples(value: Any) -> Any:
+def with_tuples(value: Any) -> Any:
+    """A value with tuples for its lists, as models hold them."""
     if isinstance(value, list | tuple):
-        return tuple(_with_tuples(item) for item in value)
+        return tuple(with_tuples(item) for item in value)
     if isinstance(value, dict):
-        return {key: _with_tuples(item) for key, item in value.items()}
+        return {key: with_tuples(item) for key, item in value.items()}
     return value
 
 

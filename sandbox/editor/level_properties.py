@@ -57,8 +57,11 @@ def _object(document: Document, name: str) -> list[Property]:
 def _first_walls(document: Document) -> dict[str, Any]:
     """Walls around the level's view, or around everything with some room."""
     level = document.level
-    box = level.view or make_scene(level).bounds() or FIRST_ROOM
-    room = 0.0 if level.view is not None else ROOM_SHARE * max(box[2] - box[0], box[3] - box[1], SMALLEST_ROOM)
+    around = make_scene(level).bounds()
+    box = level.view or around or FIRST_ROOM
+    room = 0.0
+    if level.view is None and around is not None:
+        room = ROOM_SHARE * max(box[2] - box[0], box[3] - box[1], SMALLEST_ROOM)
     return {"box": tuple(round(c + s * room, ROOM_DECIMALS) for c, s in zip(box, (-1, -1, 1, 1), strict=True))}
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from sandbox.editor.abouts import About, abouts
 from sandbox.editor.additions import add_object
 from sandbox.editor.document import Document
-from sandbox.editor.fields import change_field, set_field
+from sandbox.editor.fields import change_field, set_field, with_tuples
 from sandbox.editor.items import Definition, Item, Selection, chosen_items
 from sandbox.editor.names import owner_of
 from sandbox.editor.property import MIXED, Property, Section, part_properties, same, with_axes
@@ -181,7 +181,8 @@ def _outline_properties(selection: Selection, pieces: Sequence[TerrainDef]) -> l
         return outlined(document, selection, lambda piece: with_corners(piece, corners_of(piece), wanted))
 
     def write(document: Document, corners: Sequence[Point]) -> Document:
-        return outlined(document, selection, lambda piece: with_corners(piece, corners))
+        points = with_tuples(corners)
+        return outlined(document, selection, lambda piece: with_corners(piece, points))
 
     about = replace(abouts(TerrainDef)["polygon"], title="Corners", optional=False, tooltip="Corners in order.")
     return [
