@@ -17,6 +17,7 @@ from sandbox.level.bodies import (
     JellyDef,
     MeshDef,
     PolygonShape,
+    RingDef,
     RopeDef,
     WebDef,
     WheelDef,
@@ -175,6 +176,8 @@ def _changes(body: AnyBody, motion: Motion) -> dict[str, Any]:
             return {"start": start, "end": end, "height": body.height * across, "pin": pin}
         case WebDef():
             return _centred(body, motion) | {"radius": body.radius * motion.factor}
+        case RingDef():
+            return _centred(body, motion) | {"radius": body.radius * motion.factor}
         case WheelDef():
             sizes = {"radius": body.radius * motion.factor, "thickness": body.thickness * motion.factor}
             return _centred(body, motion) | sizes | _turned_motor(body, motion)
@@ -195,7 +198,7 @@ def stretch(a: Point, b: Point, motion: Motion) -> float:
     return math.dist(motion.point(a), motion.point(b)) / math.dist(a, b)
 
 
-def _centred(body: WebDef | WheelDef | JellyDef, motion: Motion) -> dict[str, Any]:
+def _centred(body: WebDef | WheelDef | RingDef | JellyDef, motion: Motion) -> dict[str, Any]:
     return {"position": motion.point(body.position), "angle": motion.turned(body.angle)}
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.editor.items import Item, Selection, items_of
-from sandbox.level.bodies import AnyBody, JellyDef, WebDef, WheelDef
+from sandbox.level.bodies import AnyBody, JellyDef, RingDef, WebDef, WheelDef
 from sandbox.level.expansion import Expansion, expansion
 from sandbox.level.layout import Layout
 from sandbox.level.limits import BODY_RADIUS, DEFAULT_MATERIAL
@@ -364,7 +364,7 @@ def _expand(
 
 def _form_key(body: AnyBody) -> tuple[Any, ...] | None:
     """All that shapes a body but its place; None where a move alters more than one point."""
-    if not isinstance(body, JellyDef | WebDef | WheelDef) or body.pose is not None:
+    if not isinstance(body, JellyDef | RingDef | WebDef | WheelDef) or body.pose is not None:
         return None
     return type(body), *(value for name, value in body.__dict__.items() if name not in _PLACED)
 

@@ -1,4 +1,4 @@
-"""Models of bodies: rope, bridge, girder, web, wheel, jelly and mesh, as a file describes them before expansion."""
+"""Models of bodies: rope, bridge, girder, web, wheel, ring, jelly and mesh, before expansion."""
 
 from collections.abc import Iterable
 from typing import Annotated, Any, Literal, get_args
@@ -9,6 +9,7 @@ from sandbox.level.driving import MotorDef, MuscleDef
 from sandbox.level.limits import DEFAULT_MATERIAL
 from sandbox.level.quantities import (
     Angle,
+    Coefficient,
     Collides,
     CollisionGroup,
     Description,
@@ -18,6 +19,7 @@ from sandbox.level.quantities import (
     Group,
     Id,
     Index,
+    Inflation,
     Length,
     Mass,
     Name,
@@ -63,6 +65,20 @@ class BodyDef(Description):
     extras: Extras = Field(default={})
 
 
+class BendingDef(Description):
+    """Angular springs, which hold two springs that meet at the angle of the body's form."""
+
+    stiffness: Coefficient = Field(
+        default=0.5, description="Cs: part of its error that an angle corrects in a tick, alone."
+    )
+    damping: Coefficient = Field(
+        default=0.9, description="Cd: part of its turning that an angle removes in a tick, alone."
+    )
+
+
+_BENDING = "Angular springs at every particle where two springs of the body meet; null = it bends freely."
+
+
 class RopeDef(BodyDef):
     """A chain of particles, placed evenly from start to end, with a spring between each two neighbours."""
 
@@ -74,6 +90,7 @@ class RopeDef(BodyDef):
     end_mass: Mass | None = Field(default=None, description="Mass of the last particle; null = `particle_mass`.")
     rest_length: Length | None = Field(default=None, description="Rest length of each spring; null = as placed.")
     pin: tuple[End, ...] = Field(default=(), max_length=2, description='Ends that are held: any of "start", "end".')
+    bending: BendingDef | None = Field(default=None, description=_BENDING)
 
 
 class BridgeDef(BodyDef):
@@ -132,6 +149,21 @@ class WheelDef(BodyDef):
     motor: MotorDef | None = Field(default=None, description="Motor that turns it about its hub; null = none.")
 
 
+class RingDef(BodyDef):
+    """A closed ring of particles, which keeps the area inside: a balloon, a tyre."""
+
+    type: Literal["ring"] = Field(description="Kind of body.")
+    position: Point = Field(default=(0.0, 0.0), description="Place of the centre.")
+    angle: Angle = Field(default=0.0, description="Direction of the first particle, counter-clockwise from the right.")
+    radius: Size = Field(description="Radius of the ring.")
+    segments: int = Field(ge=3, description="Number of springs, and of particles.")
+    particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
+    inflation: Inflation | None = Field(
+        default=1.0, description="Area that the ring wants, as a multiple of its own; null = it holds nothing."
+    )
+    bending: BendingDef | None = Field(default=None, description=_BENDING)
+
+
 class BoxShape(Description):
     """A rectangle about the jelly's centre."""
 
@@ -177,6 +209,11 @@ class JellyDef(BodyDef):
     angle: Angle = Field(default=0.0, description="Turn about the centre, counter-clockwise.")
     spacing: Spacing = Field(description="Distance of neighbours in the grid; a box stretches it to fit.")
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
+    area: bool = Field(
+        default=True,
+        description="Whether its triangles keep their areas, with Cs and Cd of its material, so that it comes back "
+        "from being crushed or turned inside out; those of a Hooke material never do.",
+    )
 
 
 class MeshDef(BodyDef):
@@ -195,10 +232,11 @@ class MeshDef(BodyDef):
     springs: tuple[tuple[Index, Index], ...] = Field(
         default=(), description="Pairs of particles, by index, that a spring joins; rest lengths are as placed."
     )
+    bending: BendingDef | None = Field(default=None, description=_BENDING)
 
 
 AnyBody = Annotated[
-    RopeDef | BridgeDef | GirderDef | WebDef | WheelDef | JellyDef | MeshDef, Field(discriminator="type")
+    RopeDef | BridgeDef | GirderDef | WebDef | WheelDef | RingDef | JellyDef | MeshDef, Field(discriminator="type")
 ]
 # Kinds of body by the name that a file gives them, in the order in which they are explained.
 KINDS: dict[str, type[BodyDef]] = {

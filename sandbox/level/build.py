@@ -3,7 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.level.bodies import RingDef
 from sandbox.level.driving import HydraulicDef, MotorDef
+from sandbox.level.elements import areas, bending, bends
 from sandbox.level.expansion import Expansion, expansion
 from sandbox.level.layout import Layout
 from sandbox.level.limits import DEFAULT_MATERIAL
@@ -14,8 +16,10 @@ from sandbox.level.surfaces import surface_of, surfaces_of, terrain_of
 from sandbox.level.validate import check_level
 from sandbox.level.welds import welded
 from sandbox.physics.driving import drive_muscles
+from sandbox.physics.elements import AREA, BEND
 from sandbox.physics.equipment import NEVER, Driven, Hydraulics, Motors, Muscles, StrainLimits
 from sandbox.physics.settings import WorldSettings
+from sandbox.physics.slots import OWN_MATERIAL
 from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, World
 
 Slots = NDArray[np.int64]
@@ -44,6 +48,7 @@ def build_world(level: Level) -> World:
     world.limits = strain_limits(materials)
     _fit(world, layout, level, bodies, slots)
     world.reserve_hands()
+    _add_elements(world, layout, level, bodies, slots, materials)
     world.terrain, world.surface = terrain_of(level), surface_of(level)
     return world
 
@@ -177,6 +182,48 @@ def _muscles(level: Level, bodies: list[Expansion]) -> Muscles:
     amplitude, period, phase = (np.repeat(column, counts) for column in np.array(rows).reshape(-1, 3).T)
     spring = np.flatnonzero(period)
     return Muscles(spring, amplitude[spring], period[spring].astype(np.int64), phase[spring])
+
+
+def _add_elements(
+    world: World,
+    layout: Layout,
+    level: Level,
+    bodies: list[Expansion],
+    slots: Slots,
+    materials: dict[str, Material],
+) -> None:
+    """Add what keeps areas and angles, body by body; at rest it is that of the body's form."""
+    index = {name: number for number, name in enumerate(materials)}
+    for body, made in zip(level.bodies, bodies, strict=True):
+        material, bend = materials[body.material], bending(body)
+        polygons = areas(body, made.pairs) if isinstance(material, NissenMaterial) else np.zeros((0, 3), dtype=np.int64)
+        triples = bends(made.pairs) if bend is not None else np.zeros((0, 3), dtype=np.int64)
+        if not len(polygons) and not len(triples):
+            continue
+        particles, form = slots[layout.owners[body.id].first :], made.form
+        # Welds may have made one particle of two corners: nothing is left to keep.
+        polygons, triples = (rows[_distinct(particles[rows])] for rows in (polygons, triples))
+        if isinstance(material, NissenMaterial):
+            inflation = body.inflation if isinstance(body, RingDef) and body.inflation is not None else 1.0
+            world.add_elements(
+                AREA, particles[polygons], form=form[polygons], inflation=inflation,
+                stiffness=material.stiffness + 0.0, damping=material.damping + 0.0, material=index[body.material],
+            )  # fmt: skip
+        if bend is not None:
+            triples = triples[_has_links(form[triples])]
+            world.add_elements(
+                BEND, particles[triples], form=form[triples], stiffness=bend.stiffness + 0.0,
+                damping=bend.damping + 0.0, material=OWN_MATERIAL,
+            )  # fmt: skip
+
+
+def _distinct(corners: Slots) -> NDArray[np.bool_]:
+    return np.asarray((np.diff(np.sort(corners, axis=1), axis=1) != 0).all(axis=1))
+
+
+def _has_links(places: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether both links of each triple of places [m] (t, 3, 2) have a length, and so an angle."""
+    return np.asarray((np.diff(places, axis=1) != 0.0).any(axis=2).all(axis=1))
 
 
 def coefficients(material: NDArray[np.int64], materials: dict[str, Material]) -> dict[str, NDArray[np.generic]]:

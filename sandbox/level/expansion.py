@@ -15,11 +15,13 @@ Floats = NDArray[np.float64]
 class Expansion:
     """Particles and springs of one body, in generation order; before welds.
 
-    Of n particles: position [m] (n, 2), velocity [m/s] (n, 2), mass [kg] (n,), pinned (n,). Of the m springs that are
-    not cut: pairs (m, 2) of particles, numbers (m,) = the k of their names `id:k`, rest_length [m] (m,).
+    Of n particles: position [m] (n, 2), form [m] (n, 2) = where they are at rest, velocity [m/s] (n, 2), mass [kg]
+    (n,), pinned (n,). Of the m springs that are not cut: pairs (m, 2) of particles, numbers (m,) = the k of their names
+    `id:k`, rest_length [m] (m,).
     """
 
     position: Points
+    form: Points
     velocity: Points
     mass: Floats
     pinned: NDArray[np.bool_]
@@ -36,6 +38,7 @@ def expansion(body: AnyBody) -> Expansion:
     pairs = pairs[kept]
     return Expansion(
         position=form if body.pose is None else np.array(body.pose, dtype=np.float64).reshape(-1, 2),
+        form=form,
         velocity=_velocities(body, len(form)),
         mass=masses(body, len(form)),
         pinned=_pinned(body, len(form)),

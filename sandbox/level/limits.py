@@ -39,6 +39,7 @@ RATE_LIMIT = 1e6  # [m/s] of a hydraulic
 MOTOR_LIMIT = 100  # motors of a level; each looks through all springs in every step for what its hub is fixed to
 HOOKE_LIMIT = 1e15  # [N/m], [N s/m]
 FRICTION_LIMIT = 100.0  # beyond it nothing slides that did not before
+INFLATION_LIMIT = 100.0  # multiple of a ring's own area
 SECONDS_LIMIT = 3_600.0  # [s] of run that an acceptance check may ask for
 
 FORMAT = "spring-sandbox/level"

@@ -14,6 +14,7 @@ from sandbox.level.limits import (
     GRAVITY_LIMIT,
     GRAVITY_SCALE_LIMIT,
     HOOKE_LIMIT,
+    INFLATION_LIMIT,
     MASS_RANGE,
     PERIOD_RANGE,
     RATE_LIMIT,
@@ -90,6 +91,7 @@ Size = Annotated[float, Field(gt=0.0, le=COORDINATE_LIMIT, json_schema_extra=uni
 Spacing = Annotated[float, Field(ge=SPACING_RANGE[0], le=SPACING_RANGE[1], json_schema_extra=unit("m"))]
 Angle = Annotated[float, Field(ge=-ANGLE_LIMIT, le=ANGLE_LIMIT, json_schema_extra=unit("rad"))]
 Coefficient = Annotated[float, Field(ge=0.0, le=1.0, json_schema_extra=unit("per tick"))]
+Inflation = Annotated[float, Field(ge=0.0, le=INFLATION_LIMIT)]
 HookeStiffness = Annotated[float, Field(ge=0.0, le=HOOKE_LIMIT, json_schema_extra=unit("N/m"))]
 HookeDamping = Annotated[float, Field(ge=0.0, le=HOOKE_LIMIT, json_schema_extra=unit("N s/m"))]
 Drag = Annotated[float, Field(ge=0.0, le=DRAG_LIMIT, json_schema_extra=unit("1/s"))]

@@ -42,7 +42,7 @@ EXAMPLE = """\
 _INTRO = f"""\
 # Level format, version {limits.VERSION}
 
-A level is one JSON file. It describes bodies (ropes, bridges, girders, webs, wheels, jellies, meshes), loose
+A level is one JSON file. It describes bodies (ropes, bridges, girders, webs, wheels, rings, jellies, meshes), loose
 particles and loose springs; the program expands them into particles and springs. Lengths are in metres, masses in
 kilograms, times in seconds, angles in radians; y points up. Everything has a default but `format`, `version`, `name`
 and what a body cannot do without. Keys that are not listed here are refused, so a misspelt key is noticed; `extras`
@@ -81,6 +81,7 @@ _NAMES = """\
   Springs: the threads along the spokes in the order of their outer particles, then those of the rings.
 - Wheel: the hub, the inner ring, the outer ring, each counter-clockwise from the first spoke. Springs: hub to inner
   ring, inner ring, outer ring, between the rings, then per cell both diagonals.
+- Ring: counter-clockwise from the first particle. Springs: each to the next, the last back to the first.
 - Jelly, box: `round(width / spacing) + 1` columns, rows alike, stretched to fit the box; row by row from the bottom
   left. Where that leaves one column or row, it stands in the middle.
 - Jelly, circle and polygon: the whole multiples of `spacing` on either side of the centre, the shape's own [0, 0],
@@ -88,6 +89,20 @@ _NAMES = """\
 - Springs of a jelly: all to the right, all upward, then per cell the diagonal that rises to the right and the other;
   where both ends exist. The shape is turned by `angle` afterwards.
 - A pinned particle starts at rest, whatever its velocity.
+
+## Areas and angles
+
+- Areas and angles obey the equation of the springs, with their own error in place of a length's: Cs is the part of it
+  that is corrected in a tick, Cd the part of its change that is removed.
+- A jelly keeps the signed area of its triangles: two of each cell of its grid, the diagonals between them laid like
+  the colours of a chessboard, one where three corners exist. They take Cs and Cd of its material, on sliders too. A
+  jelly that is crushed, laid on a line or turned inside out comes back; of one set in a single point or mirrored, only
+  the shape is sure to come back, not which way it looks.
+- A ring keeps the area inside it as a whole, times its `inflation`.
+- `bending` puts an angular spring on every particle where just two springs of the body meet, of a rope, a ring, or a
+  mesh. At rest the angle is that of the body's form, also where `pose` places it otherwise. It pulls hardest at a fold
+  of 180 degrees from there. Its Cs and Cd are its own.
+- A triangle, a ring or an angle of which a spring along a side is cut is gone.
 
 ## Pins, cuts, poses and welds
 

@@ -18,6 +18,7 @@ from sandbox.level.bodies import (
     GirderDef,
     JellyDef,
     MeshDef,
+    RingDef,
     RopeDef,
     WebDef,
     WheelDef,
@@ -53,6 +54,8 @@ def form_count(body: AnyBody) -> tuple[int, int]:
             return 1 + body.spokes * body.rings, 2 * body.spokes * body.rings
         case WheelDef():
             return 1 + 2 * body.segments, 6 * body.segments
+        case RingDef():
+            return body.segments, body.segments
         case MeshDef():
             return len(body.particles), len(body.springs)
         case JellyDef():
@@ -72,6 +75,9 @@ def expand(body: AnyBody) -> tuple[Points, Pairs]:
             return _web(body)
         case WheelDef():
             return _wheel(body)
+        case RingDef():
+            centre = np.array(body.position, dtype=np.float64)
+            return centre + body.radius * _spokes(body.angle, body.segments), _ring(0, body.segments)
         case MeshDef():
             pairs = np.array(body.springs, dtype=np.int64).reshape(-1, 2)
             return np.array(body.particles, dtype=np.float64).reshape(-1, 2), pairs
@@ -188,6 +194,26 @@ def jelly_cells(body: JellyDef) -> NDArray[np.bool_]:
         return steps[:, None] * steps[:, None] + steps[None, :] * steps[None, :] <= ratio * ratio
     assert not isinstance(body.shape, BoxShape)
     return polygon_grid(body.shape.polygon, body.spacing)[2]
+
+
+def jelly_triangles(body: JellyDef) -> Pairs:
+    """Triangles (t, 3) of a jelly's particles, counter-clockwise: two of each cell of its grid, one of three corners.
+
+    Cells are cut along one diagonal and the other in turns, as a chessboard is coloured: no way of shearing is easier.
+    """
+    cells = np.ones(box_grid(body)[::-1], dtype=np.bool_) if isinstance(body.shape, BoxShape) else jelly_cells(body)
+    numbers = _numbers(cells)
+    corners = np.stack([numbers[:-1, :-1], numbers[:-1, 1:], numbers[1:, 1:], numbers[1:, :-1]], axis=-1)
+    row, column = np.indices(corners.shape[:2])
+    corners = corners.reshape(-1, 4)
+    missing = corners < 0
+    # A missing corner is cut off; of whole cells the first or the second.
+    cut = np.where(missing.any(axis=1), np.argmax(missing, axis=1), ((row + column) % 2).reshape(-1))
+    ahead = cut[:, None] + np.array([1, 2, 3])
+    inner = np.take_along_axis(corners, ahead % 4, axis=1)
+    outer = np.take_along_axis(corners, (cut[:, None] + np.array([3, 4, 5])) % 4, axis=1)
+    both = np.stack([inner, outer], axis=1).reshape(-1, 3)
+    return both[(both >= 0).all(axis=1)]
 
 
 def _count_jelly(body: JellyDef) -> tuple[int, int]:

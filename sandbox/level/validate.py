@@ -14,6 +14,7 @@ from sandbox.level.bodies import (
     JellyDef,
     MeshDef,
     PolygonShape,
+    RingDef,
     WebDef,
     WheelDef,
 )
@@ -167,7 +168,7 @@ def outline_faults(path: str, body: AnyBody) -> Iterator[Fault]:
             yield f"{path}.height", f"takes the bottom row beyond the limit {-COORDINATE_LIMIT:.15g}"
     elif isinstance(body, GirderDef):
         yield from _girder(path, body)
-    elif isinstance(body, WebDef | WheelDef):
+    elif isinstance(body, WebDef | WheelDef | RingDef):
         if isinstance(body, WheelDef) and body.thickness >= body.radius:
             yield f"{path}.thickness", f"{shown(body.thickness)} is not below the radius, {shown(body.radius)}"
         if max(map(abs, body.position)) + body.radius > COORDINATE_LIMIT:

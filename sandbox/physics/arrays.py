@@ -39,28 +39,49 @@ SPRING_ARRAYS = {
     "tension": np.float64,
     "edge": np.int8,
 }
+ELEMENT_ARRAYS = {
+    "element_kind": np.int8,
+    "element_first": np.int32,
+    "element_corners": np.int32,
+    "element_rest": np.float64,
+    "element_stiffness": np.float64,
+    "element_damping": np.float64,
+    "element_material": np.int32,
+    "element_active": np.bool_,
+}
+CORNER_ARRAYS = {
+    "corner_particle": np.int32,
+    "corner_weight": np.float64,
+    "corner_form": np.float64,
+}
 PART_ARRAYS = {"part_value": np.float64}
 CONTACT_ARRAYS = {
     "contact_particle": np.int32,
     "contact_feature": np.int64,
     "contact_impulse": np.float64,
 }
-# Arrays that go together: one row for each particle, each spring, each driven part, each contact.
-FAMILIES = (PARTICLE_ARRAYS, SPRING_ARRAYS, PART_ARRAYS, CONTACT_ARRAYS)
-KINDS = PARTICLE_ARRAYS | SPRING_ARRAYS | PART_ARRAYS | CONTACT_ARRAYS
+# Arrays that go together: one row for each particle, spring, element, corner of one, driven part, contact.
+FAMILIES = (PARTICLE_ARRAYS, SPRING_ARRAYS, ELEMENT_ARRAYS, CORNER_ARRAYS, PART_ARRAYS, CONTACT_ARRAYS)
+KINDS = {name: kind for family in FAMILIES for name, kind in family.items()}
 # Every array of a world's state, in the order in which it is hashed and stored: part of the replay contract.
 STATE_ARRAYS = tuple(KINDS)
 # Constants of springs that the quarantine can take back.
 GUARDED_CONSTANTS = ("rest_length", "stiffness", "damping", "hooke_stiffness", "hooke_damping")
-GUARDED = ("position", "velocity", "mass", *GUARDED_CONSTANTS)
-VECTOR_ARRAYS = frozenset({"position", "velocity", "origin", "slow_velocity", "impulse", "contact_impulse"})
+# Constants of elements that it can take back.
+GUARDED_ELEMENTS = ("element_rest", "element_stiffness", "element_damping", "corner_weight", "corner_form")
+GUARDED = ("position", "velocity", "mass", *GUARDED_CONSTANTS, *GUARDED_ELEMENTS)
+VECTOR_ARRAYS = frozenset(
+    {"position", "velocity", "origin", "slow_velocity", "impulse", "element_rest", "corner_form", "contact_impulse"}
+)
 
 # An energy bank that the direct solver begins anew at its next step: something outside changed the body.
 BANK_UNOPENED = -1.0
 
 
 class StateArrays:
-    """The state of n particles, m springs, k driven parts and c contacts as a struct of arrays, float64 unless said.
+    """The state of particles, springs, elements, driven parts and contacts as a struct of arrays, float64 unless said.
+
+    Of n particles and m springs:
 
     position [m] (n, 2), velocity [m/s] (n, 2), origin [m] (n, 2) = where each was created, which orders the direct
     solver's elimination, mass [kg], inverse_mass [1/kg] (0 = pinned), radius [m], gravity_scale = how many times the
@@ -71,7 +92,14 @@ class StateArrays:
     warm start. The direct solver keeps slow_velocity [m/s] (n, 2) = the slow part of the velocity, energy_bank [J] (n,)
     = what a body's earlier losses still allow it, at its free particle of lowest slot (-1: to be begun anew), tension
     [N s] (m,) = the impulse by which a spring pulled in the last step, of a whole tick where substeps are "auto", as
-    impulse then is. part_value (k,) = how a driven part is driven, -1..1.
+    impulse then is.
+
+    Of t elements (elements.py) with q corners in all: element_kind (int8), element_first, element_corners (int32: where
+    its corners begin, and how many), element_rest (t, 2), element_stiffness, element_damping (Cs, Cd per tick),
+    element_material (int32, -1 = Cs and Cd of its own), element_active (bool); corner_particle (int32), corner_weight
+    (q,), corner_form [m] (q, 2) = where it stands at rest. An element goes with any of the springs along its sides.
+
+    part_value (k,) = how each driven part is driven, -1..1.
 
     For contacts: friction and restitution (n,), owner (int32) = the body that a particle belongs to, negative: its own,
     group (int64) = one bit, collides (int64) = the bits of the groups that it touches, TERRAIN_GROUP for terrain, 0 =
@@ -103,6 +131,17 @@ class StateArrays:
     spring_active: NDArray[np.bool_]
     impulse: Floats
     tension: Floats
+    element_kind: NDArray[np.int8]
+    element_first: NDArray[np.int32]
+    element_corners: NDArray[np.int32]
+    element_rest: Floats
+    element_stiffness: Floats
+    element_damping: Floats
+    element_material: NDArray[np.int32]
+    element_active: NDArray[np.bool_]
+    corner_particle: NDArray[np.int32]
+    corner_weight: Floats
+    corner_form: Floats
     part_value: Floats
     friction: Floats
     restitution: Floats

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from sandbox.physics.elements import element_values
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.step import substep_coefficients, substep_time
+from sandbox.physics.step import element_coefficients, substep_coefficients, substep_time
 from sandbox.physics.world import HAND_MATERIAL, LAW_HOOKE, Floats, World
 
 # The energy of what blew up is inf or NaN, and no fault.
@@ -32,7 +33,7 @@ def kinetic_energy(world: World) -> float:
 
 @_unbounded
 def spring_energy(world: World) -> float:
-    """Sum of k x^2 / 2 [J] over the active springs but the hands', with the k that the world's solver gives them.
+    """Sum of k x^2 / 2 [J] over active springs but the hands', and of elements, with the k that the solver gives them.
 
     With substeps "auto" that is the k of a tick in one part, however many parts the last tick had.
     """
@@ -41,7 +42,26 @@ def spring_energy(world: World) -> float:
     nissen = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, reduced_masses(world), h)
     constant = np.where(world.law == LAW_HOOKE, world.hooke_stiffness, nissen)
     error = spring_lengths(world) - world.rest_length
-    return float(0.5 * np.sum((constant * error * error)[world.spring_active & (world.material != HAND_MATERIAL)]))
+    springs = np.sum((constant * error * error)[world.spring_active & (world.material != HAND_MATERIAL)])
+    return float(0.5 * springs) + (float(np.sum(element_energies(world))) if world.element_count else 0.0)
+
+
+@_unbounded
+def element_energies(world: World) -> Floats:
+    """Energy [J] of every element (t,), k C^2 / 2 with the k that the world's solver gives it; 0 where inactive."""
+    value, mass, _ = measure_elements(world)
+    constant = SOLVERS[world.settings.solver].spring_constant(
+        *element_coefficients(world), mass, substep_time(world.settings)
+    )
+    return np.asarray(0.5 * constant * value * value)
+
+
+def measure_elements(world: World) -> tuple[Floats, Floats, Floats]:
+    """C (t,) and effective mass (t,) of every element, 0 where inactive; and the gradient at each corner (q, 2)."""
+    value, mass = np.zeros((2, world.element_count))
+    place, slope = np.zeros((2, len(world.corner_particle), 2))
+    element_values(world.position, world.inverse_mass, world.elements, place, value, mass, slope)
+    return value, mass, slope
 
 
 @_unbounded

@@ -1,8 +1,8 @@
 """Quarantine: a value that no physics can give is taken back before it spreads.
 
 A particle whose position, velocity or mass is not finite, or is absurd, gets its last good values back and is frozen:
-pinned where it was, until somebody unpins it. A spring's absurd constant gets its last good value back. Positions and
-velocities are good as the last tick ended with them, masses and constants as they were last set.
+pinned where it was, until somebody unpins it. An absurd constant of a spring or an element gets its last good value
+back. Positions and velocities are good as the last tick ended with them, masses and constants as they were last set.
 """
 
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.arrays import GUARDED_CONSTANTS
+from sandbox.physics.arrays import GUARDED_CONSTANTS, GUARDED_ELEMENTS, VECTOR_ARRAYS
 from sandbox.physics.jit import kernel
 from sandbox.physics.world import World
 
@@ -21,7 +21,7 @@ ABSURD = 1e18
 
 @dataclass(frozen=True)
 class Containment:
-    """What was taken back: at a tick, in the array `array` of the particle or spring `name`."""
+    """What was taken back: at a tick, in the array `array` of the particle, spring or element `name`."""
 
     tick: int
     array: str
@@ -34,7 +34,9 @@ class Containment:
 
 
 @kernel
-def sound(position, velocity, mass, inverse_mass, rest_length, stiffness, damping, hooke_stiffness, hooke_damping):  # type: ignore[no-untyped-def]
+def sound(  # type: ignore[no-untyped-def]
+    position, velocity, mass, inverse_mass, rest_length, stiffness, damping, hooke_stiffness, hooke_damping
+):  # fmt: skip
     """Whether every value that a tick reads is one that physics can give; NaN is in no range."""
     for p in range(mass.shape[0]):
         if not (
@@ -53,6 +55,28 @@ def sound(position, velocity, mass, inverse_mass, rest_length, stiffness, dampin
             and 0.0 <= damping[s] <= 1.0
             and 0.0 <= hooke_stiffness[s] <= ABSURD
             and 0.0 <= hooke_damping[s] <= ABSURD
+        ):
+            return False
+    return True
+
+
+@kernel
+def sound_elements(element_rest, element_stiffness, element_damping, corner_weight, corner_form):  # type: ignore[no-untyped-def]
+    """Whether every constant of elements is one that physics can give."""
+    for k in range(element_stiffness.shape[0]):
+        if not (
+            -ABSURD <= element_rest[k, 0] <= ABSURD
+            and -ABSURD <= element_rest[k, 1] <= ABSURD
+            and 0.0 <= element_stiffness[k] <= 1.0
+            and 0.0 <= element_damping[k] <= 1.0
+        ):
+            return False
+    for c in range(corner_weight.shape[0]):
+        weight = corner_weight[c]
+        if not (
+            0.0 <= weight <= ABSURD
+            and -ABSURD <= corner_form[c, 0] <= ABSURD
+            and -ABSURD <= corner_form[c, 1] <= ABSURD
         ):
             return False
     return True
@@ -82,19 +106,24 @@ def contain_inputs(world: World) -> None:
     if sound(
         world.position, world.velocity, world.mass, world.inverse_mass, world.rest_length, world.stiffness,
         world.damping, world.hooke_stiffness, world.hooke_damping,
-    ):  # fmt: skip
+    ) and (world.element_count == 0 or sound_elements(
+        world.element_rest, world.element_stiffness, world.element_damping, world.corner_weight,
+        world.corner_form,
+    )):  # fmt: skip
         return
     for name in ("mass", "position", "velocity", "inverse_mass"):
         values = getattr(world, name)
         lowest = -ABSURD if values.ndim == 2 else 0.0
         bad = _outside(values, lowest) | ((values == 0.0) if name == "mass" else False)
         _freeze(world, bad, name)
-    for name in GUARDED_CONSTANTS:
+    for name in (*GUARDED_CONSTANTS, *GUARDED_ELEMENTS):
         values = getattr(world, name)
-        highest = 1.0 if name in ("stiffness", "damping") else ABSURD
-        for slot in np.flatnonzero(_outside(values, 0.0, highest)).tolist():
+        lowest = -ABSURD if name in VECTOR_ARRAYS else 0.0
+        highest = 1.0 if name.endswith(("stiffness", "damping")) and "hooke" not in name else ABSURD
+        for slot in np.flatnonzero(_outside(values, lowest, highest)).tolist():
             values[slot] = world.good[name][slot]
-            world.contained.append(Containment(world.tick, name, world.spring_names[slot], frozen=False))
+            owner = world.slot_name(name, slot)
+            world.contained.append(Containment(world.tick, name, owner, frozen=False))
 
 
 def contain_outcome(world: World) -> None:
@@ -109,8 +138,8 @@ def contain_outcome(world: World) -> None:
 
 def _outside(values: NDArray[np.float64], lowest: float, highest: float = ABSURD) -> NDArray[np.bool_]:
     """Rows (n,) that hold a value outside lowest..highest, or NaN."""
-    inside = ((values >= lowest) & (values <= highest)).reshape(len(values), -1)
-    return ~np.logical_and.reduce(inside, axis=1)
+    inside = (values >= lowest) & (values <= highest)
+    return ~(np.logical_and.reduce(inside, axis=1) if inside.ndim == 2 else inside)
 
 
 def _freeze(world: World, bad: NDArray[np.bool_], array: str) -> None:

@@ -41,6 +41,17 @@ class Snapshot:
     spring_active: NDArray[np.bool_]
     impulse: Floats
     tension: Floats
+    element_kind: NDArray[np.int8]
+    element_first: NDArray[np.int32]
+    element_corners: NDArray[np.int32]
+    element_rest: Floats
+    element_stiffness: Floats
+    element_damping: Floats
+    element_material: NDArray[np.int32]
+    element_active: NDArray[np.bool_]
+    corner_particle: NDArray[np.int32]
+    corner_weight: Floats
+    corner_form: Floats
     part_value: Floats
     friction: Floats
     restitution: Floats

@@ -8,6 +8,7 @@ and n_a, n_b the springs on its ends, for every topology, mass and time step. Wi
 C < 4 / (3 n_eff), which holds the article's 1 / (n + 1) inside (Nissen 2019, limitations and pitfalls).
 Stable as well, and closer where soft and hard springs meet: m_r (w_a S_a + w_b S_b) < 4 for every spring, with S the
 sum of Cs + 2 Cd over the springs on an end; a hand at a particle of many soft springs is inside this one alone.
+An element counts as one more spring at each of its corners, and has the most of them for its n_eff.
 A Hooke spring counts as the Cs and Cd that it amounts to: k h^2 / m_r and c h / m_r.
 """
 
@@ -17,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.energy import reduced_masses
+from sandbox.physics.energy import measure_elements, reduced_masses
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import substep_time
 from sandbox.physics.substeps import halve
@@ -61,10 +62,30 @@ def _working(world: World) -> NDArray[np.bool_]:
     return world.spring_active & (reduced_masses(world) > 0.0)
 
 
-def _springs_at_ends(world: World) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _held_corners(world: World) -> NDArray[np.int64]:
+    """The corners (of q) of active elements whose particles are free, which is where elements do something."""
+    active = np.repeat(world.element_active, world.element_corners)
+    return np.flatnonzero(active & (world.inverse_mass[world.corner_particle] > 0.0))
+
+
+def _most_at_corners(world: World, at: Floats) -> Floats:
+    """The most of what stands at each particle (n,) over the free corners of every element (t,); 0 where none is."""
+    owner, corners = np.repeat(np.arange(world.element_count), world.element_corners), _held_corners(world)
+    most = np.zeros(world.element_count)
+    np.maximum.at(most, owner[corners], at[world.corner_particle[corners]])
+    return most
+
+
+def _degrees(world: World) -> NDArray[np.int64]:
+    """Springs and elements that hold each particle (n,)."""
     working = _working(world)
-    ends = np.concatenate([world.particle_a[working], world.particle_b[working]])
-    degree = np.bincount(ends, minlength=world.particle_count)
+    held = world.corner_particle[_held_corners(world)]
+    ends = np.concatenate([world.particle_a[working], world.particle_b[working], held])
+    return np.bincount(ends, minlength=world.particle_count)
+
+
+def _springs_at_ends(world: World) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    degree = _degrees(world)
     return degree[world.particle_a], degree[world.particle_b]
 
 
@@ -76,30 +97,51 @@ def effective_count(world: World) -> Floats:
     return np.where(_working(world), reduced_masses(world) * weighted, 0.0)
 
 
+def element_count(world: World) -> Floats:
+    """n_eff of every element (t,): the most springs and elements that hold one of its free corners."""
+    # m sum of w |g|^2 n <= the largest n, since m <= 1 / (sum of w |g|^2)
+    return _most_at_corners(world, _degrees(world).astype(np.float64))
+
+
 @np.errstate(over="ignore", invalid="ignore")
 def largest_eigenvalue(world: World) -> float:
     """Largest eigenvalue of sqrt(m_r) J W J^T sqrt(m_r) at the present positions, by power iteration, from below."""
-    working = _working(world)
-    if not working.any():
+    rows, ends, gradient = _incidence(world)
+    if not len(rows):
         return 0.0
-    a, b = world.particle_a[working], world.particle_b[working]
-    root = np.sqrt(reduced_masses(world)[working])
-    separation = world.position[b] - world.position[a]
-    length = np.sqrt(np.sum(separation**2, axis=1))
-    normal = np.divide(separation, length[:, None], out=np.zeros_like(separation), where=length[:, None] > 0.0)
-    normal[length == 0.0] = (1.0, 0.0)
-    count = world.particle_count
-    vector = np.random.default_rng(1).standard_normal(len(a))
+    weight = np.sqrt(world.inverse_mass[ends])[:, None]
+    vector: Floats = np.random.default_rng(1).standard_normal(int(rows.max()) + 1)
     eigenvalue = 0.0
     for _ in range(POWER_ITERATIONS):
-        pull = (root * vector / np.linalg.norm(vector))[:, None] * normal
-        velocity = np.stack([np.bincount(b, pull[:, k], count) - np.bincount(a, pull[:, k], count) for k in (0, 1)], 1)
-        velocity *= world.inverse_mass[:, None]
-        vector = root * np.sum(normal * (velocity[b] - velocity[a]), axis=1)
+        pull = (vector / np.linalg.norm(vector))[rows, None] * gradient * weight
+        velocity = np.stack([np.bincount(ends, pull[:, k], world.particle_count) for k in (0, 1)], 1)
+        vector = np.bincount(rows, np.sum(gradient * weight * velocity[ends], axis=1)).astype(np.float64)
         eigenvalue = float(np.linalg.norm(vector))
         if eigenvalue == 0.0:
             break
     return eigenvalue
+
+
+def _incidence(world: World) -> tuple[NDArray[np.int64], NDArray[np.int64], Floats]:
+    """The rows of sqrt(m) J, one per working spring, then per element: their number, particle and gradient (k, 2)."""
+    springs = np.flatnonzero(_working(world))
+    a, b = world.particle_a[springs], world.particle_b[springs]
+    separation = world.position[b] - world.position[a]
+    length = np.sqrt(np.sum(separation**2, axis=1))
+    normal = np.divide(separation, length[:, None], out=np.zeros_like(separation), where=length[:, None] > 0.0)
+    normal[length == 0.0] = (1.0, 0.0)
+    normal *= np.sqrt(reduced_masses(world)[springs])[:, None]
+    _, rest_mass, slope = measure_elements(world)
+    owner, corners = np.repeat(np.arange(world.element_count), world.element_corners), _held_corners(world)
+    squares = world.inverse_mass[world.corner_particle[corners]] * np.sum(slope[corners] ** 2, axis=1)
+    present = np.bincount(owner[corners], squares, world.element_count).astype(np.float64)
+    # The explicit solvers take the less of the two masses.
+    mass = np.minimum(rest_mass, np.divide(1.0, present, out=np.full_like(present, np.inf), where=present > 0.0))
+    held = slope[corners] * np.sqrt(mass)[owner[corners], None]
+    number = np.arange(len(springs))
+    rows = np.concatenate([number, number, len(springs) + owner[corners]])
+    ends = np.concatenate([a, b, world.corner_particle[corners]])
+    return rows, ends, np.concatenate([-normal, normal, held])
 
 
 def _demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
@@ -114,20 +156,50 @@ def _demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
     return np.where(working, stiffness + 2.0 * damping, 0.0)
 
 
-def _summed_loads(world: World, demands: Floats) -> Floats:
-    """m_r (w_a S_a + w_b S_b) of every spring (m,), S = what the springs on an end demand together."""
+def _element_demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
+    """Cs + 2 Cd of a substep (t,) from an element's Cs and Cd per tick; 0 where it does nothing."""
+    stiffness, damping = stiffness.copy(), damping.copy()
+    halve(stiffness, damping, world.settings.fewest_substeps)
+    return np.where(element_count(world) > 0.0, stiffness + 2.0 * damping, 0.0)
+
+
+def _summed_loads(world: World, demands: Floats, of_elements: Floats) -> Floats:
+    """m_r (w_a S_a + w_b S_b) of every spring, S = what is demanded on an end; then the most S of every element."""
     a, b = world.particle_a, world.particle_b
-    at = np.bincount(a, demands, world.particle_count) + np.bincount(b, demands, world.particle_count)
-    return np.where(
-        _working(world), reduced_masses(world) * (world.inverse_mass[a] * at[a] + world.inverse_mass[b] * at[b]), 0.0
-    )
+    corners = _held_corners(world)
+    asked = np.repeat(of_elements, world.element_corners)[corners]
+    at = np.zeros(world.particle_count)
+    for particles, weight in ((a, demands), (b, demands), (world.corner_particle[corners], asked)):
+        at = at + np.bincount(particles, weight, world.particle_count)
+    ends = reduced_masses(world) * (world.inverse_mass[a] * at[a] + world.inverse_mass[b] * at[b])
+    return np.concatenate([np.where(_working(world), ends, 0.0), _most_at_corners(world, at)])
 
 
 def spring_loads(world: World) -> Floats:
-    """What must stay below BOUND for every spring (m,): of the two proven bounds the one that allows more here."""
+    """What must stay below BOUND for every spring, then every element: of two proven bounds the one that allows more.
+
+    (m + t,)
+    """
     demands = _demands(world, world.stiffness, world.damping)
-    summed, counted = _summed_loads(world, demands), demands * effective_count(world)
+    of_elements = _element_demands(world, world.element_stiffness, world.element_damping)
+    summed = _summed_loads(world, demands, of_elements)
+    counted = np.concatenate([demands * effective_count(world), of_elements * element_count(world)])
     return summed if summed.max() < counted.max() else counted
+
+
+def _particles_of(world: World, slot: int) -> NDArray[np.int32]:
+    """Particles that a spring, or the element after the springs, joins."""
+    if slot < world.spring_count:
+        return np.array([world.particle_a[slot], world.particle_b[slot]])
+    first = world.element_first[slot - world.spring_count]
+    return world.corner_particle[first : first + world.element_corners[slot - world.spring_count]]
+
+
+def _owner_name(world: World, slot: int) -> str:
+    """Name of a spring, or of the element after the springs."""
+    if slot < world.spring_count:
+        return world.spring_names[slot]
+    return world.slot_name("element_kind", slot - world.spring_count)
 
 
 def _largest(inside: Callable[[float], bool]) -> float:
@@ -155,28 +227,30 @@ def _equal_limit(world: World, effective: float) -> float:
 def _energy_bound(world: World) -> str:
     """What the test of a step's energy proves, and of which kind the springs are."""
     stiffness, damping = world.stiffness, world.damping
-    bouncy = np.flatnonzero(_working(world) & (world.law != LAW_HOOKE) & (stiffness > damping))
+    springs = _working(world) & (world.law != LAW_HOOKE) & (stiffness > damping)
+    elements = (element_count(world) > 0.0) & (world.element_stiffness > world.element_damping)
+    bouncy = np.flatnonzero(np.append(springs, elements))
     if len(bouncy):
         return (
             f"proven: energy never exceeds four times the start and the work done, whatever Cs and Cd "
-            f"(Cs is above Cd at {world.spring_names[bouncy[0]]})"
+            f"(Cs is above Cd at {_owner_name(world, int(bouncy[0]))})"
         )
     return "proven: energy never exceeds the start and the work done, because Cs <= Cd on every spring"
 
 
 def report(world: World) -> StabilityReport:
     """What can be proven about this world's stability under its solver."""
-    counts = effective_count(world)
+    counts = np.concatenate([effective_count(world), element_count(world)])
     solver = world.settings.solver
     if not len(counts) or counts.max() == 0.0:
         return StabilityReport(solver, 0.0, 1.0, 1.0, 1.0, True, None, "no spring does anything: nothing can blow up")
     tightest = int(np.argmax(counts))
-    most = max(int(ends[tightest]) for ends in _springs_at_ends(world))
+    most = int(_degrees(world)[_particles_of(world, tightest)].max())
     load = spring_loads(world)
     worst = int(np.argmax(load))
     within: bool | None = bool(load[worst] < BOUND)
     if SOLVERS[solver].proven_limit:
-        name, verdict = world.spring_names[worst], "proven stable" if within else "past the proven limit"
+        name, verdict = _owner_name(world, worst), "proven stable" if within else "past the proven limit"
         text = (
             f"{verdict}: the springs' Cs + 2 Cd add up to {load[worst]:.3g} at {name}, and stay stable below {BOUND:g}"
         )
@@ -193,7 +267,7 @@ def report(world: World) -> StabilityReport:
         proven_limit=_equal_limit(world, float(counts[tightest])),
         estimated_limit=_equal_limit(world, largest_eigenvalue(world)),
         within_limit=within,
-        spring=world.spring_names[tightest],
+        spring=_owner_name(world, tightest),
         text=text,
     )
 
@@ -209,24 +283,39 @@ def coefficient_limits(world: World, material: int | None = None) -> Coefficient
         return CoefficientLimits(1.0, 1.0, _energy_bound(world))
     if not SOLVERS[solver].proven_limit:
         return CoefficientLimits(None, None, f"no proven limit for the {solver} solver")
-    counts = effective_count(world)
-    chosen = (world.material >= 0) if material is None else (world.material == material)
-    chosen &= (counts > 0.0) & (world.law != LAW_HOOKE)
+    counts = np.concatenate([effective_count(world), element_count(world)])
+    materials = np.concatenate([world.material, world.element_material])
+    is_nissen = np.append(world.law != LAW_HOOKE, np.ones(world.element_count, dtype=np.bool_))
+    chosen = (materials >= 0) if material is None else (materials == material)
+    chosen &= (counts > 0.0) & is_nissen
     if not chosen.any():
         return CoefficientLimits(1.0, 1.0, "no spring of this material does anything")
-    # A hand is as hard as it is: where it holds one of these springs' ends, what they may add to it is less.
-    ends = np.union1d(world.particle_a[chosen], world.particle_b[chosen])
-    judged = chosen | (_working(world) & (world.material < 0) & np.isin(world.particle_b, ends))
+    judged = chosen | _hands_beside(world, chosen)
 
     def limit(name: str) -> float:
         def inside(c: float) -> bool:
-            pair = {"stiffness": world.stiffness.copy(), "damping": world.damping.copy()}
-            pair[name][chosen] = c
-            return bool(np.all(_summed_loads(world, _demands(world, **pair))[judged] < BOUND))
+            springs = {"stiffness": world.stiffness.copy(), "damping": world.damping.copy()}
+            elements = {"stiffness": world.element_stiffness.copy(), "damping": world.element_damping.copy()}
+            springs[name][chosen[: world.spring_count]] = c
+            elements[name][chosen[world.spring_count :]] = c
+            loads = _summed_loads(world, _demands(world, **springs), _element_demands(world, **elements))
+            return bool(np.all(loads[judged] < BOUND))
 
         return _largest(inside)
 
     tightest = int(np.flatnonzero(chosen)[np.argmax(counts[chosen])])
-    at = f"n_eff {counts[tightest]:.3g} at {world.spring_names[tightest]}"
+    at = f"n_eff {counts[tightest]:.3g} at {_owner_name(world, tightest)}"
     reason = f"proven: Cs + 2 Cd of joined springs add up to less than {BOUND:g}, {at}"
     return CoefficientLimits(limit("stiffness"), limit("damping"), reason)
+
+
+def _hands_beside(world: World, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The hands' springs (m + t,) that hold a particle of the chosen springs and elements.
+
+    A hand is as hard as it is: what the others may add to it there is less.
+    """
+    springs = chosen[: world.spring_count]
+    corners = world.corner_particle[np.repeat(chosen[world.spring_count :], world.element_corners)]
+    ends = np.concatenate([world.particle_a[springs], world.particle_b[springs], corners])
+    hands = _working(world) & (world.material < 0) & np.isin(world.particle_b, ends)
+    return np.append(hands, np.zeros(world.element_count, dtype=np.bool_))

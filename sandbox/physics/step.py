@@ -7,6 +7,7 @@ import numpy as np
 from sandbox.physics.breaking import yield_and_break
 from sandbox.physics.contacts import find_contacts
 from sandbox.physics.driving import drive_springs
+from sandbox.physics.elements import AREA
 from sandbox.physics.equipment import Driven, Hydraulics, Motors, Muscles, StrainLimits
 from sandbox.physics.forces import Before, apply_forces
 from sandbox.physics.guard import stop_at_terrain
@@ -50,6 +51,13 @@ def substep_coefficients(world: World, parts: int | None = None) -> tuple[Floats
     return stiffness, damping
 
 
+def element_coefficients(world: World, parts: int | None = None) -> tuple[Floats, Floats]:
+    """Cs and Cd (t,) of elements, as `substep_coefficients` gives those of springs."""
+    stiffness, damping = world.element_stiffness.copy(), world.element_damping.copy()
+    halve(stiffness, damping, parts or world.settings.fewest_substeps)
+    return stiffness, damping
+
+
 def step(world: World) -> None:
     """Advance the world by one tick of 1 / tick_rate seconds."""
     settings = world.settings
@@ -59,15 +67,17 @@ def step(world: World) -> None:
     parts = substep_count(world)
     h = substep_time(settings, parts)
     # Solvers only read them, so a tick in one part needs no copies.
-    whole = world.stiffness, world.damping
-    stiffness, damping = whole if parts == 1 else substep_coefficients(world, parts)
+    springs = world.stiffness, world.damping
+    elements = world.element_stiffness, world.element_damping
+    if parts > 1:
+        springs, elements = substep_coefficients(world, parts), element_coefficients(world, parts)
     # What a solver keeps is an impulse of one step: exact, as parts are a power of two.
     world.scale_impulses(settings.fewest_substeps / parts)
     for _ in range(parts):
         before = Before(world.velocity.copy(), rest_length)
         apply_forces(world, h)
         world.contacts = find_contacts(world, h) if world.has_contacts else None
-        solver.solve(world, stiffness, damping, h, before)
+        solver.solve(world, springs, elements, h, before)
         if world.contacts is not None:
             keep_impulses(world, world.contacts)
             stop_at_terrain(world, h)
@@ -87,8 +97,9 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
     """
     for solver in solvers:
         world = World(WorldSettings(solver=solver, substeps=AUTO, drag=1.0))
-        world.add_particles(["a", "b"], np.array([[0.0, 0.0], [1.0, 0.0]]))
+        world.add_particles(["a", "b", "c"], np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
         world.add_springs(["s", "t"], [0, 0], [1, 1], law=[0, 1])
+        world.add_elements(AREA, [[0, 1, 2]])
         world.limits = StrainLimits(np.ones(1), np.ones(1), np.ones(1), np.zeros(1))
         one = np.zeros(1, dtype=np.int64)
         muscles = Muscles(one, np.zeros(1), one + 2, np.zeros(1))
@@ -97,7 +108,7 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
         world.fit(Driven(("a",), muscles, hydraulics, motors), [1.0])
         step(world)
         if contacts:
-            world.add_particles(["c", "d"], np.zeros((2, 2)), group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
+            world.add_particles(["d", "e"], np.zeros((2, 2)), group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
             world.terrain = make_terrain([Chain([[-1.0, 0.0], [1.0, 0.0]])])
             step(world)
     if "direct" in solvers:

@@ -8,16 +8,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.arrays import (
     BANK_UNOPENED,
+    CONTACT_ARRAYS,
+    CORNER_ARRAYS,
     PART_ARRAYS,
     PARTICLE_ARRAYS,
     SPRING_ARRAYS,
     Floats,
     Slots,
-    StateArrays,
 )
+from sandbox.physics.elements import BEND
 from sandbox.physics.equipment import Driven, StrainLimits, Surface, unlimited
 from sandbox.physics.names import Names
 from sandbox.physics.settings import AUTO, WorldSettings
+from sandbox.physics.slots import ElementSlots
 from sandbox.physics.terrain import NO_TERRAIN, Terrain
 
 LAW_NISSEN = 0
@@ -34,7 +37,7 @@ HAND_STIFFNESS = 0.2
 HAND_DAMPING = 0.3
 
 
-class World(StateArrays):
+class World(ElementSlots):
     """Particles and springs as a struct of arrays, see StateArrays, plus the settings of a tick.
 
     Slots are append-only: an index stays a particle's or spring's handle for ever; removing clears the active flag.
@@ -42,6 +45,7 @@ class World(StateArrays):
     """
 
     def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
+        super().__init__()
         self._settings = settings or WorldSettings()
         self.tick = 0
         self.material_names = tuple(material_names)
@@ -63,7 +67,6 @@ class World(StateArrays):
         # The springs that broke in the last tick; never state.
         self.broken: Slots = np.zeros(0, dtype=np.int64)
         self._touching = False
-        super().__init__()
 
     def __getstate__(self) -> dict[str, Any]:
         """What a copy starts from: all but what solvers derive, which may hold a thread."""
@@ -127,16 +130,6 @@ class World(StateArrays):
         """Name of each spring, by slot."""
         return self._springs.in_order
 
-    def slot_name(self, array: str, slot: int) -> str:
-        """What a person calls the owner of a slot of the state array of that name."""
-        if array in PARTICLE_ARRAYS:
-            return self.particle_names[slot]
-        if array in SPRING_ARRAYS:
-            return self.spring_names[slot]
-        if array in PART_ARRAYS:
-            return self.driven.part_names[slot]
-        return f"a contact of {self.particle_names[self.contact_particle[slot]]}"
-
     def particle_slot(self, name: str) -> int:
         """Slot of the particle of that name. Raises KeyError."""
         return self._particles.slot(name)
@@ -148,6 +141,22 @@ class World(StateArrays):
     def spring_slot(self, name: str) -> int:
         """Slot of the spring of that name. Raises KeyError."""
         return self._springs.slot(name)
+
+    def slot_name(self, array: str, slot: int) -> str:
+        """What a person calls the owner of a slot of the state array of that name."""
+        if array in PARTICLE_ARRAYS:
+            return self.particle_names[slot]
+        if array in SPRING_ARRAYS:
+            return self.spring_names[slot]
+        if array in PART_ARRAYS:
+            return self.driven.part_names[slot]
+        if array in CONTACT_ARRAYS:
+            return f"contact of {self.particle_names[self.contact_particle[slot]]}"
+        if array in CORNER_ARRAYS:
+            return f"corner at {self.particle_names[self.corner_particle[slot]]}"
+        bend = self.element_kind[slot] == BEND
+        middle = self.corner_particle[self.element_first[slot] + bend]
+        return f"{'bend' if bend else 'area'} at {self.particle_names[middle]}"
 
     def is_hand_particle(self, slot: int) -> bool:
         """Whether the slot is a hand's cursor."""
@@ -303,12 +312,14 @@ class World(StateArrays):
             self.impulse[slot] = 0.0
             self.tension[slot] = 0.0
             self._disturb(self.particle_a[slot], self.particle_b[slot])
+        self._drop_elements(springs)
 
     def break_springs(self, springs: Slots) -> None:
         """Take springs out that broke by themselves: what is left of a body goes on with the energy that it has."""
         self.spring_active[springs] = False
         self.impulse[springs] = 0.0
         self.tension[springs] = 0.0
+        self._drop_elements(springs)
         self.broken = springs
 
     def fit(self, driven: Driven, values: ArrayLike) -> None:
@@ -369,17 +380,6 @@ class World(StateArrays):
         self.spring_active[spring] = False
         self.impulse[spring] = 0.0
         self.tension[spring] = 0.0
-
-    def set_coefficients(self, stiffness: float | None, damping: float | None, material: int | None) -> None:
-        """Set Cs, Cd or both, of one material's springs or (None) of all; hands and Hooke springs keep theirs."""
-        chosen = self.material >= 0 if material is None else self.material == material
-        if stiffness is not None:
-            self.stiffness[chosen] = stiffness
-        if damping is not None:
-            self.damping[chosen] = damping
-        for name in ("stiffness", "damping"):
-            self.good[name][chosen] = getattr(self, name)[chosen]
-        self._disturb(self.particle_a[chosen], self.particle_b[chosen])
 
     def name_slots(self, particles: Sequence[str], springs: Sequence[str]) -> None:
         """Name the slots that a restored state brought along, from the first one without a name on."""

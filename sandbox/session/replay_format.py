@@ -22,6 +22,7 @@ import numpy as np
 from sandbox.level.files import level_data
 from sandbox.level.model import Level
 from sandbox.physics.arrays import FAMILIES, KINDS, STATE_ARRAYS, VECTOR_ARRAYS
+from sandbox.physics.elements import AREA
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.terrain import NO_TERRAIN
@@ -93,9 +94,16 @@ def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> S
     for group in FAMILIES:
         if len({len(arrays[name]) for name in group}) != 1:
             raise ValueError(f"state: {', '.join(group)} are not equally long")
-    for name in ("particle_a", "particle_b", "contact_particle"):
+    for name in ("particle_a", "particle_b", "corner_particle", "contact_particle"):
         if np.any((arrays[name] < 0) | (arrays[name] >= len(arrays["mass"]))):
             raise ValueError(f"state.{name}: names a particle that does not exist")
+    ends = np.cumsum(arrays["element_corners"], dtype=np.int64)
+    if np.any(arrays["element_corners"] < 3) or (int(ends[-1]) if len(ends) else 0) != len(arrays["corner_particle"]):
+        raise ValueError("state.element_corners: do not add up to the corners that there are")
+    if np.any(arrays["element_first"] != ends - arrays["element_corners"]):
+        raise ValueError("state.element_first: corners do not lie one element after another")
+    if not np.all((arrays["element_kind"] == AREA) | (arrays["element_corners"] == 3)):
+        raise ValueError("state.element_kind: a bend has three corners")
     hands = np.flatnonzero(arrays["material"] == HAND_MATERIAL)
     if len(hands) not in (0, HAND_COUNT) or np.any(np.diff(hands) != 1):
         raise ValueError(f"state.material: there are {HAND_COUNT} hands in a row, or none")

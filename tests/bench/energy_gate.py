@@ -1,7 +1,8 @@
 """Energy of violent random graphs under a solver, against the bound that is claimed for it.
 
-Run by hand: python -m tests.bench.energy_gate [graphs per kind] [steps]. Prints, per kind of coefficients, the highest
-total energy as a multiple of the start, over all graphs and steps. The suite runs a tenth of it.
+Run by hand: python -m tests.bench.energy_gate [graphs per kind] [steps] [elements]. Prints, per kind of coefficients,
+the highest total energy as a multiple of the start, over all graphs and steps. With "elements" the graphs hold areas of
+three to eight corners, some inflated, and bends. The suite runs a tenth of it.
 """
 
 import sys
@@ -10,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sandbox.physics.elements import AREA, BEND
+from sandbox.physics.energy import measure_elements
 from sandbox.physics.settings import AUTO, Substeps, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.solvers.measure import extremes
@@ -30,11 +33,12 @@ GRAPHS_PER_WORLD = 25
 
 @dataclass
 class Graphs:
-    """A world of separate connected graphs, and the graph of each particle and each spring."""
+    """A world of separate connected graphs, and the graph of each particle, spring and element."""
 
     world: World
     of_particle: Slots
     of_spring: Slots
+    of_element: Slots
 
 
 def coefficients(kind: str, count: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
@@ -81,16 +85,44 @@ def _add_graph(graphs: Graphs, number: int, kind: str, span: float, rng: np.rand
     graphs.of_spring = np.append(graphs.of_spring, np.full(len(a), number))
 
 
+def _add_elements(graphs: Graphs, number: int, kind: str, rng: np.random.Generator) -> None:
+    """Areas and bends of random corners of the last graph, of any size and winding, some inflated or emptied."""
+    world = graphs.world
+    particles = np.flatnonzero(graphs.of_particle == number)
+    for _ in range(int(rng.integers(1, max(2, len(particles))))):
+        is_area = rng.uniform() < 0.7
+        size = min(len(particles), int(rng.choice([3, 3, 3, 5, 8]))) if is_area else 3
+        corners = rng.choice(particles, size, replace=False)[None]
+        stiffness, damping = coefficients(kind, 1, rng)
+        world.add_elements(
+            AREA if is_area else BEND, corners, inflation=rng.choice([1.0, 0.0, 2.0, -1.0]), stiffness=stiffness,
+            damping=damping,
+        )  # fmt: skip
+        graphs.of_element = np.append(graphs.of_element, number)
+
+
 def random_graphs(
-    kind: str, span: float, count: int, seed: int, solver: str = "direct", substeps: Substeps = 1
+    kind: str,
+    span: float,
+    count: int,
+    seed: int,
+    solver: str = "direct",
+    substeps: Substeps = 1,
+    *,
+    elements: bool = False,
 ) -> Graphs:
-    """A world of `count` random graphs: 3..40 particles, scales 1e-3..1e3 m, kicks up to 10 lengths a step."""
+    """A world of `count` random graphs: 3..40 particles, scales 1e-3..1e3 m, kicks up to 10 lengths a step.
+
+    elements: with areas and bends.
+    """
     rng = np.random.default_rng([seed, sorted(BOUNDS).index(kind), MASS_SPANS.index(span)])
     rate = round(10.0 ** rng.uniform(1.0, 3.0))
     world = World(WorldSettings(gravity=(0.0, 0.0), tick_rate=rate, solver=solver, substeps=substeps))
-    graphs = Graphs(world, np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+    graphs = Graphs(world, *np.zeros((3, 0), dtype=np.int64))
     for number in range(count):
         _add_graph(graphs, number, kind, span, rng)
+        if elements:
+            _add_elements(graphs, number, kind, rng)
     return graphs
 
 
@@ -105,12 +137,20 @@ def energies(graphs: Graphs, count: int, *, start: bool = False) -> Floats:
     mass = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
     constant = SOLVERS[world.settings.solver].spring_constant(world.stiffness, world.damping, mass, h)
     if world.settings.substeps == AUTO:
-        constant = extremes(world)[start] * mass / (h * h)
+        constant = extremes(world.stiffness, world.damping)[start] * mass / (h * h)
     separation = world.position[world.particle_b] - world.position[world.particle_a]
     error = np.sqrt(np.sum(separation**2, axis=1)) - world.rest_length
+    value, effective, _ = measure_elements(world)
+    of_elements = SOLVERS[world.settings.solver].spring_constant(
+        world.element_stiffness, world.element_damping, effective, h
+    )
+    if world.settings.substeps == AUTO:
+        of_elements = extremes(world.element_stiffness, world.element_damping)[start] * effective / (h * h)
     moving = np.where(world.inverse_mass > 0.0, world.mass * np.sum(world.velocity**2, axis=1), 0.0)
     return 0.5 * (
-        np.bincount(graphs.of_particle, moving, count) + np.bincount(graphs.of_spring, constant * error**2, count)
+        np.bincount(graphs.of_particle, moving, count)
+        + np.bincount(graphs.of_spring, constant * error**2, count)
+        + np.bincount(graphs.of_element, of_elements * value**2, count)
     )
 
 
@@ -126,6 +166,7 @@ def highest_energies(graphs: Graphs, count: int, steps: int) -> Floats:
 
 def main() -> None:
     """Print the table."""
+    elements = "elements" in sys.argv
     count, steps = (int(text) for text in (*sys.argv[1:3], "600", "2000")[:2]) if len(sys.argv) > 2 else (600, 2000)
     print(f"| coefficients | graphs | steps | highest energy / start | bound | seconds |\n|{'---|' * 6}")
     for kind, bound in BOUNDS.items():
@@ -134,7 +175,7 @@ def main() -> None:
         worlds = -(-count // (len(MASS_SPANS) * GRAPHS_PER_WORLD))
         for span in MASS_SPANS:
             for seed in range(worlds):
-                graphs = random_graphs(kind, span, GRAPHS_PER_WORLD, seed)
+                graphs = random_graphs(kind, span, GRAPHS_PER_WORLD, seed, elements=elements)
                 worst = max(worst, float(highest_energies(graphs, GRAPHS_PER_WORLD, steps).max()))
         run = worlds * len(MASS_SPANS) * GRAPHS_PER_WORLD
         print(f"| {kind} | {run} | {steps} | {worst:.6f} | {bound} | {time.perf_counter() - began:.0f} |", flush=True)

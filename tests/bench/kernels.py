@@ -19,7 +19,7 @@ from physics_scenes import grid_with_diagonals
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.solvers import single_pass
-from sandbox.physics.step import step, substep_coefficients, substep_time
+from sandbox.physics.step import element_coefficients, step, substep_coefficients, substep_time
 
 SIDE = 32
 PAIRS = 7
@@ -30,12 +30,12 @@ def seconds_per_pass(passes: int) -> float:
     """Median time [s] of one single pass over the mesh, in motion, kernels warm."""
     world = grid_with_diagonals(columns=SIDE, rows=SIDE, stiffness=0.1, damping=0.1, gravity=(0.0, -9.81))
     step(world)
-    stiffness, damping = substep_coefficients(world)
+    springs, elements = substep_coefficients(world), element_coefficients(world)
     h, times = substep_time(world.settings), []
     before = Before(world.velocity, world.rest_length)
     for _ in range(passes):
         start = time.perf_counter()
-        single_pass.solve(world, stiffness, damping, h, before)
+        single_pass.solve(world, springs, elements, h, before)
         times.append(time.perf_counter() - start)
     return statistics.median(times)
 

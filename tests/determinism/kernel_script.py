@@ -46,9 +46,13 @@ def prepare(mode: str) -> None:
 
 
 def busy_world(solver: str, substeps: int):
-    """A mesh with diagonals of unequal masses, Hooke springs, pins, a coincident pair and a free particle."""
+    """A mesh with diagonals of unequal masses, Hooke springs, pins, a coincident pair and a free particle.
+
+    Some of its cells keep an area, narrow and wide, and some of its rows an angle.
+    """
     import numpy as np
 
+    from sandbox.physics.elements import AREA, BEND
     from sandbox.physics.equipment import Driven, Hydraulics, Motors, Muscles, StrainLimits
     from sandbox.physics.settings import WorldSettings
     from sandbox.physics.world import LAW_HOOKE, World
@@ -77,6 +81,10 @@ def busy_world(solver: str, substeps: int):
     world.hooke_stiffness[5:9], world.hooke_damping[5:9] = 40.0, 0.3
     pair = world.add_particles(["a", "b", "free"], [(4, 4), (4, 4), (5, 5)], velocity=[(0, 0), (0.1, -0.2), (1, 2)])
     world.add_springs([":0", ":1"], [pair, pair], [pair + 1, pair + 1], rest_length=[0.3, 0.0], stiffness=0.2)
+    cells = [k for k in range(side * (side - 1)) if k % side < side - 1 and k % 3 == 0]
+    world.add_elements(AREA, [(k, k + 1, k + side) for k in cells], stiffness=0.05, damping=0.07)
+    world.add_elements(AREA, [(0, 1, 2, 8, 14, 13, 12, 6)], inflation=1.3, stiffness=0.04, damping=0.06)
+    world.add_elements(BEND, [(k, k + 1, k + 2) for k in range(18, 22)], stiffness=0.05, damping=0.02, material=-1)
     world.limits = StrainLimits(*np.array([[0.6], [0.5], [0.15], [0.2]]))
     muscles = Muscles(np.array([3, 30]), np.array([0.3, 0.2]), np.array([7, 12]), np.array([0.0, 0.3]))
     hydraulics = Hydraulics(np.array([40]), np.array([0.2]), np.array([0.9]), np.array([1.7]), np.array([1]))

@@ -86,6 +86,14 @@ def test_energy_of_violent_random_graphs_stays_bounded(kind, span):
     assert energy_gate.highest_energies(graphs, count, steps).max() <= energy_gate.BOUNDS[kind]
 
 
+@pytest.mark.parametrize("kind", energy_gate.BOUNDS)
+@pytest.mark.parametrize("substeps", [1, AUTO])
+def test_energy_of_violent_random_graphs_with_areas_and_bends_stays_bounded(kind, substeps):
+    count, steps = (10, 300) if COMPILED else (2, 5)
+    graphs = energy_gate.random_graphs(kind, 1e6, count, seed=8, substeps=substeps, elements=True)
+    assert energy_gate.highest_energies(graphs, count, steps).max() <= energy_gate.BOUNDS[kind]
+
+
 FIGURES = [
     # scene, RMS stretch in seconds 5..7, seconds, largest share of the swing's energy lost by then
     (scenes.rope(100), 5e-5, 2, 0.06),

@@ -7,6 +7,7 @@ import pytest
 from physics_scenes import grid, network, run, scaled
 
 from sandbox.physics.arrays import STATE_ARRAYS
+from sandbox.physics.elements import AREA, BEND
 from sandbox.physics.equipment import Driven
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, restore, state_hash, take
@@ -18,6 +19,8 @@ from sandbox.physics.world import LAW_HOOKE, World
 def busy_world(solver="iterative"):
     world = grid(5, 5, solver=solver, gravity=(0.5, -9.81), substeps=2, stiffness=0.2)
     world.law[3], world.hooke_stiffness[3], world.hooke_damping[3] = LAW_HOOKE, 50.0, 0.1
+    world.add_elements(AREA, [[0, 1, 6], [6, 7, 12]], stiffness=0.1)
+    world.add_elements(BEND, [[0, 1, 2]], damping=0.1, material=-1)
     world.fit(Driven(("part",)), [0.5])
     world.reserve_hands()
     world.hold(0, 12, (2.0, 2.5))

@@ -5,6 +5,7 @@ import pytest
 from physics_scenes import STILL, grid_with_diagonals, network, rope, run, scaled
 
 from sandbox.physics.arrays import FAMILIES, STATE_ARRAYS
+from sandbox.physics.elements import AREA
 from sandbox.physics.energy import kinetic_energy, spring_energy
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
@@ -31,12 +32,13 @@ def test_slots_are_appended_and_named():
 
 def test_every_array_keeps_its_type_and_one_item_per_slot():
     world = held_rope()
-    assert (world.particle_count, world.spring_count) == (5 + HAND_COUNT, 4 + HAND_COUNT)
-    for family, size in zip(FAMILIES, (5 + HAND_COUNT, 4 + HAND_COUNT, 0, 0), strict=True):
+    world.add_elements(AREA, [[0, 1, 2, 3]])
+    counts = (5 + HAND_COUNT, 4 + HAND_COUNT, 1, 4, 0, 0)
+    for family, count in zip(FAMILIES, counts, strict=True):
         for name in family:
             array = getattr(world, name)
-            assert array.flags.c_contiguous
-            assert len(array) == size
+            assert array.flags.c_contiguous and len(array) == count
+    assert (world.particle_count, world.spring_count, world.element_count) == counts[:3]
     assert world.particle_a.dtype == np.int32 and world.position.dtype == np.float64
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from sandbox.physics.forces import Before
 from sandbox.physics.solvers import contact_direct, direct, iterative, single_pass
+from sandbox.physics.solvers.single_pass import Pair
 from sandbox.physics.world import Floats, World
 
 
@@ -12,13 +13,13 @@ from sandbox.physics.world import Floats, World
 class Solver:
     """One schedule of the equation.
 
-    solve(world, stiffness, damping, h, before): brings world.velocity from after the forces to the end of a step of
-    h [s], with Cs and Cd (m,) of that step; before: what the step began with.
+    solve(world, springs, elements, h, before): brings world.velocity from after the forces to the end of a step of
+    h [s], with Cs and Cd (m,) of the springs and (t,) of the elements in that step; before: what the step began with.
     spring_constant(stiffness, damping, reduced_mass [kg], h): k [N/m] of the energy k/2 x^2. proven_limit: whether the
     limits of `stability` hold for it. bounded: whether it needs none, because it tests the energy of every step.
     """
 
-    solve: Callable[[World, Floats, Floats, float, Before], None]
+    solve: Callable[[World, Pair, Pair, float, Before], None]
     spring_constant: Callable[[Floats, Floats, Floats, float], Floats]
     proven_limit: bool
     bounded: bool

@@ -15,9 +15,9 @@ from sandbox.physics.world import Floats, Slots, World
 class Touching(NamedTuple):
     """The bodies that something touches, by block: body, cluster; the loose particles, their cluster; and scratch.
 
-    row: of each particle (n,), -1: none. before, held, after [J] and misfit by block; due: to be solved again; spread,
-    bouncy: of its springs. total, allowed [J], fails by cluster. free, pushed [m/s] by row. given, change [m/s] by
-    particle: velocities without contacts, and what those add.
+    row: of each particle (n,), -1: none. before, held, after [J] and misfit by block; due: to be solved again; bouncy,
+    spread: of its springs and elements; tangled, aimed: see goal.py. total, allowed [J], fails by cluster. free, pushed
+    [m/s] by row. given, change [m/s] by particle: velocities without contacts, and what those add.
     """
 
     body: Slots
@@ -32,6 +32,8 @@ class Touching(NamedTuple):
     due: NDArray[np.bool_]
     bouncy: NDArray[np.bool_]
     spread: NDArray[np.bool_]
+    tangled: NDArray[np.bool_]
+    aimed: NDArray[np.bool_]
     total: Floats
     allowed: Floats
     fails: NDArray[np.bool_]
@@ -95,10 +97,10 @@ def find_touching(world: World, pattern: Pattern, contacts: Contacts) -> tuple[T
     _, cluster = np.unique(label[np.append(count + np.arange(len(body)), loose)], return_inverse=True)
     clusters = int(cluster.max()) + 1 if len(cluster) else 0
     size = len(body)
-    numbers, flags, sums = np.zeros((4, size)), np.zeros((3, size), dtype=np.bool_), np.zeros((2, clusters))
+    numbers, flags, sums = np.zeros((4, size)), np.zeros((5, size), dtype=np.bool_), np.zeros((2, clusters))
     touching = Touching(
         body, cluster[:size].astype(np.int64), loose, cluster[size:].astype(np.int64), row,
-        numbers[0], numbers[1], numbers[2], numbers[3], flags[0], flags[1], flags[2],
+        numbers[0], numbers[1], numbers[2], numbers[3], flags[0], flags[1], flags[2], flags[3], flags[4],
         sums[0], sums[1], np.zeros(clusters, dtype=np.bool_), np.zeros((free_count, 2)), np.zeros((free_count, 2)),
         world.velocity.copy(), np.zeros((count, 2)),
     )  # fmt: skip

@@ -12,6 +12,15 @@ from numpy.typing import NDArray
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import bundle_kernel, inner_kernel
 from sandbox.physics.solvers import direct
+from sandbox.physics.solvers.body import (
+    BANK_SHARE,
+    BOUNCY_BANK_SHARE,
+    body_energy,
+    body_hidden,
+    load_body,
+    load_rows,
+    open_bank,
+)
 from sandbox.physics.solvers.contact_clusters import find_touching
 from sandbox.physics.solvers.contact_sweep import (
     load_biases,
@@ -20,23 +29,14 @@ from sandbox.physics.solvers.contact_sweep import (
     solve_contacts,
     weight_of,
 )
-from sandbox.physics.solvers.direct import (
-    AHEAD,
-    BANK_SHARE,
-    BOUNCY_BANK_SHARE,
-    ENERGY_ROUNDING,
-    LAST_HALVINGS,
-    LINEAR_SOLVES,
-    MISFIT_RATE,
-    body_energy,
-    copy_rows,
-    keep_tension,
-    load_rows,
-    open_bank,
-)
-from sandbox.physics.solvers.network import kinetic, linearise, load_springs, potential, solve_linear, update_impulses
+from sandbox.physics.solvers.direct import AHEAD, ENERGY_ROUNDING, LAST_HALVINGS, LINEAR_SOLVES, MISFIT_RATE
+from sandbox.physics.solvers.goal import aim_at_form, find_tangled, let_go
+from sandbox.physics.solvers.minimise import copy, keep_tension
+from sandbox.physics.solvers.network import hold_spin, kinetic, linearise, solve_linear, update_impulses
 from sandbox.physics.solvers.pattern import Pattern
 from sandbox.physics.solvers.response import load_block, respond
+from sandbox.physics.solvers.shapes import linearise_shapes, update_shapes
+from sandbox.physics.solvers.single_pass import Pair
 from sandbox.physics.world import Floats, World
 
 # Sweeps over the contacts for each linear solve, where bodies touch, and where loose particles alone do. More costs
@@ -52,52 +52,70 @@ def _begin(  # type: ignore[no-untyped-def]
     touching, items, energy_bank, inverse_mass, rest_length, rest_before, stiffness, damping, material, tension, least,
     most, parts, h,
 ):  # fmt: skip
-    # Load the springs and the energies of every body that is touched.
-    bodies, rows, springs, matrix = items
+    # Load the springs, elements and energies of every body that is touched, and join what is tangled to its form.
+    bodies, rows, springs, shapes, matrix, goals = items
+    free_count = matrix.diagonal.shape[0]
     for k in range(touching.body.shape[0]):
         body = touching.body[k]
         first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
         first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
-        body_mass = 0.0
-        for r in range(first_row, last_row):
-            body_mass += rows.mass[r]
-        if not bodies.anchored[body]:
-            copy_rows(first_row, last_row, rows.target, rows.trial)
-        bouncy, spread, moved = load_springs(
-            first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,
-            least, most, parts, h, matrix.diagonal.shape[0],
+        low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
+        anchored = bodies.anchored[body]
+        bouncy, spread, moved = load_body(
+            first_row, last_row, first, last, low, high, anchored, inverse_mass, rest_length, stiffness, damping,
+            material, tension, rows, springs, shapes, least, most, parts, h, free_count,
         )  # fmt: skip
         kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
         touching.bouncy[k] = bouncy
         touching.spread[k] = spread
         touching.before[k] = kinetic_after + moved
         touching.held[k] = open_bank(
-            first_row, last_row, first, last, rows, springs, energy_bank, bodies.lowest[body], bouncy, spread,
-            kinetic_after, moved, rest_length, rest_before, h,
+            first_row, last_row, first, last, low, high, rows, springs, shapes, energy_bank, bodies.lowest[body],
+            bouncy, spread, kinetic_after, moved, rest_length, rest_before, h,
         )  # fmt: skip
+        touching.tangled[k] = high > low and find_tangled(body, low, high, rows, shapes, goals)
+        touching.aimed[k] = touching.tangled[k] and aim_at_form(
+            body, last_row - first_row, anchored, rows, shapes, goals, h, free_count
+        )
         touching.due[k] = True
 
 
 @inner_kernel
 def _solve_due(touching, items, blocks, columns, h, ahead, behind):  # type: ignore[no-untyped-def]
     # Linearise and factor the bodies that are due: their velocities without contacts, and their responses.
-    bodies, rows, springs, matrix = items
+    bodies, rows, springs, shapes, matrix, _ = items
     for k in range(touching.body.shape[0]):
         if not touching.due[k]:
             continue
         body = touching.body[k]
         first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
         first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
+        low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
         linearise(first, last, rows, springs, h, ahead, behind)
-        solve_linear(first_row, last_row, first, last, rows, springs, matrix)
-        for r in range(first_row, last_row):
-            touching.free[r, 0] = rows.trial[r, 0] + rows.change[r, 0]
-            touching.free[r, 1] = rows.trial[r, 1] + rows.change[r, 1]
-        load_block(k, first_row, last_row, touching.row, blocks, columns, rows, matrix, touching.pushed)
+        if high > low:
+            linearise_shapes(low, high, rows, shapes, h, ahead, behind)
+        solve_linear(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix)
+        _leave_free(first_row, last_row, high > low and not bodies.anchored[body], rows, touching.free)
+        load_block(
+            k, first_row, last_row, low, high, touching.row, blocks, columns, rows, shapes, matrix, touching.pushed
+        )
         for i in range(blocks.start[k], blocks.start[k + 1]):
             p = blocks.point[i]
             touching.given[p, 0] = touching.free[touching.row[p], 0]
             touching.given[p, 1] = touching.free[touching.row[p], 1]
+
+
+@inner_kernel
+def _leave_free(first_row, last_row, turns, rows, free):  # type: ignore[no-untyped-def]
+    # What a body does without contacts, which gain it no spin; `trial` stays where the body was linearised.
+    copy(first_row, last_row, rows.trial, rows.best)
+    for r in range(first_row, last_row):
+        rows.trial[r, 0] += rows.change[r, 0]
+        rows.trial[r, 1] += rows.change[r, 1]
+    if turns:
+        hold_spin(first_row, last_row, rows)
+    copy(first_row, last_row, rows.trial, free)
+    copy(first_row, last_row, rows.best, rows.trial)
 
 
 @inner_kernel
@@ -130,18 +148,24 @@ def _push_all(touching, contacts, push, blocks, inverse_mass):  # type: ignore[n
 @inner_kernel
 def _answer(touching, items, rest_length, h):  # type: ignore[no-untyped-def]
     # v' = free + A^-1 J^T lambda of every body; its energy and misfit.
-    bodies, rows, springs, matrix = items
+    bodies, rows, springs, shapes, matrix, _ = items
+    free_count = matrix.diagonal.shape[0]
     for k in range(touching.body.shape[0]):
         body = touching.body[k]
         first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
         first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
-        respond(first_row, last_row, rows, matrix, touching.pushed)
+        low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
+        respond(first_row, last_row, low, high, rows, shapes, matrix, touching.pushed)
         for r in range(first_row, last_row):
             for axis in range(2):
                 v = touching.free[r, axis] + touching.pushed[r, axis]
                 rows.change[r, axis] = v - rows.trial[r, axis]
                 rows.trial[r, axis] = v
-        held, misfit, _ = update_impulses(first, last, rows, springs, rest_length, h, matrix.diagonal.shape[0])
+        held, misfit, _ = update_impulses(first, last, rows, springs, rest_length, h, free_count)
+        if high > low:
+            held_by_shapes, missed = update_shapes(low, high, rows, shapes, h, free_count)
+            held += held_by_shapes
+            misfit = max(misfit, missed)
         for s in range(first, last):
             springs.tension[s] = max(0.0, -springs.impulse[s])
         touching.after[k] = kinetic(first_row, last_row, rows.mass, rows.trial) + held
@@ -198,7 +222,7 @@ def _cluster_of(contacts, c, touching, blocks, inverse_mass):  # type: ignore[no
 @inner_kernel
 def _brake(touching, items, contacts, push, blocks, mass, inverse_mass, rest_length, h):  # type: ignore[no-untyped-def]
     # Halve the velocities of clusters that fail until they pass; at rest they do.
-    bodies, rows, springs, _ = items
+    bodies, rows, springs, shapes, _, _ = items
     for halving in range(LAST_HALVINGS + 1):
         factor = 0.5 if halving < LAST_HALVINGS else 0.0
         for k in range(touching.body.shape[0]):
@@ -206,10 +230,13 @@ def _brake(touching, items, contacts, push, blocks, mass, inverse_mass, rest_len
                 body = touching.body[k]
                 first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
                 first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
+                low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
                 for r in range(first_row, last_row):
                     rows.trial[r, 0] *= factor
                     rows.trial[r, 1] *= factor
-                touching.after[k] = body_energy(first_row, last_row, first, last, rows, springs, rest_length, h)
+                touching.after[k] = body_energy(
+                    first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h
+                )
                 keep_tension(first, last, rows, springs, h)
         for i in range(touching.loose.shape[0]):
             if touching.fails[touching.loose_cluster[i]]:
@@ -224,16 +251,22 @@ def _brake(touching, items, contacts, push, blocks, mass, inverse_mass, rest_len
 @inner_kernel
 def _finish(touching, items, velocity, energy_bank, tension, rest_length, h):  # type: ignore[no-untyped-def]
     # Velocities, tensions, and banks, which together hold no more than the cluster has lost.
-    bodies, rows, springs, _ = items
+    bodies, rows, springs, shapes, _, _ = items
     for k in range(touching.body.shape[0]):
         body = touching.body[k]
         first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
         first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
-        limit = (BOUNCY_BANK_SHARE if touching.bouncy[k] else BANK_SHARE) * touching.before[k]
-        if touching.spread[k]:
-            limit += potential(first, last, rows.position, rows.trial, springs, springs.hidden, rest_length, h, h)
-        left = max(0.0, touching.allowed[touching.cluster[k]] - touching.total[touching.cluster[k]])
-        saved = min(min(touching.held[k] + touching.before[k] - touching.after[k], limit), left)
+        low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
+        saved = touching.held[k] + touching.before[k] - touching.after[k]
+        # As in direct.py: a tangled body keeps all that it lost for the way back to its form.
+        if bodies.anchored[body] or not touching.tangled[k]:
+            limit = (BOUNCY_BANK_SHARE if touching.bouncy[k] else BANK_SHARE) * touching.before[k]
+            if touching.spread[k]:
+                limit += body_hidden(
+                    first, last, low, high, rows.position, rows.trial, springs, shapes, rest_length, h, h
+                )  # fmt: skip
+            saved = min(saved, limit)
+        saved = min(saved, max(0.0, touching.allowed[touching.cluster[k]] - touching.total[touching.cluster[k]]))
         energy_bank[bodies.lowest[body]] = saved if saved > 0.0 else 0.0
         touching.allowed[touching.cluster[k]] -= max(0.0, saved)
         for r in range(first_row, last_row):
@@ -247,13 +280,23 @@ def _finish(touching, items, velocity, energy_bank, tension, rest_length, h):  #
         velocity[p, 1] = touching.given[p, 1] + touching.change[p, 1]
 
 
+@inner_kernel
+def _let_go(touching, bodies, rows):  # type: ignore[no-untyped-def]
+    # What is tangled and fails goes on without its goal.
+    for k in range(touching.body.shape[0]):
+        if touching.due[k] and touching.aimed[k]:
+            body = touching.body[k]
+            let_go(bodies.row_start[body], bodies.row_start[body + 1], rows)
+            touching.aimed[k] = False
+
+
 @bundle_kernel
 def _push_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, rest_length, stiffness, damping, material,
     tension, numbers, least, most, parts, before, rest_before, h, touching, blocks, columns, contacts, push,
 ):  # fmt: skip
     items = numbers.items
-    _, rows, _, matrix = items
+    bodies, rows, _, _, matrix, _ = items
     load_rows(position, velocity, mass, slow_velocity, before, h, matrix.diagonal.shape[0], rows)
     _begin(
         touching, items, energy_bank, inverse_mass, rest_length, rest_before, stiffness, damping, material, tension,
@@ -264,6 +307,7 @@ def _push_bodies(  # type: ignore[no-untyped-def]
         if solve < LINEAR_SOLVES:
             _solve_due(touching, items, blocks, columns, h, AHEAD, AHEAD)
         else:
+            _let_go(touching, bodies, rows)
             _solve_due(touching, items, blocks, columns, h, 1.0, 0.0)
         _push_all(touching, contacts, push, blocks, inverse_mass)
         _answer(touching, items, rest_length, h)
@@ -310,6 +354,6 @@ def _push(
     return touched
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Before) -> None:
+def solve(world: World, springs: Pair, elements: Pair, h: float, before: Before) -> None:
     """Bring the velocities to the end of a step of h [s], contacts included; what nothing touches goes its own way."""
-    direct.solve(world, stiffness, damping, h, before, None if world.contacts is None else _push)
+    direct.solve(world, springs, elements, h, before, None if world.contacts is None else _push)

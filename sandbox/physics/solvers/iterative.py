@@ -1,13 +1,17 @@
-"""Iterative, warm-started: springs in order, N times, on a velocity change (Nissen's demo programs after the article).
+"""Iterative, warm-started: springs and elements in order, N times, on a velocity change.
 
-No proven limit. Hooke springs are no constraints: they act once, explicitly, before the iterations.
+No proven limit. Only springs are warm-started. Hooke springs are no constraints: they act once, explicitly, before the
+iterations. Source: Nissen's demo programs after the article.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
+from sandbox.physics.elements import element_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, reduced_mass
 from sandbox.physics.forces import Before
-from sandbox.physics.jit import kernel
+from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.shapes import NO_CONTACTS
 from sandbox.physics.solvers.contact_sweep import (
     add_change,
@@ -18,14 +22,80 @@ from sandbox.physics.solvers.contact_sweep import (
     start_impulses,
     sweep,
 )
-from sandbox.physics.solvers.single_pass import apply_explicit
+from sandbox.physics.solvers.single_pass import Pair, apply_explicit
 from sandbox.physics.world import LAW_HOOKE, Floats, World
+
+
+class Wanted(NamedTuple):
+    """Scratch of the elements: corners' places, gradients (q, 2), effective masses and wanted changes of dC/dt (t,)."""
+
+    place: Floats
+    slope: Floats
+    mass: Floats
+    rate: Floats
+
+
+@inner_kernel
+def _prepare_elements(position, velocity, inverse_mass, elements, stiffness, damping, h, wanted):  # type: ignore[no-untyped-def]
+    # r = -(Cs C / h + Cd dC/dt)
+    for k in range(elements.kind.shape[0]):
+        wanted.mass[k] = 0.0
+        if not elements.active[k]:
+            continue
+        first = elements.first[k]
+        last = first + elements.corners[k]
+        look(first, last, position, elements.particle, wanted.place)
+        error = evaluate(
+            elements.kind[k], wanted.place, first, last, elements.rest, k, elements.weight, wanted.slope
+        )  # fmt: skip
+        wanted.mass[k] = explicit_mass(first, last, inverse_mass, elements.particle, elements.weight, wanted.slope)
+        rate = element_rate(first, last, velocity, elements.particle, wanted.slope)
+        wanted.rate[k] = -(stiffness[k] * error / h + damping[k] * rate)
+
+
+@inner_kernel
+def _iterate_elements(inverse_mass, elements, wanted, change):  # type: ignore[no-untyped-def]
+    # j = -(g . dv - r) m, applied at once to the velocity change dv.
+    for k in range(elements.kind.shape[0]):
+        if wanted.mass[k] == 0.0:
+            continue
+        first = elements.first[k]
+        last = first + elements.corners[k]
+        rate = element_rate(first, last, change, elements.particle, wanted.slope)
+        j = -(rate - wanted.rate[k]) * wanted.mass[k]
+        for c in range(first, last):
+            p = elements.particle[c]
+            change[p, 0] += j * wanted.slope[c, 0] * inverse_mass[p]
+            change[p, 1] += j * wanted.slope[c, 1] * inverse_mass[p]
+
+
+@inner_kernel
+def _iterate_springs(count, inverse_mass, end_a, end_b, slot, normal, wanted, mass, change, accumulated):  # type: ignore[no-untyped-def]
+    # j = -(n . (dv_b - dv_a) - r) m_r, applied at once to the velocity change dv.
+    for c in range(count):
+        a = end_a[c]
+        b = end_b[c]
+        nx = normal[c, 0]
+        ny = normal[c, 1]
+        du = change[b, 0] - change[a, 0]
+        dv = change[b, 1] - change[a, 1]
+        j = -(nx * du + ny * dv - wanted[c]) * mass[c]
+        jx = j * nx
+        jy = j * ny
+        change[a, 0] -= jx * inverse_mass[a]
+        change[a, 1] -= jy * inverse_mass[a]
+        change[b, 0] += jx * inverse_mass[b]
+        change[b, 1] += jy * inverse_mass[b]
+        s = slot[c]
+        accumulated[s, 0] += jx
+        accumulated[s, 1] += jy
 
 
 @kernel
 def _iterate(  # type: ignore[no-untyped-def]
     position, velocity, inverse_mass, particle_a, particle_b, rest_length, stiffness, damping, law, spring_active, h,
-    iterations, warm_start, accumulated, end_a, end_b, slot, normal, wanted, mass, change, contacts, push, blocks,
+    iterations, warm_start, accumulated, end_a, end_b, slot, normal, wanted, mass, change, elements,
+    element_stiffness, element_damping, element_wanted, contacts, push, blocks,
 ):  # fmt: skip
     # r = -(Cs x / h + Cd u), the wanted change of relative velocity.
     count = 0
@@ -60,44 +130,34 @@ def _iterate(  # type: ignore[no-untyped-def]
             change[a, 1] -= j * ny * inverse_mass[a]
             change[b, 0] += j * nx * inverse_mass[b]
             change[b, 1] += j * ny * inverse_mass[b]
+    _prepare_elements(
+        position, velocity, inverse_mass, elements, element_stiffness, element_damping, h, element_wanted
+    )  # fmt: skip
     load_responses(contacts, push, inverse_mass, blocks)
     start_impulses(contacts, change, inverse_mass, blocks)
-    # j = -(n . (dv_b - dv_a) - r) m_r, applied at once to the velocity change dv.
     for _ in range(iterations):
-        for c in range(count):
-            a = end_a[c]
-            b = end_b[c]
-            nx = normal[c, 0]
-            ny = normal[c, 1]
-            du = change[b, 0] - change[a, 0]
-            dv = change[b, 1] - change[a, 1]
-            j = -(nx * du + ny * dv - wanted[c]) * mass[c]
-            jx = j * nx
-            jy = j * ny
-            change[a, 0] -= jx * inverse_mass[a]
-            change[a, 1] -= jy * inverse_mass[a]
-            change[b, 0] += jx * inverse_mass[b]
-            change[b, 1] += jy * inverse_mass[b]
-            s = slot[c]
-            accumulated[s, 0] += jx
-            accumulated[s, 1] += jy
+        _iterate_springs(count, inverse_mass, end_a, end_b, slot, normal, wanted, mass, change, accumulated)
+        _iterate_elements(inverse_mass, elements, element_wanted, change)
         sweep(contacts, push, velocity, change, inverse_mass, blocks)
     add_change(velocity, change, inverse_mass)
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Before) -> None:
+def solve(world: World, springs: Pair, elements: Pair, h: float, before: Before) -> None:
     """Bring the velocities to the end of a step of h [s]; world.impulse keeps the sums for the next warm start."""
     hooke = world.spring_active & (world.law == LAW_HOOKE)
     if hooke.any():
-        apply_explicit(world, hooke, stiffness, damping, h)
-    springs, contacts = world.spring_count, world.contacts or NO_CONTACTS
+        apply_explicit(world, hooke, springs, h)
+    count, contacts = world.spring_count, world.contacts or NO_CONTACTS
     blocks = loose_blocks(world.particle_count if world.contacts else 0)
     push = new_push(len(contacts.particle))
     load_biases(contacts, push, world.velocity, before.velocity, h)
+    end_a, end_b, slot = np.zeros((3, count), dtype=np.int64)
+    place, slope = np.zeros((2, len(world.corner_particle), 2))
+    wanted = Wanted(place, slope, *np.zeros((2, world.element_count)))
     _iterate(
         world.position, world.velocity, world.inverse_mass, world.particle_a, world.particle_b, world.rest_length,
-        stiffness, damping, world.law, world.spring_active, h, world.settings.iterations, world.settings.warm_start,
-        world.impulse, np.zeros(springs, dtype=np.int64), np.zeros(springs, dtype=np.int64),
-        np.zeros(springs, dtype=np.int64), np.zeros((springs, 2)), np.zeros(springs), np.zeros(springs),
-        np.zeros((world.particle_count, 2)), contacts, push, blocks,
+        springs[0], springs[1], world.law, world.spring_active, h, world.settings.iterations,
+        world.settings.warm_start, world.impulse, end_a, end_b, slot, np.zeros((count, 2)), np.zeros(count),
+        np.zeros(count), np.zeros((world.particle_count, 2)), world.elements, elements[0], elements[1], wanted,
+        contacts, push, blocks,
     )  # fmt: skip

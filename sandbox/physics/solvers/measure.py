@@ -11,9 +11,9 @@ import numpy as np
 
 from sandbox.physics.equation import half_step
 from sandbox.physics.jit import kernel
-from sandbox.physics.solvers.network import HIGHEST_COEFFICIENT
+from sandbox.physics.solvers.shapes import HIGHEST_COEFFICIENT
 from sandbox.physics.substeps import MOST_AUTO
-from sandbox.physics.world import Floats, World
+from sandbox.physics.world import Floats
 
 # Where the largest k is within this factor of the least, the measure is the k of one part: its bank has nothing to add.
 SAME = 1.001
@@ -47,10 +47,13 @@ def _extremes(stiffness, damping, highest, most_parts, least, most):  # type: ig
             most[s] = whole
 
 
-def extremes(world: World) -> tuple[Floats, Floats]:
-    """Least and most k h^2 / m_r of every spring (m,), h of the tick, over the parts that a tick may have."""
-    least, most = np.empty((2, world.spring_count))
-    _extremes(world.stiffness, world.damping, HIGHEST_COEFFICIENT, MOST_AUTO, least, most)
+def extremes(stiffness: Floats, damping: Floats) -> tuple[Floats, Floats]:
+    """Least and most k h^2 / m_r of springs or elements (m,), h of the tick, over the parts that a tick may have.
+
+    stiffness, damping: Cs and Cd (m,) of the tick.
+    """
+    least, most = np.empty((2, len(stiffness)))
+    _extremes(stiffness, damping, HIGHEST_COEFFICIENT, MOST_AUTO, least, most)
     return least, most
 
 

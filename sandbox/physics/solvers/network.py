@@ -19,25 +19,21 @@ from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.factor import back_substitute, factorise
 from sandbox.physics.solvers.fronts import add_block, clear_fronts
 from sandbox.physics.solvers.halves import solve_fronts
+from sandbox.physics.solvers.shapes import (
+    assemble_shapes,
+    correct_wide,
+    implicit_masses,
+    push_shapes,
+    solve_again,
+    take_in_wide,
+)
 
-# Cd is capped here, and Cs with it: nearer to 1 springs stretch less, but steps are rejected more often and damp more.
-HIGHEST_COEFFICIENT = 1.0 - 1e-7
 # A linear solve is refined once where impulses that cancel are this many times those that are left: a violent step. A
 # higher bound loses the digits of one spring's step at Cd near 1, a lower one costs time on every step.
 CANCELLATION = 300.0
 # Refined only where lengths miss what was foreseen by no more than this share: what turns has larger errors than those
 # of rounding. Higher costs swinging ropes a tenth of their time, 0 loses one spring's digits.
 ROUNDING_MISFIT = 1e-10
-
-
-@scalar_kernel
-def implicit_masses(stiffness, damping, mass):  # type: ignore[no-untyped-def]
-    """K and K beta [kg] of a spring whose effective mass is `mass` [kg]."""
-    # K = m Cd / (1 - Cd);  K beta = m Cs / (1 - Cd)
-    if damping > HIGHEST_COEFFICIENT:
-        damping = HIGHEST_COEFFICIENT
-        stiffness = min(stiffness, HIGHEST_COEFFICIENT)
-    return mass * damping / (1.0 - damping), mass * stiffness / (1.0 - damping)
 
 
 @inner_kernel
@@ -151,7 +147,7 @@ def _block(nx, ny, along, across):  # type: ignore[no-untyped-def]
 @inner_kernel
 def assemble_fronts(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
     """The same matrix as `assemble`, of a large body."""
-    clear_fronts(first_row, last_row, rows.mass, matrix.fronts)
+    clear_fronts(first_row, last_row, rows.inertia, matrix.fronts)
     free_count = matrix.diagonal.shape[0]
     numbers = matrix.fronts.numbers
     diagonal = matrix.fronts.diagonal
@@ -173,7 +169,7 @@ def assemble(first_row, last_row, first, last, rows, springs, matrix):  # type: 
     """A = M + sum [K n n^T + g (I - n n^T)]."""
     free_count = matrix.diagonal.shape[0]
     for r in range(first_row, last_row):
-        mass = rows.mass[r]
+        mass = rows.inertia[r]
         matrix.diagonal[r, 0] = mass
         matrix.diagonal[r, 1] = 0.0
         matrix.diagonal[r, 2] = mass
@@ -206,8 +202,8 @@ def assemble(first_row, last_row, first, last, rows, springs, matrix):  # type: 
 def load_residual(first_row, last_row, first, last, rows, springs, free_count):  # type: ignore[no-untyped-def]
     """The right side M (v* - v') + sum of the springs' impulses of one body, into `change`."""
     for r in range(first_row, last_row):
-        rows.change[r, 0] = rows.mass[r] * (rows.target[r, 0] - rows.trial[r, 0])
-        rows.change[r, 1] = rows.mass[r] * (rows.target[r, 1] - rows.trial[r, 1])
+        rows.change[r, 0] = rows.inertia[r] * (rows.aim[r, 0] - rows.trial[r, 0])
+        rows.change[r, 1] = rows.inertia[r] * (rows.aim[r, 1] - rows.trial[r, 1])
     for k in range(first, last):
         nx = springs.normal[k, 0]
         ny = springs.normal[k, 1]
@@ -224,22 +220,30 @@ def load_residual(first_row, last_row, first, last, rows, springs, free_count): 
 
 
 @inner_kernel
-def solve_linear(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
-    """Solve A D = right side for the rows of one body; D is left in `change`."""
+def solve_linear(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix):  # type: ignore[no-untyped-def]
+    """Solve A D = right side for the rows, springs and elements of one body; D is left in `change`."""
     load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
+    if high > low:
+        push_shapes(low, high, rows, shapes, matrix.diagonal.shape[0])
     fronts = matrix.fronts
     if fronts.of_row[first_row] >= 0:
         assemble_fronts(first_row, last_row, first, last, rows, springs, matrix)
+        if high > low:
+            assemble_shapes(low, high, shapes, matrix, True)
         solve_fronts(False, first_row, last_row, fronts, rows.change)
-        return
-    assemble(first_row, last_row, first, last, rows, springs, matrix)
-    factorise(
-        first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.where,
-        matrix.diagonal, matrix.lower, matrix.scaled,
-    )  # fmt: skip
-    back_substitute(
-        first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
-    )  # fmt: skip
+    else:
+        assemble(first_row, last_row, first, last, rows, springs, matrix)
+        if high > low:
+            assemble_shapes(low, high, shapes, matrix, False)
+        factorise(
+            first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.where,
+            matrix.diagonal, matrix.lower, matrix.scaled,
+        )  # fmt: skip
+        back_substitute(
+            first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
+        )  # fmt: skip
+    if high > low:
+        take_in_wide(first_row, last_row, low, high, rows, shapes, matrix)
 
 
 @inner_kernel
@@ -289,16 +293,15 @@ def update_impulses(first, last, rows, springs, rest_length, h, free_count):  # 
 
 
 @inner_kernel
-def refine(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
+def refine(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix):  # type: ignore[no-untyped-def]
     """Solve for what is left of the right side, with the impulses found so far; it is left in `change`."""
-    load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
-    fronts = matrix.fronts
-    if fronts.of_row[first_row] >= 0:
-        solve_fronts(True, first_row, last_row, fronts, rows.change)
-        return
-    back_substitute(
-        first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
-    )  # fmt: skip
+    free_count = matrix.diagonal.shape[0]
+    load_residual(first_row, last_row, first, last, rows, springs, free_count)
+    if high > low:
+        push_shapes(low, high, rows, shapes, free_count)
+    solve_again(first_row, last_row, rows, matrix)
+    if high > low:
+        correct_wide(first_row, last_row, low, high, rows, shapes, free_count)
 
 
 @inner_kernel
@@ -321,6 +324,40 @@ def objective(first_row, last_row, first, last, rows, springs, h):  # type: igno
         after = error + growth
         total += 0.5 * (springs.along[k] * growth * growth + springs.pull[k] * (after * after - growth * growth))
     return total
+
+
+@inner_kernel
+def hold_spin(first_row, last_row, rows):  # type: ignore[no-untyped-def]
+    """Take from `trial` the angular momentum that a free body would gain: nothing outside turns it.
+
+    Directions taken ahead turn a body that is violently out of shape. What is taken is a turn as a whole.
+    """
+    mass = x = y = before = after = inertia = u = v = p = q = 0.0
+    for r in range(first_row, last_row):
+        m = rows.mass[r]
+        mass += m
+        x += m * rows.position[r, 0]
+        y += m * rows.position[r, 1]
+        u += m * rows.target[r, 0]
+        v += m * rows.target[r, 1]
+        p += m * rows.trial[r, 0]
+        q += m * rows.trial[r, 1]
+    x /= mass
+    y /= mass
+    for r in range(first_row, last_row):
+        m = rows.mass[r]
+        dx = rows.position[r, 0] - x
+        dy = rows.position[r, 1] - y
+        inertia += m * (dx * dx + dy * dy)
+        before += m * (dx * (rows.target[r, 1] - v / mass) - dy * (rows.target[r, 0] - u / mass))
+        after += m * (dx * (rows.trial[r, 1] - q / mass) - dy * (rows.trial[r, 0] - p / mass))
+    kept = min(max(after, min(0.0, before)), max(0.0, before))
+    if kept == after or not inertia > 0.0:
+        return
+    turn = (kept - after) / inertia
+    for r in range(first_row, last_row):
+        rows.trial[r, 0] -= turn * (rows.position[r, 1] - y)
+        rows.trial[r, 1] += turn * (rows.position[r, 0] - x)
 
 
 @inner_kernel

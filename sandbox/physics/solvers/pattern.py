@@ -1,8 +1,9 @@
-"""Pattern of the direct solver's matrix: which springs join which free particles, in what order they are eliminated.
+"""Pattern of the direct solver's matrix: what springs and elements join, in what order particles are eliminated.
 
 Symbolic work alone: made anew when topology or pins change, kept on the World meanwhile, no part of its state.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -12,7 +13,10 @@ from numpy.typing import NDArray
 from sandbox.physics.jit import bundle, kernel
 from sandbox.physics.solvers.dissection import Dissection, dissect_bodies, make_fronts, spring_places
 from sandbox.physics.solvers.fronts import Fronts
+from sandbox.physics.solvers.goal import Goals, lay_out_goals
 from sandbox.physics.solvers.ordering import label_bodies, minimum_degree, update_targets
+from sandbox.physics.solvers.shape_pattern import chosen_elements, lay_out_shapes, shapes_anchored
+from sandbox.physics.solvers.shapes import Shapes
 from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, Floats, Slots, World
 
 # First guess of blocks in the factor per particle; too low costs one more pass, too high memory.
@@ -30,11 +34,14 @@ class Rows(NamedTuple):
     position: Floats
     start: Floats
     target: Floats
+    inertia: Floats
+    aim: Floats
     slow: Floats
     moved: Floats
     trial: Floats
     best: Floats
     change: Floats
+    held: Floats
 
 
 class Springs(NamedTuple):
@@ -76,10 +83,11 @@ class Matrix(NamedTuple):
 
 
 class Bodies(NamedTuple):
-    """First row and first spring of each body, and one past the last; its free particle of lowest slot; its anchors."""
+    """First row, spring and element of each body and one past the last; free particle of lowest slot; if anchored."""
 
     row_start: Slots
     spring_start: Slots
+    shape_start: Slots
     lowest: Slots
     anchored: NDArray[np.bool_]
 
@@ -88,16 +96,21 @@ class Bodies(NamedTuple):
 class Pattern:
     """Everything about a world's matrix that its topology and pins decide, with the scratch arrays of a step.
 
-    signature: what it was made for. numbers: the four named tuples as a bundle for kernels.
+    signature: what it was made for. elements: which were active then, their corners' particles and form; corners:
+    those of the elements of the matrix. numbers: the six named tuples as a bundle for kernels.
     """
 
     signature: tuple[NDArray[Any], ...]
+    elements: tuple[NDArray[Any], ...]
+    corners: Slots
     has_hooke: bool
     hooke: NDArray[np.bool_]
     bodies: Bodies
     rows: Rows
     springs: Springs
+    shapes: Shapes
     matrix: Matrix
+    goals: Goals
     numbers: Any
 
 
@@ -118,58 +131,75 @@ def is_current(inverse_mass, particle_a, particle_b, spring_active, law, free, k
     return True
 
 
+def has_elements(pattern: Pattern, world: World) -> bool:
+    """Whether a world's elements are those that a pattern was made for."""
+    active, particle, form = pattern.elements
+    # What an element joins stays what it is, unless a restored state brings others: those are other arrays.
+    return np.array_equal(active, world.element_active) and (
+        (particle is world.corner_particle or np.array_equal(particle, world.corner_particle))
+        and (form is world.corner_form or np.array_equal(form, world.corner_form))
+    )
+
+
 def make_pattern(world: World) -> Pattern:
-    """Order a world's free particles for elimination and lay out the matrix of its springs."""
+    """Order a world's free particles for elimination and lay out the matrix of its springs and elements."""
     free = world.inverse_mass > 0.0
     kind = np.where(world.spring_active, world.law, -1).astype(np.int64)
-    a, b = world.particle_a.astype(np.int64), world.particle_b.astype(np.int64)
+    a, b, parts = world.particle_a.astype(np.int64), world.particle_b.astype(np.int64), chosen_elements(world, free)
     chosen = np.flatnonzero((kind == LAW_NISSEN) & (free[a] | free[b]))
     a_chosen, b_chosen = a[chosen], b[chosen]
     used = np.zeros(world.particle_count, dtype=np.bool_)
-    used[a_chosen] = used[b_chosen] = True
+    used[a_chosen] = used[b_chosen] = used[parts.particle] = True
     nodes = np.flatnonzero(used & free)
     anchors = np.flatnonzero(used & ~free)
     # Rows before the elimination order is known; anchors come after every free particle, in any order.
     index = np.full(world.particle_count, -1, dtype=np.int64)
-    index[nodes] = np.arange(len(nodes))
-    index[anchors] = len(nodes) + np.arange(len(anchors))
+    index[np.concatenate([nodes, anchors])] = np.arange(len(nodes) + len(anchors))
     end_a, end_b = index[a_chosen], index[b_chosen]
-    links = np.flatnonzero((end_a < len(nodes)) & (end_b < len(nodes)))
-    order, label, columns, large = _eliminate(len(nodes), end_a[links], end_b[links], world.origin[nodes])
+    link_a, link_b = (np.concatenate([end, more]) for end, more in zip((end_a, end_b), index[parts.links], strict=True))
+    links = np.flatnonzero((link_a < len(nodes)) & (link_b < len(nodes)))
+    order, label, columns, large = _eliminate(len(nodes), link_a[links], link_b[links], world.origin[nodes])
     rank = np.arange(len(nodes) + len(anchors))
     rank[order] = np.arange(len(nodes))
     row_a, row_b = rank[end_a], rank[end_b]
     body_of_row = label[order]
     first_rows = np.flatnonzero(np.diff(body_of_row, prepend=-1))
-    spring_body = (
-        np.cumsum(np.diff(body_of_row, prepend=-1) != 0)[np.minimum(row_a, row_b)] - 1 if len(nodes) else row_a
-    )
+    body_number = np.cumsum(np.diff(body_of_row, prepend=-1) != 0) - 1
+    spring_body = body_number[np.minimum(row_a, row_b)] if len(nodes) else row_a
     fronts = make_fronts(len(nodes), [(int(np.searchsorted(body_of_row, body)), large[body]) for body in sorted(large)])
     # Springs of a large body in the order of its rows: what a step reads together then lies together.
     low = np.minimum(row_a, row_b)
     in_front = np.append(fronts.of_row, -1)[np.minimum(low, len(nodes))] >= 0
     grouped = np.lexsort((np.where(in_front, low, 0), spring_body))
-    matrix, blocks = _lay_out(len(nodes), columns, rank, row_a[grouped], row_b[grouped], fronts)
-    anchored = np.zeros(len(first_rows), dtype=np.bool_)
-    anchored[spring_body[np.maximum(row_a, row_b) >= len(nodes)]] = True
+    matrix, place = _lay_out(len(nodes), columns, rank, fronts)
+    corner_row = rank[index[parts.particle]]
+    shapes, shape_body, corners = lay_out_shapes(parts, corner_row, body_number, place)
+    row_a, row_b, spring_body = row_a[grouped], row_b[grouped], spring_body[grouped]
+    held = spring_body[np.maximum(row_a, row_b) >= len(nodes)], shape_body[shapes_anchored(shapes, len(nodes))]
+    every_body = np.arange(len(first_rows) + 1)
     bodies = Bodies(
         np.append(first_rows, len(nodes)),
-        np.searchsorted(spring_body[grouped], np.arange(len(first_rows) + 1)),
+        np.searchsorted(spring_body, every_body),
+        np.searchsorted(shape_body, every_body),
         nodes[body_of_row[first_rows]],
-        anchored,
+        np.isin(every_body[:-1], np.concatenate(held)),
     )
-    hooke = kind == LAW_HOOKE
-    rows = _scratch_rows(np.concatenate([nodes[order], anchors]))
-    springs = _scratch_springs(chosen[grouped], row_a[grouped], row_b[grouped], blocks)
+    hooke, rows = kind == LAW_HOOKE, _scratch_rows(np.concatenate([nodes[order], anchors]))
+    goals = lay_out_goals(shapes, shape_body, len(first_rows), world.corner_form[corners])
+    springs = _scratch_springs(chosen[grouped], row_a, row_b, place(row_a, row_b))
     return Pattern(
         signature=(free, kind, a, b),
+        elements=(world.element_active.copy(), world.corner_particle, world.corner_form),
+        corners=corners,
         has_hooke=bool(hooke.any()),
         hooke=hooke,
         bodies=bodies,
         rows=rows,
         springs=springs,
+        shapes=shapes,
         matrix=matrix,
-        numbers=bundle((bodies, rows, springs, matrix)),
+        goals=goals,
+        numbers=bundle((bodies, rows, springs, shapes, matrix, goals)),
     )
 
 
@@ -214,9 +244,9 @@ def _order_small(count: int, link_a: Slots, link_b: Slots) -> tuple[Slots, tuple
 
 
 def _lay_out(
-    count: int, columns: tuple[Slots, Slots], rank: Slots, row_a: Slots, row_b: Slots, fronts: Fronts
-) -> tuple[Matrix, Slots]:
-    """The matrix, ready for numbers, and the block of each spring (-1: one end is pinned)."""
+    count: int, columns: tuple[Slots, Slots], rank: Slots, fronts: Fronts
+) -> tuple[Matrix, Callable[[Slots, Slots], Slots]]:
+    """The matrix, ready for numbers, and a function: the block that two rows share (-1: one is pinned)."""
     keys = np.sort(rank[columns[0]] * count + rank[columns[1]])
     row = keys % count if count else keys
     lengths = np.bincount(keys // count, minlength=count) if count else keys
@@ -226,18 +256,23 @@ def _lay_out(
     target = np.zeros(pairs[-1] if pairs[-1] <= LARGEST_TABLE else 0, dtype=np.int32)
     if len(target):
         update_targets(column_start, row, target, where)
-    low, high = np.minimum(row_a, row_b), np.maximum(row_a, row_b)
-    blocks = np.where(high < count, np.searchsorted(keys, low * count + high), -1)
-    in_front = np.flatnonzero((high < count) & (np.append(fronts.of_row, -1)[np.minimum(low, count)] >= 0))
-    blocks[in_front] = spring_places(fronts, low[in_front], high[in_front])
+
+    def place(row_a: Slots, row_b: Slots) -> Slots:
+        low, high = np.minimum(row_a, row_b), np.maximum(row_a, row_b)
+        blocks = np.where(high < count, np.searchsorted(keys, low * count + high), -1)
+        in_front = np.flatnonzero((high < count) & (np.append(fronts.of_row, -1)[np.minimum(low, count)] >= 0))
+        blocks[in_front] = spring_places(fronts, low[in_front], high[in_front])
+        return blocks
+
     longest = int(lengths.max()) if count else 0
     numbers = np.zeros((count, 3)), np.zeros((len(row), 4)), np.zeros((longest, 4))
-    return Matrix(column_start, row, pairs, target, where, *numbers, fronts), blocks
+    return Matrix(column_start, row, pairs, target, where, *numbers, fronts), place
 
 
 def _scratch_rows(particles: Slots) -> Rows:
     count = len(particles)
-    return Rows(particles, np.zeros(count), *(np.zeros((count, 2)) for _ in range(8)))
+    numbers = {name: np.zeros(count if name in ("mass", "inertia") else (count, 2)) for name in Rows._fields[1:]}
+    return Rows(particles, **numbers)
 
 
 def _scratch_springs(slots: Slots, row_a: Slots, row_b: Slots, block: Slots) -> Springs:

@@ -1,33 +1,33 @@
 """Response of a factored body: how its particles answer to impulses at some of them."""
 
 from sandbox.physics.jit import inner_kernel, unsigned
-from sandbox.physics.solvers.direct import copy_rows
-from sandbox.physics.solvers.factor import back_substitute
 from sandbox.physics.solvers.fronts import ONE, TWO, ZERO, subtract_pair
-from sandbox.physics.solvers.halves import solve_fronts
+from sandbox.physics.solvers.minimise import copy
+from sandbox.physics.solvers.shapes import correct_wide, solve_again
 
 
 @inner_kernel
-def respond(first_row, last_row, rows, matrix, vector):  # type: ignore[no-untyped-def]
+def respond(first_row, last_row, low, high, rows, shapes, matrix, vector):  # type: ignore[no-untyped-def]
     """Solve A x = vector for the rows of one body, in place, with the factor that a linear solve has left.
 
-    Of a large body it takes `change`, the one array that a helping thread knows.
+    It takes `change`: the one array that a helping thread knows, and that the body's wide elements correct.
     """
-    if matrix.fronts.of_row[first_row] >= 0:
-        copy_rows(first_row, last_row, vector, rows.change)
-        solve_fronts(True, first_row, last_row, matrix.fronts, rows.change)
-        copy_rows(first_row, last_row, rows.change, vector)
-        return
-    back_substitute(first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, vector)
+    copy(first_row, last_row, vector, rows.change)
+    solve_again(first_row, last_row, rows, matrix)
+    if high > low:
+        correct_wide(first_row, last_row, low, high, rows, shapes, matrix.diagonal.shape[0])
+    copy(first_row, last_row, rows.change, vector)
 
 
 @inner_kernel
-def load_block(k, first_row, last_row, row, blocks, columns, rows, matrix, vector):  # type: ignore[no-untyped-def]
+def load_block(k, first_row, last_row, low, high, row, blocks, columns, rows, shapes, matrix, vector):  # type: ignore[no-untyped-def]
     """The response W = P A^-1 P^T of block k, whose points are in the order of their rows; columns, vector: scratch."""
     first = blocks.start[k]
     points = blocks.start[k + 1] - first
     if matrix.fronts.of_row[first_row] >= 0:
-        _load_column_wise(blocks, first, points, blocks.base[k], first_row, last_row, row, rows, matrix, vector)
+        _load_column_wise(
+            blocks, first, points, blocks.base[k], first_row, last_row, low, high, row, rows, shapes, matrix, vector
+        )
         return
     width = 2 * points
     for at in range((last_row - first_row) * 2 * width):
@@ -38,6 +38,7 @@ def load_block(k, first_row, last_row, row, blocks, columns, rows, matrix, vecto
         columns[at + width + 1] = 1.0
     _forward(first_row, last_row, first, points, row, blocks.point, columns, matrix)
     _gather(k, first_row, last_row, first, points, row, blocks, columns, matrix)
+    _take_out_wide(low, high, blocks.base[k], first, points, row, blocks, shapes)
 
 
 @inner_kernel
@@ -87,7 +88,23 @@ def _gather(k, first_row, last_row, first, points, row, blocks, columns, matrix)
 
 
 @inner_kernel
-def _load_column_wise(blocks, first, points, base, first_row, last_row, row, rows, matrix, vector):  # type: ignore[no-untyped-def]
+def _take_out_wide(low, high, base, first, points, row, blocks, shapes):  # type: ignore[no-untyped-def]
+    # W -= scale (P z) (P z)^T for each wide element, as shapes.py has it of A^-1.
+    for k in range(low, high):
+        number = shapes.wide[k]
+        if number < 0:
+            continue
+        for i in range(2 * points):
+            taken = shapes.scale[number] * shapes.response[number, row[blocks.point[first + i // 2]], i % 2]
+            for j in range(2 * points):
+                z = shapes.response[number, row[blocks.point[first + j // 2]], j % 2]
+                blocks.numbers[base + i * 2 * points + j] -= taken * z
+
+
+@inner_kernel
+def _load_column_wise(  # type: ignore[no-untyped-def]
+    blocks, first, points, base, first_row, last_row, low, high, row, rows, shapes, matrix, vector
+):
     # A large body has its factor in fronts: one solution for each column.
     for i in range(points):
         for axis in range(2):
@@ -95,7 +112,7 @@ def _load_column_wise(blocks, first, points, base, first_row, last_row, row, row
                 vector[r, 0] = 0.0
                 vector[r, 1] = 0.0
             vector[row[blocks.point[first + i]], axis] = 1.0
-            respond(first_row, last_row, rows, matrix, vector)
+            respond(first_row, last_row, low, high, rows, shapes, matrix, vector)
             for j in range(points):
                 at = base + (2 * j) * 2 * points + 2 * i + axis
                 r = row[blocks.point[first + j]]

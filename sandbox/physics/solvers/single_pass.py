@@ -1,4 +1,4 @@
-"""Single pass: every spring evaluated once on the old velocities, the impulses summed (Nissen 2019).
+"""Single pass: every spring and element evaluated once on the old velocities, the impulses summed (Nissen 2019).
 
 Stable for Cs = Cd < 4 / (3 n_eff), see stability.py; never stiff.
 """
@@ -8,11 +8,35 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.elements import element_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, reduced_mass, spring_impulse
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
 from sandbox.physics.solvers.contact_sweep import load_biases, loose_blocks, new_push, sweep_masses
 from sandbox.physics.world import Floats, World
+
+# Cs and Cd of springs (m,) or elements (t,).
+Pair = tuple[Floats, Floats]
+
+
+@kernel
+def _element_pass(  # type: ignore[no-untyped-def]
+    position, velocity, inverse_mass, elements, stiffness, damping, h, place, slope, impulse
+):
+    # J = -(Cs C / h + Cd dC/dt) m, along the gradient at each corner
+    for k in range(elements.kind.shape[0]):
+        if not elements.active[k]:
+            continue
+        first = elements.first[k]
+        last = first + elements.corners[k]
+        look(first, last, position, elements.particle, place)
+        error = evaluate(elements.kind[k], place, first, last, elements.rest, k, elements.weight, slope)
+        mass = explicit_mass(first, last, inverse_mass, elements.particle, elements.weight, slope)
+        rate = element_rate(first, last, velocity, elements.particle, slope)
+        j = spring_impulse(stiffness[k], damping[k], error, rate, mass, h)
+        for c in range(first, last):
+            impulse[elements.particle[c], 0] += j * slope[c, 0]
+            impulse[elements.particle[c], 1] += j * slope[c, 1]
 
 
 @kernel
@@ -49,24 +73,34 @@ def _explicit_pass(  # type: ignore[no-untyped-def]
             velocity[p, 1] += impulse[p, 1] * inverse_mass[p]
 
 
-def apply_explicit(world: World, chosen: NDArray[np.bool_], stiffness: Floats, damping: Floats, h: float) -> None:
-    """Evaluate the chosen springs (m,) on the present velocities and apply their summed impulses."""
+def apply_explicit(
+    world: World, chosen: NDArray[np.bool_], springs: Pair, h: float, elements: Pair | None = None
+) -> None:
+    """Evaluate the chosen springs (m,) on the present velocities and apply their summed impulses.
+
+    springs and, for all elements too, elements: their Cs and Cd.
+    """
+    impulse = np.zeros((world.particle_count, 2))
+    if elements is not None and world.element_count:
+        place, slope = np.zeros((2, len(world.corner_particle), 2))
+        _element_pass(
+            world.position, world.velocity, world.inverse_mass, world.elements, *elements, h, place, slope, impulse
+        )  # fmt: skip
     _explicit_pass(
         world.position, world.velocity, world.inverse_mass, world.particle_a, world.particle_b, world.rest_length,
-        stiffness, damping, world.law, world.hooke_stiffness, world.hooke_damping, chosen, h,
-        np.zeros((world.particle_count, 2)),
+        *springs, world.law, world.hooke_stiffness, world.hooke_damping, chosen, h, impulse,
     )  # fmt: skip
 
 
-def solve(world: World, stiffness: Floats, damping: Floats, h: float, before: Before) -> None:
-    """Bring the velocities to the end of a step of h [s]; contacts are swept after the springs."""
+def solve(world: World, springs: Pair, elements: Pair, h: float, before: Before) -> None:
+    """Bring the velocities to the end of a step of h [s]; contacts are swept after springs and elements."""
     contacts = world.contacts
     if contacts is None:
-        apply_explicit(world, world.spring_active, stiffness, damping, h)
+        apply_explicit(world, world.spring_active, springs, h, elements)
         return
     push = new_push(len(contacts.particle))
     load_biases(contacts, push, world.velocity, before.velocity, h)
-    apply_explicit(world, world.spring_active, stiffness, damping, h)
+    apply_explicit(world, world.spring_active, springs, h, elements)
     sweep_masses(
         contacts, push, world.velocity, np.zeros((world.particle_count, 2)), world.inverse_mass,
         loose_blocks(world.particle_count), world.settings.iterations,

@@ -1,0 +1,170 @@
+"""Elements: constraints of several corners, areas of polygons and angles between two links, in the same equation.
+
+Any scalar constraint C(x) of gradient g has the effective mass 1 / (sum of w |g|^2); with C for the distance error and
+dC/dt for the velocity error, Cs and Cd mean what they mean for a spring (Nissen 2019). The mass is that of the rest
+shape: that of the present one is infinite where a triangle lies flat.
+
+    area   C = A - A0 [m^2], A signed and counter-clockwise, of a polygon of three corners or more
+    bend   C = 4 sin(phi / 4), phi = the angle at the middle corner less its angle at rest
+
+The bend's torque is that of 2 sin(phi / 2): most for a link that is folded back, where sin(phi) would let go.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.physics.equation import SHORTEST
+from sandbox.physics.jit import inner_kernel, kernel
+
+AREA = 0
+BEND = 1
+# The gradient of an angle grows as 1 / length; a link shorter than its rest length over this [1] bends as if it were
+# that long. A higher bound makes crushed links stiffer than a factorisation can hold, a lower one costs them spin.
+STEEPEST = 30.0
+
+Floats = NDArray[np.float64]
+
+
+class Elements(NamedTuple):
+    """Elements as kernels read them: t elements, whose corners lie one after another in the q of all.
+
+    kind (t,), first (t,) and corners (t,) = where its corners begin and how many they are, rest (t, 2) = area wanted
+    and area of the form [m^2], or cosine and sine of the angle at rest; active (t,); particle (q,) = slots, weight
+    (q,) = |g|^2 at rest.
+    """
+
+    kind: NDArray[np.int8]
+    first: NDArray[np.int32]
+    corners: NDArray[np.int32]
+    rest: Floats
+    active: NDArray[np.bool_]
+    particle: NDArray[np.int32]
+    weight: Floats
+
+
+@inner_kernel
+def area_of(place, first, last):  # type: ignore[no-untyped-def]
+    """Signed area of the polygon of the corners first..last at place (q, 2)."""
+    total = 0.0
+    x = place[first, 0]
+    y = place[first, 1]
+    for c in range(first + 1, last - 1):
+        total += 0.5 * (
+            (place[c, 0] - x) * (place[c + 1, 1] - y) - (place[c, 1] - y) * (place[c + 1, 0] - x)
+        )  # fmt: skip
+    return total
+
+
+@inner_kernel
+def _area_slope(place, first, last, slope):  # type: ignore[no-untyped-def]
+    # dA / dx_i = the vector between its two neighbours, turned, over 2
+    for c in range(first, last):
+        before = c - 1 if c > first else last - 1
+        after = c + 1 if c + 1 < last else first
+        slope[c, 0] = 0.5 * (place[after, 1] - place[before, 1])
+        slope[c, 1] = 0.5 * (place[before, 0] - place[after, 0])
+
+
+@inner_kernel
+def _bend(place, first, cosine, sine, weight, slope):  # type: ignore[no-untyped-def]
+    # e = the first link, turned by the rest angle; phi from e to the second link: cos(phi / 2) = |e + n| / 2,
+    # sin(phi / 2) = |n - e| / 2, and the halves of those; no trigonometry.
+    ax = place[first + 1, 0] - place[first, 0]
+    ay = place[first + 1, 1] - place[first, 1]
+    bx = place[first + 2, 0] - place[first + 1, 0]
+    by = place[first + 2, 1] - place[first + 1, 1]
+    a = math.sqrt(ax * ax + ay * ay)
+    b = math.sqrt(bx * bx + by * by)
+    if not (a > SHORTEST and b > SHORTEST):
+        # A link of no length has no angle.
+        for c in range(first, first + 3):
+            slope[c, 0] = 0.0
+            slope[c, 1] = 0.0
+        return 0.0
+    ax /= a
+    ay /= a
+    bx /= b
+    by /= b
+    ex = ax * cosine - ay * sine
+    ey = ax * sine + ay * cosine
+    half_cosine = 0.5 * math.sqrt((ex + bx) * (ex + bx) + (ey + by) * (ey + by))
+    half_sine = 0.5 * math.sqrt((bx - ex) * (bx - ex) + (by - ey) * (by - ey))
+    if ex * by - ey * bx < 0.0:
+        half_sine = -half_sine
+    quarter_cosine = math.sqrt(0.5 * (1.0 + half_cosine))
+    at_a = quarter_cosine * min(1.0 / a, STEEPEST * math.sqrt(weight[first]))
+    at_b = quarter_cosine * min(1.0 / b, STEEPEST * math.sqrt(weight[first + 2]))
+    slope[first, 0] = -ay * at_a
+    slope[first, 1] = ax * at_a
+    slope[first + 2, 0] = -by * at_b
+    slope[first + 2, 1] = bx * at_b
+    slope[first + 1, 0] = -(slope[first, 0] + slope[first + 2, 0])
+    slope[first + 1, 1] = -(slope[first, 1] + slope[first + 2, 1])
+    return 2.0 * half_sine / quarter_cosine
+
+
+@inner_kernel
+def evaluate(kind, place, first, last, rest, at, weight, slope):  # type: ignore[no-untyped-def]
+    """C of the element of rest[at] whose corners first..last are at place (q, 2); its gradient into slope (q, 2)."""
+    if kind == AREA:
+        _area_slope(place, first, last, slope)
+        return area_of(place, first, last) - rest[at, 0]
+    return _bend(place, first, rest[at, 0], rest[at, 1], weight, slope)
+
+
+@inner_kernel
+def rest_mass(first, last, inverse_mass, particle, weight):  # type: ignore[no-untyped-def]
+    """Effective mass of the corners first..last at rest; 0 where nothing of them can move."""
+    # m = 1 / (sum of w |g|^2)
+    total = 0.0
+    for c in range(first, last):
+        total += inverse_mass[particle[c]] * weight[c]
+    return 1.0 / total if total > 0.0 else 0.0
+
+
+@inner_kernel
+def look(first, last, position, particle, place):  # type: ignore[no-untyped-def]
+    """Bring the corners first..last to where their particles are."""
+    for c in range(first, last):
+        place[c, 0] = position[particle[c], 0]
+        place[c, 1] = position[particle[c], 1]
+
+
+@inner_kernel
+def element_rate(first, last, velocity, particle, slope):  # type: ignore[no-untyped-def]
+    """dC/dt of the element of the corners first..last whose gradient is slope (q, 2)."""
+    rate = 0.0
+    for c in range(first, last):
+        rate += slope[c, 0] * velocity[particle[c], 0] + slope[c, 1] * velocity[particle[c], 1]
+    return rate
+
+
+@kernel
+def element_values(position, inverse_mass, elements, place, value, mass, slope):  # type: ignore[no-untyped-def]
+    """C (t,) and effective mass (t,) of all active elements, 0 of others, with their gradients (q, 2)."""
+    for k in range(elements.kind.shape[0]):
+        first = elements.first[k]
+        last = first + elements.corners[k]
+        value[k] = 0.0
+        mass[k] = 0.0
+        if elements.active[k]:
+            look(first, last, position, elements.particle, place)
+            value[k] = evaluate(elements.kind[k], place, first, last, elements.rest, k, elements.weight, slope)
+            mass[k] = rest_mass(first, last, inverse_mass, elements.particle, elements.weight)
+
+
+@inner_kernel
+def explicit_mass(first, last, inverse_mass, particle, weight, slope):  # type: ignore[no-untyped-def]
+    """Effective mass for a step on the old velocities: the less of the rest shape's and the present one's."""
+    # No impulse then changes dC/dt by more than was wanted, however a corner is crushed.
+    rest = 0.0
+    present = 0.0
+    for c in range(first, last):
+        w = inverse_mass[particle[c]]
+        rest += w * weight[c]
+        present += w * (slope[c, 0] * slope[c, 0] + slope[c, 1] * slope[c, 1])
+    most = max(rest, present)
+    return 1.0 / most if most > 0.0 else 0.0
