@@ -45,6 +45,7 @@ SHORTCUTS = (
     Shortcut("tool_circle", ("O",), "Jelly: a disc", "Draw", "edit"),
     Shortcut("tool_polygon", ("Y",), "Jelly: freehand or corner by corner", "Draw", "edit"),
     Shortcut("tool_wheel", ("Q",), "Wheel with a hub", "Draw", "edit"),
+    Shortcut("tool_ring", ("Shift+O",), "Ring with air inside: a balloon", "Draw", "edit"),
     Shortcut("tool_pin", ("P",), "Pin or unpin a particle", "Draw", "edit"),
     Shortcut("tool_ground", ("D",), "Terrain: solid ground", "Draw", "edit"),
     Shortcut("tool_line", ("C",), "Terrain: a line", "Draw", "edit"),

@@ -41,6 +41,7 @@ _TITLES = {
     "pinned": "Held",
     "cut": "Cut springs",
     "drive": "Muscle",
+    "area": "Keeps area",
     "collision_group": "In group",
     "collides": "Touches",
     "particle_radius": "Disc radius",

@@ -11,7 +11,7 @@ from sandbox.editor.fields import change_items
 from sandbox.editor.items import Definition, Item
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.typed import significant
-from sandbox.level.bodies import WheelDef
+from sandbox.level.bodies import BendingDef, WheelDef
 from sandbox.level.driving import HydraulicDef, MotorDef, MuscleDef
 from sandbox.level.expansion import masses
 from sandbox.level.limits import TORQUE_LIMIT
@@ -70,4 +70,5 @@ _FIRST: dict[str, Callable[[Definition, Scene | None], Any]] = {
     "drive": partial(_same, MUSCLE),
     "motor": _motor,
     "hydraulic": _hydraulic,
+    "bending": partial(_same, BendingDef()),
 }

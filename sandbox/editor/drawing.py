@@ -7,6 +7,7 @@ from sandbox.editor.document import Document, EditError, select
 from sandbox.editor.drawing_bodies import (
     BridgeDrawing,
     GirderDrawing,
+    RingDrawing,
     RopeDrawing,
     WebDrawing,
     WheelDrawing,
@@ -131,6 +132,7 @@ DRAWINGS: dict[str, type[Drawing[Any]]] = {
     "circle": CircleDrawing,
     "polygon": PolygonDrawing,
     "wheel": WheelDrawing,
+    "ring": RingDrawing,
     "pin": PinDrawing,
     "ground": GroundDrawing,
     "line": LineDrawing,

@@ -6,7 +6,14 @@ from dataclasses import replace as _replace
 from typing import Any, Literal, TypeVar
 
 from sandbox.editor.document import EditError
-from sandbox.level.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL, FRICTION_LIMIT, MASS_RANGE, PARTICLE_LIMIT
+from sandbox.level.limits import (
+    COORDINATE_LIMIT,
+    DEFAULT_MATERIAL,
+    FRICTION_LIMIT,
+    INFLATION_LIMIT,
+    MASS_RANGE,
+    PARTICLE_LIMIT,
+)
 
 Kind = Literal["count", "number", "flag", "material"]
 
@@ -135,6 +142,20 @@ class WheelOptions:
 
 
 @dataclass(frozen=True)
+class RingOptions:
+    """A ring; segments None: about 0.25 m each."""
+
+    segments: int | None = _count("parts", "Number of parts; empty = about 0.25 m each.", 3)
+    inflation: float | None = _option(
+        1.2,
+        About("number", "inflation", "Area that it wants, times its own; empty = it holds nothing.", "", 0.0,
+              INFLATION_LIMIT, optional=True),
+    )  # fmt: skip
+    particle_mass: float = _mass(0.1)
+    material: str = _material("rubber")
+
+
+@dataclass(frozen=True)
 class JellyOptions:
     """A jelly of any shape; cells None: 8 across, fewer where it is long and thin."""
 
@@ -160,6 +181,7 @@ Options = (
     | TrussOptions
     | WebOptions
     | WheelOptions
+    | RingOptions
     | JellyOptions
 )
 AnyOptions = TypeVar("AnyOptions", bound=Options)

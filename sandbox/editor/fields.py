@@ -18,7 +18,7 @@ from sandbox.level.quantities import replaced
 
 # Fields of bodies that their form does not depend on; a change of any other may take pins, cuts and references along.
 _FORMLESS = frozenset(BodyDef.model_fields) | {"particle_mass", "end_mass", "hub_mass", "masses", "velocities"}
-_FORMLESS |= {"pin", "rest_length", "motor"}
+_FORMLESS |= {"pin", "rest_length", "motor", "area", "inflation", "bending"}
 # Parts of a level that other edits change.
 _NO_FIELDS = frozenset(
     set(Level.model_fields)

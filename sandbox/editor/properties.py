@@ -24,7 +24,7 @@ _OUTLINES = ("polyline", "polygon")
 # Sections of the fields that are not of a body's form, in their order.
 _SECTIONS = {
     "Mass": ("mass", "particle_mass", "end_mass", "hub_mass", "masses", "gravity_scale"),
-    "Springs": ("material", "rest_length", "cut"),
+    "Springs": ("material", "rest_length", "cut", "area", "inflation", "bending"),
     "Start": ("pin", "pinned", "velocity", "velocities", "pose"),
     "Drive": ("drive", "hydraulic", "motor"),
     "Contact": ("particle_radius", "friction", "restitution", "collides", "collision_group"),

@@ -37,6 +37,7 @@ LEVEL = {
          "position": [20, 8]},
         {"type": "wheel", "id": "driven", "position": [9, 12], "radius": 1.0, "thickness": 0.5, "segments": 6,
          "drive": {"amplitude": 0.1, "period": 30}, "motor": {"speed": 2, "torque": 10}, "gravity_scale": 0.5},
+        {"type": "ring", "id": "ring", "position": [40, 0], "radius": 1.0, "segments": 8, "bending": {}},
         {"type": "mesh", "id": "mesh", "particles": [[30, 0], [31, 0]], "masses": [1.0, 2.0], "springs": [[0, 1]],
          "velocities": [[0, 0], [0, 1]], "pinned": [0], "extras": {"by": "hand"}},
     ],
@@ -119,7 +120,7 @@ def test_several_kinds_have_the_fields_that_they_share(level):
     # Ends that are held are not the rim that is.
     assert "pin" not in fields(chosen(level, "rope", "web"))
     everything = set(fields(Document(level, frozenset(items_of(level)))))
-    assert everything == {"group", "extras", "drive", "motor", "hydraulic"}
+    assert everything == {"group", "extras", "drive", "motor", "hydraulic", "bending"}
 
 
 def test_one_axis_of_many_is_set_and_the_other_stays(level):

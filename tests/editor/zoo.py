@@ -58,6 +58,8 @@ ZOO = {
             "collision_group": "balls",
             "particle_radius": 0.1,
         },
+        {"type": "ring", "id": "tyre", "position": [-12, 9], "radius": 1, "segments": 12, "inflation": 1.5}
+        | {"particle_mass": 0.5, "pinned": [3], "bending": {"stiffness": 0.1}},
         {"type": "mesh", "id": "net", "particles": [[0, 0], [1, 0], [1, 1]], "masses": [1, 2, 3]}
         | {"velocities": [[0, 0], [0, 1], [1, 0]], "springs": [[0, 1], [1, 2]], "pose": [[0, 0], [1, 0.5], [1, 1.5]]},
     ],

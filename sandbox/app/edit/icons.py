@@ -96,6 +96,15 @@ def _walls(pen: Pen) -> None:
             pen.line(a[::-1], b[::-1], width=1.4)
 
 
+def _ring(pen: Pen) -> None:
+    pen.disc(12, 12, 9.5, 2.2)
+    for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        pen.line((12 + 1.5 * dx, 12 + 1.5 * dy), (12 + 5.2 * dx, 12 + 5.2 * dy), width=1.5)
+        tip = (12 + 5.6 * dx, 12 + 5.6 * dy)
+        for side in (-1, 1):
+            pen.line(tip, (tip[0] - 1.7 * dx + 1.5 * side * dy, tip[1] - 1.7 * dy + 1.5 * side * dx), width=1.5)
+
+
 def _edit(pen: Pen) -> None:
     pen.line((5, 19), (6, 14.5), (16, 4.5), (19.5, 8), (9.5, 18), (5, 19))
     pen.line((13.5, 7), (17, 10.5))
@@ -185,5 +194,5 @@ EDIT_DRAWINGS: dict[str, Callable[[Pen], None]] = {
     "web": _web, "box": _box, "circle": _circle, "polygon": _polygon, "wheel": _wheel, "edit": _edit, "new": _new,
     "open": _open, "duplicate": _duplicate, "delete": _delete, "mirror": _mirror, "array": _array, "group": _group,
     "align": _align, "order": _order, "snap": _snap, "forecast": _forecast, "keep": _keep, "menu": _menu,
-    "ground": _ground, "line": _line, "walls": _walls,
+    "ring": _ring, "ground": _ground, "line": _line, "walls": _walls,
 }  # fmt: skip
