@@ -24,8 +24,9 @@ _OUTLINES = ("polyline", "polygon")
 # Sections of the fields that are not of a body's form, in their order.
 _SECTIONS = {
     "Mass": ("mass", "particle_mass", "end_mass", "hub_mass", "masses", "gravity_scale"),
-    "Springs": ("material", "rest_length", "cut", "area", "inflation", "bending"),
+    "Springs": ("material", "rest_length", "cut"),
     "Start": ("pin", "pinned", "velocity", "velocities", "pose"),
+    "Shape": ("area", "inflation", "bending"),
     "Drive": ("drive", "hydraulic", "motor"),
     "Contact": ("particle_radius", "friction", "restitution", "collides", "collision_group"),
     "Other": ("group", "extras"),
