@@ -1,12 +1,15 @@
 """Driven: which parts of a scene are driven, and where a picture of the level says so."""
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
+from sandbox.editor.items import Item
 from sandbox.editor.scene import Scene
 from sandbox.level.bodies import WheelDef
 from sandbox.level.driving import HydraulicDef, MotorDef
+from sandbox.level.parts import parts
 
 
 class Driven(NamedTuple):
@@ -35,6 +38,18 @@ def driven_parts(scene: Scene) -> Driven:
         if spring.hydraulic is not None:
             found.hydraulics.append((index, spring.hydraulic))
     return found
+
+
+def restless(scene: Scene) -> Iterator[Item]:
+    """Items that move by themselves: muscles, and wheels with a motor that runs from the start."""
+    level = scene.level
+    running = {part.name for part in parts(level) if part.start_value}
+    for body in level.bodies:
+        if (body.drive is not None and body.drive.amplitude) or body.id in running:
+            yield Item("body", body.id)
+    for index, spring in enumerate(level.springs):
+        if spring.drive is not None and spring.drive.amplitude:
+            yield Item("spring", index)
 
 
 def _middle(scene: Scene, start: int, end: int) -> int:

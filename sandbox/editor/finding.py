@@ -11,7 +11,6 @@ from sandbox.editor.document import Document
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene
 from sandbox.level.model import Level
-from sandbox.level.surfaces import surfaces_of
 from sandbox.physics.outline import TERRAIN_GROUP
 
 Severity = Literal["error", "warning", "hint"]
@@ -123,7 +122,7 @@ def _scales(level: Level, scene: Scene) -> NDArray[np.float64]:
 
 def _caught(level: Level, scene: Scene, part: Slots) -> NDArray[np.bool_]:
     """Whether each part, by its label (n,), has walls around it, or terrain somewhere below it."""
-    touches = touched(level, scene)[1] & TERRAIN_GROUP != 0
+    touches = scene.collision.touches & TERRAIN_GROUP != 0
     caught = np.zeros(len(part), dtype=np.bool_)
     if level.walls is not None:
         caught[part[touches]] = True
@@ -140,10 +139,3 @@ def _caught(level: Level, scene: Scene, part: Slots) -> NDArray[np.bool_]:
         least, most = mine.min(axis=0), mine.max(axis=0)
         caught |= (low[:, 0] <= most[0]) & (low[:, 1] <= most[1]) & (high[:, 1] >= least[1])
     return caught
-
-
-def touched(level: Level, scene: Scene) -> tuple[Slots, Slots]:
-    """Bits (n,) of the collision group that each particle is in, and of those that it touches."""
-    counts = np.bincount(scene.particle_item, minlength=len(level.bodies))[: len(level.bodies)]
-    surfaces = surfaces_of(level, counts.tolist())
-    return surfaces["group"], surfaces["collides"]

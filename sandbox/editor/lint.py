@@ -60,7 +60,7 @@ def falling_parts(level: Level, scene: Scene) -> Rule:
 
 
 def idle_items(scene: Scene) -> Rule:
-    """Loose springs between two pinned particles, and pinned loose particles that hold nothing."""
+    """Loose springs between two pinned particles, and pinned loose particles that hold nothing and touch nothing."""
     bodies = len(scene.level.bodies)
     loose = np.flatnonzero(scene.spring_item >= bodies + len(scene.level.particles))
     idle = loose[scene.pinned[scene.particle_a[loose]] & scene.pinned[scene.particle_b[loose]]]
@@ -72,6 +72,8 @@ def idle_items(scene: Scene) -> Rule:
     used = np.zeros(len(scene.position), dtype=np.bool_)
     for slots in (scene.particle_a, scene.particle_b, scene.welds.ravel()):
         used[slots] = True
+    if scene.level.has_contacts:
+        used |= scene.collision.touches != 0
     for slot in np.flatnonzero(scene.pinned & ~used & (scene.particle_item >= bodies)).tolist():
         item = scene.items[int(scene.particle_item[slot])]
         text = f"{called(item)} is pinned and holds nothing; join something to it or delete it"

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.editor.document import Document, select
-from sandbox.editor.finding import Finding, Remedy, Rule, called, place_of, touched
+from sandbox.editor.finding import Finding, Remedy, Rule, called, place_of
 from sandbox.editor.items import Item
 from sandbox.editor.moving import move
 from sandbox.editor.scene import Scene
@@ -31,7 +31,7 @@ def buried_particles(level: Level, scene: Scene) -> Rule:
     """Items that start inside solid terrain or beyond walls, which they touch."""
     if not level.terrain and level.walls is None:
         return
-    touches = touched(level, scene)[1] & TERRAIN_GROUP != 0
+    touches = scene.collision.touches & TERRAIN_GROUP != 0
     free = np.flatnonzero(touches & ~scene.pinned)
     yield None
     for piece in level.terrain:
@@ -98,21 +98,22 @@ def overlapping_discs(level: Level, scene: Scene) -> Rule:
     """Pairs of items whose discs lie in each other at the start, where they touch and nothing joins them."""
     if not level.has_contacts:
         return
-    group, touches = touched(level, scene)
     first, count = scene.first_of_weld, len(scene.items)
     large = np.flatnonzero(scene.radius > BODY_RADIUS)[:DISCS]
-    joined = _joined(scene)
+    joined = _keys(first[scene.particle_a], first[scene.particle_b], len(first))
+    yield None
     told: set[int] = set()
     for slot in large.tolist():
         apart = scene.position - scene.position[slot]
         reach = scene.radius + scene.radius[slot]
         into = reach - np.hypot(*apart.T) > DEEP * np.minimum(scene.radius, scene.radius[slot])
-        into &= (touches & group[slot] != 0) & (group & touches[slot] != 0) & (first != first[slot])
         into &= (scene.particle_item != scene.particle_item[slot]) & ~(scene.pinned & scene.pinned[slot])
-        for other in np.flatnonzero(into).tolist():
+        others = np.flatnonzero(into & (first != first[slot]))
+        others = others[scene.collision.meet(others, slot)]
+        others = others[~np.isin(_keys(first[others], first[slot], len(first)), joined)]
+        for other in others.tolist():
             a, b = sorted((int(scene.particle_item[slot]), int(scene.particle_item[other])))
-            pair = (min(first[slot], first[other]), max(first[slot], first[other]))
-            if a * count + b in told or (int(pair[0]), int(pair[1])) in joined:
+            if a * count + b in told:
                 continue
             told.add(a * count + b)
             text = (
@@ -123,8 +124,6 @@ def overlapping_discs(level: Level, scene: Scene) -> Rule:
         yield None
 
 
-def _joined(scene: Scene) -> set[tuple[int, int]]:
-    """Pairs of particles that a spring joins, by the first of their welds."""
-    first = scene.first_of_weld
-    a, b = first[scene.particle_a], first[scene.particle_b]
-    return set(zip(np.minimum(a, b).tolist(), np.maximum(a, b).tolist(), strict=True))
+def _keys(a: Slots, b: Slots | int, count: int) -> Slots:
+    """One number for each pair of particles, the same in either order."""
+    return np.asarray(np.minimum(a, b) * count + np.maximum(a, b))

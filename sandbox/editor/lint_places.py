@@ -6,7 +6,7 @@ from collections.abc import Generator, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.finding import Finding, Rule, called, place_of, touched
+from sandbox.editor.finding import Finding, Rule, called, place_of
 from sandbox.editor.scene import Scene
 from sandbox.level.limits import BODY_RADIUS
 from sandbox.level.model import Level
@@ -99,7 +99,6 @@ def _near_pairs(scene: Scene) -> Iterator[tuple[Slots, Slots]]:
 def crossing_bodies(level: Level, scene: Scene) -> Rule:
     """Pairs of bodies of which springs cross, where nothing joins the two."""
     count = len(level.bodies)
-    group, touches = touched(level, scene)
     first = np.searchsorted(scene.particle_item, np.arange(count))
     joined = yield from _joined_bodies(scene, count)
     for a, b in _overlapping_boxes(scene, count):
@@ -109,7 +108,7 @@ def crossing_bodies(level: Level, scene: Scene) -> Rule:
         crossing = yield from _crossing(scene, a, b)
         if crossing is not None:
             items, p, q = (scene.items[a], scene.items[b]), first[a], first[b]
-            collide = bool(touches[p] & group[q] and touches[q] & group[p])
+            collide = level.has_contacts and bool(scene.collision.meet(int(p), int(q)))
             then = "and will be pushed apart" if collide else "and will pass through each other"
             text = f"{called(items[0])} and {called(items[1])} cross, {then}; move one away, or join them"
             yield Finding("warning" if collide else "hint", text, frozenset(items), crossing)

@@ -19,6 +19,7 @@ from sandbox.level.model import Level, ParticleDef
 from sandbox.level.parts import given_length
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import distances
+from sandbox.level.surfaces import surfaces_of
 from sandbox.level.welds import united
 
 Floats = NDArray[np.float64]
@@ -66,6 +67,17 @@ class _Ground(NamedTuple):
     counts: list[int]
     edge: Slots
     edge_counts: list[int]
+
+
+class Collision(NamedTuple):
+    """Bits (n,) of the collision group that each particle is in, and of those that it touches."""
+
+    group: Slots
+    touches: Slots
+
+    def meet(self, a: Slots | int, b: Slots | int) -> Mask:
+        """Whether particles touch others, both (k,) or one for all."""
+        return np.asarray((self.touches[a] & self.group[b] != 0) & (self.touches[b] & self.group[a] != 0))
 
 
 class _Names:
@@ -147,6 +159,12 @@ class Scene:
     corner_item: Slots
     edge_item: Slots
     parts: _Parts = field(repr=False)
+
+    @cached_property
+    def collision(self) -> Collision:
+        """What touches what."""
+        surfaces = surfaces_of(self.level, self.parts.bodies.counts)
+        return Collision(surfaces["group"], surfaces["collides"])
 
     @cached_property
     def _firsts(self) -> Slots:
