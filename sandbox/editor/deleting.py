@@ -40,7 +40,7 @@ def delete(document: Document) -> Document:
 def break_apart(document: Document) -> Document:
     """Make loose particles and springs of every selected body, each a group, and select them. Raises EditError.
 
-    They fall and swing as the body did; its motor is gone.
+    They fall and swing as the body did; its motor, its areas and its angles are gone.
     """
     level = document.level
     bodies = chosen_bodies(level, document.selection)

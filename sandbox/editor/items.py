@@ -81,8 +81,18 @@ def chosen_terrain(level: Level, selection: Selection) -> list[TerrainDef]:
     return [piece for piece in level.terrain if piece.id in wanted]
 
 
+def chosen_definitions(level: Level, selection: Selection) -> list[Definition]:
+    """What the level says of the selected items, by kind and in file order."""
+    return [
+        *chosen_bodies(level, selection),
+        *chosen_particles(level, selection),
+        *chosen_springs(level, selection),
+        *chosen_terrain(level, selection),
+    ]
+
+
 def chosen_items(level: Level, selection: Selection) -> dict[Item, Definition]:
-    """The selected items with their definitions, by kind and in file order."""
+    """The selected items with their definitions, in that order."""
     found: dict[Item, Definition] = {Item("body", body.id): body for body in chosen_bodies(level, selection)}
     found |= {Item("particle", particle.id): particle for particle in chosen_particles(level, selection)}
     springs = keys(selection, "spring")

@@ -10,7 +10,7 @@ from sandbox.editor.abouts import About, abouts
 from sandbox.editor.additions import add_object
 from sandbox.editor.document import Document
 from sandbox.editor.fields import change_field, set_field, with_tuples
-from sandbox.editor.items import Definition, Item, Selection, chosen_items
+from sandbox.editor.items import Definition, Item, Selection, chosen_definitions, chosen_items
 from sandbox.editor.names import owner_of
 from sandbox.editor.property import MIXED, Property, Section, part_properties, same, with_axes
 from sandbox.editor.terrain import FORMS, Form, Point, corners_of, form_of, outlined, with_corners
@@ -39,13 +39,16 @@ def properties(document: Document) -> tuple[Section, ...]:
     What some of them can be given, such as a motor, is there for those.
     """
     level, selection = document.level, document.selection
-    items = chosen_items(level, selection)
-    if not items:
+    parts = chosen_definitions(level, selection)
+    if not parts:
         return ()
-    parts = list(items.values())
     kinds = dict.fromkeys(map(type, parts))
     made = [made for name, about in _common(kinds, len(parts)).items() for made in _made(selection, parts, name, about)]
-    made += [made for name, about in _objects(kinds).items() for made in _object_properties(items, name, about)]
+    objects = _objects(kinds)
+    if objects:
+        # Loose particles have none, and may be many.
+        items = chosen_items(level, frozenset(item for item in selection if item.kind != "particle"))
+        made += [made for name, about in objects.items() for made in _object_properties(items, name, about)]
     if len(parts) == 1:
         facts = _facts(level, next(iter(selection)), parts[0])
         made = [*facts, *made] if isinstance(parts[0], SpringDef) else [*made, *facts]

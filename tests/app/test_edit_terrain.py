@@ -94,6 +94,21 @@ def test_a_corner_is_dragged_one_is_put_in_and_one_is_taken_out_with_undo(driver
     assert terrain(driver)[0].polygon == ((-2, -2), (4, -2), (4, -1), (-2, -1))
 
 
+def test_a_clicked_corner_is_nudged_by_the_arrows_in_one_step_and_a_new_one_can_be_taken_out_again(driver):
+    driver.click_at(1, -1.6)
+    driver.click_at(4, -1)
+    step = driver.editor.grid
+    for key in (pygame.K_RIGHT, pygame.K_RIGHT, pygame.K_UP):
+        driver.key(key)
+    assert terrain(driver)[0].polygon[2] == pytest.approx((4 + 2 * step, -1 + step))
+    driver.drag((1, -2), (1, -2.3), (1, -2.5))
+    driver.key(pygame.K_DELETE)
+    assert len(terrain(driver)[0].polygon) == 4
+    assert labels(driver) == ["Nudge a corner", "Add a corner", "Delete a corner"]
+    driver.key(pygame.K_DELETE)
+    assert terrain(driver) == ()
+
+
 def test_a_corner_that_would_cross_a_side_stays_where_it_was(driver):
     driver.click_at(1, -1.6)
     driver.press(driver.at(-2, -1))

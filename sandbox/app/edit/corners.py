@@ -86,6 +86,11 @@ class CornerMoving:
         except EditError:
             self._ghost = None
 
+    @property
+    def chosen(self) -> tuple[Item, int] | None:
+        """The corner, once there is one."""
+        return (self._item, self._number) if self._moved or not self._is_new else None
+
     def _changed(self, document: Document) -> Document:
         change = insert_corner if self._is_new else move_corner
         return change(document, str(self._item.key), self._number, self._snap.point)

@@ -16,8 +16,8 @@ from sandbox.editor.gesture import Drawing
 from sandbox.editor.grouping import with_groups
 from sandbox.editor.items import Item, keys
 from sandbox.editor.pick import combined, item_at
-from sandbox.editor.snap import Snap
-from sandbox.editor.terrain import delete_corner
+from sandbox.editor.snap import PLACE_DECIMALS, Snap
+from sandbox.editor.terrain import corners_of, delete_corner, move_corner, piece_of
 
 if TYPE_CHECKING:
     from sandbox.app.edit.screen import EditScreen
@@ -89,7 +89,7 @@ class SelectHand:
     def hint(self) -> str:
         """The keys that join and take away, or what a piece of terrain lets do with its corners."""
         if self.corner is not None:
-            return "Drag the corner, or Delete takes it out; dots between corners make new ones"
+            return "Drag the corner or nudge it by the arrows; Delete takes it out; dots between corners make new ones"
         if self.piece is not None and self._gesture is None:
             return "Drag corners, or dots between them for new ones; drag the piece to move it"
         around = "Drag around parts" if self._lasso else "Click or drag a box"
@@ -133,6 +133,19 @@ class SelectHand:
         self._screen.edit("Delete a corner", lambda document: delete_corner(document, str(piece.key), corner))
         return True
 
+    def nudge_corner(self, dx: float, dy: float) -> bool:
+        """Move the clicked corner by dx, dy [m]; whether there is one."""
+        piece, corner = self.piece, self.corner
+        if piece is None or corner is None:
+            return False
+        screen, key = self._screen, str(piece.key)
+        x, y = corners_of(piece_of(screen.document.level, key))[corner]
+        place = (round(x + dx, PLACE_DECIMALS) + 0.0, round(y + dy, PLACE_DECIMALS) + 0.0)
+        screen.edit(
+            "Nudge a corner", lambda document: move_corner(document, key, corner, place), merge="nudge a corner"
+        )
+        return True
+
     def handles(self) -> Handles | None:
         """The handles around the selection."""
         screen = self._screen
@@ -172,7 +185,6 @@ class SelectHand:
             return False
         number, middle = corners.corner_at(pixel), corners.middle_at(pixel)
         if number is not None:
-            self._chosen = (corners.item, number)
             self._gesture = CornerMoving(self._screen, corners, number, is_new=False)
         elif middle is not None:
             self._gesture = CornerMoving(self._screen, corners, middle, is_new=True)
@@ -200,6 +212,7 @@ class SelectHand:
         gesture, pressed, self._gesture, self._pressed = self._gesture, self._pressed, None, None
         if gesture is not None:
             gesture.end()
+            self._chosen = gesture.chosen if isinstance(gesture, CornerMoving) else None
         elif pressed is not None and not self._double and pick_mode(modifiers, True) == "replace":
             self._screen.select(frozenset() if self._clicked is None else frozenset({self._clicked}))
 

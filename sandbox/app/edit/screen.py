@@ -287,6 +287,8 @@ class EditScreen:
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
         """Nudge the selection by a step of the grid, ten with Shift; without one, move the keyboard cursor."""
         step = self.grid * (NUDGE_LEAP if modifiers & pygame.KMOD_SHIFT else 1)
+        if isinstance(self.hand, SelectHand) and self.hand.nudge_corner(dx * step, dy * step):
+            return
         if self.tool in ("select", "lasso") and self.document.selection:
             self.edit("Nudge", lambda document: move(document, dx * step, dy * step), merge="nudge")
             return
