@@ -57,9 +57,8 @@ def properties(document: Document) -> tuple[Section, ...]:
     by_section: dict[str, list[Property]] = {"": [], **{title: [] for title in _SECTIONS}}
     for each in made:
         by_section[_section_of(each.field)].append(each)
-    by_section[_summary(kinds, parts)] = by_section.pop("")
-    titles = [_summary(kinds, parts), *_SECTIONS]
-    return tuple(Section(title, tuple(by_section[title])) for title in titles if by_section[title])
+    rest = (Section(title, tuple(by_section[title])) for title in _SECTIONS if by_section[title])
+    return (Section(_summary(kinds, parts), tuple(by_section[""])), *rest)
 
 
 def _section_of(field: str) -> str:
