@@ -12,7 +12,7 @@ from sandbox.physics.jit import COMPILED
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS, shape_pattern
-from sandbox.physics.stability import BOUND, coefficient_limits, element_count, largest_eigenvalue, report, spring_loads
+from sandbox.physics.stability import element_count, largest_eigenvalue, report
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.bench import jelly_abuse
@@ -37,9 +37,9 @@ def ring(count=12, *, inflation=1.0, bending=None, coefficient=0.1, pinned=(), *
     return world
 
 
-def shaken(world, generator, speed=2.0):
+def shaken(world, generator, speed=2.0, shift=0.2):
     """The world with every free particle in motion and out of place."""
-    world.position += generator.uniform(-0.2, 0.2, world.position.shape)
+    world.position += generator.uniform(-shift, shift, world.position.shape)
     world.velocity += generator.uniform(-speed, speed, world.velocity.shape) * (world.inverse_mass > 0.0)[:, None]
     return world
 
@@ -151,7 +151,8 @@ def test_elements_taken_in_after_the_factorisation_move_as_those_in_the_matrix_d
         world = jelly_abuse.jelly(4, 3)
         world.add_elements(BEND, [[0, 1, 2], [4, 5, 6]], stiffness=0.3, damping=0.5)
         world.pin(0)
-        worlds.append(shaken(world, np.random.default_rng(4)))
+        # Not tangled: only those of the matrix have a goal.
+        worlds.append(shaken(world, np.random.default_rng(4), shift=0.02))
         run(world, 30)
     places = [world.position[world.particle_active] for world in worlds]
     assert np.abs(places[0] - places[1]).max() < 1e-9
@@ -221,20 +222,50 @@ def test_limits_count_elements_and_hold_the_eigenvalue():
         assert largest_eigenvalue(world) <= max(report(world).n_eff, element_count(world).max()) + 1e-9
 
 
-def test_a_jelly_at_its_proven_limit_calms_down_in_the_single_pass():
-    world = jelly_abuse.jelly(6, 5, solver="single_pass")
-    limit = coefficient_limits(world).stiffness
-    c = 0.0
-    for c in np.linspace(0.5, 0.01, 50):
-        world.set_coefficients(c, c, None)
-        if spring_loads(world).max() < BOUND:
-            break
-    assert 0.02 < c < 0.3 and (limit is None or limit >= 0.0)
-    shaken(world, np.random.default_rng(1), speed=0.1)
-    world.position[world.particle_active] = world.origin[world.particle_active]
+@pytest.mark.parametrize("scene", ["jelly", "ring", "stiff ring"])
+def test_in_the_single_pass_small_motion_stays_small_at_the_proven_limit_and_grows_beyond_the_estimated(scene):
+    def world_at(c, seed):
+        if scene == "jelly":
+            world = jelly_abuse.jelly(6, 5, stiffness=c, damping=c, solver="single_pass")
+        else:
+            world = ring(coefficient=c, bending=None if scene == "ring" else c, solver="single_pass")
+        free = world.inverse_mass > 0.0
+        kick = np.random.default_rng(seed).uniform(-1e-6, 1e-6, world.position.shape)
+        world.velocity += kick * (free & world.particle_active)[:, None]
+        return world
+
+    found = report(world_at(0.01, 0))
+    for seed in range(scaled(5, 1)):
+        world = world_at(found.proven_limit, seed)
+        before = total_energy(world)
+        run(world, scaled(600, 150))
+        assert total_energy(world) <= before
+        world = world_at(1.1 * found.estimated_limit, seed)
+        run(world, scaled(600, 150))
+        assert not total_energy(world) < 10.0 * before
+
+
+@pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
+@pytest.mark.parametrize("abuse", [name for name in jelly_abuse.ABUSES if name != "dragged round"])
+def test_an_abused_jelly_gains_no_energy_at_the_proven_limit_of_the_single_pass(abuse):
+    limit = report(jelly_abuse.jelly(solver="single_pass")).proven_limit
+    world = jelly_abuse.jelly(stiffness=limit, damping=limit, solver="single_pass")
+    jelly_abuse.ABUSES[abuse](world)
+    energy, _ = jelly_abuse.recover(world)
+    assert energy <= 1.0 + 1e-9
+    assert not world.contained
+
+
+@pytest.mark.parametrize("bending", [None, 0.05])
+@pytest.mark.parametrize("inflation", [1.0, 1.1, 1.5])
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_ring_gains_no_energy(solver, inflation, bending):
+    world = ring(coefficient=0.1, inflation=inflation, bending=bending, solver=solver)
+    world.position += np.random.default_rng(0).uniform(-1e-3, 1e-3, world.position.shape)
     before = total_energy(world)
-    run(world, scaled(400, 60))
-    assert total_energy(world) < 0.5 * before
+    for _ in range(scaled(600, 60)):
+        step(world)
+        assert total_energy(world) <= before
 
 
 @pytest.mark.parametrize("name", ["element_rest", "element_stiffness", "element_damping", "corner_weight"])
@@ -249,13 +280,11 @@ def test_an_impossible_constant_of_an_element_is_taken_back(name, value):
     assert np.isfinite(world.position).all()
 
 
-BACK = [name for name in jelly_abuse.ABUSES if name != "randomised"]
-
-
 @pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
-@pytest.mark.parametrize("abuse", BACK)
-def test_a_jelly_comes_back_from_every_abuse_within_five_seconds(abuse):
-    world = jelly_abuse.jelly()
+@pytest.mark.parametrize("material", [(0.9, 0.99), (0.5, 0.9)])
+@pytest.mark.parametrize("abuse", jelly_abuse.ABUSES)
+def test_a_jelly_comes_back_from_every_abuse_within_five_seconds(abuse, material):
+    world = jelly_abuse.jelly(stiffness=material[0], damping=material[1])
     jelly_abuse.ABUSES[abuse](world)
     energy, errors = jelly_abuse.recover(world)
     assert energy <= 1.0 + 1e-9
@@ -264,14 +293,43 @@ def test_a_jelly_comes_back_from_every_abuse_within_five_seconds(abuse):
 
 
 @pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
-def test_a_jelly_comes_back_from_nearly_every_tangle():
-    # One in twenty ends wound twice round a vertex, where no triangle is inverted.
-    errors = []
-    for seed in range(20):
-        world = jelly_abuse.jelly()
+@pytest.mark.parametrize("shape", [None, *jelly_abuse.SHAPES.values()], ids=["box", *jelly_abuse.SHAPES])
+def test_a_jelly_of_any_shape_comes_back_from_every_tangle(shape):
+    for seed in range(20 if shape is None else 5):
+        world = jelly_abuse.jelly(shape=shape)
         jelly_abuse.tangle(seed)(world)
-        errors.append(jelly_abuse.recover(world)[1][-1])
-    assert sorted(errors)[18] < 0.01 and max(errors) < 0.05
+        energy, errors = jelly_abuse.recover(world, seconds=2)
+        assert energy <= 1.0 + 1e-9
+        assert errors[-1] < 0.01
+
+
+@pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
+def test_a_jelly_comes_back_from_a_hand_that_drags_it_round():
+    world = jelly_abuse.drag_by_hand(jelly_abuse.jelly_level())
+    energy, errors = jelly_abuse.recover(world)
+    assert energy <= 1.0 + 1e-9
+    assert errors[-1] < 0.01
+
+
+@pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
+@pytest.mark.parametrize("abuse", ["flattened", "randomised", "scaled x1000"])
+def test_a_jelly_that_was_at_rest_does_not_begin_to_spin(abuse):
+    world = jelly_abuse.jelly()
+    jelly_abuse.ABUSES[abuse](world)
+    scale = total_energy(world)
+    for _ in range(60):
+        step(world)
+        assert abs(momentum(world)[2]) < 1e-9 * scale
+
+
+def test_a_torn_jelly_beside_a_pendulum_is_drawn_to_no_form():
+    # A goal would push what it hangs together with.
+    world = network([(0, 0), (1, 0), (0, 1), (3, 0)], [(0, 1), (1, 2), (2, 0), (1, 3)], solver="direct")
+    world.add_elements(AREA, [[0, 1, 2]])
+    world.position[2] = (0.5, -0.3)
+    before = momentum(world)[:2]
+    run(world, 60)
+    assert np.abs(momentum(world)[:2] - before).max() < 1e-12
 
 
 def test_a_world_of_elements_without_springs_moves_too():
