@@ -333,7 +333,7 @@ class EditingMachine(RuleBasedStateMachine):
     def reorder(self, to) -> None:
         self._edit(grouping.reorder, to)
 
-    @precondition(lambda self: self.scene.items)
+    @precondition(lambda self: len(self.scene.mass))
     @rule(shares=SHARES, ticks=st.integers(0, 3), soft=st.booleans())
     def play_and_keep(self, shares, ticks, soft) -> None:
         world = build_world(self.document.level)
