@@ -25,6 +25,7 @@ DANGER: Colour = (255, 107, 107)
 PARTICLE: Colour = (226, 231, 239)
 PINNED: Colour = (94, 208, 178)
 WELD: Colour = (240, 214, 104)
+DRIVE: Colour = (255, 118, 186)
 TERRAIN: Colour = (150, 138, 118)
 TERRAIN_FILL: Colour = (44, 42, 42)
 

@@ -1,6 +1,7 @@
 """Help: the page of all shortcuts."""
 
 from collections.abc import Callable
+from itertools import product
 from typing import Any
 
 import pygame
@@ -15,8 +16,8 @@ from sandbox.app.widgets import Ui
 COLUMN_WIDTH = 500.0
 NARROWEST_COLUMN = 400.0
 MOST_COLUMNS = 3
-ROW = 22.0
-HEADING = 31.0
+ROW = 19.0
+HEADING = 29.0
 TOP = 56.0
 MARGIN = 28.0
 TEXT_SIZE = 12.5
@@ -61,11 +62,19 @@ Column = dict[str, list[Shortcut]]
 
 
 def _columns(entries: tuple[Shortcut, ...], count: int) -> list[Column]:
-    """The entries by their groups, whole groups side by side in columns of about the same height."""
-    columns: list[Column] = [{} for _ in range(count)]
-    for group in dict.fromkeys(entry.group for entry in entries):
-        min(columns, key=_height)[group] = [entry for entry in entries if entry.group == group]
-    return columns
+    """The entries by their groups, whole groups side by side in columns as low as can be."""
+    groups: Column = {}
+    for entry in entries:
+        groups.setdefault(entry.group, []).append(entry)
+    heights = [_height({name: members}) for name, members in groups.items()]
+    ways = product(range(count), repeat=len(groups))
+
+    def highest(way: tuple[int, ...]) -> float:
+        return max(sum(height for at, height in zip(way, heights, strict=True) if at == k) for k in range(count))
+
+    best = min(ways, key=highest)
+    members = list(groups.items())
+    return [dict(each for at, each in zip(best, members, strict=True) if at == k) for k in range(count)]
 
 
 def _height(column: Column) -> float:

@@ -3,7 +3,7 @@
 import re
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from pydantic import BaseModel
 
@@ -22,12 +22,17 @@ Kind = Literal[
     "pairs",
     "words",
     "form",
+    "part",
+    "key",
+    "touches",
     "extras",
 ]
 
 # What a description says of null.
 _EMPTY = re.compile(r"empty = ([^.;]+)")
-_OBJECTS = ("drive", "hydraulic", "motor")
+# Shorter words where the description's do not fit into a field.
+_SHORTER = {"that of the level's contacts": "the level's", "as placed, of a hydraulic its shortest": "as placed"}
+_KEYS = ("key", "reverse_key")
 _TITLES = {
     "a": "End a",
     "b": "End b",
@@ -35,6 +40,11 @@ _TITLES = {
     "pin": "Held ends",
     "pinned": "Held",
     "cut": "Cut springs",
+    "drive": "Muscle",
+    "area": "Keeps area",
+    "collision_group": "In group",
+    "collides": "Touches",
+    "particle_radius": "Disc radius",
     "licence": "Licence",
     "warm_start": "Warm start",
 }
@@ -45,7 +55,7 @@ class About:
     """A field: kind, title, unit, limits (both included but where `above`), tooltip, choices, whether null is a value.
 
     empty: what null stands for. A `point` is of two numbers; `flags` are any number of the choices, `pairs`
-    lists of numbers in a list; a `form` has a table of its own.
+    lists of numbers in a list; a `form` has a table of its own; a `part` is an object, of that model, or null.
     """
 
     kind: Kind
@@ -58,13 +68,21 @@ class About:
     choices: tuple[str, ...] = ()
     optional: bool = False
     empty: str = ""
+    model: type[BaseModel] | None = None
 
 
 @cache
 def abouts(model: type[BaseModel]) -> dict[str, About]:
-    """What is known of every field of a model that is a value, by name, in its order; drives are whole objects."""
+    """What is known of every field of a model, by name, in its order."""
     fields = model.model_json_schema()["properties"]
-    return {name: _about(name, fields[name]) for name in model.model_fields if name not in _OBJECTS}
+    return {name: _about(name, fields[name], _part(field.annotation)) for name, field in model.model_fields.items()}
+
+
+def _part(annotation: Any) -> type[BaseModel] | None:
+    """The model of a field that is one object or null."""
+    kinds = [kind for kind in get_args(annotation) if kind is not type(None)]
+    is_one = len(kinds) == 1 and isinstance(kinds[0], type) and issubclass(kinds[0], BaseModel)
+    return kinds[0] if is_one else None
 
 
 def title_of(field: str) -> str:
@@ -72,14 +90,14 @@ def title_of(field: str) -> str:
     return _TITLES.get(field, field.replace("_", " ").capitalize())
 
 
-def _about(name: str, schema: dict[str, Any]) -> About:
+def _about(name: str, schema: dict[str, Any], part: type[BaseModel] | None) -> About:
     variants = [each for each in schema.get("anyOf", []) if each.get("type") != "null"]
     optional = any(each.get("type") == "null" for each in schema.get("anyOf", []))
     # Of several alternatives, each of which is a value, the table of choices says all.
     value = {**variants[0], **schema} if len(variants) == 1 else schema
     numbers = value.get("prefixItems", [value])[0]
     low = numbers.get("minimum", numbers.get("exclusiveMinimum"))
-    kind = _kind(name, value)
+    kind = "part" if part is not None else _kind(name, value)
     text = schema.get("description", "").replace("null = ", "empty = ").replace("`", "")
     empty = _EMPTY.search(text)
     about = About(
@@ -91,7 +109,8 @@ def _about(name: str, schema: dict[str, Any]) -> About:
         above="exclusiveMinimum" in numbers,
         choices=tuple(map(str, value.get("enum", value.get("items", {}).get("enum", _constant(value))))),
         optional=optional,
-        empty=empty[1].replace("_", " ") if empty and optional else "",
+        empty=_SHORTER.get(empty[1], empty[1].replace("_", " ")) if empty and optional else "",
+        model=part,
     )
     return About(**{**about.__dict__, "tooltip": _tooltip(about, text)})
 
@@ -103,6 +122,10 @@ def _constant(value: dict[str, Any]) -> tuple[str, ...]:
 
 def _kind(name: str, value: dict[str, Any]) -> Kind:
     items = value.get("items", {})
+    if name in _KEYS:
+        return "key"
+    if name == "collides":
+        return "touches"
     if name in ("material", "shape", "extras"):
         return {"material": "material", "shape": "form", "extras": "extras"}[name]  # type: ignore[return-value]
     if "enum" in value:

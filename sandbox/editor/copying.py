@@ -1,14 +1,15 @@
 """Copies of what is selected: as text, pasted, duplicated, in a row and in a circle.
 
-A fragment is a level of its own: selected bodies and loose particles, the loose springs and welds between them, and the
-materials that they are made of.
+A fragment is a level of its own: selected bodies, loose particles and terrain, loose springs and welds between them,
+and the materials that they are made of.
 """
 
 from collections.abc import Iterable
 
 from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.grouping import taken_groups
-from sandbox.editor.items import Item, Selection, chosen_bodies, chosen_particles, items_of, keys
+from sandbox.editor.groups import without_lost_groups
+from sandbox.editor.items import Item, Selection, chosen_bodies, chosen_particles, chosen_terrain, items_of, keys
 from sandbox.editor.moving import move, rotate
 from sandbox.editor.names import free_ids, owner_of, renamed, rewired, taken_ids
 from sandbox.editor.scene import make_scene
@@ -39,7 +40,7 @@ def paste(document: Document, text: str, at: Point | None = None) -> Document:
         found = parse_level(text.encode("utf-8", "replace"), "what was copied")
     except LevelError as error:
         raise EditError(error.faults[0]) from None
-    if not found.bodies and not found.particles:
+    if not (found.bodies or found.particles or found.terrain):
         raise EditError("what was copied is a level with nothing in it")
     box = make_scene(found).bounds()
     if at is not None and box is not None:
@@ -69,21 +70,24 @@ def fragment(document: Document) -> Level:
     """What is selected as a level of its own. Raises EditError where that is nothing, or springs alone."""
     level, selection = document.level, document.selection
     bodies, particles = chosen_bodies(level, selection), chosen_particles(level, selection)
-    if not bodies and not particles:
+    terrain = chosen_terrain(level, selection)
+    if not (bodies or particles or terrain):
         raise EditError("select something to copy; of springs, what they join too")
     owners = keys(selection, "body") | keys(selection, "particle")
     inside = tuple(spring for spring in level.springs if _inside(owners, spring.a, spring.b))
     used = _used([*bodies, *inside])
-    return Level(
+    part = Level(
         format=level.format,
         version=level.version,
         name=level.name,
         materials={name: material for name, material in level.materials.items() if name in used},
+        terrain=tuple(terrain),
         bodies=tuple(bodies),
         particles=tuple(particles),
         springs=inside,
         welds=tuple(pair for pair in level.welds if _inside(owners, *pair)),
     )
+    return without_lost_groups(part)
 
 
 def _inside(owners: frozenset[str | int], *references: str) -> bool:
@@ -129,6 +133,7 @@ def _inserted(level: Level, copies: Iterable[Level]) -> tuple[Level, Selection]:
     bodies, particles, springs, welds = (
         list(part) for part in (level.bodies, level.particles, level.springs, level.welds)
     )
+    terrain = list(level.terrain)
     materials = dict(level.materials)
     selection: set[Item] = set()
     for copy in copies:
@@ -136,6 +141,8 @@ def _inserted(level: Level, copies: Iterable[Level]) -> tuple[Level, Selection]:
         selection |= {Item("body", body.id) for body in copy.bodies}
         selection |= {Item("particle", particle.id) for particle in copy.particles}
         selection |= {Item("spring", len(springs) + index) for index in range(len(copy.springs))}
+        selection |= {Item("terrain", piece.id) for piece in copy.terrain}
+        terrain += copy.terrain
         bodies += copy.bodies
         particles += copy.particles
         springs += copy.springs
@@ -143,6 +150,7 @@ def _inserted(level: Level, copies: Iterable[Level]) -> tuple[Level, Selection]:
     level = replaced(
         level,
         materials=materials,
+        terrain=tuple(terrain),
         bodies=tuple(bodies),
         particles=tuple(particles),
         springs=tuple(springs),
@@ -153,7 +161,7 @@ def _inserted(level: Level, copies: Iterable[Level]) -> tuple[Level, Selection]:
 
 def _renamed(copy: Level, ids: set[str], groups: set[str], materials: dict[str, Material]) -> Level:
     """A level with free ids and groups, made of `materials`; all three grow by what it brings."""
-    old = [part.id for part in (*copy.bodies, *copy.particles)]
+    old = [part.id for part in (*copy.bodies, *copy.particles, *copy.terrain)]
     names = dict(zip(old, free_ids(ids, old), strict=True))
     parts = sorted(taken_groups(copy))
     group_names: dict[str | None, str | None] = {None: None, **dict(zip(parts, free_ids(groups, parts), strict=True))}
@@ -165,6 +173,7 @@ def _renamed(copy: Level, ids: set[str], groups: set[str], materials: dict[str, 
 
     return replaced(
         copy,
+        terrain=tuple(replaced(piece, id=names[piece.id], group=group_names[piece.group]) for piece in copy.terrain),
         bodies=tuple(
             replaced(body, id=names[body.id], group=group_names[body.group], material=used[body.material])
             for body in copy.bodies

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.grouping import taken_groups
+from sandbox.editor.groups import without_lost_groups
 from sandbox.editor.items import Item, chosen_bodies, keys
 from sandbox.editor.names import free_ids, owner_of, rewired, taken_ids
 from sandbox.editor.scene import make_scene
@@ -28,15 +29,19 @@ def delete(document: Document) -> Document:
         bodies=tuple(body for body in level.bodies if body.id not in bodies),
         particles=tuple(particle for particle in level.particles if particle.id not in particles),
         springs=tuple(spring for index, spring in enumerate(level.springs) if index not in springs),
+        terrain=tuple(piece for piece in level.terrain if piece.id not in keys(selection, "terrain")),
     )
     gone = bodies | particles
     if gone:
         level, _ = rewired(level, lambda reference: None if owner_of(reference) in gone else reference)
-    return Document(level)
+    return Document(without_lost_groups(level))
 
 
 def break_apart(document: Document) -> Document:
-    """Make loose particles and springs of every selected body, each a group, and select them. Raises EditError."""
+    """Make loose particles and springs of every selected body, each a group, and select them. Raises EditError.
+
+    They fall and swing as the body did; its motor, its areas and its angles are gone.
+    """
     level = document.level
     bodies = chosen_bodies(level, document.selection)
     if not bodies:
@@ -53,8 +58,20 @@ def break_apart(document: Document) -> Document:
         names |= {f"{body.id}.{index}": name for index, name in enumerate(ids)}
         names |= {f"{body.id}.{part}": ids[index] for part, index in named_particles(body).items()}
         first = scene.slot(f"{body.id}.0")
-        particles += _loose(made, scene.position[first : first + len(ids)], ids, group)
-        springs += _loose_springs(made, ids, group, body.material)
+        particle = ParticleDef(
+            id="-",
+            radius=BODY_RADIUS if body.particle_radius is None else body.particle_radius,
+            gravity_scale=body.gravity_scale,
+            friction=body.friction,
+            restitution=body.restitution,
+            collides=body.collides,
+            collision_group=body.collision_group,
+            group=group,
+        )
+        particles += _loose(made, scene.position[first : first + len(ids)], ids, particle)
+        springs += _loose_springs(
+            made, ids, SpringDef(a="-", b="-", material=body.material, group=group, drive=body.drive)
+        )
     gone = {body.id for body in bodies}
     kept = tuple(body for body in level.bodies if body.id not in gone)
     apart = replaced(level, bodies=kept, particles=tuple(particles), springs=tuple(springs))
@@ -64,16 +81,15 @@ def break_apart(document: Document) -> Document:
     return replace(document, level=checked(apart), selection=frozenset(selection))
 
 
-def _loose(made: Expansion, places: Points, ids: list[str], group: str) -> list[ParticleDef]:
+def _loose(made: Expansion, places: Points, ids: list[str], like: ParticleDef) -> list[ParticleDef]:
     rows = zip(ids, places.tolist(), made.velocity.tolist(), made.mass.tolist(), made.pinned.tolist(), strict=True)
-    first = ParticleDef(id="-", radius=BODY_RADIUS, group=group)
     return [
-        replaced(first, id=name, position=(x, y), velocity=tuple(velocity), mass=mass, pinned=pinned)
+        replaced(like, id=name, position=(x, y), velocity=tuple(velocity), mass=mass, pinned=pinned)
         for name, (x, y), velocity, mass, pinned in rows
     ]
 
 
-def _loose_springs(made: Expansion, ids: list[str], group: str, material: str) -> list[SpringDef]:
+def _loose_springs(made: Expansion, ids: list[str], like: SpringDef) -> list[SpringDef]:
     """Springs of a body as loose ones, of a given rest length where they do not start at theirs."""
     placed = distances(made.position, made.pairs)
     given = [
@@ -82,6 +98,5 @@ def _loose_springs(made: Expansion, ids: list[str], group: str, material: str) -
     ]
     if any(rest is not None and rest > COORDINATE_LIMIT for rest in given):
         raise EditError("a spring is too long to keep its rest length by itself")
-    first = SpringDef(a="-", b="-", material=material, group=group)
     rows = zip(made.pairs.tolist(), given, strict=True)
-    return [replaced(first, a=ids[a], b=ids[b], rest_length=rest) for (a, b), rest in rows]
+    return [replaced(like, a=ids[a], b=ids[b], rest_length=rest) for (a, b), rest in rows]

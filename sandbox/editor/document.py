@@ -20,7 +20,7 @@ from sandbox.level.wording import worded
 # Below this many definitions and listed points, 209 bytes of a file's limit each, the text of a level is not measured.
 MEASURED_SIZE = 40_000
 
-_PLACE = re.compile(r"(bodies|particles|springs|checks)\.(\d+)(?:\.|: |$)(.*)", re.DOTALL)
+_PLACE = re.compile(r"(bodies|particles|springs|terrain|checks)\.(\d+)(?:\.|: |$)(.*)", re.DOTALL)
 
 
 class EditError(ValueError):
@@ -56,6 +56,7 @@ def select(document: Document, selection: Selection) -> Document:
         "body": [body.id for body in level.bodies],
         "particle": [particle.id for particle in level.particles],
         "spring": range(len(level.springs)),
+        "terrain": [piece.id for piece in level.terrain],
     }
     if sum(sum(map(keys(selection, kind).__contains__, known[kind])) for kind in known) < len(selection):
         selection = selection.intersection(Item(kind, key) for kind in known for key in known[kind])
@@ -75,7 +76,12 @@ def checked(level: Level) -> Level:
 
 def check_bodies(level: Level, bodies: Iterable[AnyBody]) -> None:
     """Raise EditError where one of the bodies, were it alone in the level, could not be saved."""
-    checked(replaced(level, bodies=tuple(bodies), particles=(), springs=(), welds=(), checks=()))
+    checked(replaced(level, bodies=tuple(bodies), particles=(), springs=(), welds=(), checks=(), terrain=()))
+
+
+def check_terrain(level: Level) -> None:
+    """Raise EditError where the terrain of a level, were it alone, could not be saved."""
+    checked(replaced(level, bodies=(), particles=(), springs=(), welds=(), checks=()))
 
 
 def check_places(bodies: Iterable[AnyBody]) -> None:
@@ -91,15 +97,15 @@ def validated(definition: Described) -> Described:
 
 
 def all_validated(definitions: Sequence[Described]) -> tuple[Described, ...]:
-    """As `validated`, of many bodies, of many loose particles or of many loose springs."""
+    """As `validated`, of many definitions of one kind."""
     rows = []
     for definition in definitions:
-        data = dict(definition.__dict__)
-        if isinstance(data.get("shape"), Description):
-            data["shape"] = dict(data["shape"].__dict__)
-        rows.append(data)
+        fields = definition.__dict__.items()
+        # An object inside would be taken over unseen.
+        rows.append({name: dict(value.__dict__) if isinstance(value, Description) else value for name, value in fields})
     first = rows[0] if rows else {}
-    part = "bodies" if "type" in first else "particles" if "id" in first else "springs"
+    marks = {"bodies": "type", "terrain": "polyline", "particles": "id", "springs": "a"}
+    part = next((part for part, mark in marks.items() if mark in first), "springs")
     try:
         level = Level.model_validate({"format": FORMAT, "version": VERSION, "name": "-", part: tuple(rows)})
     except ValidationError as error:
@@ -134,4 +140,5 @@ def _named(level: Level, fault: str) -> str:
 
 def _size(level: Level) -> int:
     listed = sum(len(getattr(body, "particles", ())) + len(body.pose or ()) + len(body.cut) for body in level.bodies)
+    listed += sum(len(piece.polyline or piece.polygon or ()) for piece in level.terrain)
     return listed + len(level.bodies) + len(level.particles) + len(level.springs) + len(level.welds)

@@ -7,6 +7,7 @@ from sandbox.editor.document import Document, EditError, select
 from sandbox.editor.drawing_bodies import (
     BridgeDrawing,
     GirderDrawing,
+    RingDrawing,
     RopeDrawing,
     WebDrawing,
     WheelDrawing,
@@ -15,6 +16,7 @@ from sandbox.editor.drawing_bodies import (
 )
 from sandbox.editor.drawing_jelly import BoxDrawing, CircleDrawing, PolygonDrawing
 from sandbox.editor.drawing_options import ParticleOptions, PinOptions, SpringOptions
+from sandbox.editor.drawing_terrain import GroundDrawing, LineDrawing, WallsDrawing
 from sandbox.editor.gesture import Drawing, staged
 from sandbox.editor.items import Selection
 from sandbox.editor.placing import add_particle, add_spring, set_pinned, weld
@@ -130,5 +132,9 @@ DRAWINGS: dict[str, type[Drawing[Any]]] = {
     "circle": CircleDrawing,
     "polygon": PolygonDrawing,
     "wheel": WheelDrawing,
+    "ring": RingDrawing,
     "pin": PinDrawing,
+    "ground": GroundDrawing,
+    "line": LineDrawing,
+    "walls": WallsDrawing,
 }

@@ -8,10 +8,17 @@ from typing import Any, Generic, TypeVar, cast
 from pydantic import ValidationError
 
 from sandbox.editor.document import Document, EditError, checked
-from sandbox.editor.drawing_options import JellyOptions, RopeOptions, TrussOptions, WebOptions, WheelOptions
+from sandbox.editor.drawing_options import (
+    JellyOptions,
+    RingOptions,
+    RopeOptions,
+    TrussOptions,
+    WebOptions,
+    WheelOptions,
+)
 from sandbox.editor.gesture import Drawing
 from sandbox.editor.placing import add_body
-from sandbox.editor.sizing import links, rings, truss_cells, wheel_spokes
+from sandbox.editor.sizing import links, ring_parts, rings, truss_cells, wheel_spokes
 from sandbox.editor.snap import PLACE_DECIMALS, Snap
 from sandbox.level.bodies import KINDS, AnyBody
 from sandbox.level.expansion import named_particles
@@ -20,9 +27,11 @@ from sandbox.level.quantities import replaced
 from sandbox.level.shapes import expand
 from sandbox.level.wording import worded
 
-BodyOptions = TypeVar("BodyOptions", bound=RopeOptions | TrussOptions | WebOptions | WheelOptions | JellyOptions)
+BodyOptions = TypeVar(
+    "BodyOptions", bound=RopeOptions | TrussOptions | WebOptions | WheelOptions | RingOptions | JellyOptions
+)
 LineOptions = TypeVar("LineOptions", bound=RopeOptions | TrussOptions)
-RoundOptions = TypeVar("RoundOptions", bound=WebOptions | WheelOptions)
+RoundOptions = TypeVar("RoundOptions", bound=WebOptions | WheelOptions | RingOptions)
 
 # A particle this near to the point that was asked for stands on it; beyond the rounding of places and angles [m].
 SAME_PLACE = 1e-5
@@ -235,3 +244,30 @@ class WheelDrawing(RoundDrawing[WheelOptions]):
     def sizes(self, points: list[Snap]) -> str:
         """Radius and number of spokes."""
         return f"radius {length(points):.3g} m, {self._spokes(points)} spokes"
+
+
+class RingDrawing(RoundDrawing[RingOptions]):
+    """A ring with air inside; of what it is drawn on it joins only what is on its rim."""
+
+    defaults = RingOptions()
+    kind = "ring"
+    counted = "segments"
+
+    def joins(self, index: int) -> bool:
+        """There is no particle in its centre."""
+        return index == 1
+
+    def fitting(self, points: list[Snap]) -> int:
+        """Parts of about 0.25 m."""
+        return ring_parts(length(points))
+
+    def fields(self, points: list[Snap]) -> dict[str, Any]:
+        """A ring's own fields."""
+        return {**self.disc(points), "segments": self._parts(points), "inflation": self.options.inflation}
+
+    def _parts(self, points: list[Snap]) -> int:
+        return self.fitting(points) if self.options.segments is None else self.options.segments
+
+    def sizes(self, points: list[Snap]) -> str:
+        """Radius and number of parts."""
+        return f"radius {length(points):.3g} m, {self._parts(points)} parts"

@@ -6,7 +6,14 @@ from dataclasses import replace as _replace
 from typing import Any, Literal, TypeVar
 
 from sandbox.editor.document import EditError
-from sandbox.level.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL, MASS_RANGE, PARTICLE_LIMIT
+from sandbox.level.limits import (
+    COORDINATE_LIMIT,
+    DEFAULT_MATERIAL,
+    FRICTION_LIMIT,
+    INFLATION_LIMIT,
+    MASS_RANGE,
+    PARTICLE_LIMIT,
+)
 
 Kind = Literal["count", "number", "flag", "material"]
 
@@ -47,6 +54,10 @@ def _mass(default: float | None, label: str = "mass", text: str = "Mass of each 
 
 def _size(label: str, text: str) -> Any:
     return _option(None, About("number", label, text, "m", 1e-6, optional=True))
+
+
+def _surface(label: str, text: str, most: float) -> Any:
+    return _option(None, About("number", label, text, "", 0.0, most, optional=True))
 
 
 def _flag(default: bool, label: str, text: str) -> Any:
@@ -131,6 +142,20 @@ class WheelOptions:
 
 
 @dataclass(frozen=True)
+class RingOptions:
+    """A ring; segments None: about 0.25 m each."""
+
+    segments: int | None = _count("parts", "Number of parts; empty = about 0.25 m each.", 3)
+    inflation: float | None = _option(
+        1.2,
+        About("number", "inflation", "Area that it wants, times its own; empty = it holds nothing.", "", 0.0,
+              INFLATION_LIMIT, optional=True),
+    )  # fmt: skip
+    particle_mass: float = _mass(0.1)
+    material: str = _material("rubber")
+
+
+@dataclass(frozen=True)
 class JellyOptions:
     """A jelly of any shape; cells None: 8 across, fewer where it is long and thin."""
 
@@ -139,8 +164,25 @@ class JellyOptions:
     material: str = _material("jelly")
 
 
+@dataclass(frozen=True)
+class SurfaceOptions:
+    """Terrain or walls; None: friction and restitution of the level's contacts."""
+
+    friction: float | None = _surface("friction", "Friction of its surface; empty = the level's.", FRICTION_LIMIT)
+    restitution: float | None = _surface("bounce", "Share of its speed that bounces; empty = the level's.", 1.0)
+
+
 Options = (
-    PinOptions | ParticleOptions | SpringOptions | RopeOptions | TrussOptions | WebOptions | WheelOptions | JellyOptions
+    SurfaceOptions
+    | PinOptions
+    | ParticleOptions
+    | SpringOptions
+    | RopeOptions
+    | TrussOptions
+    | WebOptions
+    | WheelOptions
+    | RingOptions
+    | JellyOptions
 )
 AnyOptions = TypeVar("AnyOptions", bound=Options)
 

@@ -7,20 +7,23 @@ from typing import Any
 from pydantic import ValidationError
 
 from sandbox.editor.document import Document, EditError, checked, first_fault, subject, validated
-from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles
+from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles, chosen_terrain
 from sandbox.editor.names import renamed, rewired, taken_ids
 from sandbox.editor.remap import rebuilt
 from sandbox.level.bodies import AnyBody, BodyDef, RopeDef
 from sandbox.level.faults import shown
 from sandbox.level.limits import VERSION
-from sandbox.level.model import Level, ParticleDef
+from sandbox.level.model import Level, ParticleDef, TerrainDef
 from sandbox.level.quantities import replaced
 
 # Fields of bodies that their form does not depend on; a change of any other may take pins, cuts and references along.
 _FORMLESS = frozenset(BodyDef.model_fields) | {"particle_mass", "end_mass", "hub_mass", "masses", "velocities"}
-_FORMLESS |= {"pin", "rest_length"}
+_FORMLESS |= {"pin", "rest_length", "motor", "area", "inflation", "bending"}
 # Parts of a level that other edits change.
-_NO_FIELDS = frozenset(set(Level.model_fields) - {"name", "description", "author", "licence", "tags", "view", "extras"})
+_NO_FIELDS = frozenset(
+    set(Level.model_fields)
+    - {"name", "description", "author", "licence", "tags", "view", "contacts", "walls", "extras"}
+)
 
 
 def set_field(document: Document, items: Iterable[Item], field: str, value: Any) -> Document:
@@ -36,7 +39,7 @@ def set_field(document: Document, items: Iterable[Item], field: str, value: Any)
         return rename(document, next(iter(chosen)), value)
     if field == "type":
         raise EditError("the kind of a body stays; draw another one")
-    value = _with_tuples(value) if field != "extras" else value
+    value = with_tuples(value) if field != "extras" else value
     read: dict[type, Any] = {}
 
     def with_value(part: Definition) -> Definition:
@@ -57,9 +60,16 @@ def change_field(document: Document, items: Iterable[Item], field: str, change: 
 
     Else as `set_field`.
     """
+    return change_items(document, items, field, lambda part: change(getattr(part, field)))
+
+
+def change_items(
+    document: Document, items: Iterable[Item], field: str, change: Callable[[Definition], Any]
+) -> Document:
+    """Give a field of each item, which all have it, what `change` makes of the whole item. Raises EditError."""
 
     def with_change(part: Definition) -> Definition:
-        value = _with_tuples(change(getattr(part, field)))
+        value = with_tuples(change(part))
         new = getattr(validated(replaced(part, **{field: value})), field)
         return part if getattr(part, field) == new else _with_field(part, field, new)
 
@@ -79,14 +89,14 @@ def _settled(document: Document, chosen: Selection, field: str, change: Callable
 
 
 def rename(document: Document, item: Item, new_id: str) -> Document:
-    """Give a body or loose particle another id, wherever it is named. Raises EditError."""
+    """Give a body, loose particle or piece of terrain another id, wherever it is named. Raises EditError."""
     level = document.level
     part = _named_part(level, item)
     if new_id == item.key:
         return document
     new = validated(replaced(part, id=new_id))
     if new_id in taken_ids(level):
-        raise EditError(f"{shown(new_id)} is taken; every body and loose particle needs an id of its own")
+        raise EditError(f"{shown(new_id)} is taken; all bodies, loose particles and terrain need ids of their own")
 
     def with_id(_: Definition) -> Definition:
         return new
@@ -100,11 +110,11 @@ def rename(document: Document, item: Item, new_id: str) -> Document:
 
 
 def set_level_field(document: Document, field: str, value: Any) -> Document:
-    """Give a field of the level itself (name, description, author, licence, tags, view) a value. Raises EditError."""
+    """Give a field of the level itself (name, view, walls, ...) a value. Raises EditError."""
     if field in _NO_FIELDS:
         raise EditError(f"{field} is not changed here")
     level = document.level
-    data = {"format": level.format, "version": VERSION, "name": level.name, field: _with_tuples(value)}
+    data = {"format": level.format, "version": VERSION, "name": level.name, field: with_tuples(value)}
     new = getattr(_read(data, 0), field)
     if new == getattr(level, field):
         return document
@@ -114,16 +124,17 @@ def set_level_field(document: Document, field: str, value: Any) -> Document:
 def set_setting(document: Document, field: str, value: Any) -> Document:
     """Give a field of the level's settings a value. Raises EditError."""
     level = document.level
-    settings = {**level.settings.__dict__, field: _with_tuples(value)}
+    settings = {**level.settings.__dict__, field: with_tuples(value)}
     new = _read({"format": level.format, "version": VERSION, "name": "-", "settings": settings}, 1).settings
     return document if new == level.settings else replace(document, level=replaced(level, settings=new))
 
 
-def _with_tuples(value: Any) -> Any:
+def with_tuples(value: Any) -> Any:
+    """A value with tuples for its lists, as models hold them."""
     if isinstance(value, list | tuple):
-        return tuple(_with_tuples(item) for item in value)
+        return tuple(with_tuples(item) for item in value)
     if isinstance(value, dict):
-        return {key: _with_tuples(item) for key, item in value.items()}
+        return {key: with_tuples(item) for key, item in value.items()}
     return value
 
 
@@ -135,9 +146,11 @@ def _with_field(part: Definition, field: str, value: Any) -> Definition:
     return validated(new) if len(changes) > 1 else new
 
 
-def _named_part(level: Level, item: Item) -> AnyBody | ParticleDef:
+def _named_part(level: Level, item: Item) -> AnyBody | ParticleDef | TerrainDef:
     selection: Selection = frozenset([item])
-    parts = [*chosen_bodies(level, selection), *chosen_particles(level, selection)]
+    parts = [
+        *chosen_bodies(level, selection), *chosen_particles(level, selection), *chosen_terrain(level, selection),
+    ]  # fmt: skip
     if not parts:
         raise EditError("a loose spring has no id" if item.kind == "spring" else f"there is no {shown(item.key)}")
     return parts[0]

@@ -1,15 +1,17 @@
 """Finding: one thing about a level that its maker may want to know; and rules, which look for them in slices."""
 
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.editor.document import Document
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene
 from sandbox.level.model import Level
+from sandbox.physics.outline import TERRAIN_GROUP
 
 Severity = Literal["error", "warning", "hint"]
 Slots = NDArray[np.int64]
@@ -20,14 +22,22 @@ Rule = Iterator["Finding | None"]
 LISTED = 20
 
 
+class Remedy(NamedTuple):
+    """An edit that mends what was found, and what its button says."""
+
+    label: str
+    edit: Callable[[Document], Document]
+
+
 @dataclass(frozen=True)
 class Finding:
-    """A sentence that says what is so and what to do, the items it is about, and where [m]."""
+    """A sentence that says what is so and what to do, the items it is about, where [m], and what mends it."""
 
     severity: Severity
     text: str
     items: Selection
     place: tuple[float, float] | None
+    remedy: Remedy | None = None
 
 
 def listed(rule: Rule) -> Rule:
@@ -89,8 +99,43 @@ def connected_parts(scene: Scene) -> Generator[None, None, Slots]:
 
 
 def falling_particles(level: Level, scene: Scene) -> Generator[None, None, tuple[Slots, NDArray[np.bool_]]]:
-    """The part that each particle belongs to (n,), and whether gravity takes it away (n,): no pin holds its part."""
+    """The part that each particle belongs to (n,), and whether it falls away (n,): nothing holds or catches it."""
     part = yield from connected_parts(scene)
     held = np.zeros(len(part), dtype=np.bool_)
     held[part[scene.pinned]] = True
-    return part, ~held[part] & (level.settings.gravity != (0.0, 0.0))
+    pulled = np.zeros(len(part), dtype=np.bool_)
+    pulled[part[_scales(level, scene) != 0.0]] = True
+    if level.settings.gravity == (0.0, 0.0):
+        pulled[:] = False
+    falls = pulled[part] & ~held[part]
+    if level.has_contacts and falls.any():
+        yield None
+        falls &= ~_caught(level, scene, part)[part]
+    return part, falls
+
+
+def _scales(level: Level, scene: Scene) -> NDArray[np.float64]:
+    """How many times gravity pulls at each particle (n,)."""
+    scales = [part.gravity_scale for part in (*level.bodies, *level.particles)]
+    return np.array(scales, dtype=np.float64)[scene.particle_item]
+
+
+def _caught(level: Level, scene: Scene, part: Slots) -> NDArray[np.bool_]:
+    """Whether each part, by its label (n,), has walls around it, or terrain somewhere below it."""
+    touches = scene.collision.touches & TERRAIN_GROUP != 0
+    caught = np.zeros(len(part), dtype=np.bool_)
+    if level.walls is not None:
+        caught[part[touches]] = True
+        return caught
+    fall = np.array(level.settings.gravity) / np.hypot(*level.settings.gravity)
+    # Along the fall, and across it.
+    turned = np.array([fall, (-fall[1], fall[0])])
+    places, corners = scene.position[touches] @ turned.T, scene.corner @ turned.T
+    low, high = np.full((len(part), 2), np.inf), np.full((len(part), 2), -np.inf)
+    np.minimum.at(low, part[touches], places)
+    np.maximum.at(high, part[touches], places)
+    for index in np.unique(scene.corner_item).tolist():
+        mine = corners[scene.corner_item == index]
+        least, most = mine.min(axis=0), mine.max(axis=0)
+        caught |= (low[:, 0] <= most[0]) & (low[:, 1] <= most[1]) & (high[:, 1] >= least[1])
+    return caught

@@ -11,6 +11,7 @@ from collections.abc import Generator, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.editor.driven import restless
 from sandbox.editor.finding import called, falling_particles
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import make_scene
@@ -83,6 +84,11 @@ class Forecast:
         moving = int(np.count_nonzero(~(is_falling | scene.pinned)))
         if not moving:
             self.position, self.at_rest = scene.position, True
+            return
+        driven = next(restless(scene), None)
+        if driven is not None:
+            self._trouble = f"{called(driven)} is driven, and never comes to rest; play it to see"
+            self.at_rest = False
             return
         if moving > LARGEST:
             self._trouble = f"{moving:,} particles move, too many for a forecast ({LARGEST:,}); play it to see"

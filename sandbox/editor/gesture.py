@@ -54,6 +54,11 @@ class Drawing(Generic[AnyOptions]):
         return self.points[-1].point if self.points else None
 
     @property
+    def outline(self) -> list[Point]:
+        """Corners [m] of an outline so far, to be shown as they are; none of other gestures."""
+        return []
+
+    @property
     def hint(self) -> str:
         """One line for the person: why it cannot be done so, or what to do next and what it would join."""
         fault = self._fault or self._ghost_fault
@@ -192,5 +197,6 @@ def staged(document: Document, points: list[Snap]) -> tuple[Document, list[Snap]
     stand_ins = {name: f"stand-in {index}" for index, name in enumerate(names)}
     places = {point.name: point.point for point in points}
     particles = tuple(ParticleDef(id=stand_in, position=places[name]) for name, stand_in in stand_ins.items())
-    level = replaced(document.level, bodies=(), particles=particles, springs=(), welds=(), checks=(), extras={})
+    level = replaced(document.level, bodies=(), particles=particles, springs=(), welds=(), checks=())
+    level = replaced(level, terrain=(), walls=None, extras={})
     return Document(level), [replace(point, name=stand_ins.get(point.name or "")) for point in points]

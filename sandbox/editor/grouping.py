@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.items import Definition, Selection, changed, items_of, kept_springs, keys, with_same
+from sandbox.editor.items import Definition, Selection, changed, definitions, items_of, kept_springs, keys, with_same
 from sandbox.editor.names import free_ids
 from sandbox.level.model import Level
 from sandbox.level.quantities import replaced
@@ -26,32 +26,30 @@ def ungroup(document: Document) -> Document:
 
 def with_groups(level: Level, selection: Selection) -> Selection:
     """A selection with the whole of every group that one of it is in."""
-    groups = {item: part.group for item, part in zip(items_of(level), _everything(level), strict=True) if part.group}
+    groups = {item: part.group for item, part in zip(items_of(level), definitions(level), strict=True) if part.group}
     wanted = {groups[item] for item in selection if item in groups}
     return selection | {item for item, name in groups.items() if name in wanted} if wanted else selection
 
 
 def taken_groups(level: Level) -> set[str]:
     """Names of the groups of a level."""
-    return {part.group for part in _everything(level) if part.group is not None}
+    return {part.group for part in definitions(level) if part.group is not None}
 
 
 def reorder(document: Document, to: Place) -> Document:
     """Draw what is selected last ("front"), first ("back"), or one place later or earlier among its kind."""
     level, selection = document.level, document.selection
     bodies, particles, springs = keys(selection, "body"), keys(selection, "particle"), keys(selection, "spring")
+    terrain = keys(selection, "terrain")
     order = _order([index in springs for index in range(len(level.springs))], to)
     level = with_same(
         level,
         bodies=tuple(level.bodies[index] for index in _order([body.id in bodies for body in level.bodies], to)),
         particles=tuple(level.particles[index] for index in _order([p.id in particles for p in level.particles], to)),
         springs=tuple(level.springs[index] for index in order),
+        terrain=tuple(level.terrain[index] for index in _order([piece.id in terrain for piece in level.terrain], to)),
     )
     return Document(level, kept_springs(selection, order))
-
-
-def _everything(level: Level) -> tuple[Definition, ...]:
-    return (*level.bodies, *level.particles, *level.springs)
 
 
 def _grouped(document: Document, name: str | None) -> Document:

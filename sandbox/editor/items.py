@@ -5,15 +5,15 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal, NamedTuple
 
 from sandbox.level.bodies import AnyBody
-from sandbox.level.model import Level, ParticleDef, SpringDef
+from sandbox.level.model import Level, ParticleDef, SpringDef, TerrainDef
 from sandbox.level.quantities import replaced
 
-Kind = Literal["body", "particle", "spring"]
-Definition = AnyBody | ParticleDef | SpringDef
+Kind = Literal["body", "particle", "spring", "terrain"]
+Definition = AnyBody | ParticleDef | SpringDef | TerrainDef
 
 
 class Item(NamedTuple):
-    """A body, a loose particle or a loose spring of a level; key: its id, of a spring its index in `springs`."""
+    """A body, loose particle, loose spring or piece of terrain; key: its id, of a spring its index in `springs`."""
 
     kind: Kind
     key: str | int
@@ -23,12 +23,18 @@ Selection = frozenset[Item]
 
 
 def items_of(level: Level) -> tuple[Item, ...]:
-    """Every item of a level in file order: bodies, loose particles, loose springs."""
+    """Every item of a level: bodies, loose particles, loose springs, terrain, each in file order."""
     return (
         *(Item("body", body.id) for body in level.bodies),
         *(Item("particle", particle.id) for particle in level.particles),
         *(Item("spring", index) for index in range(len(level.springs))),
+        *(Item("terrain", piece.id) for piece in level.terrain),
     )
+
+
+def definitions(level: Level) -> tuple[Definition, ...]:
+    """What a level says of every item, in the order of `items_of`."""
+    return (*level.bodies, *level.particles, *level.springs, *level.terrain)
 
 
 def keys(selection: Selection, kind: Kind) -> frozenset[str | int]:
@@ -40,7 +46,7 @@ def keys(selection: Selection, kind: Kind) -> frozenset[str | int]:
 # comparing it with an equal one, hence the identity, which is compared first.
 @functools.lru_cache(maxsize=4)
 def _keys(_identity: int, selection: Selection) -> dict[Kind, frozenset[str | int]]:
-    found: dict[Kind, list[str | int]] = {"body": [], "particle": [], "spring": []}
+    found: dict[Kind, list[str | int]] = {"body": [], "particle": [], "spring": [], "terrain": []}
     add = {kind: keys.append for kind, keys in found.items()}
     for kind, key in selection:
         add[kind](key)
@@ -69,23 +75,57 @@ def chosen_springs(level: Level, selection: Selection) -> list[SpringDef]:
     return [spring for index, spring in enumerate(level.springs) if index in wanted]
 
 
+def chosen_terrain(level: Level, selection: Selection) -> list[TerrainDef]:
+    """The selected pieces of terrain in file order."""
+    wanted = keys(selection, "terrain")
+    return [piece for piece in level.terrain if piece.id in wanted]
+
+
+def chosen_definitions(level: Level, selection: Selection) -> list[Definition]:
+    """What the level says of the selected items, by kind and in file order."""
+    return [
+        *chosen_bodies(level, selection),
+        *chosen_particles(level, selection),
+        *chosen_springs(level, selection),
+        *chosen_terrain(level, selection),
+    ]
+
+
+def chosen_items(level: Level, selection: Selection) -> dict[Item, Definition]:
+    """The selected items with their definitions, in that order."""
+    found: dict[Item, Definition] = {Item("body", body.id): body for body in chosen_bodies(level, selection)}
+    found |= {Item("particle", particle.id): particle for particle in chosen_particles(level, selection)}
+    springs = keys(selection, "spring")
+    found |= {Item("spring", k): spring for k, spring in enumerate(level.springs) if k in springs}
+    return found | {Item("terrain", piece.id): piece for piece in chosen_terrain(level, selection)}
+
+
 def changed(level: Level, selection: Selection, change: Callable[[Definition], Definition]) -> Level:
     """The level with every selected item changed; what is not changed stays the same object."""
     bodies, particles, springs = (keys(selection, kind) for kind in ("body", "particle", "spring"))
+    terrain = keys(selection, "terrain")
     return with_same(
         level,
         bodies=tuple([change(body) if body.id in bodies else body for body in level.bodies]),
         particles=tuple([change(part) if part.id in particles else part for part in level.particles]),
         springs=tuple([change(part) if k in springs else part for k, part in enumerate(level.springs)]),
+        terrain=tuple([change(part) if part.id in terrain else part for part in level.terrain]),
     )
 
 
-def exchanged(level: Level, selection: Selection, bodies: Iterable[AnyBody], particles: Iterable[ParticleDef]) -> Level:
-    """The level with other bodies and loose particles, in file order, for the selected ones."""
+def exchanged(
+    level: Level,
+    selection: Selection,
+    bodies: Iterable[AnyBody],
+    particles: Iterable[ParticleDef],
+    terrain: Iterable[TerrainDef],
+) -> Level:
+    """The level with other bodies, loose particles and terrain, in file order, for the selected ones."""
     return with_same(
         level,
         bodies=_exchanged(level.bodies, keys(selection, "body"), list(bodies)),
         particles=_exchanged(level.particles, keys(selection, "particle"), list(particles)),
+        terrain=_exchanged(level.terrain, keys(selection, "terrain"), list(terrain)),
     )
 
 

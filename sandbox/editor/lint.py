@@ -10,6 +10,8 @@ import numpy as np
 
 from sandbox.editor.finding import Finding, Rule, called, falling_particles, listed, middle_of, place_of
 from sandbox.editor.lint_checks import hopeless_checks
+from sandbox.editor.lint_contacts import buried_particles, overlapping_discs
+from sandbox.editor.lint_driven import idle_motors
 from sandbox.editor.lint_places import crossing_bodies, overlapping_particles
 from sandbox.editor.lint_solver import springs_past_limits
 from sandbox.editor.scene import Scene
@@ -25,8 +27,11 @@ def findings(level: Level, scene: Scene) -> Iterator[Finding | None]:
         springs_past_limits(level, scene),
         falling_parts(level, scene),
         idle_items(scene),
+        idle_motors(scene),
         overlapping_particles(scene),
-        crossing_bodies(scene),
+        crossing_bodies(level, scene),
+        buried_particles(level, scene),
+        overlapping_discs(level, scene),
     )
     return itertools.chain.from_iterable(listed(rule) for rule in rules)
 
@@ -55,7 +60,7 @@ def falling_parts(level: Level, scene: Scene) -> Rule:
 
 
 def idle_items(scene: Scene) -> Rule:
-    """Loose springs between two pinned particles, and pinned loose particles that hold nothing."""
+    """Loose springs between two pinned particles, and pinned loose particles that hold nothing and touch nothing."""
     bodies = len(scene.level.bodies)
     loose = np.flatnonzero(scene.spring_item >= bodies + len(scene.level.particles))
     idle = loose[scene.pinned[scene.particle_a[loose]] & scene.pinned[scene.particle_b[loose]]]
@@ -67,6 +72,8 @@ def idle_items(scene: Scene) -> Rule:
     used = np.zeros(len(scene.position), dtype=np.bool_)
     for slots in (scene.particle_a, scene.particle_b, scene.welds.ravel()):
         used[slots] = True
+    if scene.level.has_contacts:
+        used |= scene.collision.touches != 0
     for slot in np.flatnonzero(scene.pinned & ~used & (scene.particle_item >= bodies)).tolist():
         item = scene.items[int(scene.particle_item[slot])]
         text = f"{called(item)} is pinned and holds nothing; join something to it or delete it"

@@ -43,13 +43,18 @@ def _bounds(check: CheckDef) -> tuple[float, float]:
     return low, high
 
 
+def _can_break(level: Level) -> bool:
+    limits = ((material.tension_limit, material.compression_limit) for material in level.materials.values())
+    return any(limit is not None for pair in limits for limit in pair)
+
+
 def _fault(check: CheckDef, scene: Scene, slot: int | None) -> tuple[Severity, str] | None:
     """What is wrong with one check by itself."""
     low, high = _bounds(check)
     if check.metric in NEVER_NEGATIVE and high < 0.0:
         return "warning", f"can never hold: {check.metric} is never below 0; raise at_most"
-    if check.metric == "broken_springs" and low > 0.0:
-        return "warning", "can never hold: no spring breaks by itself; lower at_least to 0"
+    if check.metric == "broken_springs" and low > 0.0 and not _can_break(scene.level):
+        return "warning", "can never hold: no spring breaks by itself; give a material a tension limit"
     if check.metric in STILL_WHERE_ALL_IS_PINNED and low > 0.0 and scene.pinned.all():
         return "warning", "can never hold: every particle is pinned, so nothing moves; unpin some"
     if slot is None or check.metric not in PARTICLE_METRICS or not scene.pinned[slot]:

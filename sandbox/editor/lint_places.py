@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from sandbox.editor.finding import Finding, Rule, called, place_of
 from sandbox.editor.scene import Scene
 from sandbox.level.limits import BODY_RADIUS
+from sandbox.level.model import Level
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
@@ -95,9 +96,10 @@ def _near_pairs(scene: Scene) -> Iterator[tuple[Slots, Slots]]:
             yield a[near], b[near]
 
 
-def crossing_bodies(scene: Scene) -> Rule:
+def crossing_bodies(level: Level, scene: Scene) -> Rule:
     """Pairs of bodies of which springs cross, where nothing joins the two."""
-    count = len(scene.level.bodies)
+    count = len(level.bodies)
+    first = np.searchsorted(scene.particle_item, np.arange(count))
     joined = yield from _joined_bodies(scene, count)
     for a, b in _overlapping_boxes(scene, count):
         yield None
@@ -105,12 +107,11 @@ def crossing_bodies(scene: Scene) -> Rule:
             continue
         crossing = yield from _crossing(scene, a, b)
         if crossing is not None:
-            items = scene.items[a], scene.items[b]
-            text = (
-                f"{called(items[0])} and {called(items[1])} cross, and will pass through each other; "
-                "move one away, or join them"
-            )
-            yield Finding("hint", text, frozenset(items), crossing)
+            items, p, q = (scene.items[a], scene.items[b]), first[a], first[b]
+            collide = level.has_contacts and bool(scene.collision.meet(int(p), int(q)))
+            then = "and will be pushed apart" if collide else "and will pass through each other"
+            text = f"{called(items[0])} and {called(items[1])} cross, {then}; move one away, or join them"
+            yield Finding("warning" if collide else "hint", text, frozenset(items), crossing)
 
 
 def _joined_bodies(scene: Scene, count: int) -> Generator[None, None, set[tuple[int, int]]]:

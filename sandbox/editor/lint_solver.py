@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.finding import Finding, Rule, called, middle_of
+from sandbox.editor.finding import Finding, Rule, called, middle_of, place_of
 from sandbox.editor.scene import Scene
-from sandbox.level.build import coefficients
+from sandbox.level.build import add_elements, coefficients
 from sandbox.level.model import Level, NissenMaterial
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
@@ -14,14 +14,19 @@ from sandbox.physics.world import LAW_NISSEN, World
 
 
 def springs_past_limits(level: Level, scene: Scene) -> Rule:
-    """Springs past the proven limit of the single pass; of the iterative solver, past the article's 1/(n+1)."""
+    """Springs past the proven limit of the single pass; of the iterative solver, past the article's 1/(n+1).
+
+    Areas and angles count where they make springs give way, and are found themselves in the single pass.
+    """
     solver = SOLVERS[level.settings.solver]
     if solver.bounded or not len(scene.particle_a):
         return
     world = _network(level, scene)
     yield None
     if solver.proven_limit:
-        yield from _past_proven(level, scene, spring_loads(world))
+        load, count = spring_loads(world), len(scene.rest_length)
+        yield from _past_proven(level, scene, load[:count])
+        yield from _elements_past_proven(level, scene, world, load[count:])
     else:
         yield from _past_published(level, scene, world)
 
@@ -41,7 +46,27 @@ def _network(level: Level, scene: Scene) -> World:
     materials = {name: level.materials.get(name, NissenMaterial()) for name in scene.materials}
     for name, values in coefficients(scene.material, materials).items():
         setattr(world, name, values)
+    world.position, world.energy_bank = scene.position, np.zeros(count)
+    add_elements(world, scene.parts.names.layout, level, scene.parts.bodies.made, first, materials)
     return world
+
+
+def _elements_past_proven(level: Level, scene: Scene, world: World, load: NDArray[np.float64]) -> Rule:
+    """Bodies whose areas or angles are past the proven limit, where their springs are not."""
+    past = np.flatnonzero(load >= BOUND)
+    owner = scene.particle_item[world.corner_particle[world.element_first[past]]]
+    for index in np.unique(owner).tolist():
+        mine = past[owner == index]
+        worst = int(mine[np.argmax(load[mine])])
+        item = scene.items[index]
+        text = (
+            f"areas or angles of {called(item)} are past what the {level.settings.solver} solver is proven to hold: "
+            f"Cs + 2 Cd add up to {load[worst]:.3g}, stable is below {BOUND:g}; lower the coefficients or use the "
+            "direct solver"
+        )
+        slot = int(world.corner_particle[world.element_first[worst]])
+        yield Finding("warning", text, frozenset([item]), place_of(scene, slot))
+        yield None
 
 
 def _past_proven(level: Level, scene: Scene, load: NDArray[np.float64]) -> Rule:

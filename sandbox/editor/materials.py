@@ -10,7 +10,7 @@ from sandbox.editor.items import Definition, changed, with_same
 from sandbox.level.checks import CheckDef
 from sandbox.level.faults import shown, suggestion
 from sandbox.level.limits import DEFAULT_MATERIAL, VERSION
-from sandbox.level.model import Level, Material, ParticleDef
+from sandbox.level.model import Level, Material
 from sandbox.level.quantities import replaced
 
 # How many users of a material a message names.
@@ -37,8 +37,7 @@ def rename_material(document: Document, name: str, new_name: str) -> Document:
     document = _with_materials(document, named, unchecked=True)
 
     def follow(part: Definition) -> Definition:
-        same = isinstance(part, ParticleDef) or part.material != name
-        return part if same else replaced(part, material=new_name)
+        return replaced(part, material=new_name) if part.__dict__.get("material") == name else part
 
     level = document.level
     bodies, springs = tuple(map(follow, level.bodies)), tuple(map(follow, level.springs))
@@ -69,12 +68,11 @@ def assign(document: Document, material: str) -> Document:
     """Make every selected body and spring of a material. Raises EditError."""
     if material != DEFAULT_MATERIAL:
         _exists(document.level, material)
-    if all(item.kind == "particle" for item in document.selection):
+    if all(item.kind in ("particle", "terrain") for item in document.selection):
         raise EditError("select a body or a spring to give it a material")
 
     def assigned(part: Definition) -> Definition:
-        same = isinstance(part, ParticleDef) or part.material == material
-        return part if same else replaced(part, material=material)
+        return part if part.__dict__.get("material", material) == material else replaced(part, material=material)
 
     level = changed(document.level, document.selection, assigned)
     return replace(document, level=level)

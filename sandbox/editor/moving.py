@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from sandbox.editor.document import Document, EditError, all_validated, check_places, subject, validated
+from sandbox.editor.document import Document, EditError, all_validated, check_places, check_terrain, subject, validated
 from sandbox.editor.items import (
     Definition,
     Item,
@@ -15,14 +15,23 @@ from sandbox.editor.items import (
     changed,
     chosen_bodies,
     chosen_particles,
+    chosen_terrain,
     exchanged,
     keys,
 )
 from sandbox.editor.names import owner_of
-from sandbox.editor.placement import Motion, can_stretch, mapped_body, mapped_particle, shifted, stretch
+from sandbox.editor.placement import (
+    Motion,
+    Placed,
+    can_stretch,
+    mapped_body,
+    mapped_particle,
+    mapped_terrain,
+    shifted,
+    stretch,
+)
 from sandbox.editor.remap import rebuilt
 from sandbox.editor.scene import Scene, make_scene, positions
-from sandbox.level.bodies import AnyBody
 from sandbox.level.limits import COORDINATE_LIMIT
 from sandbox.level.model import Level, SpringDef
 from sandbox.level.parts import given_length
@@ -94,7 +103,7 @@ def distribute(document: Document, axis: Axis) -> Document:
 
 
 def _moved(document: Document, by: Callable[[list[str]], Points]) -> Document:
-    """Move each selected body and loose particle by what is asked for their ids [m] (k, 2)."""
+    """Move each selected body, loose particle and piece of terrain by what is asked for their ids [m] (k, 2)."""
     level = document.level
     bodies = chosen_bodies(level, document.selection)
     particles = chosen_particles(level, document.selection)
@@ -104,10 +113,16 @@ def _moved(document: Document, by: Callable[[list[str]], Points]) -> Document:
         raise _beyond(particles[outside[0]])
     shifts = zip(bodies, by([body.id for body in bodies]).tolist(), strict=True)
     moved = [_within(shifted(body, dx, dy)) for body, (dx, dy) in shifts]
+    terrain = chosen_terrain(level, document.selection)
+    ways = zip(terrain, by([piece.id for piece in terrain]).tolist(), strict=True)
+    ground = [_within(shifted(piece, dx, dy)) for piece, (dx, dy) in ways]
     check_places(moved)
     rows = zip(particles, zip(*places.T.tolist(), strict=True), strict=True)
     placed = [replaced(particle, position=place) for particle, place in rows]
-    return replace(document, level=exchanged(level, document.selection, moved, placed))
+    level = exchanged(level, document.selection, moved, placed, ground)
+    if ground:
+        check_terrain(level)
+    return replace(document, level=level)
 
 
 def _finite(what: str, *numbers: float) -> None:
@@ -119,12 +134,12 @@ def _beyond(part: Definition) -> EditError:
     return EditError(f"{subject(part)} would lie beyond the limit {COORDINATE_LIMIT:.15g}")
 
 
-def _within(body: AnyBody) -> AnyBody:
-    """A body whose points all lie inside the world. Raises EditError."""
+def _within(body: Placed) -> Placed:
+    """A body or piece of terrain whose points all lie inside the world. Raises EditError."""
     for name in ("start", "end", "position"):
         if max(map(abs, body.__dict__.get(name, (0.0,)))) > COORDINATE_LIMIT:
             raise _beyond(body)
-    for name in ("particles", "pose"):
+    for name in ("particles", "pose", "polyline", "polygon"):
         points = body.__dict__.get(name)
         if points is not None and float(np.max(np.abs(np.array(points)))) > COORDINATE_LIMIT:
             raise _beyond(body)
@@ -140,9 +155,12 @@ def _mapped(document: Document, motion: Motion) -> Document:
     bodies = {body.id: body for body in all_validated([body for body, _ in mapped])}
     images = {body.id: image for body, image in mapped}
     particles = all_validated([mapped_particle(part, motion) for part in chosen_particles(level, selection)])
-    moved = exchanged(level, selection, chosen, particles)
+    terrain = all_validated([mapped_terrain(piece, motion) for piece in chosen_terrain(level, selection)])
+    moved = exchanged(level, selection, chosen, particles, terrain)
     if motion.factor != 1.0 or not motion.is_even:
         moved = _stretched(level, moved, _placed(selection), motion)
+    if terrain:
+        check_terrain(moved)
     return replace(document, level=rebuilt(moved, bodies, images) if bodies else moved)
 
 
@@ -190,7 +208,8 @@ def _placed(selection: Selection) -> Selection:
 
 def _boxes(document: Document) -> tuple[dict[str, int], Points, Points]:
     """What is lined up as one, by the ids in it: a group, or an item in none; lowest and highest corners [m] (k, 2)."""
-    chosen = [*chosen_bodies(document.level, document.selection), *chosen_particles(document.level, document.selection)]
+    placed = (chosen_bodies, chosen_particles, chosen_terrain)
+    chosen = [part for found in placed for part in found(document.level, document.selection)]
     numbers: dict[tuple[bool, str], int] = {}
     parts = {
         part.id: numbers.setdefault((part.group is None, part.id if part.group is None else part.group), len(numbers))
@@ -203,6 +222,10 @@ def _boxes(document: Document) -> tuple[dict[str, int], Points, Points]:
     low, high = np.full((len(numbers), 2), np.inf), np.full((len(numbers), 2), -np.inf)
     np.minimum.at(low, part, scene.position[mine])
     np.maximum.at(high, part, scene.position[mine])
+    mine = scene.chosen(document.selection)[scene.corner_item]
+    part = part_of_item[scene.corner_item[mine]]
+    np.minimum.at(low, part, scene.corner[mine])
+    np.maximum.at(high, part, scene.corner[mine])
     return parts, low, high
 
 

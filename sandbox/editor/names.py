@@ -15,8 +15,8 @@ Rewire = Callable[[str], str | None]
 
 
 def taken_ids(level: Level) -> set[str]:
-    """Ids of a level's bodies and loose particles."""
-    return {body.id for body in level.bodies} | {particle.id for particle in level.particles}
+    """Ids of a level's bodies, loose particles and terrain."""
+    return {part.id for part in (*level.bodies, *level.particles, *level.terrain)}
 
 
 def free_id(level: Level, base: str) -> str:

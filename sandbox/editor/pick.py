@@ -12,6 +12,7 @@ from sandbox.level.model import Level
 
 Point = tuple[float, float]
 Box = tuple[float, float, float, float]
+Ends = tuple[NDArray[np.float64], ...]
 Mode = Literal["replace", "add", "subtract", "toggle"]
 
 
@@ -33,7 +34,25 @@ def particle_at(scene: Scene, point: Point, within: float) -> int | None:
 
 def spring_at(scene: Scene, point: Point, within: float) -> int | None:
     """Slot of the spring nearest to point [m], at most `within` [m] away; of equals the one drawn last; None = none."""
-    ax, ay, bx, by = _ends(scene)
+    return _nearest_segment(_ends(scene), point, within)
+
+
+def edge_at(scene: Scene, point: Point, within: float) -> int | None:
+    """Index of the edge of terrain nearest to point [m], at most `within` [m] away; None = none."""
+    a, b = scene.corner[scene.edge[:, 0]], scene.corner[scene.edge[:, 1]]
+    return _nearest_segment((a[:, 0], a[:, 1], b[:, 0], b[:, 1]), point, within)
+
+
+def corner_at(scene: Scene, item: Item, point: Point, within: float) -> int | None:
+    """Number of the corner of a piece of terrain that is nearest to point [m], at most `within` [m] away."""
+    mine = np.flatnonzero(scene.chosen(frozenset({item}))[scene.corner_item])
+    apart = scene.corner[mine] - np.array(point)
+    distance = np.sqrt(np.sum(apart * apart, axis=1))
+    return int(distance.argmin()) if len(mine) and float(distance.min()) <= within else None
+
+
+def _nearest_segment(ends: Ends, point: Point, within: float) -> int | None:
+    ax, ay, bx, by = ends
     x, y = point
     near = np.flatnonzero(
         (np.minimum(ax, bx) <= x + within)
@@ -56,9 +75,9 @@ def spring_at(scene: Scene, point: Point, within: float) -> int | None:
 
 
 def item_at(scene: Scene, point: Point, within: float) -> Item | None:
-    """The item at point [m]: its particles count before springs, springs before the insides of bodies.
+    """The item at point [m]: particles count before springs, then edges of terrain, insides of bodies and of terrain.
 
-    within [m]: how far beside a particle or a spring still counts. A point is inside a body that has springs to its
+    within [m]: how far beside a particle, spring or edge still counts. A point is inside a body that has springs to its
     left and right, above and below; of several the one drawn last.
     """
     particle = particle_at(scene, point, within)
@@ -67,11 +86,27 @@ def item_at(scene: Scene, point: Point, within: float) -> Item | None:
     spring = spring_at(scene, point, within)
     if spring is not None:
         return scene.items[int(scene.spring_item[spring])]
+    edge = edge_at(scene, point, within)
+    if edge is not None:
+        return scene.items[int(scene.edge_item[edge])]
     around = [index for index in _items_around(scene, point) if scene.items[index].kind == "body"]
+    around = around or ground_around(scene, point)
     return scene.items[max(around)] if around else None
 
 
-def _ends(scene: Scene) -> tuple[NDArray[np.float64], ...]:
+def ground_around(scene: Scene, point: Point) -> list[int]:
+    """Indices of the solid pieces of terrain that a point [m] lies in."""
+    a, b = scene.corner[scene.edge[:, 0]], scene.corner[scene.edge[:, 1]]
+    crossing = np.flatnonzero((a[:, 1] > point[1]) != (b[:, 1] > point[1]))
+    a, b = a[crossing], b[crossing]
+    at = a[:, 0] + (b[:, 0] - a[:, 0]) * ((point[1] - a[:, 1]) / (b[:, 1] - a[:, 1]))
+    turns = np.bincount(scene.edge_item[crossing[at > point[0]]], minlength=len(scene.items))
+    first = len(scene.items) - len(scene.level.terrain)
+    solid = [first + k for k, piece in enumerate(scene.level.terrain) if piece.polygon is not None]
+    return [index for index in solid if turns[index] % 2]
+
+
+def _ends(scene: Scene) -> Ends:
     x, y = scene.position[:, 0], scene.position[:, 1]
     return x[scene.particle_a], y[scene.particle_a], x[scene.particle_b], y[scene.particle_b]
 
@@ -104,30 +139,41 @@ def items_in_box(scene: Scene, box: Box) -> Selection:
     """Items of which everything lies in a box: two opposite corners x, y, x, y [m] in any order."""
     left, right = sorted((box[0], box[2]))
     bottom, top = sorted((box[1], box[3]))
-    x, y = scene.position[:, 0], scene.position[:, 1]
-    return _enclosed(scene, (x >= left) & (x <= right) & (y >= bottom) & (y <= top))
+
+    def inside(points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        x, y = points[:, 0], points[:, 1]
+        return np.asarray((x >= left) & (x <= right) & (y >= bottom) & (y <= top))
+
+    return _enclosed(scene, inside(scene.position), inside(scene.corner))
 
 
 def items_in_lasso(scene: Scene, polygon: Sequence[Point]) -> Selection:
     """Items of which everything lies inside a closed line through points [m]; where it crosses itself, by turns."""
-    inside = np.zeros(len(scene.position), dtype=np.bool_)
     if len(polygon) < 3:
         return frozenset()
     corners = np.array(polygon, dtype=np.float64)
+    return _enclosed(scene, _inside(corners, scene.position), _inside(corners, scene.corner))
+
+
+def _inside(corners: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which points (n, 2) a closed line through corners goes round, an odd number of times."""
+    inside = np.zeros(len(points), dtype=np.bool_)
     low, high = corners.min(axis=0), corners.max(axis=0)
-    near = np.flatnonzero(np.all((scene.position >= low) & (scene.position <= high), axis=1))
-    x, y = scene.position[near, 0], scene.position[near, 1]
+    near = np.flatnonzero(np.all((points >= low) & (points <= high), axis=1))
+    x, y = points[near, 0], points[near, 1]
     odd = np.zeros(len(near), dtype=np.bool_)
     for (ax, ay), (bx, by) in zip(corners.tolist(), np.roll(corners, -1, axis=0).tolist(), strict=True):
         if ay != by:
             odd ^= ((ay > y) != (by > y)) & (x < ax + (bx - ax) * ((y - ay) / (by - ay)))
     inside[near] = odd
-    return _enclosed(scene, inside)
+    return inside
 
 
-def _enclosed(scene: Scene, inside: NDArray[np.bool_]) -> Selection:
+def _enclosed(scene: Scene, inside: NDArray[np.bool_], corners: NDArray[np.bool_]) -> Selection:
+    """Items of which all particles, springs and corners lie inside."""
     enclosed = np.ones(len(scene.items), dtype=np.bool_)
     enclosed[scene.particle_item[~inside]] = False
+    enclosed[scene.corner_item[~corners]] = False
     enclosed[scene.spring_item[~(inside[scene.particle_a] & inside[scene.particle_b])]] = False
     return frozenset(scene.items[index] for index in np.flatnonzero(enclosed).tolist())
 

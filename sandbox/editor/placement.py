@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from sandbox.level.bodies import (
     WebDef,
     WheelDef,
 )
-from sandbox.level.model import ParticleDef
+from sandbox.level.model import ParticleDef, TerrainDef
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import Points, expand, turn
 
@@ -79,14 +79,17 @@ class Motion:
         return angle if abs(angle) <= math.pi else math.remainder(angle, 2.0 * math.pi)
 
 
-def shifted(body: AnyBody, dx: float, dy: float) -> AnyBody:
-    """A body moved by dx, dy [m]."""
+Placed = TypeVar("Placed", AnyBody, TerrainDef)
+
+
+def shifted(body: Placed, dx: float, dy: float) -> Placed:
+    """A body or piece of terrain moved by dx, dy [m]."""
     changes: dict[str, Any] = {}
     for name in ("start", "end", "position"):
         if name in body.__dict__:
             x, y = body.__dict__[name]
             changes[name] = (x + dx, y + dy)
-    for name in ("particles", "pose"):
+    for name in ("particles", "pose", "polyline", "polygon"):
         points = body.__dict__.get(name)
         if points is not None:
             changes[name] = tuple([(x + dx, y + dy) for x, y in points])
@@ -101,6 +104,12 @@ def mapped_particle(particle: ParticleDef, motion: Motion) -> ParticleDef:
         radius=particle.radius * motion.factor,
         velocity=_velocity(particle.velocity, motion),
     )
+
+
+def mapped_terrain(piece: TerrainDef, motion: Motion) -> TerrainDef:
+    """A piece of terrain with its corners mapped."""
+    polyline, polygon = (corners and motion.points(corners) for corners in (piece.polyline, piece.polygon))
+    return replaced(piece, polyline=polyline, polygon=polygon)
 
 
 def mapped_body(body: AnyBody, motion: Motion) -> tuple[AnyBody, Points]:
@@ -171,7 +180,7 @@ def _changes(body: AnyBody, motion: Motion) -> dict[str, Any]:
             return _centred(body, motion) | {"radius": body.radius * motion.factor}
         case WheelDef():
             sizes = {"radius": body.radius * motion.factor, "thickness": body.thickness * motion.factor}
-            return _centred(body, motion) | sizes
+            return _centred(body, motion) | sizes | _turned_motor(body, motion)
         case JellyDef():
             return _jelly(body, motion)
         case MeshDef():
@@ -191,6 +200,13 @@ def stretch(a: Point, b: Point, motion: Motion) -> float:
 
 def _centred(body: WebDef | WheelDef | RingDef | JellyDef, motion: Motion) -> dict[str, Any]:
     return {"position": motion.point(body.position), "angle": motion.turned(body.angle)}
+
+
+def _turned_motor(body: WheelDef, motion: Motion) -> dict[str, Any]:
+    """A motor turns the other way in a mirror."""
+    if body.motor is None or not motion.is_mirror:
+        return {}
+    return {"motor": replaced(body.motor, speed=-body.motor.speed)}
 
 
 def _jelly(body: JellyDef, motion: Motion) -> dict[str, Any]:

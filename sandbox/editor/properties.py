@@ -1,151 +1,69 @@
-"""Properties: what can be changed of the selected items, of the level and of its checks, field by field."""
+"""Properties of the selection: what can be changed of the items, field by field."""
 
-import json
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
-from enum import Enum
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import partial
-from typing import Any, Final
+from typing import Any
 
 from sandbox.editor.abouts import About, abouts
-from sandbox.editor.document import Document, EditError
-from sandbox.editor.fields import change_field, set_field, set_level_field, set_setting
-from sandbox.editor.items import Definition, Item, Selection, chosen_bodies, chosen_particles, chosen_springs
-from sandbox.editor.materials import set_checks
+from sandbox.editor.additions import add_object
+from sandbox.editor.document import Document
+from sandbox.editor.fields import change_field, set_field, with_tuples
+from sandbox.editor.items import Definition, Item, Selection, chosen_definitions, chosen_items
 from sandbox.editor.names import owner_of
-from sandbox.editor.typed import (
-    line_text,
-    list_text,
-    number_text,
-    read_integer,
-    read_line,
-    read_list,
-    read_number,
-    read_pairs,
-    read_words,
-)
-from sandbox.level.bodies import SHAPES, AnyBody, BoxShape, CircleShape, JellyDef, PolygonShape, Shape, file_order
-from sandbox.level.checks import PARTICLE_METRICS, CheckDef
-from sandbox.level.model import Level, ParticleDef, Settings, SpringDef
-from sandbox.level.quantities import replaced
+from sandbox.editor.property import MIXED, Property, Section, part_properties, same, with_axes
+from sandbox.editor.terrain import FORMS, Form, Point, corners_of, form_of, outlined, with_corners
+from sandbox.level.bodies import SHAPES, BoxShape, CircleShape, JellyDef, PolygonShape, Shape, file_order
+from sandbox.level.model import Level, ParticleDef, SpringDef, TerrainDef
 from sandbox.level.schema import TITLES
 from sandbox.level.shapes import count
 
-
-class Mixed(Enum):
-    """What stands for a value where the items differ."""
-
-    MIXED = "mixed"
-
-
-MIXED: Final = Mixed.MIXED
-# Axes of a pair of numbers.
-_AXES = ("x", "y")
+# Fields of terrain of which one is null.
+_OUTLINES = ("polyline", "polygon")
 # Sections of the fields that are not of a body's form, in their order.
 _SECTIONS = {
-    "Mass": ("mass", "particle_mass", "end_mass", "hub_mass", "masses"),
+    "Mass": ("mass", "particle_mass", "end_mass", "hub_mass", "masses", "gravity_scale"),
     "Springs": ("material", "rest_length", "cut"),
     "Start": ("pin", "pinned", "velocity", "velocities", "pose"),
+    "Shape": ("area", "inflation", "bending"),
+    "Drive": ("drive", "hydraulic", "motor"),
+    "Contact": ("particle_radius", "friction", "restitution", "collides", "collision_group"),
     "Other": ("group", "extras"),
 }
-_LEVEL_FIELDS = ("name", "description", "author", "licence", "tags", "view")
-
-
-@dataclass(frozen=True)
-class Property:
-    """A field with the value that all items have, or MIXED; of a `point`, of each axis; of `flags`, of each by name.
-
-    write: makes a document with another value; None where it is only shown. axes: names of the numbers of a point.
-    """
-
-    field: str
-    about: About
-    value: Any
-    write: Callable[[Document, Any], Document] | None = None
-    axes: tuple[str, str] = _AXES
-
-    @property
-    def editable(self) -> bool:
-        """Whether it can be changed here."""
-        return self.write is not None
-
-    @property
-    def texts(self) -> tuple[str, ...]:
-        """The value as text to change: of a point two, else one; "" for null."""
-        if self.about.kind == "point":
-            return tuple(MIXED.value if part is MIXED else number_text(part) for part in self.value)
-        return (MIXED.value if self.value is MIXED else _text(self.about, self.value),)
-
-    def set(self, document: Document, value: Any) -> Document:
-        """The document with another value; an axis that is None and a flag that is not given stay. Raises EditError."""
-        if self.write is None:
-            raise EditError(f"{self.about.title} cannot be changed here")
-        return self.write(document, value)
-
-    def typed(self, text: str, axis: int = 0) -> Any:
-        """The value that a typed text stands for. Raises EditError with one line."""
-        about = self.about
-        if about.kind == "point":
-            number = read_number(f"{about.title} {self.axes[axis]}", text)
-            return (number, None) if axis == 0 else (None, number)
-        if about.optional and not text.strip():
-            return None
-        read: dict[str, Callable[[str, str], Any]] = {
-            "number": read_number, "integer": read_integer, "list": read_list, "pairs": read_pairs,
-            "words": read_words,
-        }  # fmt: skip
-        if about.kind in read:
-            return read[about.kind](about.title, text)
-        return read_line(text)
-
-
-@dataclass(frozen=True)
-class Section:
-    """Properties that belong together."""
-
-    title: str
-    properties: tuple[Property, ...]
-
-
-def _text(about: About, value: Any) -> str:
-    if value is None:
-        return ""
-    if about.kind in ("number", "integer"):
-        return number_text(value)
-    if about.kind in ("list", "pairs", "words"):
-        return list_text(value)
-    if about.kind == "extras":
-        return json.dumps(value, ensure_ascii=False)
-    return line_text(str(value))
-
-
-# What is selected.
 
 
 def properties(document: Document) -> tuple[Section, ...]:
-    """What can be changed of the selected items: the fields that all of them have; () where nothing is selected."""
+    """What can be changed of the selected items: the fields that all of them have; () where nothing is selected.
+
+    What some of them can be given, such as a motor, is there for those.
+    """
     level, selection = document.level, document.selection
-    parts: list[Definition] = [
-        *chosen_bodies(level, selection), *chosen_particles(level, selection), *chosen_springs(level, selection),
-    ]  # fmt: skip
+    parts = chosen_definitions(level, selection)
     if not parts:
         return ()
     kinds = dict.fromkeys(map(type, parts))
     made = [made for name, about in _common(kinds, len(parts)).items() for made in _made(selection, parts, name, about)]
+    objects = _objects(kinds)
+    if objects:
+        # Loose particles have none, and may be many.
+        items = chosen_items(level, frozenset(item for item in selection if item.kind != "particle"))
+        made += [made for name, about in objects.items() for made in _object_properties(items, name, about)]
     if len(parts) == 1:
         facts = _facts(level, next(iter(selection)), parts[0])
         made = [*facts, *made] if isinstance(parts[0], SpringDef) else [*made, *facts]
+    if all(isinstance(part, TerrainDef) for part in parts):
+        made += _outline_properties(selection, [part for part in parts if isinstance(part, TerrainDef)])
     by_section: dict[str, list[Property]] = {"": [], **{title: [] for title in _SECTIONS}}
     for each in made:
         by_section[_section_of(each.field)].append(each)
-    by_section[_summary(kinds, parts)] = by_section.pop("")
-    titles = [_summary(kinds, parts), *_SECTIONS]
-    return tuple(Section(title, tuple(by_section[title])) for title in titles if by_section[title])
+    rest = (Section(title, tuple(by_section[title])) for title in _SECTIONS if by_section[title])
+    return (Section(_summary(kinds, parts), tuple(by_section[""])), *rest)
 
 
 def _section_of(field: str) -> str:
-    return next((title for title, fields in _SECTIONS.items() if field in fields), "")
+    name = field.partition(".")[0]
+    return next((title for title, fields in _SECTIONS.items() if name in fields), "")
 
 
 def _summary(kinds: Iterable[type], parts: Sequence[Definition]) -> str:
@@ -164,12 +82,32 @@ def _common(kinds: Iterable[Any], number: int) -> dict[str, About]:
     first, *others = (abouts(kind) for kind in kinds)
     found = {}
     for name in file_order(first):
-        if name == "type" or (name == "id" and number > 1):
+        if name in ("type", *_OUTLINES) or (name == "id" and number > 1) or first[name].kind == "part":
             continue
         same = [other[name] for other in others if name in other and _alike(other[name], first[name])]
         if len(same) == len(others):
             found[name] = first[name]
     return found
+
+
+def _objects(kinds: Iterable[Any]) -> dict[str, About]:
+    """The fields of any of the kinds that hold an object or none."""
+    known = (about for kind in kinds for about in abouts(kind).items())
+    return {name: about for name, about in known if about.kind == "part"}
+
+
+def _object_properties(items: dict[Item, Definition], name: str, about: About) -> list[Property]:
+    """The properties of an object that some items may have."""
+    holders = {item: part for item, part in items.items() if name in part.__dict__}
+    chosen = frozenset(holders)
+
+    def change(document: Document, new: Any) -> Document:
+        return change_field(document, chosen, name, new)
+
+    def add(document: Document) -> Document:
+        return add_object(document, chosen, name)
+
+    return part_properties(name, about, [part.__dict__[name] for part in holders.values()], change, add)
 
 
 def _alike(one: About, other: About) -> bool:
@@ -181,13 +119,13 @@ def _made(selection: Selection, parts: Sequence[Definition], name: str, about: A
     if about.kind == "form":
         return _shape_properties(selection, [part.shape for part in parts if isinstance(part, JellyDef)])
     if about.kind == "point":
-        value: Any = tuple(map(_same, zip(*[part.__dict__[name] for part in parts], strict=True)))
+        value: Any = tuple(map(same, zip(*[part.__dict__[name] for part in parts], strict=True)))
         return [Property(name, about, value, partial(_set_axes, selection, name))]
     if about.kind == "flags":
         lists = [part.__dict__[name] for part in parts]
-        states = {choice: _same(choice in chosen for chosen in lists) for choice in about.choices}
+        states = {choice: same(choice in chosen for chosen in lists) for choice in about.choices}
         return [Property(name, about, states, partial(_set_flags, selection, name, about.choices))]
-    value = _same([part.__dict__[name] for part in parts])
+    value = same([part.__dict__[name] for part in parts])
     if about.kind == "extras":
         return [Property(name, about, value)] if value else []
 
@@ -197,14 +135,8 @@ def _made(selection: Selection, parts: Sequence[Definition], name: str, about: A
     return [Property(name, about, value, write)]
 
 
-def _same(values: Iterable[Any]) -> Any:
-    """The value that all of them are, else MIXED."""
-    found = list(values)
-    return found[0] if found.count(found[0]) == len(found) else MIXED
-
-
 def _set_axes(selection: Selection, field: str, document: Document, value: Any) -> Document:
-    return change_field(document, selection, field, partial(_with_axes, value))
+    return change_field(document, selection, field, partial(with_axes, value))
 
 
 def _set_flags(
@@ -216,17 +148,12 @@ def _set_flags(
     return change_field(document, selection, field, change)
 
 
-def _with_axes(value: Sequence[float | None], old: Sequence[float]) -> tuple[float, ...]:
-    """A pair of numbers with those of a value that are given."""
-    return tuple(before if new is None else new for new, before in zip(value, old, strict=True))
-
-
 def _facts(level: Level, item: Item, part: Definition) -> list[Property]:
     """What a single item is that its fields do not say."""
     facts = []
     if isinstance(part, SpringDef):
         facts.append(("name", "Name", f":{item.key}", "Name of the spring."))
-    elif not isinstance(part, ParticleDef):
+    elif not isinstance(part, ParticleDef | TerrainDef):
         particles, springs = count(part)
         facts.append(
             (
@@ -246,11 +173,32 @@ def _counted(number: int, noun: str) -> str:
     return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
 
 
+# The outline of terrain.
+
+
+def _outline_properties(selection: Selection, pieces: Sequence[TerrainDef]) -> list[Property]:
+    """Whether it is a line or solid, and its corners."""
+    kind = About("choice", "Kind", tooltip="A line with two sides, or solid inside.", choices=FORMS)
+
+    def choose(document: Document, wanted: Form) -> Document:
+        return outlined(document, selection, lambda piece: with_corners(piece, corners_of(piece), wanted))
+
+    def write(document: Document, corners: Sequence[Point]) -> Document:
+        points = with_tuples(corners)
+        return outlined(document, selection, lambda piece: with_corners(piece, points))
+
+    about = replace(abouts(TerrainDef)["polygon"], title="Corners", optional=False, tooltip="Corners in order.")
+    return [
+        Property("form", kind, same(form_of(piece) for piece in pieces), choose),
+        Property("corners", about, same(corners_of(piece) for piece in pieces), write),
+    ]
+
+
 # The shape of a jelly.
 
 
 def _shape_properties(selection: Selection, shapes: Sequence[Shape]) -> list[Property]:
-    kind = _same(_shape_kind(shape) for shape in shapes)
+    kind = same(_shape_kind(shape) for shape in shapes)
     about = About("choice", "Shape", tooltip="The outline that is filled.", choices=SHAPES)
 
     def choose(document: Document, wanted: str) -> Document:
@@ -265,10 +213,10 @@ def _shape_properties(selection: Selection, shapes: Sequence[Shape]) -> list[Pro
 
         def write_box(document: Document, value: Any) -> Document:
             return change_field(
-                document, selection, "shape", lambda old: {"box": _with_axes(value, old.__dict__["box"])}
+                document, selection, "shape", lambda old: {"box": with_axes(value, old.__dict__["box"])}
             )
 
-        value: Any = tuple(_same(pair[axis] for pair in pairs) for axis in (0, 1))
+        value: Any = tuple(same(pair[axis] for pair in pairs) for axis in (0, 1))
         about = replace(about, title="Size")
         return [*found, Property("shape.box", about, value, write_box, ("width", "height"))]
 
@@ -276,7 +224,7 @@ def _shape_properties(selection: Selection, shapes: Sequence[Shape]) -> list[Pro
         return set_field(document, selection, "shape", {kind: value})
 
     about = replace(about, title="Radius" if kind == "circle" else "Corners")
-    return [*found, Property(f"shape.{kind}", about, _same(shape.__dict__[kind] for shape in shapes), write)]
+    return [*found, Property(f"shape.{kind}", about, same(shape.__dict__[kind] for shape in shapes), write)]
 
 
 def _shape_kind(shape: Shape) -> str:
@@ -296,83 +244,3 @@ def _as_shape(kind: str, shape: Shape) -> dict[str, Any]:
     if kind == "box":
         return {"box": (x, y)}
     return {"polygon": tuple((a * x / 2.0, b * y / 2.0) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1)))}
-
-
-# The level.
-
-
-def level_properties(document: Document) -> tuple[Section, ...]:
-    """What can be changed of the level itself and of how its time passes."""
-    level = document.level
-    about = abouts(Level)
-    of_level = [Property(name, about[name], getattr(level, name), partial(_set_level, name)) for name in _LEVEL_FIELDS]
-    if level.extras:
-        of_level.append(Property("extras", about["extras"], level.extras))
-    settings = []
-    for name, each in abouts(Settings).items():
-        value = getattr(level.settings, name)
-        settings.append(Property(name, each, str(value) if each.kind == "choice" else value, partial(_set_time, name)))
-    return Section("Level", tuple(of_level)), Section("Time and solver", tuple(settings))
-
-
-def _set_level(field: str, document: Document, value: Any) -> Document:
-    return set_level_field(document, field, value)
-
-
-def _set_time(field: str, document: Document, value: Any) -> Document:
-    old = getattr(document.level.settings, field)
-    if field in ("gravity", "wind"):
-        value = _with_axes(value, old)
-    elif field == "substeps" and str(value).isdecimal():
-        value = int(value)
-    return set_setting(document, field, value)
-
-
-# Checks.
-
-
-def check_properties(document: Document, index: int) -> tuple[Section, ...]:
-    """What can be changed of a check of the level, by its index; () where there is none."""
-    if not 0 <= index < len(document.level.checks):
-        return ()
-    check = document.level.checks[index]
-    made = [
-        Property(name, about, getattr(check, name), partial(_set_check, index, name))
-        for name, about in abouts(CheckDef).items()
-        if name != "particle" or check.metric in PARTICLE_METRICS
-    ]
-    return (Section("Check", tuple(made)),)
-
-
-def _set_check(index: int, field: str, document: Document, value: Any) -> Document:
-    checks = list(document.level.checks)
-    check = replaced(checks[index], **{field: value})
-    if field == "metric" and value in PARTICLE_METRICS and check.particle is None:
-        check = replaced(check, particle=_some_particle(document))
-    elif field == "metric" and value not in PARTICLE_METRICS:
-        check = replaced(check, particle=None)
-    checks[index] = check
-    return set_checks(document, checks)
-
-
-def _some_particle(document: Document) -> str | None:
-    """A particle to measure: of what is selected, else of the level."""
-    level, selection = document.level, document.selection
-    loose = [*chosen_particles(level, selection), *(() if selection else level.particles)]
-    bodies: Sequence[AnyBody] = [*chosen_bodies(level, selection), *(() if selection else level.bodies)]
-    if loose:
-        return loose[0].id
-    return f"{bodies[0].id}.{count(bodies[0])[0] - 1}" if bodies else None
-
-
-def add_check(document: Document) -> Document:
-    """Add a check that holds of every sound level. Raises EditError where it has too many."""
-    taken = {check.name for check in document.level.checks}
-    number = next(k for k in range(1, len(taken) + 2) if f"check {k}" not in taken)
-    check = CheckDef(name=f"check {number}", metric="non_finite", at_most=0.0)
-    return set_checks(document, [*document.level.checks, check])
-
-
-def delete_check(document: Document, index: int) -> Document:
-    """Delete a check by its index."""
-    return set_checks(document, [check for k, check in enumerate(document.level.checks) if k != index])

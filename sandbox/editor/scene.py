@@ -19,6 +19,7 @@ from sandbox.level.model import Level, ParticleDef
 from sandbox.level.parts import given_length
 from sandbox.level.quantities import replaced
 from sandbox.level.shapes import distances
+from sandbox.level.surfaces import surfaces_of
 from sandbox.level.welds import united
 
 Floats = NDArray[np.float64]
@@ -59,6 +60,26 @@ class _Links(NamedTuple):
     materials: tuple[str, ...]
 
 
+class _Ground(NamedTuple):
+    """Arrays of the terrain: corner [m] (c, 2), counts (t,), edge (e, 2) of corners, edge_counts (t,)."""
+
+    corner: Floats
+    counts: list[int]
+    edge: Slots
+    edge_counts: list[int]
+
+
+class Collision(NamedTuple):
+    """Bits (n,) of the collision group that each particle is in, and of those that it touches."""
+
+    group: Slots
+    touches: Slots
+
+    def meet(self, a: Slots | int, b: Slots | int) -> Mask:
+        """Whether particles touch others, both (k,) or one for all."""
+        return np.asarray((self.touches[a] & self.group[b] != 0) & (self.touches[b] & self.group[a] != 0))
+
+
 class _Names:
     """Who has which name: the same in every scene whose items and counts are the same."""
 
@@ -81,6 +102,7 @@ class _Names:
             and len(level.springs) == len(old.springs)
             and (level.bodies is old.bodies or _alike(level.bodies, old.bodies))
             and (level.particles is old.particles or [part.id for part in level.particles] == self._particle_ids)
+            and [piece.id for piece in level.terrain] == [piece.id for piece in old.terrain]
         )
 
     @cached_property
@@ -102,16 +124,18 @@ class _Parts:
     loose: _Loose
     names: _Names
     links: _Links
+    ground: _Ground
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Arrays of what a level expands to, before welds: n particles, those of bodies first, and m springs.
+    """Arrays of what a level expands to, before welds: n particles, those of bodies first, m springs, and terrain.
 
     position [m] (n, 2), of welded particles that of the first; mass [kg] and radius [m] (n,), each its own; pinned
     (n,), whether it or one it is welded to is held; particle_item (n,), spring_item (m,): indices into items;
     particle_a, particle_b (m,): particles; rest_length [m] (m,); number (m,): the k of the spring's name; material
     (m,): index into materials; welds (w, 2): particles; first_of_weld (n,): the first particle of each one's weld.
+    corner [m] (c, 2) of terrain, edge (e, 2): its ends; corner_item (c,), edge_item (e,): indices into items.
     """
 
     level: Level
@@ -130,7 +154,17 @@ class Scene:
     materials: tuple[str, ...]
     welds: Slots
     first_of_weld: Slots
+    corner: Floats
+    edge: Slots
+    corner_item: Slots
+    edge_item: Slots
     parts: _Parts = field(repr=False)
+
+    @cached_property
+    def collision(self) -> Collision:
+        """What touches what."""
+        surfaces = surfaces_of(self.level, self.parts.bodies.counts)
+        return Collision(surfaces["group"], surfaces["collides"])
 
     @cached_property
     def _firsts(self) -> Slots:
@@ -170,13 +204,15 @@ class Scene:
         return self.chosen(selection)[self.spring_item]
 
     def bounds(self, selection: Selection | None = None) -> Box | None:
-        """Left, bottom, right, top [m] of the particles of a selection (None = all) and the ends of its springs."""
-        points = self.position
+        """Left, bottom, right, top [m] of a selection (None = all): particles, ends of springs, corners of terrain."""
+        points, corners = self.position, self.corner
         if selection is not None:
+            corners = corners[self.chosen(selection)[self.corner_item]]
             shown, springs = self.particles_of(selection), self.springs_of(selection)
             shown[self.particle_a[springs]] = True
             shown[self.particle_b[springs]] = True
             points = points[shown]
+        points = np.concatenate([points, corners]) if len(corners) else points
         if not len(points):
             return None
         (left, bottom), (right, top) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
@@ -200,24 +236,30 @@ def make_scene(level: Level, before: Scene | None = None) -> Scene:
     pairs = np.concatenate([bodies.pairs, links.ends])
     numbers = np.arange(len(names.items), dtype=np.int64)
     of_bodies, owners = len(level.bodies), len(level.bodies) + len(level.particles)
+    solid = owners + len(level.springs)
+    ground = parts.ground
     used = np.array([links.materials.index(body.material) for body in level.bodies], dtype=np.int64)
     return Scene(
         level=level,
         items=names.items,
         position=position,
         mass=np.concatenate([bodies.mass, loose.mass]),
-        radius=np.concatenate([np.full(len(bodies.mass), BODY_RADIUS), loose.radius]),
+        radius=np.concatenate([np.repeat(_radii(level), bodies.counts), loose.radius]),
         pinned=pinned,
         particle_item=np.concatenate([np.repeat(numbers[:of_bodies], bodies.counts), numbers[of_bodies:owners]]),
         particle_a=pairs[:, 0],
         particle_b=pairs[:, 1],
         rest_length=np.concatenate([bodies.rest_length, lengths]),
-        spring_item=np.concatenate([np.repeat(numbers[:of_bodies], bodies.spring_counts), numbers[owners:]]),
+        spring_item=np.concatenate([np.repeat(numbers[:of_bodies], bodies.spring_counts), numbers[owners:solid]]),
         number=np.concatenate([bodies.numbers, numbers[: len(level.springs)]]),
         material=np.concatenate([np.repeat(used, bodies.spring_counts), links.material]),
         materials=links.materials,
         welds=np.array(welds, dtype=np.int64).reshape(-1, 2),
         first_of_weld=first_of_weld,
+        corner=ground.corner,
+        edge=ground.edge,
+        corner_item=np.repeat(numbers[solid:], ground.counts),
+        edge_item=np.repeat(numbers[solid:], ground.edge_counts),
         parts=parts,
     )
 
@@ -227,7 +269,7 @@ def _parts(level: Level, before: Scene | None) -> _Parts:
         made, origin, forms = _expand(level, {}, {})
         bodies, loose = _joined(made), _loose(level)
         names = _Names(level, items_of(level), bodies.counts)
-        return _Parts(bodies, origin, forms, loose, names, _links(level, names))
+        return _Parts(bodies, origin, forms, loose, names, _links(level, names), _ground(level))
     old = before.parts
     bodies, origin, forms = old.bodies, old.origin, old.forms
     if level.bodies is not before.level.bodies:
@@ -239,7 +281,27 @@ def _parts(level: Level, before: Scene | None) -> _Parts:
     same_names = old.names.serve(level, bodies.counts)
     names = old.names if same_names else _Names(level, items_of(level), bodies.counts)
     same_links = same_names and level.springs is before.level.springs and level.materials is before.level.materials
-    return _Parts(bodies, origin, forms, loose, names, old.links if same_links else _links(level, names))
+    links = old.links if same_links else _links(level, names)
+    ground = old.ground if level.terrain is before.level.terrain else _ground(level)
+    return _Parts(bodies, origin, forms, loose, names, links, ground)
+
+
+def _ground(level: Level) -> _Ground:
+    corners = [piece.polyline or piece.polygon or () for piece in level.terrain]
+    counts = [len(points) for points in corners]
+    closed = [piece.polygon is not None for piece in level.terrain]
+    edges = [np.zeros((0, 2), dtype=np.int64)]
+    first = 0
+    for count, is_closed in zip(counts, closed, strict=True):
+        along = np.arange(first, first + count, dtype=np.int64)
+        edges.append(np.stack([along, np.roll(along, -1)], axis=1)[: count if is_closed else count - 1])
+        first += count
+    return _Ground(
+        corner=np.array([point for points in corners for point in points], dtype=np.float64).reshape(-1, 2),
+        counts=counts,
+        edge=np.concatenate(edges),
+        edge_counts=[len(edge) for edge in edges[1:]],
+    )
 
 
 def _joined(made: list[Expansion]) -> _Joined:
@@ -267,6 +329,12 @@ def _loose(level: Level) -> _Loose:
         radius=np.fromiter(map(itemgetter("radius"), rows), np.float64, len(rows)),
         pinned=np.fromiter(map(itemgetter("pinned"), rows), np.bool_, len(rows)),
     )
+
+
+def _radii(level: Level) -> Floats:
+    """Radius [m] of the particles of each body (k,)."""
+    given = [body.particle_radius for body in level.bodies]
+    return np.array([BODY_RADIUS if radius is None else radius for radius in given], dtype=np.float64)
 
 
 def positions(particles: Sequence[ParticleDef]) -> Floats:

@@ -11,6 +11,7 @@ LINKS = (4, 60)
 CELLS = (2, 40)
 RINGS = (2, 12)
 SPOKES = (8, 32)
+RING_PARTS = (8, 60)
 # Cells across the shorter side of a jelly, and about how many cells the whole of one has at most.
 CELLS_ACROSS = 8
 JELLY_CELLS = 1_000
@@ -41,6 +42,11 @@ def rings(radius: float) -> int:
 def wheel_spokes(radius: float) -> int:
     """Spokes of a wheel of that radius [m]: an even number, as the box around an odd one is crooked."""
     return 2 * _fitting(2.0 * math.pi * radius, 2.0 * CELL_LENGTH, (SPOKES[0] // 2, SPOKES[1] // 2))
+
+
+def ring_parts(radius: float) -> int:
+    """Parts of a ring of that radius [m]."""
+    return _fitting(2.0 * math.pi * radius, LINK_LENGTH, RING_PARTS)
 
 
 def jelly_spacing(width: float, height: float, cells: int | None) -> float:

@@ -13,12 +13,14 @@ from sandbox.level.expansion import named_particles
 from sandbox.level.shapes import turn
 
 Point = tuple[float, float]
-Kind = Literal["particle", "end", "angle", "grid", "free"]
+Kind = Literal["particle", "end", "corner", "edge", "angle", "grid", "free"]
 
 # Directions from the anchor that a line is drawn to.
 ANGLE_STEP = 15  # [degrees]
 # A direction this far off a round one still counts as it; larger: hardly a direction is left free.
 ANGLE_REACH = 3.0  # [degrees]
+# An edge of terrain draws from this part of the distance alone: beside it is the grid.
+EDGE_SHARE = 0.5
 # Places are rounded to micrometres, so that files hold 0.3 and not 0.30000000000000004.
 PLACE_DECIMALS = 6
 
@@ -52,9 +54,9 @@ def snap(
 ) -> Snap:
     """Where a pointer at point [m] is taken to be.
 
-    First the ends of bodies and loose particles, then other particles, at most `within` [m] away and not of items in
-    `skip`; then directions of whole 15 degrees from the anchor and the points of a grid of that spacing [m],
-    whichever is nearer. Nothing else draws it: within = 0, grid = None is the pointer itself.
+    First the ends of bodies and loose particles, then other particles, then corners of terrain and then its edges, at
+    most `within` [m] away and not of items in `skip`; then directions of whole 15 degrees from the anchor and points
+    of a grid of that spacing [m], whichever is nearer. within = 0, grid = None is the pointer itself.
     """
     return replace(_drawn(scene, point, within, grid, anchor, skip), pointer=point)
 
@@ -62,9 +64,9 @@ def snap(
 def _drawn(
     scene: Scene, point: Point, within: float, grid: float | None, anchor: Point | None, skip: Selection
 ) -> Snap:
-    particle = _particle(scene, point, within, skip)
-    if particle is not None:
-        return particle
+    place = _particle(scene, point, within, skip) or _ground(scene, point, within, skip)
+    if place is not None:
+        return place
     places = []
     if anchor is not None and within > 0.0:
         places += _on_angle(point, anchor, within, grid)
@@ -97,6 +99,31 @@ def _particle(scene: Scene, point: Point, within: float, skip: Selection) -> Sna
     name = ends.get(slot) or scene.names(slot)
     x, y = scene.position[slot].tolist()
     return Snap((x, y), "end" if slot in ends else "particle", name, f"on {name}")
+
+
+def _ground(scene: Scene, point: Point, within: float, skip: Selection) -> Snap | None:
+    """The nearest corner of terrain that draws the pointer, or else the nearest place on an edge."""
+    if within <= 0.0 or not len(scene.corner):
+        return None
+    left_out = scene.chosen(skip)
+    corner = np.where(left_out[scene.corner_item, None], np.inf, scene.corner)
+    distance = np.hypot(*(corner - np.array(point)).T)
+    nearest = int(distance.argmin())
+    if distance[nearest] <= within:
+        name = scene.items[int(scene.corner_item[nearest])].key
+        return Snap(_rounded(*corner[nearest].tolist()), "corner", None, f"on a corner of {name}")
+    edges = np.flatnonzero(~left_out[scene.edge_item])
+    start, end = scene.corner[scene.edge[edges, 0]], scene.corner[scene.edge[edges, 1]]
+    along, offset = end - start, np.array(point) - start
+    squared = np.sum(along * along, axis=1)
+    share = np.divide(np.sum(offset * along, axis=1), squared, out=np.zeros_like(squared), where=squared > 0.0)
+    places = start + np.clip(share, 0.0, 1.0)[:, None] * along
+    distance = np.hypot(*(places - np.array(point)).T)
+    nearest = int(distance.argmin()) if len(edges) else -1
+    if nearest < 0 or distance[nearest] > EDGE_SHARE * within:
+        return None
+    name = scene.items[int(scene.edge_item[edges[nearest]])].key
+    return Snap(_rounded(*places[nearest].tolist()), "edge", None, f"on {name}")
 
 
 def _ends(scene: Scene, near: NDArray[np.int64]) -> dict[int, str]:

@@ -10,6 +10,8 @@ from sandbox.level.faults import shown
 
 # Digits that a number is shown with where they say all of it.
 DIGITS = 9
+# What is typed for all groups, and for none.
+EVERYTHING, NOTHING = "everything", "nothing"
 
 
 def number_text(value: float) -> str:
@@ -18,6 +20,24 @@ def number_text(value: float) -> str:
         return str(value)
     text = f"{value:.{DIGITS}g}"
     return text if float(text) == value else repr(value)
+
+
+def significant(value: float, digits: int) -> float:
+    """A number rounded to so many digits, as a person reads it."""
+    return float(f"{value:.{digits}g}")
+
+
+def stepped(value: float, steps: int, low: float | None, high: float | None, *, whole: bool = False) -> float:
+    """A number that many steps up or down, within its limits: whole ones by 1, others by a tenth of their first digit.
+
+    Near 0 steps are no smaller than a hundredth, or than a thousandth of the way between the limits.
+    """
+    least, most = -math.inf if low is None else low, math.inf if high is None else high
+    if whole:
+        return int(min(max(value + steps, least), most))
+    smallest = min(0.01, (most - least) / 1000.0)
+    step = max(10.0 ** (math.floor(math.log10(abs(value))) - 1), smallest) if value else smallest
+    return min(max(significant(round(value / step) * step + steps * step, DIGITS), least), most)
 
 
 def list_text(values: Sequence[Any]) -> str:
@@ -102,6 +122,21 @@ def read_words(title: str, text: str) -> list[str]:
     if not all(isinstance(word, str) for word in words):
         _refuse(title, text, "a list of words")
     return list(words)
+
+
+def touched_text(collides: bool | Sequence[str]) -> str:
+    """What something touches, in words: everything, nothing, or groups."""
+    if isinstance(collides, bool):
+        return EVERYTHING if collides else NOTHING
+    return list_text(collides) if collides else NOTHING
+
+
+def read_touched(title: str, text: str) -> bool | list[str]:
+    """What a text of `touched_text` stands for. Raises EditError."""
+    words = read_words(title, text)
+    if text.strip().casefold() in (EVERYTHING, NOTHING, ""):
+        return text.strip().casefold() == EVERYTHING
+    return words
 
 
 def _refuse(title: str, text: str, wanted: str) -> NoReturn:

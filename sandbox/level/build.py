@@ -48,7 +48,7 @@ def build_world(level: Level) -> World:
     world.limits = strain_limits(materials)
     _fit(world, layout, level, bodies, slots)
     world.reserve_hands()
-    _add_elements(world, layout, level, bodies, slots, materials)
+    add_elements(world, layout, level, bodies, slots, materials)
     world.terrain, world.surface = terrain_of(level), surface_of(level)
     return world
 
@@ -184,7 +184,7 @@ def _muscles(level: Level, bodies: list[Expansion]) -> Muscles:
     return Muscles(spring, amplitude[spring], period[spring].astype(np.int64), phase[spring])
 
 
-def _add_elements(
+def add_elements(
     world: World,
     layout: Layout,
     level: Level,

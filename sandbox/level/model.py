@@ -214,6 +214,7 @@ class TerrainDef(Description):
     )
     friction: Friction = None
     restitution: Restitution = None
+    group: Group = None
     extras: Extras = Field(default={})
 
 

@@ -77,6 +77,13 @@ class Maker:
         self.twin.click_at(*point)
         assert len(self.twin.editor.scene.position) == len(particles) + 1
 
+    def outline(self, *corners):
+        """Click corners [m] of terrain, and the first of them again."""
+        for corner in (*corners, corners[0]):
+            self.person.click(self.twin.at(*corner))
+            self.twin.click_at(*corner)
+        self.person.wait_for("*", "selected")
+
     def turn(self, option, notches):
         """Turn the wheel over an option of the tool."""
         field = self.twin.editor.options.fields[option]
@@ -181,6 +188,8 @@ def draw_bridge(maker):
 
 
 def draw_wheel(maker):
+    maker.take("ground")
+    maker.outline((-4.0, -2.5), (4.0, -2.5), (4.0, -1.0), (-4.0, -1.5))
     maker.take("circle")
     maker.choose_material("rubber")
     maker.draw((0.0, 1.0), (1.0, 1.0), (1.5, 1.0))
@@ -189,6 +198,8 @@ def draw_wheel(maker):
     maker.twin.click_at(0.0, 1.0)
     (wheel,) = maker.twin.editor.document.level.bodies
     assert (wheel.type, wheel.material, len(wheel.pinned)) == ("jelly", "rubber", 1)
+    (ground,) = maker.twin.editor.document.level.terrain
+    assert len(ground.polygon) == 4
     scene = maker.twin.editor.scene
     return scene.names(int(scene.position[:, 0].argmax()))
 

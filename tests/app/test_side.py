@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from sandbox.app.edit.rows import RowList
 from sandbox.app.edit.side import PAGES
+from sandbox.editor.additions import add_object
 from sandbox.editor.items import Item
 from sandbox.level.canonical import level_text
 from sandbox.level.files import parse_level, read_level
@@ -169,6 +170,78 @@ def test_a_box_is_ticked_by_mouse_and_by_key(driver):
     assert level(driver).particles[0].pinned
 
 
+@pytest.fixture
+def rolling(edit):
+    """An editor with a wheel, which is selected."""
+    body = {"type": "wheel", "id": "w", "position": [2, 2], "radius": 1, "thickness": 0.3, "segments": 6}
+    driver = edit(small_level(bodies=[body]))
+    choose(driver, Item("body", "w"))
+    return driver
+
+
+def test_a_motor_is_added_gets_its_keys_and_goes_again_with_undo(rolling):
+    reveal(rolling, form(rolling).buttons["motor"])
+    press(rolling, form(rolling).buttons["motor"])
+    assert body(rolling, "w").motor.speed == 3.0
+    reveal(rolling, form(rolling).keys["motor.reverse_key"])
+    press(rolling, form(rolling).keys["motor.key"])
+    rolling.key(pygame.K_c)
+    assert body(rolling, "w").motor.key == "c" and rolling.editor.tool == "select"
+    assert any("Cut tool" in notice for notice in rolling.notices)
+    rolling.app.ui.focus_on(form(rolling).keys["motor.reverse_key"])
+    for key in (pygame.K_SPACE, pygame.K_LEFT, pygame.K_1):
+        rolling.key(key)
+    assert body(rolling, "w").motor.reverse_key == "1"
+    rolling.fill(entry(rolling, "motor.speed"), "-2")
+    assert body(rolling, "w").motor.speed == -2.0
+    press(rolling, form(rolling).keys["motor.key"])
+    rolling.key(pygame.K_DELETE)
+    assert body(rolling, "w").motor.key is None
+    labels = ["Add: motor", "Key", "Reverse key", "Speed", "Key"]
+    assert rolling.editor.history.labels[1:] == labels
+    for _ in labels:
+        rolling.key(pygame.K_z, pygame.KMOD_CTRL)
+    assert body(rolling, "w").motor is None and "motor.key" not in form(rolling).keys
+
+
+def test_a_key_that_is_not_pressed_after_all_leaves_the_drive_as_it_is(rolling):
+    rolling.editor.edit("Motor", lambda document: add_object(document, [Item("body", "w")], "motor"))
+    rolling.frames(2)
+    reveal(rolling, form(rolling).keys["motor.key"])
+    for leave in (lambda: rolling.key(pygame.K_ESCAPE), lambda: rolling.click_at(2, 3.9)):
+        press(rolling, form(rolling).keys["motor.key"])
+        assert form(rolling).keys["motor.key"].listening
+        leave()
+        rolling.frames(2)
+        if "motor.key" in form(rolling).keys:
+            assert not form(rolling).keys["motor.key"].listening
+        choose(rolling, Item("body", "w"))
+    rolling.key(pygame.K_r)
+    assert rolling.editor.tool == "rope" and body(rolling, "w").motor.key is None
+
+
+def reveal(driver, widget):
+    """Scroll the panel to a widget."""
+    area = form(driver).area
+    area.scroll_to(area.offset + widget.rect.centery - driver.editor.side.back.rect.centery)
+    driver.frames(2)
+
+
+def test_a_number_is_dragged_by_its_label_in_one_step(driver):
+    choose(driver, ROPE)
+    scrub = form(driver).scrubs["segments"]
+    x, y = scrub.rect.center
+    driver.press((x, y))
+    for step in (1, 2, 3):
+        driver.move((x + 12 * step, y))
+    driver.release((x + 36, y))
+    assert body(driver).segments > 8
+    assert driver.editor.history.labels[1:] == ["Segments"]
+    assert entry(driver, "segments").text == str(body(driver).segments)
+    driver.move((x - 200, y))
+    assert driver.editor.history.labels[1:] == ["Segments"]
+
+
 def test_a_material_is_picked_by_mouse_and_by_key(driver):
     choose(driver, ROPE)
     picker = form(driver).pickers["material"]
@@ -224,7 +297,7 @@ def test_tab_goes_through_the_fields_and_keeps_them_in_sight(driver):
     choose(driver, ROPE)
     driver.app.ui.focus_on(entry(driver, "id").entry)
     seen = []
-    for _ in range(20):
+    for _ in range(30):
         driver.key(pygame.K_TAB)
         focus = driver.app.ui.focus
         seen.append(focus)

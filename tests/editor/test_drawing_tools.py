@@ -16,7 +16,7 @@ from sandbox.level.canonical import level_text
 from sandbox.level.parse import parse_level
 
 REACH = 0.1
-TWO_POINTS = ["spring", "rope", "bridge", "girder", "web", "box", "circle", "wheel"]
+TWO_POINTS = ["spring", "rope", "bridge", "girder", "web", "box", "circle", "wheel", "ring"]
 
 
 @pytest.fixture

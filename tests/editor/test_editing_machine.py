@@ -15,16 +15,16 @@ from hypothesis.stateful import (
 )
 from zoo import zoo
 
-from sandbox.editor import copying, deleting, fields, grouping, keeping, materials, moving, placing
+from sandbox.editor import copying, deleting, fields, grouping, keeping, materials, moving, placing, terrain
 from sandbox.editor.document import Document, EditError, empty_level, select
 from sandbox.editor.history import History
-from sandbox.editor.items import Item, items_of
+from sandbox.editor.items import Item, chosen_items, items_of
 from sandbox.editor.scene import make_scene
 from sandbox.level.bodies import JellyDef, RopeDef, WheelDef
 from sandbox.level.build import build_world
 from sandbox.level.canonical import level_text
 from sandbox.level.checks import CheckDef
-from sandbox.level.model import Level, NissenMaterial, ParticleDef
+from sandbox.level.model import Level, NissenMaterial, ParticleDef, TerrainDef, WallsDef
 from sandbox.level.parse import parse_level
 from sandbox.physics.step import step
 
@@ -70,6 +70,20 @@ FIELDS = {
     "hub_mass": st.none() | FACTORS,
     "masses": st.sampled_from([None, [1.0], [1.0, 2.0, 3.0]]),
     "particles": st.sampled_from([[[0, 0], [1, 0]], [[0, 0], [2, 0], [3, 1]], [[0, 0], [2, 0], [3, 1], [4, 4]]]),
+    "gravity_scale": FACTORS,
+    "friction": st.none() | FACTORS,
+    "bending": st.sampled_from([None, {}, {"stiffness": 0.2, "damping": 0.9}, {"stiffness": 2.0}]),
+    "inflation": st.none() | FACTORS,
+    "area": st.booleans(),
+    "restitution": st.none() | FACTORS,
+    "particle_radius": st.none() | FACTORS,
+    "collides": st.sampled_from([True, False, ["balls"], ["default", "terrain"], ["nobody"], 3]),
+    "collision_group": st.sampled_from([None, "balls", "others", "terrain"]),
+    "polyline": st.sampled_from([[[0, 0], [1, 0]], [[0, 0], [0, 0]], None]),
+    "polygon": st.sampled_from([[[0, 0], [1, 0], [0, 1]], [[0, 0], [1, 1], [1, 0], [0, 1]], None]),
+    "drive": st.sampled_from([None, {"amplitude": 0.2, "period": 60}, {"amplitude": 2.0, "period": 1}]),
+    "motor": st.sampled_from([None, {"speed": -3.0, "torque": 5.0, "key": "d"}, {"speed": 1.0}]),
+    "hydraulic": st.sampled_from([None, {"shortest": 0.5, "longest": 2.0, "rate": 1.0, "key": "u"}]),
     "springs": st.sampled_from([[], [[0, 1]], [[1, 2], [2, 0]], [[0, 7]]]),
 }
 
@@ -79,8 +93,7 @@ FORM = {"start", "end", "position", "angle", "radius", "thickness", "height", "s
 
 def definitions(level, items):
     """What a level says of items."""
-    everything = (*level.bodies, *level.particles, *level.springs)
-    return [part for item, part in zip(items_of(level), everything, strict=True) if item in items]
+    return list(chosen_items(level, frozenset(items)).values())
 
 
 @dataclass(frozen=True)
@@ -170,6 +183,31 @@ class EditingMachine(RuleBasedStateMachine):
             self._edit(placing.unweld, welds[int(a * len(welds))][1])
         else:
             self._edit(placing.weld, self._particle(a), self._particle(b))
+
+    @rule(at=st.lists(POINTS, min_size=1, max_size=5), form=st.sampled_from(terrain.FORMS), name=TEXTS)
+    def add_terrain(self, at, form, name) -> None:
+        piece = TerrainDef.model_construct(id=name)
+        self._edit(terrain.add_terrain, terrain.with_corners(piece, at, form))
+
+    @precondition(lambda self: self.document.level.terrain)
+    @rule(
+        share=st.floats(0, 0.999),
+        corner=st.integers(0, 6),
+        to=POINTS,
+        way=st.sampled_from(["move", "add", "delete"]),
+    )
+    def change_corner(self, share, corner, to, way) -> None:
+        pieces = self.document.level.terrain
+        piece = pieces[int(share * len(pieces))]
+        index = min(corner, len(terrain.corners_of(piece)) - 1)
+        if way == "delete":
+            self._edit(terrain.delete_corner, piece.id, index)
+        else:
+            self._edit(terrain.move_corner if way == "move" else terrain.insert_corner, piece.id, index, to)
+
+    @rule(box=st.none() | st.tuples(LENGTHS, LENGTHS, LENGTHS, LENGTHS))
+    def set_walls(self, box) -> None:
+        self._edit(terrain.set_walls, None if box is None else WallsDef.model_construct(box=box))
 
     @rule(shares=SHARES, pinned=st.booleans())
     def pin(self, shares, pinned) -> None:
@@ -295,7 +333,7 @@ class EditingMachine(RuleBasedStateMachine):
     def reorder(self, to) -> None:
         self._edit(grouping.reorder, to)
 
-    @precondition(lambda self: self.scene.items)
+    @precondition(lambda self: len(self.scene.mass))
     @rule(shares=SHARES, ticks=st.integers(0, 3), soft=st.booleans())
     def play_and_keep(self, shares, ticks, soft) -> None:
         world = build_world(self.document.level)

@@ -145,6 +145,12 @@ def test_a_body_broken_apart_is_the_same_world_by_other_names():
         break_apart(chosen("hook"))
 
 
+def test_what_is_broken_apart_falls_and_swings_as_before():
+    after = break_apart(chosen("ball", "wheel")).level
+    assert {spring.drive for spring in after.springs if spring.group == "ball"} == {zoo().bodies[7].drive}
+    assert {particle.gravity_scale for particle in after.particles if particle.group == "wheel"} == {0.5}
+
+
 def test_what_is_too_large_for_a_file_is_not_broken_apart(monkeypatch):
     monkeypatch.setattr("sandbox.editor.document.FILE_LIMIT", 10_000)
     monkeypatch.setattr("sandbox.editor.document.MEASURED_SIZE", 50)
@@ -165,7 +171,7 @@ def test_a_pasted_fragment_gets_ids_and_groups_of_its_own_and_its_references_fol
     text = copy_text(source)
     document = paste(source, text, (100.0, 0.0))
     level = document.level
-    assert [part.id for part in level.bodies[9:]] == ["rope 2", "deck 2"]
+    assert [part.id for part in level.bodies[-2:]] == ["rope 2", "deck 2"]
     assert level.particles[-1].id == "weight 2"
     assert (level.springs[-1].a, level.springs[-1].b) == ("weight 2", "deck 2.end")
     assert level.welds[-1] == ("rope 2.end", "weight 2")
@@ -314,7 +320,7 @@ def test_groups_are_selected_whole():
     assert with_groups(grouped.level, frozenset([body("rope")])) == document.selection
     assert ungroup(grouped).level.bodies[0].group is None
     assert ungroup(chosen("rope")).level == zoo()
-    assert len(with_groups(zoo(), frozenset([body("deck")]))) == 3
+    assert len(with_groups(zoo(), frozenset([body("deck")]))) == 4
 
 
 def test_the_order_of_drawing_is_that_of_the_file():

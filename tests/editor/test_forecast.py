@@ -8,9 +8,11 @@ import pytest
 from sandbox.editor.forecast import Forecast
 from sandbox.editor.items import Item
 from sandbox.editor.scene import make_scene
-from sandbox.level.bodies import BoxShape, JellyDef, RopeDef
+from sandbox.level.bodies import BoxShape, JellyDef, RopeDef, WheelDef
 from sandbox.level.build import build_world
-from sandbox.level.model import HookeMaterial, Level, NissenMaterial, ParticleDef, Settings, SpringDef
+from sandbox.level.driving import MotorDef, MuscleDef
+from sandbox.level.model import HookeMaterial, Level, NissenMaterial, ParticleDef, Settings, SpringDef, TerrainDef
+from sandbox.level.quantities import replaced
 from sandbox.physics.step import step
 
 STEEL = NissenMaterial(stiffness=1.0, damping=1.0)
@@ -141,3 +143,22 @@ def test_a_level_of_too_many_moving_particles_is_refused_before_anything_is_buil
     assert forecast.text == "5,040 particles move, too many for a forecast (4,000); play it to see"
     falling = finished(level_of(bodies=(cube.model_copy(update={"pinned": ()}), rope())))
     assert falling.at_rest
+
+
+def test_what_drives_itself_has_no_rest_and_what_waits_for_a_key_has():
+    wheel = WheelDef(type="wheel", id="w", radius=0.5, thickness=0.2, segments=8, pin=("hub",))
+    runs = replaced(wheel, motor=MotorDef(speed=1.0, torque=5.0))
+    beats = rope(drive=MuscleDef(amplitude=0.1, period=30))
+    for body in (runs, beats):
+        forecast = finished(level_of(bodies=(body,)))
+        assert forecast.text == f'"{body.id}" is driven, and never comes to rest; play it to see'
+    assert finished(level_of(bodies=(replaced(runs, motor=replaced(runs.motor, key="d")),))).at_rest
+    assert finished(level_of(bodies=(replaced(beats, drive=MuscleDef(amplitude=0.0, period=30)),))).at_rest
+
+
+def test_what_falls_onto_the_ground_is_shown_where_it_lies():
+    ball = ParticleDef(id="ball", position=(0.1, 1.0), radius=0.25)
+    ground = TerrainDef(id="ground", polygon=((-3.0, -1.0), (3.0, -1.0), (3.0, 0.0), (-3.0, 0.0)))
+    forecast = finished(level_of(particles=(ball,), terrain=(ground,)))
+    assert forecast.at_rest and not forecast.falling
+    assert forecast.position[0, 1] == pytest.approx(0.25, abs=0.02)

@@ -31,7 +31,8 @@ def test_a_kept_pose_is_where_the_world_was_and_every_rest_length_stays():
     world = played(document)
     again = build_world(keep_pose(document, world).level)
     assert np.array_equal(again.position, world.position)
-    assert np.allclose(again.rest_length, world.rest_length, rtol=1e-12)
+    # What muscles have added for the moment is not kept.
+    assert np.allclose(again.rest_length, build_world(document.level).rest_length, rtol=1e-12)
     assert again.particle_names == world.particle_names
     assert again.spring_names == world.spring_names
 

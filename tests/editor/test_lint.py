@@ -14,11 +14,22 @@ from sandbox.editor.lint import findings
 from sandbox.editor.placing import weld
 from sandbox.editor.scene import make_scene
 from sandbox.editor.snap import Snap
-from sandbox.level.bodies import BoxShape, BridgeDef, JellyDef, RopeDef
+from sandbox.level.bodies import BoxShape, BridgeDef, JellyDef, RopeDef, WheelDef
 from sandbox.level.build import build_world
 from sandbox.level.checks import CheckDef
+from sandbox.level.driving import MotorDef
 from sandbox.level.files import read_level
-from sandbox.level.model import Level, NissenMaterial, ParticleDef, Settings, SpringDef
+from sandbox.level.model import (
+    ContactsDef,
+    Level,
+    NissenMaterial,
+    ParticleDef,
+    Settings,
+    SpringDef,
+    TerrainDef,
+    WallsDef,
+)  # fmt: skip
+from sandbox.level.quantities import replaced
 from sandbox.physics.stability import report, spring_loads
 
 LEVELS = sorted((Path(__file__).resolve().parents[2] / "levels").glob("*.json"))
@@ -107,6 +118,22 @@ def test_springs_and_pins_that_do_nothing_are_found():
         ("hint", {Item("spring", 0)}, (0.5, 0.0)),
         ("hint", {Item("particle", "nail")}, (5.0, 0.0)),
     ]
+
+
+def test_a_motor_whose_hub_is_fixed_to_nothing_is_found():
+    wheel = WheelDef(
+        type="wheel", id="w", position=(0.0, 0.0), radius=1.0, thickness=0.3, segments=6, pin=("hub",),
+        motor=MotorDef(speed=1.0, torque=5.0),
+    )  # fmt: skip
+    loose = replaced(wheel, pin=(), pinned=(3,))
+    level = level_of(bodies=(loose, rope(y=5.0)))
+    assert ['the motor of "w"' in text and "fixed to nothing" in text for text in texts(level)] == [True]
+    held = (
+        level_of(bodies=(wheel,)),
+        replaced(level, springs=(SpringDef(a="rope.end", b="w.hub"),)),
+        replaced(level, welds=(("rope.end", "w.hub"),)),
+    )
+    assert not any("motor" in text for each in held for text in texts(each))
 
 
 def test_particles_that_lie_on_each_other_are_found_until_they_are_joined():
@@ -270,3 +297,72 @@ def test_the_tools_draw_nothing_that_the_lint_complains_about():
         drawing.up(Snap((3.0, 10.0 * index)))
         document = drawing.done(document)
     assert texts(document.level) == []
+
+
+GROUND = TerrainDef(id="ground", polygon=((-9.0, -3.0), (9.0, -3.0), (9.0, 0.0), (-9.0, 0.0)))
+
+
+def test_what_starts_inside_the_ground_is_found_and_its_remedy_takes_it_out():
+    ball = ParticleDef(id="ball", position=(2.0, -0.5), radius=0.3)
+    level = level_of(terrain=(GROUND,), particles=(ball,), bodies=(cube("box", 0.0, -0.25),))
+    buried = [finding for finding in found(level) if "inside" in finding.text]
+    assert [finding.text for finding in buried] == [
+        '"box" starts with 15 of 25 particles inside "ground", and will be pushed out; move it',
+        '"ball" starts inside "ground", and will be pushed out; move it',
+    ]
+    document = Document(level)
+    for finding in buried:
+        document = finding.remedy.edit(document)
+    assert not any("inside" in text for text in texts(document.level))
+    position = make_scene(document.level).position
+    assert (position[:, 1] >= 0.0).all() and position[:, 1].min() < 0.1
+
+
+def test_what_rests_on_the_ground_is_held_in_it_or_does_not_touch_it_is_left_in_peace():
+    resting = ParticleDef(id="rest", position=(2.0, 0.1), radius=0.2)
+    nail = ParticleDef(id="nail", position=(3.0, -1.0), pinned=True)
+    ghost = ParticleDef(id="ghost", position=(4.0, -1.0), collides=False)
+    level = level_of(terrain=(GROUND,), particles=(resting, nail, ghost), springs=(SpringDef(a="nail", b="rest"),))
+    assert not any("inside" in text for text in texts(level))
+    assert [text for text in texts(level) if "fall" in text] == [text for text in texts(level) if "ghost" in text]
+
+
+def test_beyond_the_walls_is_found_and_moved_in():
+    level = level_of(walls=WallsDef(box=(-1.0, -1.0, 1.0, 1.0)), particles=(ParticleDef(id="p", position=(3.0, 0.5)),))
+    (finding,) = found(level)
+    assert "beyond the walls" in finding.text
+    inside = finding.remedy.edit(Document(level)).level
+    assert texts(inside) == [] and 0.9 < inside.particles[0].position[0] < 1.0
+
+
+def test_what_terrain_lies_below_does_not_fall_away_and_what_it_lies_beside_does():
+    drops = (ParticleDef(id="above", position=(0.0, 5.0)), ParticleDef(id="beside", position=(20.0, 5.0)))
+    floats = ParticleDef(id="floats", position=(30.0, 5.0), gravity_scale=0.0)
+    (falls,) = texts(level_of(terrain=(GROUND,), particles=(*drops, floats)))
+    assert falls.startswith('"beside" will fall')
+    upward = level_of(terrain=(GROUND,), particles=drops, settings=Settings(gravity=(0.0, 9.81)))
+    assert len(texts(upward)) == 2
+
+
+def test_discs_that_overlap_are_found_where_they_touch_and_nothing_joins_them():
+    pair = [ParticleDef(id=name, position=(x, 0.0), radius=0.5) for name, x in (("a", 0.0), ("b", 0.4))]
+    level = level_of(particles=tuple(pair), contacts=ContactsDef(), settings=Settings(gravity=(0.0, 0.0)))
+    assert ["overlap at the start" in text for text in texts(level)] == [True]
+    others = (
+        replaced(level, contacts=None),
+        replaced(level, springs=(SpringDef(a="a", b="b"),)),
+        replaced(level, particles=(pair[0], replaced(pair[1], collides=False))),
+        replaced(level, particles=(pair[0], replaced(pair[1], position=(0.8, 0.0)))),
+    )
+    assert [text for each in others for text in texts(each)] == []
+
+
+def test_bodies_that_cross_are_pushed_apart_where_they_touch_each_other():
+    level = level_of(bodies=(cube("a", 0, 0, pinned=(0,)), cube("b", 0.6, 0.6, pinned=(0,))))
+    (finding,) = found(level)
+    assert finding.severity == "hint" and "pass through" in finding.text
+    (finding,) = found(replaced(level, contacts=ContactsDef()))
+    assert finding.severity == "warning" and "pushed apart" in finding.text
+    apart = tuple(replaced(body, collides=()) for body in level.bodies)
+    (finding,) = found(replaced(level, contacts=ContactsDef(), bodies=apart))
+    assert "pass through" in finding.text

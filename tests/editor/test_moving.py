@@ -106,6 +106,19 @@ def test_an_even_scale_makes_everything_larger_rest_lengths_too(name):
     assert np.allclose(np.sort(longer[:, 2]), 1.5 * np.sort(springs[:, 2]), atol=1e-7)
 
 
+def test_a_motor_turns_the_other_way_in_a_mirror_and_as_before_when_turned():
+    document = Document(zoo(), frozenset([Item("body", "wheel")]))
+    speeds = [
+        after.level.bodies[4].motor.speed
+        for after in (
+            mirror(document, "x", (0.0, 0.0)),
+            mirror(document, "y", (1.0, 0.0)),
+            rotate(document, 2.0, (0, 0)),
+        )
+    ]
+    assert speeds == [-3.0, -3.0, 3.0]
+
+
 def test_references_follow_into_a_mirror_image():
     before = chosen("beam", "cube", "deck")
     scene = make_scene(before.level)

@@ -8,15 +8,10 @@ from hypothesis import strategies as st
 
 from sandbox.editor.abouts import abouts
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.items import Item, items_of
-from sandbox.editor.properties import (
-    MIXED,
-    add_check,
-    check_properties,
-    delete_check,
-    level_properties,
-    properties,
-)
+from sandbox.editor.items import Item, definitions, items_of
+from sandbox.editor.level_properties import add_check, check_properties, delete_check, level_properties
+from sandbox.editor.properties import properties
+from sandbox.editor.property import MIXED, Property
 from sandbox.editor.typed import line_text, list_text, number_text, read_line, read_pairs, read_words
 from sandbox.level.bodies import KINDS
 from sandbox.level.canonical import level_text
@@ -40,11 +35,18 @@ LEVEL = {
         {"type": "jelly", "id": "disc", "shape": {"circle": 1.0}, "spacing": 0.5, "position": [20, 4]},
         {"type": "jelly", "id": "kite", "shape": {"polygon": [[-1, 0], [0, -1], [1, 0], [0, 2]]}, "spacing": 0.5,
          "position": [20, 8]},
+        {"type": "wheel", "id": "driven", "position": [9, 12], "radius": 1.0, "thickness": 0.5, "segments": 6,
+         "drive": {"amplitude": 0.1, "period": 30}, "motor": {"speed": 2, "torque": 10}, "gravity_scale": 0.5},
+        {"type": "ring", "id": "ring", "position": [40, 0], "radius": 1.0, "segments": 8, "bending": {}},
         {"type": "mesh", "id": "mesh", "particles": [[30, 0], [31, 0]], "masses": [1.0, 2.0], "springs": [[0, 1]],
          "velocities": [[0, 0], [0, 1]], "pinned": [0], "extras": {"by": "hand"}},
     ],
+    "walls": {"box": [-50, -50, 50, 50]},
+    "terrain": [{"id": "ground", "polygon": [[0, -9], [9, -9], [9, -8], [0, -8]], "friction": 0.5},
+                {"id": "edge", "polyline": [[0, -20], [9, -21], [12, -20]], "restitution": 0.5}],
     "particles": [{"id": "ball", "position": [4, 3], "mass": 5.0}, {"id": "nail", "position": [6, 3], "pinned": True}],
-    "springs": [{"a": "ball", "b": "rope.end", "material": "hook"}, {"a": "nail", "b": "ball"}],
+    "springs": [{"a": "ball", "b": "rope.end", "material": "hook"}, {"a": "nail", "b": "ball"},
+                {"a": "nail", "b": "disc.0", "hydraulic": {"shortest": 1, "longest": 2, "rate": 1, "key": "u"}}],
     "welds": [["line.end", "deck.1"]],
     "checks": [{"name": "up", "metric": "y", "particle": "ball", "at_least": 0.0}],
 }  # fmt: skip
@@ -77,19 +79,18 @@ def test_nothing_selected_has_no_properties(level):
 
 
 def test_every_field_of_every_kind_of_item_can_be_reached(level):
-    for item, part in zip(items_of(level), (*level.bodies, *level.particles, *level.springs), strict=True):
+    for item, part in zip(items_of(level), definitions(level), strict=True):
         shown = {name.partition(".")[0] for name in fields(Document(level, frozenset([item])))}
-        # Drives are whole objects, which the panel leaves as they are.
-        assert type(part).model_fields.keys() - shown - {"type", "drive", "motor", "hydraulic"} <= {"extras"}, item
+        assert type(part).model_fields.keys() - shown - {"type", "polyline", "polygon"} <= {"extras"}, item
     assert "extras" in fields(chosen(level, "mesh"))
     assert {type(part) for part in level.bodies} == set(KINDS.values())
 
 
 def test_every_field_of_the_level_and_its_settings_can_be_reached(level):
-    first, second = level_properties(Document(level))
+    first, second, third = level_properties(Document(level))
     parts = {"format", "version", "settings", "materials", "bodies", "particles", "springs", "welds", "checks"}
-    parts |= {"contacts", "walls", "terrain"}
-    assert {each.field for each in first.properties} == set(Level.model_fields) - parts - {"extras"}
+    shown = {each.field.partition(".")[0] for section in (first, third) for each in section.properties}
+    assert shown == set(Level.model_fields) - parts - {"extras", "terrain"}
     assert {each.field for each in second.properties} == set(Settings.model_fields)
 
 
@@ -118,7 +119,8 @@ def test_several_kinds_have_the_fields_that_they_share(level):
     assert not {"rest_length", "height", "end_mass"} & shared
     # Ends that are held are not the rim that is.
     assert "pin" not in fields(chosen(level, "rope", "web"))
-    assert set(fields(Document(level, frozenset(items_of(level))))) == {"group", "extras"}
+    everything = set(fields(Document(level, frozenset(items_of(level)))))
+    assert everything == {"group", "extras", "drive", "motor", "hydraulic", "bending"}
 
 
 def test_one_axis_of_many_is_set_and_the_other_stays(level):
@@ -174,7 +176,7 @@ def test_lists_are_typed_with_and_without_brackets(level):
         ("rope", "pinned", "start", 'Held particles: "start" is not a list such as 0, 4, 5'),
         ("rope", "pinned", "[" * 3000, None),
         ("mesh", "particles", "[0, 0], 7", None),
-        ("rope", "id", "deck", '"deck" is taken; every body and loose particle needs an id of its own'),
+        ("rope", "id", "deck", '"deck" is taken; all bodies, loose particles and terrain need ids of their own'),
         ("rope", "id", "a.b", None),
         ("wheel", "thickness", "2", '"wheel": thickness: 2.0 is not below the radius, 2.0'),
     ],
@@ -217,6 +219,64 @@ def test_what_is_only_shown_says_so(level):
     with pytest.raises(EditError):
         joined.set(chosen(level, "deck"), "nothing")
     assert fields(Document(level, frozenset([Item("spring", 1)])))["name"].value == ":1"
+
+
+def test_a_drive_is_added_with_values_that_fit_changed_and_taken_away(level):
+    document = chosen(level, "wheel")
+    assert "motor.speed" not in fields(document)
+    driven = fields(document)["motor"].set(document, True)
+    motor = body(driven, "wheel").motor
+    # Half the weight of 13 particles at a radius of 2 m.
+    assert (motor.speed, motor.torque, motor.key) == (3.0, 128.0, None)
+    driven = changed(driven, "motor.speed", "-5")
+    driven = changed(driven, "motor.key", "d")
+    driven = changed(driven, "motor.reverse_key", "a")
+    assert body(driven, "wheel").motor.__dict__ == {
+        "key": "d", "reverse_key": "a", "speed": -5.0, "torque": 128.0,
+    }  # fmt: skip
+    with pytest.raises(EditError, match=r'"wheel": motor\.reverse_key: "d" is the key as well; name another'):
+        changed(driven, "motor.reverse_key", "d")
+    assert body(changed(driven, "motor.key", ""), "wheel").motor.key is None
+    assert fields(driven)["motor"].set(driven, False).level.bodies == level.bodies
+
+
+def test_drives_of_a_selection_are_for_those_that_can_have_one(level):
+    document = chosen(level, "rope", "wheel", "ball", 0, 1)
+    assert fields(document)["drive"].value is False and "drive.period" not in fields(document)
+    driven = fields(document)["drive"].set(document, True)
+    assert body(driven, "rope").drive.period == driven.level.springs[1].drive.period == 60
+    assert body(driven, "line").drive is None
+    driven = changed(driven, "drive.phase", "0.5")
+    assert [spring.drive.phase for spring in driven.level.springs[:2]] == [0.5, 0.5]
+    apart = changed(Document(driven.level, frozenset([Item("spring", 1)])), "drive.phase", "0.25")
+    apart = Document(apart.level, document.selection)
+    assert fields(apart)["drive.phase"].value is MIXED
+    with pytest.raises(EditError, match="keep one of them"):
+        fields(apart)["hydraulic"].set(apart, True)
+    some = Document(fields(chosen(level, "rope"))["drive"].set(chosen(level, "rope"), True).level, document.selection)
+    assert fields(some)["drive"].value is MIXED
+    assert fields(fields(some)["drive"].set(some, True))["drive"].value is True
+
+
+def test_a_hydraulic_begins_as_long_as_its_spring(level):
+    document = Document(level, frozenset([Item("spring", 0)]))
+    driven = fields(document)["hydraulic"].set(document, True)
+    assert driven.level.springs[0].hydraulic.__dict__ == {
+        "key": None, "reverse_key": None, "shortest": 3.0, "longest": 4.5, "rate": 1.5,
+    }  # fmt: skip
+    with pytest.raises(EditError, match="is above longest"):
+        changed(driven, "hydraulic.shortest", "5")
+    given = Document(changed(document, "rest_length", "1.25").level, document.selection)
+    assert fields(given)["hydraulic"].set(given, True).level.springs[0].hydraulic.shortest == 1.25
+
+
+def test_a_number_is_counted_up_and_down_within_its_limits(level):
+    wheel = fields(chosen(level, "wheel"))
+    assert [wheel["segments"].stepped(by) for by in (1, -2, -9)] == [7, 4, 3]
+    assert [wheel["radius"].stepped(by) for by in (1, -1)] == [2.1, 1.9]
+    assert wheel["gravity_scale"].stepped(-10) == 0.0
+    assert wheel["hub_mass"].stepped(1) is None and wheel["id"].stepped(1) is None
+    assert Property("x", abouts(KINDS["wheel"])["radius"], 0.001).stepped(-1) == 0.001
 
 
 def test_settings_are_set_with_the_formats_types(level):

@@ -9,7 +9,7 @@ from sandbox.app.camera import Box
 from sandbox.app.colours import material_colours
 from sandbox.app.dialogs import choose, choose_row, fill_in
 from sandbox.app.edit.bar import TOOLS
-from sandbox.app.edit.hands import DrawHand
+from sandbox.app.edit.hands import DrawHand, SelectHand
 from sandbox.app.edit.rows import Row
 from sandbox.app.shortcuts import shortcuts
 from sandbox.editor.copying import array_circle, array_line, duplicate
@@ -286,7 +286,7 @@ def _delete_or_back(screen: "EditScreen") -> None:
     """Take the last point of what is drawn back, or delete the selection."""
     if isinstance(screen.hand, DrawHand) and screen.hand.drawing.under_way:
         screen.hand.drawing.back()
-    else:
+    elif not (isinstance(screen.hand, SelectHand) and screen.hand.delete_corner()):
         _edit_selection(screen, "Delete", delete)
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 # Tools in the order of the palette; the picture of each has its name.
 TOOLS = (
     "select", "lasso", "particle", "spring", "rope", "bridge", "girder", "web", "box", "circle", "polygon", "wheel",
-    "pin",
+    "ring", "pin", "ground", "line", "walls",
 )  # fmt: skip
 # Groups of actions from the left, and those at the right end, with their pictures.
 LEFT = (

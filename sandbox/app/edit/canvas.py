@@ -9,7 +9,7 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.app.camera import Camera, grid_spacing
+from sandbox.app.camera import Box, Camera, grid_spacing
 from sandbox.app.colours import (
     ACCENT,
     BACKGROUND,
@@ -24,6 +24,7 @@ from sandbox.app.colours import (
     mixed,
     packed,
 )
+from sandbox.app.edit.ground import Ground, paint_ground, paint_walls
 from sandbox.app.lines import Canvas
 from sandbox.app.renderer import CROWDED, DENSITY, GRID_STEP, PIN_RADIUS, SMALLEST_RADIUS, SPRING_WIDTH, THINNEST_SPRING
 from sandbox.editor.items import Item, Selection
@@ -59,16 +60,17 @@ class Part:
 
 
 class Chosen(NamedTuple):
-    """Which particles (n,) and springs (m,) of a scene are selected."""
+    """Which particles (n,), springs (m,) and items (k,) of a scene are selected."""
 
     particles: Mask
     springs: Mask
+    items: Mask
 
     @classmethod
     def of(cls, scene: Scene, selection: Selection) -> "Chosen":
         """Find them, which takes time in large selections."""
         chosen = scene.chosen(selection)
-        return cls(chosen[scene.particle_item], chosen[scene.spring_item])
+        return cls(chosen[scene.particle_item], chosen[scene.spring_item], chosen)
 
 
 class ScenePainter:
@@ -120,30 +122,41 @@ class ScenePainter:
         layer.set_clip(camera.viewport)
         layer.fill(BACKGROUND)
         draw_grid(layer, camera, self.scale)
-        particles, springs = chosen
+        particles, springs, items = chosen
+        canvas = Canvas(layer, self.compiled)
+        if scene.level.walls is not None:
+            paint_walls(canvas, camera, scene.level.walls.box, self.scale)
+        paint_ground(canvas, camera, Ground(scene, ~items), self.scale)
+        if not hidden:
+            paint_ground(canvas, camera, Ground(scene, items, ACCENT), self.scale)
         away = springs | hanging_springs(scene, particles) if hidden else springs
         yield from self._slices(layer, camera, Part(scene, ~particles, ~away), plain)
         if not hidden:
             yield from self._slices(layer, camera, Part(scene, particles, springs, ACCENT), plain)
 
-    def paint_moved(
-        self, surface: pygame.Surface, camera: Camera, scene: Scene, chosen: Chosen, matrix: NDArray[np.float64]
-    ) -> None:
-        """Draw the selection where a matrix (2, 3) takes it, and the springs of others that hang on it."""
-        particles, springs = chosen
-        position = scene.position.copy()
-        position[particles] = position[particles] @ matrix[:, :2].T + matrix[:, 2]
-        moved = replace(scene, position=position[scene.first_of_weld] if len(scene.welds) else position)
+    def paint_moved(self, surface: pygame.Surface, camera: Camera, moved: Scene, chosen: Chosen) -> None:
+        """Draw the selection in a scene where it has been moved, and the springs of others that hang on it."""
+        particles, springs, items = chosen
+        self.paint_ground(surface, camera, Ground(moved, items, ACCENT))
         nobody = np.zeros(len(particles), dtype=np.bool_)
-        self.paint(surface, camera, Part(moved, nobody, hanging_springs(scene, particles) & ~springs))
+        self.paint(surface, camera, Part(moved, nobody, hanging_springs(moved, particles) & ~springs))
         self.paint(surface, camera, Part(moved, particles, springs, ACCENT))
 
     def paint_hovered(self, surface: pygame.Surface, camera: Camera, scene: Scene, item: Item) -> None:
         """Draw what a click would select, brighter; of large bodies only the springs."""
-        particles, springs = Chosen.of(scene, frozenset({item}))
+        particles, springs, items = Chosen.of(scene, frozenset({item}))
+        self.paint_ground(surface, camera, Ground(scene, items, HOVERED))
         if np.count_nonzero(springs) > PLAIN_FROM:
             particles = np.zeros(len(particles), dtype=np.bool_)
         self.paint(surface, camera, Part(scene, particles, springs, HOVERED))
+
+    def paint_ground(self, surface: pygame.Surface, camera: Camera, ground: Ground) -> None:
+        """Draw terrain."""
+        paint_ground(Canvas(surface, self.compiled), camera, ground, self.scale)
+
+    def paint_walls(self, surface: pygame.Surface, camera: Camera, box: Box, colour: Colour) -> None:
+        """Draw walls."""
+        paint_walls(Canvas(surface, self.compiled), camera, box, self.scale, colour)
 
     def paint(self, surface: pygame.Surface, camera: Camera, part: Part) -> None:
         """Draw a part of a scene, plainly where it is large."""
@@ -238,6 +251,16 @@ def draw_grid(surface: pygame.Surface, camera: Camera, scale: float) -> None:
                     surface.fill(tone, (round(at[0]), top, 1, height))
                 else:
                     surface.fill(tone, (left, round(at[1]), width, 1))
+
+
+def moved_by(scene: Scene, chosen: Chosen, matrix: NDArray[np.float64]) -> Scene:
+    """The scene with what is chosen where a matrix (2, 3) takes it."""
+    position = scene.position.copy()
+    position[chosen.particles] = position[chosen.particles] @ matrix[:, :2].T + matrix[:, 2]
+    position = position[scene.first_of_weld] if len(scene.welds) else position
+    corner, corners = scene.corner.copy(), chosen.items[scene.corner_item]
+    corner[corners] = corner[corners] @ matrix[:, :2].T + matrix[:, 2]
+    return replace(scene, position=position, corner=corner)
 
 
 def hanging_springs(scene: Scene, particles: Mask) -> Mask:

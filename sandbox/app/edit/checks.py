@@ -9,7 +9,7 @@ from sandbox.app.colours import ACCENT, DANGER, DISABLED
 from sandbox.app.edit.form import GAP, ROW, Form
 from sandbox.app.edit.rows import Row, RowList
 from sandbox.editor.document import Document
-from sandbox.editor.properties import add_check, check_properties, delete_check
+from sandbox.editor.level_properties import add_check, check_properties, delete_check
 from sandbox.editor.typed import number_text
 from sandbox.level.checks import CheckDef, CheckResult, check_ticks
 from sandbox.level.faults import LevelError

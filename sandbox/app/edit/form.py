@@ -1,21 +1,22 @@
 """Form: a scrolling page of properties, a row each, that shows their values and takes new ones."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from html import escape
 from typing import TYPE_CHECKING, Any
 
 import pygame
 
-from sandbox.app.colours import ACCENT, LINE, MUTED, TEXT, material_colours
+from sandbox.app.colours import MUTED, material_colours
 from sandbox.app.dialogs import choose
-from sandbox.app.edit.rows import FIELD_BACKGROUND, Picker, Row
+from sandbox.app.edit.boxes import CheckBox, KeyBox, Scrub
+from sandbox.app.edit.rows import Picker, Row
 from sandbox.app.edit.scroll import ScrollArea
 from sandbox.app.fields import Field
-from sandbox.app.painted import Painted, TextBlock, wrapped
-from sandbox.app.widgets import ENTER_KEYS, Ui
+from sandbox.app.painted import TextBlock, wrapped
+from sandbox.app.shortcuts import action_of, tip_of
 from sandbox.editor.document import EditError
-from sandbox.editor.properties import MIXED, Property, Section
+from sandbox.editor.property import MIXED, Property, Section
 
 if TYPE_CHECKING:
     from sandbox.app.edit.screen import EditScreen
@@ -34,62 +35,13 @@ TEXT_LENGTH = 600
 SIDE_BY_SIDE = 14
 MOST_SIDE_BY_SIDE = 4
 SQUARED = {"m/s^2": "m/s²"}
+# What the button of an object says while some have one, all or none.
+OBJECT_TEXTS = {True: "Remove", False: "Add", MIXED: "Add to the others"}
 
 
 def sentence(text: str) -> str:
     """A fault as a sentence."""
     return f"{text[:1].upper()}{text[1:]}" + ("" if text.endswith((".", "?")) else ".")
-
-
-class CheckBox(Painted):
-    """A box to tick; its state may be MIXED."""
-
-    def __init__(self, ui: Ui, rect: pygame.Rect, label: str, toggle: Callable[[bool], object], container: Any) -> None:
-        super().__init__(ui, rect, container)
-        self.label, self.state = label, False
-        self.mixed = False
-        self._toggle = toggle
-        ui.add(self)
-        self.repaint()
-
-    def show_state(self, state: bool, is_mixed: bool) -> None:
-        """Show it ticked or not, or that the items differ."""
-        if (state, is_mixed) != (self.state, self.mixed):
-            self.state, self.mixed = state, is_mixed
-            self.repaint()
-
-    def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """Box, tick or dash, and label."""
-        ui = self.ui
-        surface = pygame.Surface(size, pygame.SRCALPHA)
-        side = ui.px(16)
-        box = pygame.Rect(0, (size[1] - side) // 2, side, side)
-        pygame.draw.rect(surface, ACCENT if self.state else FIELD_BACKGROUND, box, border_radius=ui.px(4))
-        pygame.draw.rect(surface, ACCENT if self.state else LINE, box, 1, border_radius=ui.px(4))
-        x, y, part = box.centerx, box.centery, side / 4
-        if self.mixed:
-            pygame.draw.line(surface, MUTED, (x - part, y), (x + part, y), ui.px(2))
-        elif self.state:
-            points = [(x - part, y), (x - part / 4, y + part * 0.8), (x + part * 1.1, y - part * 0.8)]
-            pygame.draw.lines(surface, FIELD_BACKGROUND, False, points, ui.px(2))
-        text = ui.font(12.5).render(self.label, True, TEXT)
-        surface.blit(text, (side + ui.px(7), (size[1] - text.get_height()) // 2))
-        return surface
-
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Tick on a click."""
-        pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
-        if pressed and self.hover_point(*self.ui.manager.calculate_scaled_mouse_position(event.pos)):
-            self._toggle(not self.state)
-            return True
-        return False
-
-    def press_key(self, event: pygame.event.Event) -> bool:
-        """Tick by Enter or Space."""
-        if event.key in (*ENTER_KEYS, pygame.K_SPACE):
-            self._toggle(not self.state)
-            return True
-        return False
 
 
 class Form:
@@ -104,6 +56,9 @@ class Form:
         self.pickers: dict[str, Picker] = {}
         self.boxes: dict[str, dict[str, CheckBox]] = {}
         self.choices: dict[str, Any] = {}
+        self.buttons: dict[str, Any] = {}
+        self.keys: dict[str, KeyBox] = {}
+        self.scrubs: dict[str, Scrub] = {}
         self._notes: dict[str, TextBlock] = {}
         self._widgets: list[Any] = []
         self._named: dict[str, Any] = {}
@@ -167,6 +122,7 @@ class Form:
         focused = next((name for name, widget in self._named.items() if widget is ui.focus), "")
         self.close()
         self.fields, self.pickers, self.boxes, self.choices, self._notes = {}, {}, {}, {}, {}
+        self.buttons, self.keys, self.scrubs = {}, {}, {}
         self.area = ScrollArea(ui, self._place, self._container)
         self._y = 0.0
         if not sections and self._empty:
@@ -198,9 +154,7 @@ class Form:
         about, ui = each.about, self._ui
         assert self.area is not None
         content = self.area.content
-        unit = f" [{SQUARED.get(about.unit, about.unit)}]" if about.unit else ""
-        label = self._keep(ui.label(self._rect(0, LABEL_WIDTH - 4), about.title + unit, content, "@muted"))
-        label.set_tooltip(escape(about.tooltip, quote=False))
+        self._add_label(each)
         width = self._inside - LABEL_WIDTH
         if not each.editable:
             height = max(ROW - 8, self._lines(each) * NOTE_LINE + 2)
@@ -217,6 +171,12 @@ class Form:
             self._add_boxes(each, width)
         elif about.kind in ("choice", "material"):
             self._add_choice(each, width)
+        elif about.kind == "part":
+            press = partial(self._press_object, each.field)
+            button = ui.button(self._rect(LABEL_WIDTH, width), "", press, content, style="@segment", tip=about.tooltip)
+            self.buttons[each.field] = self._keep(button, each.field)
+        elif about.kind == "key":
+            self._add_key(each, width)
         elif self._is_long(each):
             place = self._rect(LABEL_WIDTH, width)
             text = f"{len(each.value):,} of them"
@@ -225,6 +185,24 @@ class Form:
         else:
             self.fields[each.field] = (self._entry(each, LABEL_WIDTH, width, 0),)
         self._y += ROW + GAP
+
+    def _add_label(self, each: Property) -> None:
+        assert self.area is not None
+        about, place = each.about, self._rect(0, LABEL_WIDTH - 4)
+        text = about.title + (f" [{SQUARED.get(about.unit, about.unit)}]" if about.unit else "")
+        tip = escape(about.tooltip, quote=False)
+        if each.editable and about.kind in ("number", "integer"):
+            scrub = Scrub(self._ui, place, text, partial(self._scrub, each.field), self._end_scrub, self.area.content)
+            scrub.set_tooltip(f"{tip} Drag to change it.")
+            self.scrubs[each.field] = self._keep(scrub)
+            return
+        self._keep(self._ui.label(place, text, self.area.content, "@muted")).set_tooltip(tip)
+
+    def _add_key(self, each: Property, width: float) -> None:
+        assert self.area is not None
+        box = KeyBox(self._ui, self._rect(LABEL_WIDTH, width), partial(self._press_key, each.field), self.area.content)
+        box.set_tooltip(escape(f"{each.about.tooltip} Click here, then press it; Delete takes it away.", quote=False))
+        self.keys[each.field] = self._keep(box, each.field)
 
     def _entry(self, each: Property, x: float, width: float, axis: int) -> Field:
         assert self.area is not None
@@ -275,6 +253,10 @@ class Form:
         for label, box in self.boxes.get(name, {}).items():
             state = each.value[label] if each.about.kind == "flags" else each.value
             box.show_state(state is True, state is MIXED)
+        if name in self.buttons and self.buttons[name].text != OBJECT_TEXTS[each.value]:
+            self.buttons[name].set_text(OBJECT_TEXTS[each.value])
+        if name in self.keys:
+            self.keys[name].show_key(MIXED.value if is_mixed else each.value)
         if name in self.choices:
             self.choices[name].show("" if is_mixed else each.value)
         if name in self.pickers:
@@ -290,6 +272,29 @@ class Form:
         return [Row(name, swatch=colour) for name, colour in colours.items()]
 
     # Changing values.
+
+    def _press_object(self, name: str) -> None:
+        each = self.properties[name]
+        verb, wanted = ("Remove", False) if each.value is True else ("Add", True)
+        self._screen.edit(f"{verb}: {each.about.title.lower()}", lambda document: each.set(document, wanted))
+
+    def _press_key(self, name: str, key: str | None) -> None:
+        if not self._set(name, key) or key is None:
+            return
+        action = action_of(ord(key), 0, "play")
+        if action is not None:
+            self._screen.say(f"While this level is played, {key.upper()} drives; else it is: {tip_of(action, 'play')}.")
+
+    def _scrub(self, name: str, steps: int) -> None:
+        each = self.properties[name]
+        value = each.stepped(steps)
+        if value is not None:
+            self._is_stale = True
+            label = each.about.title
+            self._screen.edit(label, lambda document: each.set(document, value), merge=f"scrub {name}")
+
+    def _end_scrub(self) -> None:
+        self._screen.history.end_merge()
 
     def _choose(self, name: str, value: str) -> None:
         self._set(name, value)

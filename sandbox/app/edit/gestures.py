@@ -41,6 +41,10 @@ class Gesture(Protocol):
         """The pointer is released."""
         ...
 
+    def ghost(self) -> Document | None:
+        """The document as it would be, where the matrix does not say it."""
+        ...
+
     def draw(self, surface: pygame.Surface) -> None:
         """Draw what the gesture shows besides the moved selection."""
         ...
@@ -54,7 +58,15 @@ def pick_mode(modifiers: int, click: bool) -> Mode:
     return "add" if shift else "replace"
 
 
-class Moving:
+class _Matrix:
+    """A gesture that changes the selection by its matrix, or not at all."""
+
+    def ghost(self) -> Document | None:
+        """None: what changes is the selection itself."""
+        return None
+
+
+class Moving(_Matrix):
     """Moves the selection, drawn by one of its particles to what it snaps to; an end that comes onto one is joined."""
 
     def __init__(self, screen: "EditScreen", start: Point) -> None:
@@ -111,7 +123,7 @@ class Moving:
         self._screen.draw_snap(surface, self._snap)
 
 
-class Transforming:
+class Transforming(_Matrix):
     """Scales or turns the selection by one of its handles."""
 
     def __init__(self, screen: "EditScreen", handles: Handles, name: str, start: Point, even: bool) -> None:
@@ -154,7 +166,7 @@ class Transforming:
         """Nothing besides."""
 
 
-class Boxing:
+class Boxing(_Matrix):
     """Selects what lies in a box."""
 
     matrix: np.ndarray | None = None
@@ -182,7 +194,7 @@ class Boxing:
         pygame.draw.rect(surface, ACCENT, box, 1)
 
 
-class Lassoing:
+class Lassoing(_Matrix):
     """Selects what lies inside a freehand line."""
 
     matrix: np.ndarray | None = None

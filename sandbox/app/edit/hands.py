@@ -7,14 +7,17 @@ import numpy as np
 import pygame
 
 from sandbox.app.camera import Point
+from sandbox.app.edit.corners import CornerMoving, Corners
 from sandbox.app.edit.gestures import Boxing, Gesture, Lassoing, Moving, Transforming, pick_mode
 from sandbox.app.edit.handles import Handles
+from sandbox.app.edit.overlay import draw_outline
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.gesture import Drawing
 from sandbox.editor.grouping import with_groups
 from sandbox.editor.items import Item, keys
 from sandbox.editor.pick import combined, item_at
-from sandbox.editor.snap import Snap
+from sandbox.editor.snap import PLACE_DECIMALS, Snap
+from sandbox.editor.terrain import corners_of, delete_corner, move_corner, piece_of
 
 if TYPE_CHECKING:
     from sandbox.app.edit.screen import EditScreen
@@ -79,11 +82,16 @@ class SelectHand:
         self._pressed: Point | None = None
         self._clicked: Item | None = None
         self._double = False
+        self._chosen: tuple[Item, int] | None = None
         self.hovered: Item | None = None
 
     @property
     def hint(self) -> str:
-        """The keys that join and take away."""
+        """The keys that join and take away, or what a piece of terrain lets do with its corners."""
+        if self.corner is not None:
+            return "Drag the corner or nudge it by the arrows; Delete takes it out; dots between corners make new ones"
+        if self.piece is not None and self._gesture is None:
+            return "Drag corners, or dots between them for new ones; drag the piece to move it"
         around = "Drag around parts" if self._lasso else "Click or drag a box"
         return f"{around} to select; Shift adds, Ctrl takes away; double click: its group"
 
@@ -96,6 +104,47 @@ class SelectHand:
     def matrix(self) -> np.ndarray | None:
         """Of the drag."""
         return self._gesture.matrix if self._gesture is not None else None
+
+    @property
+    def piece(self) -> Item | None:
+        """The piece of terrain that alone is selected."""
+        selection = self._screen.document.selection
+        only = next(iter(selection)) if len(selection) == 1 else None
+        return only if only is not None and only.kind == "terrain" else None
+
+    @property
+    def corner(self) -> int | None:
+        """The corner that was clicked, of the piece that is selected."""
+        if self._chosen is None or self._chosen[0] != self.piece:
+            return None
+        corners = self._corners()
+        return self._chosen[1] if corners is not None and self._chosen[1] < len(corners.points) else None
+
+    def _corners(self) -> Corners | None:
+        piece, screen = self.piece, self._screen
+        return None if piece is None else Corners(screen.document, piece, screen.camera, screen.scale)
+
+    def delete_corner(self) -> bool:
+        """Take the clicked corner out; whether there is one."""
+        piece, corner = self.piece, self.corner
+        if piece is None or corner is None:
+            return False
+        self._chosen = None
+        self._screen.edit("Delete a corner", lambda document: delete_corner(document, str(piece.key), corner))
+        return True
+
+    def nudge_corner(self, dx: float, dy: float) -> bool:
+        """Move the clicked corner by dx, dy [m]; whether there is one."""
+        piece, corner = self.piece, self.corner
+        if piece is None or corner is None:
+            return False
+        screen, key = self._screen, str(piece.key)
+        x, y = corners_of(piece_of(screen.document.level, key))[corner]
+        place = (round(x + dx, PLACE_DECIMALS) + 0.0, round(y + dy, PLACE_DECIMALS) + 0.0)
+        screen.edit(
+            "Nudge a corner", lambda document: move_corner(document, key, corner, place), merge="nudge a corner"
+        )
+        return True
 
     def handles(self) -> Handles | None:
         """The handles around the selection."""
@@ -112,6 +161,9 @@ class SelectHand:
         handles = self.handles()
         name = handles.at(screen.camera.to_pixels(point)) if handles is not None else None
         self._pressed, self._clicked, self._gesture, self._double = point, None, None, clicks == 2
+        self._chosen = None
+        if self._take_corner(screen.camera.to_pixels(point)):
+            return
         if handles is not None and name is not None:
             self._gesture = Transforming(screen, handles, name, point, not screen.scales_apart)
             return
@@ -125,6 +177,18 @@ class SelectHand:
             screen.select(combined(selection, found, "add" if modifiers & pygame.KMOD_SHIFT else "replace"))
         elif item not in selection or modifiers & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL | pygame.KMOD_META):
             screen.select(combined(selection, frozenset({item}), pick_mode(modifiers, True)))
+
+    def _take_corner(self, pixel: Point) -> bool:
+        """Begin to drag a corner of the piece that is selected, or a new one, where a press is on one."""
+        corners = self._corners()
+        if corners is None:
+            return False
+        number, middle = corners.corner_at(pixel), corners.middle_at(pixel)
+        if number is not None:
+            self._gesture = CornerMoving(self._screen, corners, number, is_new=False)
+        elif middle is not None:
+            self._gesture = CornerMoving(self._screen, corners, middle, is_new=True)
+        return self._gesture is not None
 
     def move(self, point: Point, modifiers: int) -> None:
         """Go on with the drag; a new one begins once it is more than a click."""
@@ -148,6 +212,7 @@ class SelectHand:
         gesture, pressed, self._gesture, self._pressed = self._gesture, self._pressed, None, None
         if gesture is not None:
             gesture.end()
+            self._chosen = gesture.chosen if isinstance(gesture, CornerMoving) else None
         elif pressed is not None and not self._double and pick_mode(modifiers, True) == "replace":
             self._screen.select(frozenset() if self._clicked is None else frozenset({self._clicked}))
 
@@ -164,17 +229,19 @@ class SelectHand:
         return True
 
     def ghost(self) -> Document | None:
-        """None: what moves is the selection itself."""
-        return None
+        """Of the drag."""
+        return self._gesture.ghost() if self._gesture is not None else None
 
     def draw(self, surface: pygame.Surface) -> None:
         """The handles, or what the drag shows."""
         if self._gesture is not None:
             self._gesture.draw(surface)
             return
-        handles = self.handles()
+        handles, corners = self.handles(), self._corners()
         if handles is not None:
             handles.draw(surface)
+        if corners is not None:
+            corners.draw(surface, self.corner)
 
 
 class DrawHand:
@@ -262,6 +329,8 @@ class DrawHand:
         return self._ghost
 
     def draw(self, surface: pygame.Surface) -> None:
-        """Where it snaps to."""
+        """The corners so far, and where it snaps to."""
+        outline = [self._screen.camera.to_pixels(point) for point in self.drawing.outline]
+        draw_outline(surface, outline, self._screen.scale)
         if self._snap is not None:
             self._screen.draw_snap(surface, self._snap)

@@ -77,6 +77,34 @@ def _wheel(pen: Pen) -> None:
         pen.line((12, 12), (12 + 8 * cos(tau * k / 6), 12 + 8 * sin(tau * k / 6)), width=1.4)
 
 
+def _ground(pen: Pen) -> None:
+    pen.shape((3, 20), (3, 13), (8, 8.5), (12, 12), (17, 6), (21, 11), (21, 20))
+
+
+def _line(pen: Pen) -> None:
+    points = ((3, 8), (8, 13), (15, 11), (21, 6))
+    pen.line(*points)
+    for x, y in ((5, 12.5), (9.5, 15), (14, 14), (18.5, 11)):
+        pen.line((x, y), (x - 2.4, y + 4), width=1.4)
+
+
+def _walls(pen: Pen) -> None:
+    pen.line((6.5, 6.5), (17.5, 6.5), (17.5, 17.5), (6.5, 17.5), (6.5, 6.5))
+    for at in (8, 12, 16):
+        for a, b in (((at, 4.5), (at - 2, 2.5)), ((at, 19.5), (at + 2, 21.5))):
+            pen.line(a, b, width=1.4)
+            pen.line(a[::-1], b[::-1], width=1.4)
+
+
+def _ring(pen: Pen) -> None:
+    pen.disc(12, 12, 9.5, 2.2)
+    for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        pen.line((12 + 1.5 * dx, 12 + 1.5 * dy), (12 + 5.2 * dx, 12 + 5.2 * dy), width=1.5)
+        tip = (12 + 5.6 * dx, 12 + 5.6 * dy)
+        for side in (-1, 1):
+            pen.line(tip, (tip[0] - 1.7 * dx + 1.5 * side * dy, tip[1] - 1.7 * dy + 1.5 * side * dx), width=1.5)
+
+
 def _edit(pen: Pen) -> None:
     pen.line((5, 19), (6, 14.5), (16, 4.5), (19.5, 8), (9.5, 18), (5, 19))
     pen.line((13.5, 7), (17, 10.5))
@@ -166,4 +194,5 @@ EDIT_DRAWINGS: dict[str, Callable[[Pen], None]] = {
     "web": _web, "box": _box, "circle": _circle, "polygon": _polygon, "wheel": _wheel, "edit": _edit, "new": _new,
     "open": _open, "duplicate": _duplicate, "delete": _delete, "mirror": _mirror, "array": _array, "group": _group,
     "align": _align, "order": _order, "snap": _snap, "forecast": _forecast, "keep": _keep, "menu": _menu,
+    "ring": _ring, "ground": _ground, "line": _line, "walls": _walls,
 }  # fmt: skip

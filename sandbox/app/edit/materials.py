@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pygame
 
 from sandbox.app.colours import material_colours
+from sandbox.app.edit.boxes import Scrub
 from sandbox.app.edit.form import GAP, ROW, sentence
 from sandbox.app.edit.rows import Row, RowList
 from sandbox.app.edit.scroll import ScrollArea
@@ -18,6 +19,7 @@ from sandbox.editor.abouts import About, abouts
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.materials import add_material, assign, delete_material, rename_material, set_material
 from sandbox.editor.pick import items_of_material
+from sandbox.editor.property import Property
 from sandbox.editor.typed import line_text, number_text, read_line, read_number
 from sandbox.level.limits import DEFAULT_MATERIAL
 from sandbox.level.model import HookeMaterial, Level, Material, MaterialDef, NissenMaterial
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 LIST_PART = 0.3
 FIELD_WIDTH = 96.0
 SHORT = {"stiffness": "Cs  stiffness", "damping": "Cd  damping", "k": "k  stiffness", "c": "c  damping"}
+LIMITS = tuple(MaterialDef.model_fields)
 LAWS = (
     ("nissen", "Impulse", "The impulse-based spring: Cs and Cd, the same behaviour for every mass"),
     ("hooke", "Hooke", "The classic spring, F = -k x - c u, for comparison: it explodes where k or c is too large"),
@@ -89,6 +92,11 @@ class MaterialsPage:
         if isinstance(material, NissenMaterial):
             self._add_field("frequency", "Frequency [Hz]", self._type_frequency, "How fast such a spring swings.")
             self._add_field("ratio", "Damping ratio", self._type_ratio, "1: it comes to rest without swinging.")
+        heading = ui.label(ui.rect(0, self._y + 6, self._inside, ROW - 4), "BREAKS AND YIELDS", content, "@heading")
+        self._widgets.append(heading)
+        self._y += ROW + 4
+        for name in LIMITS:
+            self._add_limit(name, abouts(type(material))[name])
         self.area.set_height(ui.px(self._y))
 
     def _label(self, text: str, tip: str = "") -> None:
@@ -101,7 +109,8 @@ class MaterialsPage:
         self, name: str, label: str, commit: Callable[[str], bool], tip: str, width: float = FIELD_WIDTH
     ) -> None:
         ui = self._ui
-        self._label(label, tip)
+        if label:
+            self._label(label, tip)
         place = ui.rect(self._inside - width, self._y, width, ROW)
         self.fields[name] = ui.field(place, "", commit, self.area.content, 600)
         self.fields[name].entry.set_tooltip(tip)
@@ -118,6 +127,17 @@ class MaterialsPage:
         self.sliders[name] = LogSlider(self._ui, place, slide, self._end_slide, self.area.content)
         self._widgets.append(self.sliders[name])
         self._y += ROW - 2
+
+    def _add_limit(self, name: str, about: About) -> None:
+        turn, done = partial(self._scrub_limit, name), self._screen.history.end_merge
+        place = self._ui.rect(0, self._y, self._inside - FIELD_WIDTH - GAP, ROW)
+        scrub = Scrub(self._ui, place, about.title, turn, done, self.area.content)
+        scrub.set_tooltip(f"{about.tooltip} Drag to change it.")
+        self._widgets.append(scrub)
+        self._add_field(name, "", partial(self._type_limit, name), about.tooltip)
+        if about.empty:
+            self.fields[name].entry.placeholder_text = f"({about.empty})"
+            self.fields[name].entry.set_text("")
 
     def _drop(self) -> None:
         if any(field.entry.is_focused for field in self.fields.values()):
@@ -157,7 +177,8 @@ class MaterialsPage:
         (self.buttons["Delete"].disable if is_default else self.buttons["Delete"].enable)()
         self.law.show("hooke" if isinstance(material, HookeMaterial) else "nissen")
         for name in self.fields.keys() & type(material).model_fields.keys():
-            self.fields[name].show(number_text(getattr(material, name)))
+            value = getattr(material, name)
+            self.fields[name].show("" if value is None else number_text(value))
         for name, slider in self.sliders.items():
             slider.show_value(getattr(material, name), None, False, True)
         if isinstance(material, NissenMaterial):
@@ -236,6 +257,21 @@ class MaterialsPage:
         value = self._number(SHORT[name].split()[0], text)
         return value is not None and self._put(SHORT[name][:2].strip(), replaced(self._material, **{name: value}))
 
+    def _type_limit(self, name: str, text: str) -> bool:
+        about = abouts(type(self._material))[name]
+        is_empty = about.optional and not text.strip()
+        value = None if is_empty else self._number(about.title, text)
+        if value is None and not is_empty:
+            return False
+        return self._put(about.title.lower(), replaced(self._material, **{name: value}))
+
+    def _scrub_limit(self, name: str, steps: int) -> None:
+        about = abouts(type(self._material))[name]
+        value = Property(name, about, getattr(self._material, name)).stepped(steps)
+        if value is not None:
+            changed = replaced(self._material, **{name: value})
+            self._put(about.title.lower(), changed, merge=f"{self.chosen} {name}")
+
     def _type_frequency(self, text: str) -> bool:
         frequency, material = self._number("Frequency", text), self._material
         if frequency is None or not isinstance(material, NissenMaterial):
@@ -268,7 +304,7 @@ class MaterialsPage:
         except ValueError as error:
             self._screen.say(sentence(str(error)))
             return False
-        return self._put("frequency", NissenMaterial(stiffness=stiffness, damping=damping))
+        return self._put("frequency", replaced(self._material, stiffness=stiffness, damping=damping))
 
     def _rename(self, text: str) -> bool:
         old, new = self.chosen, read_line(text)

@@ -9,6 +9,8 @@ from sandbox.editor.snap import Snap
 
 # Distance of a label from the pointer [layout units].
 LABEL_GAP = 16.0
+# Radius of a corner of an outline [layout units].
+CORNER = 4.5
 # A place that is pointed out is circled for this long [s].
 SPOT_SECONDS = 1.5
 
@@ -24,7 +26,7 @@ def draw_snap(surface: pygame.Surface, ui: Ui, at: Point, snapped: Snap) -> None
     size = 5 * scale
     pygame.draw.line(surface, colour, (at[0] - size, at[1]), (at[0] + size, at[1]))
     pygame.draw.line(surface, colour, (at[0], at[1] - size), (at[0], at[1] + size))
-    if snapped.kind == "angle":
+    if snapped.kind in ("angle", "corner", "edge"):
         _tag(surface, ui, (at[0] + 13 * scale, at[1] - 26 * scale), snapped.hint)
 
 
@@ -44,6 +46,22 @@ def draw_label(surface: pygame.Surface, ui: Ui, pointer: Point, text: str, viewp
     pygame.draw.rect(surface, BACKGROUND, box, border_radius=ui.px(5))
     pygame.draw.rect(surface, ACCENT, box, 1, border_radius=ui.px(5))
     surface.blit(picture, picture.get_rect(center=box.center))
+
+
+def draw_outline(surface: pygame.Surface, points: list[Point], scale: float) -> None:
+    """Draw corners [pixels] that are set, and the way from each to the next."""
+    if len(points) > 1:
+        pygame.draw.aalines(surface, ACCENT, False, points)
+    for point in points:
+        draw_corner(surface, point, scale, CORNER, is_chosen=False)
+
+
+def draw_corner(surface: pygame.Surface, at: Point, scale: float, size: float, is_chosen: bool) -> None:
+    """Draw a corner of terrain that can be taken; the chosen one is filled."""
+    pygame.draw.aacircle(surface, BACKGROUND, at, (size + 1.5) * scale)
+    pygame.draw.aacircle(surface, ACCENT, at, size * scale)
+    if not is_chosen:
+        pygame.draw.aacircle(surface, BACKGROUND, at, (size - 1.6) * scale)
 
 
 def draw_cursor(surface: pygame.Surface, at: Point, scale: float) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pygame
 
-from sandbox.app.camera import Box, Camera, Point, bounds, grid_spacing
+from sandbox.app.camera import Box, Camera, Point, grid_spacing
 from sandbox.app.colours import ACCENT, DANGER, MUTED, SURFACE, TEXT, WARNING, Colour
 from sandbox.app.edit.actions import edit_actions
 from sandbox.app.edit.bar import Bar, Palette
@@ -205,9 +205,9 @@ class EditScreen:
 
     def fit(self) -> None:
         """Show the level's view and everything in it, or a first view where there is nothing."""
-        level, points = self.document.level, self.scene.position
-        boxes = [level.view] if level.view is not None else []
-        boxes += [bounds(points)] if len(points) else []
+        level = self.document.level
+        walls = None if level.walls is None else level.walls.box
+        boxes = [box for box in (level.view, walls, self.scene.bounds()) if box is not None]
         left, bottom, right, top = zip(*(boxes or [FIRST_VIEW]), strict=True)
         self.camera.fit((min(left), min(bottom), max(right), max(top)))
 
@@ -287,6 +287,8 @@ class EditScreen:
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
         """Nudge the selection by a step of the grid, ten with Shift; without one, move the keyboard cursor."""
         step = self.grid * (NUDGE_LEAP if modifiers & pygame.KMOD_SHIFT else 1)
+        if isinstance(self.hand, SelectHand) and self.hand.nudge_corner(dx * step, dy * step):
+            return
         if self.tool in ("select", "lasso") and self.document.selection:
             self.edit("Nudge", lambda document: move(document, dx * step, dy * step), merge="nudge")
             return

@@ -7,7 +7,7 @@ import pygame
 from sandbox.app.edit.form import GAP, ROW, Form
 from sandbox.editor.document import Document
 from sandbox.editor.fields import set_level_field
-from sandbox.editor.properties import level_properties
+from sandbox.editor.level_properties import level_properties
 from sandbox.level.model import Level
 
 if TYPE_CHECKING:

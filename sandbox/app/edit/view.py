@@ -7,8 +7,11 @@ import numpy as np
 import pygame
 
 from sandbox.app.camera import Point
-from sandbox.app.edit.canvas import Chosen, Part, ScenePainter
+from sandbox.app.colours import ACCENT
+from sandbox.app.edit.canvas import Chosen, Part, ScenePainter, moved_by
+from sandbox.app.edit.ground import Ground
 from sandbox.app.edit.hands import SelectHand
+from sandbox.app.edit.marks import DriveMarks
 from sandbox.app.edit.overlay import SPOT_SECONDS, draw_cursor, draw_label, draw_spot
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene, make_scene
@@ -26,6 +29,7 @@ class View:
     def __init__(self, screen: "EditScreen") -> None:
         self._screen = screen
         self._painter = ScenePainter(screen.scale)
+        self._marks = DriveMarks(screen.ui)
         self._chosen: tuple[Scene, Selection, Chosen] | None = None
         self._ghost: Scene | None = None
         self._hanging: tuple[Scene, object, Scene] | None = None
@@ -57,7 +61,9 @@ class View:
         chosen = self._chosen[2]
         self._painter.draw(surface, screen.camera, scene, chosen, matrix is not None)
         if matrix is not None:
-            self._painter.paint_moved(surface, screen.camera, scene, chosen, matrix)
+            scene = moved_by(scene, chosen, matrix)
+            self._painter.paint_moved(surface, screen.camera, scene, chosen)
+        self._marks.draw(surface, screen.camera, scene)
 
     def _draw_forecast(self, surface: pygame.Surface) -> None:
         scene, position = self._screen.scene, self._screen.watch.hanging
@@ -78,6 +84,10 @@ class View:
         if self._ghost is None or self._ghost.level is not ghost.level:
             self._ghost = make_scene(ghost.level, screen.scene)
         drawn, new = self._ghost, ghost.selection
+        walls = ghost.level.walls
+        if walls is not None and walls is not screen.document.level.walls:
+            self._painter.paint_walls(surface, screen.camera, walls.box, ACCENT)
+        self._painter.paint_ground(surface, screen.camera, Ground(drawn, drawn.chosen(new), ghost=True))
         part = Part(drawn, drawn.particles_of(new), drawn.springs_of(new), ghost=True)
         self._painter.paint(surface, screen.camera, part)
 
