@@ -63,6 +63,39 @@ def _mark(edges: NDArray[np.int64], row: NDArray[np.int64], start: object, end: 
     np.add.at(edges, (row[holds], beyond[holds]), -1)
 
 
+def largest_part(points: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Of the points of a grid (rows, columns) those of the largest part that holds together; all, where none does.
+
+    What does: cells of three corners or four that share sides. A tip that hangs by one point would flap.
+    """
+    corners = points[:-1, :-1].astype(np.int8) + points[:-1, 1:] + points[1:, :-1] + points[1:, 1:]
+    cells = corners >= 3
+    if not cells.any():
+        return points
+    label = np.arange(cells.size).reshape(cells.shape)
+    beside = cells[:, :-1] & cells[:, 1:] & points[:-1, 1:-1] & points[1:, 1:-1]
+    above = cells[:-1] & cells[1:] & points[1:-1, :-1] & points[1:-1, 1:]
+    first = np.concatenate([label[:, :-1][beside], label[:-1][above]])
+    second = np.concatenate([label[:, 1:][beside], label[1:][above]])
+    lowest = label.reshape(-1)
+    while True:
+        # Each group takes the lowest label that it touches; chains of labels are then followed to their ends.
+        before = lowest.copy()
+        least = np.minimum(lowest[first], lowest[second])
+        np.minimum.at(lowest, before[first], least)
+        np.minimum.at(lowest, before[second], least)
+        while np.any(lowest != lowest[lowest]):
+            lowest = lowest[lowest]
+        if np.array_equal(lowest, before):
+            break
+    sizes = np.bincount(lowest[cells.reshape(-1)], minlength=cells.size)
+    part = cells & (lowest == np.argmax(sizes)).reshape(cells.shape)
+    kept = np.zeros_like(points)
+    for held in (kept[:-1, :-1], kept[:-1, 1:], kept[1:, :-1], kept[1:, 1:]):
+        held |= part
+    return kept & points
+
+
 def is_simple(corners: Corners) -> bool:
     """Whether no two corners coincide and no two sides touch, but neighbours in their common corner."""
     a = np.array(corners, dtype=np.float64)

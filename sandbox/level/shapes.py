@@ -24,7 +24,7 @@ from sandbox.level.bodies import (
     WheelDef,
 )
 from sandbox.level.limits import PARTICLE_LIMIT
-from sandbox.level.polygon import polygon_grid
+from sandbox.level.polygon import largest_part, polygon_grid
 
 Points = NDArray[np.float64]
 Pairs = NDArray[np.int64]
@@ -191,9 +191,9 @@ def jelly_cells(body: JellyDef) -> NDArray[np.bool_]:
         reach = _reach(body.shape, body.spacing)
         steps = np.arange(-reach, reach + 1, dtype=np.float64)
         ratio = body.shape.circle / body.spacing + BORDER
-        return steps[:, None] * steps[:, None] + steps[None, :] * steps[None, :] <= ratio * ratio
+        return largest_part(steps[:, None] * steps[:, None] + steps[None, :] * steps[None, :] <= ratio * ratio)
     assert not isinstance(body.shape, BoxShape)
-    return polygon_grid(body.shape.polygon, body.spacing)[2]
+    return largest_part(polygon_grid(body.shape.polygon, body.spacing)[2])
 
 
 def jelly_triangles(body: JellyDef) -> Pairs:
@@ -262,10 +262,10 @@ def _jelly(body: JellyDef) -> tuple[Points, Pairs]:
     else:
         left, bottom = 0, 0
         if isinstance(body.shape, CircleShape):
-            cells = jelly_cells(body)
             left = bottom = -_reach(body.shape, body.spacing)
         else:
-            left, bottom, cells = polygon_grid(body.shape.polygon, body.spacing)
+            left, bottom, _ = polygon_grid(body.shape.polygon, body.spacing)
+        cells = jelly_cells(body)
         across = (left + np.arange(cells.shape[1], dtype=np.float64)) * body.spacing
         up = (bottom + np.arange(cells.shape[0], dtype=np.float64)) * body.spacing
     row, column = np.nonzero(cells)

@@ -20,6 +20,8 @@ CELL_SIZE = 1.0
 MOST_CELLS = 1024.0
 FARTHEST = 1e8
 HASH_X, HASH_Y = 73856093, 19349663
+# What a particle meets: nothing, edges alone, edges and discs.
+MEETS_NOTHING, MEETS_EDGES, MEETS_ALL = 0, 1, 2
 
 
 class Grid(NamedTuple):
@@ -37,6 +39,13 @@ class Grid(NamedTuple):
     column: Slots
     row: Slots
     large: Slots
+
+
+class Pairs(NamedTuple):
+    """What each particle may meet: other[start[p]:start[p + 1]]."""
+
+    start: Slots
+    other: Slots
 
 
 @inner_kernel
@@ -105,6 +114,67 @@ def _fill(box, is_target, cell, low, start, at, objects, columns, rows):  # type
                 rows[entry] = row
 
 
+@inner_kernel
+def _may_meet(box, p, k):  # type: ignore[no-untyped-def]
+    return (
+        box[p, 0] <= box[k, 2] and box[k, 0] <= box[p, 2] and box[p, 1] <= box[k, 3] and box[k, 1] <= box[p, 3]
+    )  # fmt: skip
+
+
+@kernel
+def _pair(grid, is_target, meets, particles, start, other):  # type: ignore[no-untyped-def]
+    # The objects whose boxes overlap that of each particle; their number, counted on where there is no room.
+    count = 0
+    room = other.shape[0]
+    box = grid.box
+    cell = grid.cell[0]
+    buckets = grid.start.shape[0] - 1
+    larges = grid.large.shape[0]
+    for p in range(particles):
+        start[p] = count
+        if meets[p] == MEETS_NOTHING:
+            continue
+        # Two discs that are both looked for meet once.
+        past_discs = 0 if meets[p] == MEETS_EDGES else p if is_target[p] else particles
+        if is_large(box[p, 0], box[p, 1], box[p, 2], box[p, 3], cell):
+            for k in range(box.shape[0]):
+                if is_target[k] and k != p and (k >= particles or k < past_discs) and _may_meet(box, p, k):
+                    if count < room:
+                        other[count] = k
+                    count += 1
+            continue
+        for at in range(larges):
+            k = grid.large[at]
+            if k != p and (k >= particles or k < past_discs) and _may_meet(box, p, k):
+                if count < room:
+                    other[count] = k
+                count += 1
+        left = math.floor(box[p, 0] / cell)
+        bottom = math.floor(box[p, 1] / cell)
+        right = math.floor(box[p, 2] / cell)
+        top = math.floor(box[p, 3] / cell)
+        for column in range(left, right + 1):
+            for row in range(bottom, top + 1):
+                bucket = bucket_of(column, row, buckets)
+                for entry in range(grid.start[bucket], grid.start[bucket + 1]):
+                    k = grid.object[entry]
+                    # Boxes that share many cells meet in the first of them alone.
+                    if (
+                        k != p
+                        and (k >= particles or k < past_discs)
+                        and grid.column[entry] == column
+                        and grid.row[entry] == row
+                        and column == max(left, grid.low[k, 0])
+                        and row == max(bottom, grid.low[k, 1])
+                        and _may_meet(box, p, k)
+                    ):
+                        if count < room:
+                            other[count] = k
+                        count += 1
+    start[particles] = count
+    return count
+
+
 def make_grid(box: Floats, is_target: NDArray[np.bool_]) -> Grid:
     """Sort the boxes (n, 4) of targets into a grid."""
     count = len(box)
@@ -119,3 +189,15 @@ def make_grid(box: Floats, is_target: NDArray[np.bool_]) -> Grid:
     entries = np.zeros((3, start[-1]), dtype=np.int64)
     _fill(box, is_target, cell, low, start, np.zeros(buckets, np.int64), entries[0], entries[1], entries[2])
     return Grid(box, np.array([cell]), low, start, entries[0], entries[1], entries[2], large[:larges])
+
+
+def find_pairs(box: Floats, is_target: NDArray[np.bool_], meets: Slots, room: int) -> Pairs:
+    """Objects that each particle may meet by their boxes (n, 4); room: a guess at their number."""
+    grid, particles = make_grid(box, is_target), len(meets)
+    start = np.zeros(particles + 1, np.int64)
+    while True:
+        other = np.zeros(room, np.int64)
+        count = _pair(grid, is_target, meets, particles, start, other)
+        if count <= room:
+            return Pairs(start, other)
+        room = count

@@ -5,7 +5,7 @@ import math
 from sandbox.physics.contacts import span
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.outline import TERRAIN_GROUP
-from sandbox.physics.world import World
+from sandbox.physics.world import Floats, World
 
 # A particle that would cross a line of terrain is stopped this far in front of it, in units of its distance.
 STOP_SHARE = 0.01
@@ -13,32 +13,34 @@ STOPS = 3
 
 
 @kernel
-def _stop(position, velocity, collides, active, inverse_mass, terrain, h):  # type: ignore[no-untyped-def]
+def _stop(position, velocity, ahead, collides, active, inverse_mass, terrain, h):  # type: ignore[no-untyped-def]
     # No particle crosses an edge of terrain: its velocity towards the first in its way is cut.
     for p in range(position.shape[0]):
         if not active[p] or inverse_mass[p] == 0.0 or not collides[p] & TERRAIN_GROUP:
             continue
         for stop in range(STOPS + 1):
-            e, signed, nx, ny = _crossing(p, position, velocity, terrain, h)
+            wx = h * velocity[p, 0] + ahead[p, 0]
+            wy = h * velocity[p, 1] + ahead[p, 1]
+            e, signed, nx, ny = _crossing(p, position, wx, wy, terrain)
             if e < 0:
                 break
             if stop == STOPS:
                 velocity[p, 0] = 0.0
                 velocity[p, 1] = 0.0
+                ahead[p, 0] = 0.0
+                ahead[p, 1] = 0.0
                 break
-            after = signed + h * (velocity[p, 0] * nx + velocity[p, 1] * ny)
+            after = signed + wx * nx + wy * ny
             missing = (STOP_SHARE * signed - after) / h
             velocity[p, 0] += missing * nx
             velocity[p, 1] += missing * ny
 
 
 @inner_kernel
-def _crossing(p, position, velocity, terrain, h):  # type: ignore[no-untyped-def]
-    # The first edge that the way of a particle's centre crosses (-1: none), distance from it, normal towards it.
+def _crossing(p, position, wx, wy, terrain):  # type: ignore[no-untyped-def]
+    # The first edge that the way w of a particle's centre crosses (-1: none), distance from it, normal towards it.
     x = position[p, 0]
     y = position[p, 1]
-    wx = h * velocity[p, 0]
-    wy = h * velocity[p, 1]
     cell = terrain.cell[0]
     left, right = span(x + min(0.0, wx), x + max(0.0, wx), terrain.corner[0], cell, terrain.size[0])
     bottom, top = span(y + min(0.0, wy), y + max(0.0, wy), terrain.corner[1], cell, terrain.size[1])
@@ -79,9 +81,10 @@ def _crossing(p, position, velocity, terrain, h):  # type: ignore[no-untyped-def
     return found, distance, nx, ny
 
 
-def stop_at_terrain(world: World, h: float) -> None:
-    """Cut the velocities [m/s] of particles that would cross terrain in the coming h [s]."""
+def stop_at_terrain(world: World, ahead: Floats, h: float) -> None:
+    """Cut the velocities [m/s] of particles that would cross terrain in the coming h [s], on ways h v + ahead [m]."""
     if len(world.terrain.edge_a):
         _stop(
-            world.position, world.velocity, world.collides, world.particle_active, world.inverse_mass, world.terrain, h
-        )
+            world.position, world.velocity, ahead, world.collides, world.particle_active, world.inverse_mass,
+            world.terrain, h,
+        )  # fmt: skip

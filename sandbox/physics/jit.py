@@ -78,7 +78,7 @@ def _interpreted(function: Function) -> Function:
     return cast(Function, call)
 
 
-def _compiled(function: Function, **options: bool) -> Function:
+def _compiled(function: Function, **options: Any) -> Function:
     # Determinism: never fastmath, never parallel. Kernels guard every divisor, so the error model decides nothing.
     # The folder is set for this one function: the kernels of others in the same process stay where they are.
     chosen = _numba.config.CACHE_DIR
@@ -111,6 +111,11 @@ def inner_kernel(function: Function) -> Function:
     return _compiled(function, no_cpython_wrapper=True, no_cfunc_wrapper=True, **_UNCOUNTED) if COMPILED else function
 
 
+def inlined_kernel(function: Function) -> Function:
+    """Make `function` a part of kernels that is written into them: no call, which copies every array's shape."""
+    return _compiled(function, inline="always", **_UNCOUNTED) if COMPILED else function
+
+
 def scalar_kernel(function: Function) -> Function:
     """Make `function` a kernel that takes and gives scalars alone, to be called from other kernels."""
     return _compiled(function) if COMPILED else function
@@ -122,6 +127,8 @@ def waiting_kernel(function: Function) -> Function:
 
 
 if COMPILED:
+    from numba.core import cgutils
+    from numba.core.runtime.context import NRTContext
     from numba.experimental import structref
 
     @structref.register
@@ -133,11 +140,28 @@ if COMPILED:
 
     structref.define_proxy(_Bundle, _BundleType, ["items"])
 
+    @_numba.extending.intrinsic
+    def contents(typing_context: Any, bundle_type: Any) -> Any:
+        """The items of a bundle, lent: a kernel that counts who holds them takes 25 ns for each array."""
+
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            holder = cgutils.create_struct_proxy(bundle_type)(context, builder, value=arguments[0])
+            data_type = bundle_type.get_data_type()
+            data = NRTContext(context, True).meminfo_data(builder, holder.meminfo)
+            kind = context.data_model_manager[data_type].get_value_type()
+            data = builder.bitcast(data, kind.as_pointer())
+            return cgutils.create_struct_proxy(data_type)(context, builder, ref=data).items
+
+        return bundle_type.field_dict["items"](bundle_type), generate
+
 else:
 
     class _Bundle:  # type: ignore[no-redef]
         def __init__(self, items: tuple[Any, ...]) -> None:
             self.items = tuple(map(_viewed, items))
+
+    def contents(bundle: Any) -> Any:
+        return bundle.items
 
 
 @bundle_kernel

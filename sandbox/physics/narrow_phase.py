@@ -7,7 +7,7 @@ and is pushed out there. What moves fast is followed along its way, and meets wh
 import math
 
 from sandbox.physics.equation import SHORTEST
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.shapes import MOST_NEAR
 
 # A contact exists from this gap on, as a share of the radii together, so that what rests keeps its contacts; a larger
@@ -22,13 +22,13 @@ OWN_REACH = 2.0
 DISC, EDGE, TERRAIN = 0, 1, 2
 
 
-@inner_kernel
+@inlined_kernel
 def may_touch(p, v, shapes):  # type: ignore[no-untyped-def]
     """Whether the groups of two vertices let them touch."""
     return shapes.collides[p] & shapes.group[v] != 0 and shapes.collides[v] & shapes.group[p] != 0
 
 
-@inner_kernel
+@inlined_kernel
 def are_joined(p, v, shapes):  # type: ignore[no-untyped-def]
     """Whether a spring joins two particles."""
     found = False
@@ -38,7 +38,7 @@ def are_joined(p, v, shapes):  # type: ignore[no-untyped-def]
     return found
 
 
-@inner_kernel
+@inlined_kernel
 def add_contact(count, contacts, p, feature, a, b, share, nx, ny, gap, surface, shapes):  # type: ignore[no-untyped-def]
     """Append a contact of particle p if there is room; the number of contacts then, counted on where there is none."""
     if count < contacts.particle.shape[0]:
@@ -56,7 +56,7 @@ def add_contact(count, contacts, p, feature, a, b, share, nx, ny, gap, surface, 
     return count + 1
 
 
-@inner_kernel
+@inlined_kernel
 def touch_disc(p, q, h, shapes, contacts, count):  # type: ignore[no-untyped-def]
     """Contact of two discs, if there is one; the number of contacts then."""
     if shapes.inverse[p] + shapes.inverse[q] == 0.0 or not may_touch(p, q, shapes):
@@ -90,7 +90,7 @@ def touch_disc(p, q, h, shapes, contacts, count):  # type: ignore[no-untyped-def
     return add_contact(count, contacts, p, 3 * q + DISC, q, -1, 0.0, nx, ny, gap, q, shapes)
 
 
-@inner_kernel
+@inlined_kernel
 def _meets_circle(dx, dy, wx, wy, reach):  # type: ignore[no-untyped-def]
     # Part of the way w from d at which the origin is first `reach` away; 2 where it never is.
     squared = wx * wx + wy * wy
@@ -104,7 +104,7 @@ def _meets_circle(dx, dy, wx, wy, reach):  # type: ignore[no-untyped-def]
     return when if when >= 0.0 else 2.0
 
 
-@inner_kernel
+@inlined_kernel
 def look_at(p, e, shapes, near, count):  # type: ignore[no-untyped-def]
     """Note where the particle lies to an edge that it may touch; the number of edges noted then."""
     a = shapes.edge_a[e]

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.world import Floats, Slots
 
 # Edges near one particle, at most; further ones are not looked at.
@@ -55,7 +56,8 @@ class Contacts(NamedTuple):
     """Contacts in ascending order of particle: particle, feature = 3 number + kind, the particles it pushes against.
 
     end_a, end_b: the other disc and -1, or the ends of an edge; -1, -1: terrain. share: place along the edge. normal:
-    towards the particle. gap [m]; impulse [N s] (k, 2) along normal and tangent.
+    towards the particle. gap [m]; bounce [m/s]: the velocity along the normal that is left where it bounces, below 0:
+    it does not; impulse [N s] (k, 2) along normal and tangent.
     """
 
     particle: Slots
@@ -67,15 +69,27 @@ class Contacts(NamedTuple):
     gap: Floats
     friction: Floats
     restitution: Floats
+    bounce: Floats
     impulse: Floats
+
+
+@inner_kernel
+def weight_of(contacts, c, end):  # type: ignore[no-untyped-def]
+    """Particle of an end of a contact (-1: none) and the share of the impulse that it takes, with its sign."""
+    if end == 0:
+        return contacts.particle[c], 1.0
+    a = contacts.end_a[c]
+    if end == 1:
+        return a, -1.0 if contacts.end_b[c] < 0 else -(1.0 - contacts.share[c])
+    return contacts.end_b[c], -contacts.share[c]
 
 
 def room_for(count: int) -> Contacts:
     """Contacts to be filled in."""
-    slots, numbers, pairs = np.zeros((4, count), dtype=np.int64), np.zeros((4, count)), np.zeros((2, count, 2))
-    return Contacts(
-        slots[0], slots[1], slots[2], slots[3], numbers[0], pairs[0], numbers[1], numbers[2], numbers[3], pairs[1]
-    )
+    slots, numbers, pairs = np.zeros((4, count), dtype=np.int64), np.zeros((5, count)), np.zeros((2, count, 2))
+    gap, friction, restitution, bounce, share = numbers
+    particle, feature, end_a, end_b = slots
+    return Contacts(particle, feature, end_a, end_b, share, pairs[0], gap, friction, restitution, bounce, pairs[1])
 
 
 def room_near() -> Near:

@@ -5,18 +5,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from sandbox.physics.breaking import yield_and_break
-from sandbox.physics.contacts import find_contacts
 from sandbox.physics.driving import drive_springs
 from sandbox.physics.elements import AREA
 from sandbox.physics.equipment import Driven, Hydraulics, Motors, Muscles, StrainLimits
 from sandbox.physics.forces import Before, apply_forces
-from sandbox.physics.guard import stop_at_terrain
 from sandbox.physics.jit import kernel
+from sandbox.physics.meeting import leave, meet
 from sandbox.physics.outline import TERRAIN_GROUP
 from sandbox.physics.quarantine import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS, halves
-from sandbox.physics.solvers.contact_sweep import keep_impulses
 from sandbox.physics.solvers.direct import pattern_of
 from sandbox.physics.solvers.dissection import dissect
 from sandbox.physics.substeps import halve, substep_count
@@ -73,14 +71,14 @@ def step(world: World) -> None:
         springs, elements = substep_coefficients(world, parts), element_coefficients(world, parts)
     # What a solver keeps is an impulse of one step: exact, as parts are a power of two.
     world.scale_impulses(settings.fewest_substeps / parts)
+    world.contacts = None
     for _ in range(parts):
         before = Before(world.velocity.copy(), rest_length)
         apply_forces(world, h)
-        world.contacts = find_contacts(world, h) if world.has_contacts else None
+        meeting = meet(world, before.velocity, h) if world.has_contacts else None
         solver.solve(world, springs, elements, h, before)
-        if world.contacts is not None:
-            keep_impulses(world, world.contacts)
-            stop_at_terrain(world, h)
+        if meeting is not None:
+            leave(world, meeting, h)
         _integrate(world.position, world.velocity, world.particle_active, h)
         rest_length = world.rest_length
     world.scale_impulses(parts / settings.fewest_substeps)
@@ -108,7 +106,10 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
         world.fit(Driven(("a",), muscles, hydraulics, motors), [1.0])
         step(world)
         if contacts:
-            world.add_particles(["d", "e"], np.zeros((2, 2)), group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
+            # Two loose ones that touch, and two on a spring, out of their reach.
+            places = np.array([[0.0, 0.0], [0.0, 0.0], [0.5, 0.0], [0.7, 0.0]])
+            world.add_particles(["d", "e", "f", "g"], places, group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
+            world.add_springs(["u"], [5], [6])
             world.terrain = make_terrain([Chain([[-1.0, 0.0], [1.0, 0.0]])])
             step(world)
     if "direct" in solvers:

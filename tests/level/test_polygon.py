@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sandbox.level.polygon import grid_bounds, is_simple, polygon_grid, simplified
+from sandbox.level.polygon import grid_bounds, is_simple, largest_part, polygon_grid, simplified
 
 eighths = st.integers(-40, 40)
 corners = st.lists(st.tuples(eighths, eighths), min_size=3, max_size=7)
@@ -118,3 +118,20 @@ def segment_distance(a, b, point):
     squared = float(along @ along)
     share = min(max(float((point - a) @ along) / squared, 0.0), 1.0) if squared > 0.0 else 0.0
     return float(np.linalg.norm(point - a - share * along))
+
+
+def test_of_a_grid_that_holds_by_corners_alone_the_largest_part_stays():
+    rows = [
+        "o......",
+        ".##....",
+        ".###.oo",
+        "..##.oo",
+        "....o..",
+    ]  # fmt: skip
+    points = np.array([[mark != "." for mark in row] for row in rows])
+    assert np.array_equal(largest_part(points), np.array([[mark == "#" for mark in row] for row in rows]))
+
+
+def test_a_grid_of_a_single_row_stays_as_it_is():
+    points = np.array([[True, True, False, True]])
+    assert np.array_equal(largest_part(points), points)

@@ -41,7 +41,7 @@ def load_rows(position, velocity, mass, slow_velocity, before, h, free_count, ro
 
 @inner_kernel
 def load_body(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, low, high, anchored, inverse_mass, rest_length, stiffness, damping, material,
+    first_row, last_row, first, last, low, high, free, inverse_mass, rest_length, stiffness, damping, material,
     tension, rows, springs, shapes, least, most, parts, h, free_count,
 ):  # fmt: skip
     """Load a body's springs and elements: whether one is bouncy, whether measures are spread, their energy once moved.
@@ -52,7 +52,7 @@ def load_body(  # type: ignore[no-untyped-def]
     for r in range(first_row, last_row):
         body_mass += rows.mass[r]
     # Gravity moves a body without anchors as a whole: started there, it falls without rounding.
-    if not anchored:
+    if free:
         copy(first_row, last_row, rows.target, rows.trial)
     bouncy, spread, moved = load_springs(
         first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs,

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.shapes import Contacts
-from sandbox.physics.solvers.contact_sweep import Blocks, weight_of
+from sandbox.physics.shapes import Contacts, weight_of
+from sandbox.physics.solvers.contact_sweep import Blocks
 from sandbox.physics.solvers.pattern import Pattern
 from sandbox.physics.world import Floats, Slots, World
 
@@ -71,6 +71,33 @@ def _join(contacts, block, inverse_mass, label):  # type: ignore[no-untyped-def]
                 label[node] = first
     for node in range(label.shape[0]):
         label[node] = _root(label, node)
+
+
+@kernel
+def _bind(contacts, inverse_mass, near_start, label, sprung, bound, cluster):  # type: ignore[no-untyped-def]
+    # cluster (k,) of each contact; bound (k,): those in whose cluster a spring holds anything that can move.
+    for p in range(label.shape[0]):
+        if near_start[p] != near_start[p + 1] and inverse_mass[p] > 0.0:
+            sprung[label[p]] = True
+    for c in range(contacts.particle.shape[0]):
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p >= 0 and inverse_mass[p] > 0.0:
+                cluster[c] = label[p]
+                bound[c] = sprung[label[p]]
+
+
+def bound_contacts(contacts: Contacts, inverse_mass: Floats, near_start: Slots) -> tuple[NDArray[np.bool_], Slots]:
+    """Whether each contact hangs together, by others, with a particle that a spring moves; the number of its cluster.
+
+    near_start: where the springs of each particle begin, see Shapes.
+    """
+    count, size = len(inverse_mass), len(contacts.particle)
+    label, sprung = np.arange(count), np.zeros(count, dtype=np.bool_)
+    bound, cluster = np.zeros(size, dtype=np.bool_), np.zeros(size, dtype=np.int64)
+    _join(contacts, np.full(count, -1, dtype=np.int64), inverse_mass, label)
+    _bind(contacts, inverse_mass, near_start, label, sprung, bound, cluster)
+    return bound, cluster
 
 
 def find_touching(world: World, pattern: Pattern, contacts: Contacts) -> tuple[Touching, Blocks]:

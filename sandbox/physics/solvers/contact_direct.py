@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.forces import Before
-from sandbox.physics.jit import bundle_kernel, inner_kernel
+from sandbox.physics.jit import contents, inner_kernel, kernel
+from sandbox.physics.shapes import weight_of
 from sandbox.physics.solvers import direct
 from sandbox.physics.solvers.body import (
     BANK_SHARE,
@@ -27,7 +28,6 @@ from sandbox.physics.solvers.contact_sweep import (
     load_responses,
     new_push,
     solve_contacts,
-    weight_of,
 )
 from sandbox.physics.solvers.direct import AHEAD, ENERGY_ROUNDING, LAST_HALVINGS, LINEAR_SOLVES, MISFIT_RATE
 from sandbox.physics.solvers.goal import aim_at_form, find_tangled, let_go
@@ -60,9 +60,9 @@ def _begin(  # type: ignore[no-untyped-def]
         first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
         first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
         low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
-        anchored = bodies.anchored[body]
+        free = not bodies.anchored[body]
         bouncy, spread, moved = load_body(
-            first_row, last_row, first, last, low, high, anchored, inverse_mass, rest_length, stiffness, damping,
+            first_row, last_row, first, last, low, high, free, inverse_mass, rest_length, stiffness, damping,
             material, tension, rows, springs, shapes, least, most, parts, h, free_count,
         )  # fmt: skip
         kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
@@ -75,7 +75,7 @@ def _begin(  # type: ignore[no-untyped-def]
         )  # fmt: skip
         touching.tangled[k] = high > low and find_tangled(body, low, high, rows, shapes, goals)
         touching.aimed[k] = touching.tangled[k] and aim_at_form(
-            body, last_row - first_row, anchored, rows, shapes, goals, h, free_count
+            body, last_row - first_row, not free, rows, shapes, goals, h, free_count
         )
         touching.due[k] = True
 
@@ -290,12 +290,12 @@ def _let_go(touching, bodies, rows):  # type: ignore[no-untyped-def]
             touching.aimed[k] = False
 
 
-@bundle_kernel
+@kernel
 def _push_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, rest_length, stiffness, damping, material,
     tension, numbers, least, most, parts, before, rest_before, h, touching, blocks, columns, contacts, push,
 ):  # fmt: skip
-    items = numbers.items
+    items = contents(numbers)
     bodies, rows, _, _, matrix, _ = items
     load_rows(position, velocity, mass, slow_velocity, before, h, matrix.diagonal.shape[0], rows)
     _begin(
@@ -342,7 +342,7 @@ def _push(
         return touched
     touching, blocks = find_touching(world, pattern, contacts)
     push = new_push(len(contacts.particle))
-    load_biases(contacts, push, world.velocity, before.velocity, h)
+    load_biases(contacts, push, h)
     touched[touching.body] = True
     sizes = np.diff(pattern.bodies.row_start)[touching.body] * np.diff(blocks.start)
     columns = np.zeros(4 * int(sizes.max(initial=0)))

@@ -6,14 +6,13 @@ push, 1 / (J W J^T): W of a loose particle is 1 / m, of a body that the direct s
 kept of the last step starts the next, so that what rests is at rest from the first sweep on.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.shapes import Contacts
-from sandbox.physics.world import Floats, Slots, World
+from sandbox.physics.shapes import weight_of
+from sandbox.physics.world import Floats, Slots
 
 # Cs / Cd of a contact that overlaps: the part of the overlap that a step removes. Higher shakes what rests, lower
 # leaves heaps soft.
@@ -23,8 +22,6 @@ FASTEST_PUSH = 3.0
 # 1 - Cd of a contact. 0 would leave contacts that carry the same load without a definite share; a larger value lets
 # heaps sink into each other.
 SOFTNESS = 7e-4
-# Bodies that meet more slowly [m/s] do not bounce. Lower makes what rests tremble, higher cuts off a last bounce.
-SLOWEST_BOUNCE = 0.5
 # Sweeps end where no contact changed its velocity by more [m/s].
 SETTLED = 1e-6
 
@@ -62,17 +59,6 @@ def loose_blocks(particle_count: int) -> Blocks:
     """The responses of particles that all answer by their own mass."""
     none = np.zeros(0, dtype=np.int64)
     return Blocks(np.full(particle_count, -1, dtype=np.int64), none, np.zeros(1, np.int64), none, none, np.zeros(0))
-
-
-@inner_kernel
-def weight_of(contacts, c, end):  # type: ignore[no-untyped-def]
-    """Particle of an end of a contact (-1: none) and the share of the impulse that it takes, with its sign."""
-    if end == 0:
-        return contacts.particle[c], 1.0
-    a = contacts.end_a[c]
-    if end == 1:
-        return a, -1.0 if contacts.end_b[c] < 0 else -(1.0 - contacts.share[c])
-    return contacts.end_b[c], -contacts.share[c]
 
 
 @inner_kernel
@@ -171,42 +157,13 @@ def load_responses(contacts, push, inverse_mass, blocks):  # type: ignore[no-unt
 
 
 @kernel
-def load_biases(contacts, push, velocity, before, h):  # type: ignore[no-untyped-def]
-    """What each contact adds to its velocity: its gap, its overlap or its bounce.
-
-    velocity, before: after and before what forces have done in the step.
-    """
+def load_biases(contacts, push, h):  # type: ignore[no-untyped-def]
+    """What each contact adds to its velocity: its gap, its overlap or its bounce."""
     for c in range(contacts.particle.shape[0]):
-        nx = contacts.normal[c, 0]
-        ny = contacts.normal[c, 1]
         gap = contacts.gap[c]
         push.bias[c] = gap / h if gap >= 0.0 else max(OVERLAP_SHARE * gap / h, -FASTEST_PUSH)
-        if contacts.restitution[c] == 0.0:
-            continue
-        ux = 0.0
-        uy = 0.0
-        gain_x = 0.0
-        gain_y = 0.0
-        for end in range(3):
-            p, weight = weight_of(contacts, c, end)
-            if p >= 0:
-                ux += weight * velocity[p, 0]
-                uy += weight * velocity[p, 1]
-                gain_x += weight * (velocity[p, 0] - before[p, 0])
-                gain_y += weight * (velocity[p, 1] - before[p, 1])
-        u = ux * nx + uy * ny
-        if u < -SLOWEST_BOUNCE and gap + h * u < 0.0:
-            gain = gain_x * nx + gain_y * ny
-            push.bias[c] = -_bounce(contacts.restitution[c], gain - u, -gain / h, gap, h)
-
-
-@inner_kernel
-def _bounce(restitution, speed, fall, gap, h):  # type: ignore[no-untyped-def]
-    # The velocity after a step in which what approaches at `speed` bounces off at the height of the surface, not where
-    # the step begins: symplectic Euler keeps v^2/2 + g x - g h v/2 in free fall, and restitution^2 is left.
-    energy = 0.5 * speed * speed + fall * gap + 0.5 * fall * h * speed
-    left = 2.0 * (restitution * restitution * energy - fall * gap) + 0.25 * fall * fall * h * h
-    return max(0.0, math.sqrt(max(0.0, left)) - 0.5 * fall * h)
+        if contacts.bounce[c] >= 0.0:
+            push.bias[c] = -contacts.bounce[c]
 
 
 @inner_kernel
@@ -291,11 +248,6 @@ def _go_on(contacts, push, change, inverse_mass, blocks, ratio):  # type: ignore
 def new_push(count: int) -> Push:
     """What so many contacts need for a step."""
     return Push(*np.zeros((4, count)), *np.zeros((2, count, 2)))
-
-
-def keep_impulses(world: World, contacts: Contacts) -> None:
-    """Keep a step's contacts and impulses as part of the world's state."""
-    world.keep_contacts(contacts.particle.astype(np.int32), contacts.feature, contacts.impulse)
 
 
 @inner_kernel

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.forces import Before
-from sandbox.physics.jit import bundle_kernel, inner_kernel
+from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.body import (
     BANK_SHARE,
@@ -98,8 +98,8 @@ def _take_candidate(  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _step_body(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, goals, rest_length, rest_before, body,
-    free, lowest, bank, bouncy, spread, moved, h,
+    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, rest_before, free,
+    tangled, aimed, lowest, bank, bouncy, spread, moved, h,
 ):  # fmt: skip
     kinetic_after = kinetic(first_row, last_row, rows.mass, rows.target)
     before = kinetic_after + moved
@@ -108,19 +108,30 @@ def _step_body(  # type: ignore[no-untyped-def]
         kinetic_after, moved, rest_length, rest_before, h,
     )  # fmt: skip
     allowed = before * (1.0 + ENERGY_ROUNDING) + held
-    tangled = high > low and find_tangled(body, low, high, rows, shapes, goals)
-    aimed = tangled and aim_at_form(
-        body, last_row - first_row, not free, rows, shapes, goals, h, matrix.diagonal.shape[0]
-    )  # fmt: skip
-    after = _take_candidates(
-        first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, allowed, h
-    )
-    if aimed and not after <= allowed:
-        let_go(first_row, last_row, rows)
-        copy(first_row, last_row, rows.target, rows.trial)
-        after = _take_candidates(
-            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, allowed, h
+    after = 0.0
+    solves = 0
+    while solves < LINEAR_SOLVES:
+        once = after
+        within = solves > 0 and once <= allowed
+        if within:
+            copy(first_row, last_row, rows.trial, rows.best)
+        after, misfit = _take_candidate(
+            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, h
         )
+        solves += 1
+        if within and not after <= allowed:
+            copy(first_row, last_row, rows.best, rows.trial)
+            keep_tension(first, last, rows, springs, h)
+            after = once
+            break
+        if after <= allowed and not misfit > MISFIT_RATE * h * h:
+            break
+        if aimed and solves == LINEAR_SOLVES and not after <= allowed:
+            # Without the goal, from the start.
+            aimed = False
+            solves = 0
+            let_go(first_row, last_row, rows)
+            copy(first_row, last_row, rows.target, rows.trial)
     if not after <= allowed:
         minimise(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, h)
         after = body_energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h)
@@ -137,31 +148,6 @@ def _step_body(  # type: ignore[no-untyped-def]
     if not (tangled and free):
         saved = min(saved, limit)
     bank[lowest] = saved if saved > 0.0 else 0.0
-
-
-@inner_kernel
-def _take_candidates(  # type: ignore[no-untyped-def]
-    first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, allowed, h
-):
-    # Linear solves until nothing is missed, or until one that is better in this breaks the bound of energy; H.
-    after, misfit = _take_candidate(
-        first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, h
-    )
-    for _solve in range(LINEAR_SOLVES - 1):
-        within = after <= allowed
-        if within and not misfit > MISFIT_RATE * h * h:
-            break
-        copy(first_row, last_row, rows.trial, rows.best)
-        once = after
-        after, misfit = _take_candidate(
-            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, free, h
-        )
-        if within and not after <= allowed:
-            copy(first_row, last_row, rows.best, rows.trial)
-            keep_tension(first, last, rows, springs, h)
-            after = once
-            break
-    return after
 
 
 @inner_kernel
@@ -184,12 +170,12 @@ def _brake(  # type: ignore[no-untyped-def]
     return after
 
 
-@bundle_kernel
+@kernel
 def _solve_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, particle_active, rest_length, stiffness,
     damping, material, tension, numbers, least, most, parts, before, rest_before, h, touched,
 ):  # fmt: skip
-    bodies, rows, springs, shapes, matrix, goals = numbers.items
+    bodies, rows, springs, shapes, matrix, goals = contents(numbers)
     load_rows(position, velocity, mass, slow_velocity, before, h, matrix.diagonal.shape[0], rows)
     for body in range(bodies.lowest.shape[0]):
         if touched.shape[0] > 0 and touched[body]:
@@ -200,13 +186,22 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
         last = bodies.spring_start[body + 1]
         low = bodies.shape_start[body]
         high = bodies.shape_start[body + 1]
+        free = not bodies.anchored[body]
         bouncy, spread, moved = load_body(
-            first_row, last_row, first, last, low, high, bodies.anchored[body], inverse_mass, rest_length, stiffness,
-            damping, material, tension, rows, springs, shapes, least, most, parts, h, matrix.diagonal.shape[0],
+            first_row, last_row, first, last, low, high, free, inverse_mass, rest_length, stiffness, damping, material,
+            tension, rows, springs, shapes, least, most, parts, h, matrix.diagonal.shape[0],
         )  # fmt: skip
+        tangled = False
+        aimed = False
+        if high > low:
+            tangled = find_tangled(body, low, high, rows, shapes, goals)
+            if tangled:
+                aimed = aim_at_form(
+                    body, last_row - first_row, not free, rows, shapes, goals, h, matrix.diagonal.shape[0]
+                )  # fmt: skip
         _step_body(
-            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, goals, rest_length, rest_before,
-            body, not bodies.anchored[body], bodies.lowest[body], energy_bank, bouncy, spread, moved, h,
+            first_row, last_row, first, last, low, high, rows, springs, shapes, matrix, rest_length, rest_before, free,
+            tangled, aimed, bodies.lowest[body], energy_bank, bouncy, spread, moved, h,
         )  # fmt: skip
         for r in range(first_row, last_row):
             velocity[rows.particle[r], 0] = rows.trial[r, 0]

@@ -150,7 +150,7 @@ def solve(world: World, springs: Pair, elements: Pair, h: float, before: Before)
     count, contacts = world.spring_count, world.contacts or NO_CONTACTS
     blocks = loose_blocks(world.particle_count if world.contacts else 0)
     push = new_push(len(contacts.particle))
-    load_biases(contacts, push, world.velocity, before.velocity, h)
+    load_biases(contacts, push, h)
     end_a, end_b, slot = np.zeros((3, count), dtype=np.int64)
     place, slope = np.zeros((2, len(world.corner_particle), 2))
     wanted = Wanted(place, slope, *np.zeros((2, world.element_count)))

@@ -96,8 +96,8 @@ class Bodies(NamedTuple):
 class Pattern:
     """Everything about a world's matrix that its topology and pins decide, with the scratch arrays of a step.
 
-    signature: what it was made for. elements: which were active then, their corners' particles and form; corners:
-    those of the elements of the matrix. numbers: the six named tuples as a bundle for kernels.
+    signature: what it was made for. elements: which were active then, the particles of their corners and their form;
+    corners: those of the elements of the matrix. numbers: the six named tuples as a bundle for kernels.
     """
 
     signature: tuple[NDArray[Any], ...]
@@ -145,17 +145,17 @@ def make_pattern(world: World) -> Pattern:
     """Order a world's free particles for elimination and lay out the matrix of its springs and elements."""
     free = world.inverse_mass > 0.0
     kind = np.where(world.spring_active, world.law, -1).astype(np.int64)
-    a, b, parts = world.particle_a.astype(np.int64), world.particle_b.astype(np.int64), chosen_elements(world, free)
+    a, b = world.particle_a.astype(np.int64), world.particle_b.astype(np.int64)
     chosen = np.flatnonzero((kind == LAW_NISSEN) & (free[a] | free[b]))
-    a_chosen, b_chosen = a[chosen], b[chosen]
+    parts = chosen_elements(world, free)
     used = np.zeros(world.particle_count, dtype=np.bool_)
-    used[a_chosen] = used[b_chosen] = used[parts.particle] = True
+    used[a[chosen]] = used[b[chosen]] = used[parts.particle] = True
     nodes = np.flatnonzero(used & free)
     anchors = np.flatnonzero(used & ~free)
     # Rows before the elimination order is known; anchors come after every free particle, in any order.
     index = np.full(world.particle_count, -1, dtype=np.int64)
     index[np.concatenate([nodes, anchors])] = np.arange(len(nodes) + len(anchors))
-    end_a, end_b = index[a_chosen], index[b_chosen]
+    end_a, end_b = index[a[chosen]], index[b[chosen]]
     link_a, link_b = (np.concatenate([end, more]) for end, more in zip((end_a, end_b), index[parts.links], strict=True))
     links = np.flatnonzero((link_a < len(nodes)) & (link_b < len(nodes)))
     order, label, columns, large = _eliminate(len(nodes), link_a[links], link_b[links], world.origin[nodes])
@@ -184,15 +184,15 @@ def make_pattern(world: World) -> Pattern:
         nodes[body_of_row[first_rows]],
         np.isin(every_body[:-1], np.concatenate(held)),
     )
-    hooke, rows = kind == LAW_HOOKE, _scratch_rows(np.concatenate([nodes[order], anchors]))
+    rows = _scratch_rows(np.concatenate([nodes[order], anchors]))
     goals = lay_out_goals(shapes, shape_body, len(first_rows), world.corner_form[corners])
     springs = _scratch_springs(chosen[grouped], row_a, row_b, place(row_a, row_b))
     return Pattern(
         signature=(free, kind, a, b),
         elements=(world.element_active.copy(), world.corner_particle, world.corner_form),
         corners=corners,
-        has_hooke=bool(hooke.any()),
-        hooke=hooke,
+        has_hooke=bool((kind == LAW_HOOKE).any()),
+        hooke=kind == LAW_HOOKE,
         bodies=bodies,
         rows=rows,
         springs=springs,

@@ -99,7 +99,7 @@ def solve(world: World, springs: Pair, elements: Pair, h: float, before: Before)
         apply_explicit(world, world.spring_active, springs, h, elements)
         return
     push = new_push(len(contacts.particle))
-    load_biases(contacts, push, world.velocity, before.velocity, h)
+    load_biases(contacts, push, h)
     apply_explicit(world, world.spring_active, springs, h, elements)
     sweep_masses(
         contacts, push, world.velocity, np.zeros((world.particle_count, 2)), world.inverse_mass,
