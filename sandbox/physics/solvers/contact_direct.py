@@ -153,11 +153,11 @@ def _cost_of(contacts, blocks):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _push_all(touching, contacts, push, blocks, inverse_mass, sweeps):  # type: ignore[no-untyped-def]
+def _push_all(touching, contacts, push, blocks, inverse_mass, sweeps, hasten):  # type: ignore[no-untyped-def]
     # Sweep all contacts; the impulses of bodies are left in `pushed`.
     load_responses(contacts, push, inverse_mass, blocks)
     _clear(touching.change)
-    solve_contacts(contacts, push, touching.given, touching.change, inverse_mass, blocks, sweeps)
+    solve_contacts(contacts, push, touching.given, touching.change, inverse_mass, blocks, sweeps, hasten)
     _clear(touching.pushed)
     for c in range(contacts.particle.shape[0]):
         jn = contacts.impulse[c, 0]
@@ -260,7 +260,7 @@ def _push_bodies(  # type: ignore[no-untyped-def]
             _begin_again(touching, bodies, rows, 1.0 if stage == LINEAR_SOLVES else 0.0)
             _solve_due(touching, items, blocks, columns, h, 1.0, 0.0)
         sweeps = max(FEWEST_SWEEPS, min(SWEEPS, affordable))
-        _push_all(touching, contacts, push, blocks, inverse_mass, sweeps)
+        _push_all(touching, contacts, push, blocks, inverse_mass, sweeps, stage < LINEAR_SOLVES)
         affordable -= sweeps
         if stage == 0:
             grant(touching, contacts, push, inverse_mass, h)

@@ -147,7 +147,7 @@ def member_of(contacts, c, touching, inverse_mass):  # type: ignore[no-untyped-d
 @inner_kernel
 def hold(touching, contacts, push, inverse_mass, h):  # type: ignore[no-untyped-def]
     """Let contacts of clusters that fail begin with no impulse, and neither push apart nor bounce."""
-    # From there each sweep takes energy: it lowers 1/2 J.W J + J.u, which is what contacts add to it.
+    # From there each sweep that is not hastened takes energy: it lowers 1/2 J.W J + J.u, which is what contacts add.
     for c in range(contacts.particle.shape[0]):
         k = member_of(contacts, c, touching, inverse_mass)
         if k >= 0 and touching.fails[touching.cluster[k]]:
