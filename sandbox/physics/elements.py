@@ -158,7 +158,10 @@ def element_values(position, inverse_mass, elements, place, value, mass, slope):
 
 @inner_kernel
 def explicit_mass(first, last, inverse_mass, particle, weight, slope):  # type: ignore[no-untyped-def]
-    """Effective mass for a step on the old velocities: the less of the rest shape's and the present one's."""
+    """Effective mass for a step on the old velocities: the less of the rest shape's and the present one's.
+
+    Second: its share of the present one's.
+    """
     # No impulse then changes dC/dt by more than was wanted, however a corner is crushed.
     rest = 0.0
     present = 0.0
@@ -167,4 +170,4 @@ def explicit_mass(first, last, inverse_mass, particle, weight, slope):  # type: 
         rest += w * weight[c]
         present += w * (slope[c, 0] * slope[c, 0] + slope[c, 1] * slope[c, 1])
     most = max(rest, present)
-    return 1.0 / most if most > 0.0 else 0.0
+    return (1.0 / most, present / most) if most > 0.0 else (0.0, 0.0)

@@ -31,7 +31,7 @@ def _element_pass(  # type: ignore[no-untyped-def]
         last = first + elements.corners[k]
         look(first, last, position, elements.particle, place)
         error = evaluate(elements.kind[k], place, first, last, elements.rest, k, elements.weight, slope)
-        mass = explicit_mass(first, last, inverse_mass, elements.particle, elements.weight, slope)
+        mass, _ = explicit_mass(first, last, inverse_mass, elements.particle, elements.weight, slope)
         rate = element_rate(first, last, velocity, elements.particle, slope)
         j = spring_impulse(stiffness[k], damping[k], error, rate, mass, h)
         for c in range(first, last):
