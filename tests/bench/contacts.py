@@ -1,10 +1,13 @@
-"""Figures of contacts: piles and heaps that come to rest, and what they cost beside pymunk.
+"""Figures of contacts and their limits: what comes to rest and what that costs beside pymunk, energy, tunnelling.
 
-Run by hand: python -m tests.bench.contacts. Times are of the process, in milliseconds a tick; prints Markdown.
+Run by hand: python -m tests.bench.contacts. Times are of the process, in milliseconds a tick. Prints Markdown; exit
+code 1 where a limit is broken.
 """
 
 import itertools
+import math
 import statistics
+import sys
 import time
 from collections.abc import Callable
 
@@ -12,10 +15,11 @@ import numpy as np
 import pymunk
 
 from sandbox.physics.energy import kinetic_energy
+from sandbox.physics.outline import outline_of
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
 from sandbox.physics.world import World
-from tests.physics.contact_scenes import GROUND, add_discs, add_jelly, world
+from tests.physics.contact_scenes import GROUND, add_chain, add_discs, add_jelly, world
 
 SECONDS = 10
 
@@ -38,20 +42,25 @@ def pile() -> World:
     return built
 
 
-def disc_places(count: int, columns: int) -> tuple[np.ndarray, np.ndarray]:
+def disc_places(
+    count: int, columns: int, seed: int = 1, radii: tuple[float, float] = (0.07, 0.1)
+) -> tuple[np.ndarray, np.ndarray]:
     """Places [m] (n, 2) and radii [m] (n,) of discs in shifted rows."""
-    generator = np.random.default_rng(1)
+    generator = np.random.default_rng(seed)
     k = np.arange(count)
     x = -0.145 * columns + 0.29 * (k % columns) + 0.1 * (k // columns % 2) + generator.uniform(0.0, 0.05, count)
-    return np.stack([x, 0.3 + 0.22 * (k // columns)], axis=1), generator.uniform(0.07, 0.1, count)
+    return np.stack([x, 0.3 + 0.22 * (k // columns)], axis=1), generator.uniform(*radii, count)
 
 
-def heap(count: int, columns: int) -> World:
-    """Loose discs dropped into a pit."""
+def heap(
+    count: int, columns: int, seed: int = 1, radii: tuple[float, float] = (0.07, 0.1), spread: float | None = None
+) -> World:
+    """Loose discs dropped into a pit; spread: masses are 10^-spread..10^spread kg, else as the areas."""
     half = 0.15 * columns
     built = world(Chain([(-half, 15.0), (-half, 0.0), (half, 0.0), (half, 15.0)]))
-    places, radii = disc_places(count, columns)
-    add_discs(built, places, radius=radii, mass=100.0 * radii**2)
+    places, radius = disc_places(count, columns, seed, radii)
+    powers = np.random.default_rng(seed).uniform(-1.0, 1.0, count)
+    add_discs(built, places, radius=radius, mass=100.0 * radius**2 if spread is None else 10.0 ** (spread * powers))
     return built
 
 
@@ -84,8 +93,23 @@ def times_of(tick: Callable[[], object], ticks: int) -> list[float]:
     return spent
 
 
-def row(name: str, built: World, other: pymunk.Space | None = None) -> str:
-    """Energy over its peak, overlap and creep after the time, and the ticks' times."""
+class Table:
+    """Rows of figures with their limits; whether any is broken."""
+
+    broken = False
+
+    def add(self, name: str, *figures: tuple[str, float, float]) -> None:
+        """Print a row: of each figure what it is, its value and the most that it may be."""
+        cells = []
+        for what, value, most in figures:
+            self.broken = self.broken or not value <= most
+            limit = "" if most == math.inf else f" (at most {most:g}{'' if value <= most else ', BROKEN'})"
+            cells.append(f"{what} {value:.3g}{limit}")
+        print(f"| {name} | {'; '.join(cells)} |", flush=True)
+
+
+def settles(table: Table, name: str, built: World, other: pymunk.Space | None = None, most_time: float = 16.6) -> None:
+    """What is left at the end: energy over its peak, overlap over the smaller radius, creep; and the time of a tick."""
     step(built)
     peak, spent, theirs = 0.0, [], []
     for _ in range(60 * SECONDS):
@@ -93,23 +117,114 @@ def row(name: str, built: World, other: pymunk.Space | None = None) -> str:
         if other is not None:
             theirs += times_of(lambda: other.step(1.0 / 60.0), 1)
         peak = max(peak, kinetic_energy(built))
-    share, before = kinetic_energy(built) / peak, built.position.copy()
+    share, contacts = kinetic_energy(built) / peak, built.contacts
+    smaller = np.where(contacts.end_a < 0, np.inf, built.radius[contacts.end_a])
+    deepest = float(np.max(-contacts.gap / np.minimum(built.radius[contacts.particle], smaller), initial=0.0))
+    before = built.position.copy()
     times_of(lambda: step(built), 60)
-    creep, overlap = 1e3 * float(np.abs(built.position - before).max()), -1e3 * float(built.contacts.gap.min())
-    late = f"{np.quantile(spent, 0.95):.1f}"
-    peer = f"{statistics.median(theirs):.1f}" if theirs else ""
-    return f"| {name} | {share:.1e} | {overlap:.2f} | {creep:.3f} | {statistics.median(spent):.1f} | {late} | {peer} |"
+    creep, median = 1e3 * float(np.abs(built.position - before).max()), statistics.median(spent)
+    peer = (("over pymunk's", median / statistics.median(theirs), 1.0),) if theirs else ()
+    table.add(
+        name, ("energy / peak", share, 1e-4), ("overlap / radius", deepest, 0.05), ("creep [mm/s]", creep, 1.0),
+        ("tick [ms]", median, most_time), ("95 % [ms]", float(np.quantile(spent, 0.95)), math.inf), *peer,
+    )  # fmt: skip
 
 
-def main() -> None:
-    """Print the table."""
-    print("| scene, 10 s | kinetic energy / peak | overlap [mm] | creep [mm/s] | tick [ms] | 95 % | pymunk [ms] |")
-    print("|---|---|---|---|---|---|---|")
-    print(row("stack of 8 jelly cubes", stack()), flush=True)
-    print(row("pile of 30 jelly cubes", pile()), flush=True)
-    print(row("heap of 500 discs", heap(500, 24), pymunk_heap(500, 24)), flush=True)
-    print(row("heap of 2,000 discs", heap(2000, 40), pymunk_heap(2000, 40)), flush=True)
+def stands(table: Table) -> None:
+    """How far the top of a stack is from its place after 30 s, and how fast it sways in the tenth and thirtieth."""
+    built, sways = stack(), []
+    for _ in range(30):
+        before = built.position.copy()
+        times_of(lambda: step(built), 60)
+        sways.append(1e3 * float(np.abs(built.position - before).max()))
+    away = float(np.abs(built.position[-100:].mean(axis=0) - (0.0, 7.1)).max())
+    table.add(
+        "stack of 8 jelly cubes, 30 s", ("top away [m]", away, 0.2), ("sway in the 10th [mm/s]", sways[9], math.inf),
+        ("in the 30th [mm/s]", sways[29], 1.0),
+    )  # fmt: skip
+
+
+def boxes(table: Table) -> None:
+    """Discs of masses 1e-2..1e2 at 20 m/s in closed boxes: the largest rise of energy in a tick over the start."""
+    for restitution in (0.0, 0.5, 1.0):
+        rise = 0.0
+        for seed in range(3):
+            generator = np.random.default_rng(seed)
+            built = world(Chain([(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)], "hollow"), gravity=(0.0, 0.0))
+            k = np.arange(60)
+            add_discs(
+                built, np.stack([-1.6 + 0.45 * (k % 8), -1.6 + 0.45 * (k // 8)], axis=1),
+                radius=generator.uniform(0.05, 0.16, 60), mass=10.0 ** generator.uniform(-2.0, 2.0, 60),
+                velocity=20.0 * generator.normal(size=(60, 2)), restitution=restitution,
+            )  # fmt: skip
+            start = energy = kinetic_energy(built)
+            for _ in range(300):
+                step(built)
+                rise, energy = max(rise, (kinetic_energy(built) - energy) / start), kinetic_energy(built)
+        table.add(f"closed boxes, restitution {restitution:g}", ("rise / start", rise, 1e-12))
+
+
+def is_inside(outline: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Whether each of the points (k, 2) is inside a polygon (m, 2)."""
+    x, y = points[:, :1], points[:, 1:]
+    a, b = outline, np.roll(outline, -1, axis=0)
+    crossed = (a[:, 1] <= y) != (b[:, 1] <= y)
+    rise = np.where(b[:, 1] == a[:, 1], 1.0, b[:, 1] - a[:, 1])
+    return ((crossed & (x < a[:, 0] + (y - a[:, 1]) / rise * (b[:, 0] - a[:, 0]))).sum(axis=1) % 2).astype(bool)
+
+
+def tunnels(table: Table, tries: int = 1000, at_once: int = 50) -> None:
+    """Chains of balls at 100 m/s onto jellies, from anywhere: how many are inside one 40 ticks later."""
+    inside, longest = 0, 0
+    for seed in range(tries // at_once):
+        generator, built = np.random.default_rng(seed), world()
+        jellies, chains = [], []
+        for k in range(at_once):
+            angle = generator.uniform(0.0, math.tau)
+            way = np.array([math.cos(angle), math.sin(angle)])
+            aside = generator.uniform(-0.3, 0.3) * np.array([-way[1], way[0]])
+            size = (0.5, float(generator.choice([0.2, 0.5, 1.0])))
+            jellies.append(add_jelly(built, (12.0 * k, 0.0), size=size, angle=generator.uniform(0.0, math.tau)))
+            start = (12.0 * k, 0.0) - generator.uniform(2.2, 3.5) * way + aside
+            chains.append(add_chain(built, generator, start, tuple(100.0 * way)))
+        outlines = [_outline(built, jelly) for jelly in jellies]
+        held = np.zeros(at_once, dtype=np.int64)
+        for _ in range(40):
+            step(built)
+            for k in range(at_once):
+                deep = is_inside(built.position[outlines[k]], built.position[chains[k]]).any()
+                held[k] = held[k] + 1 if deep else 0
+            longest = max(longest, int(held.max()))
+        inside += int(np.count_nonzero(held))
+    table.add(f"{tries} chains of balls at 100 m/s onto jellies", ("inside at the end", inside, 0),
+              ("longest inside [ticks]", longest, math.inf))  # fmt: skip
+
+
+def _outline(built: World, jelly: slice) -> list[int]:
+    shape = outline_of(built)
+    after = {a: b for a, b in zip(shape.edge_a.tolist(), shape.edge_b.tolist(), strict=True)
+             if jelly.start <= a < jelly.stop}  # fmt: skip
+    around = [jelly.start]
+    while after[around[-1]] != jelly.start:
+        around.append(after[around[-1]])
+    return around
+
+
+def main() -> int:
+    """Print the table; 1 where a limit is broken."""
+    table = Table()
+    print("| scene | figures |\n|---|---|")
+    settles(table, "heap of 2,000 discs", heap(2000, 40), pymunk_heap(2000, 40))
+    for seed in range(1, 6):
+        settles(table, f"heap of 500 discs, seed {seed}", heap(500, 24, seed))
+    settles(table, "heap of 500 discs, radii 0.04..0.12 m", heap(500, 24, 1, (0.04, 0.12)))
+    settles(table, "heap of 500 discs, masses 0.1..10 kg", heap(500, 24, 1, spread=1.0))
+    settles(table, "pile of 30 jelly cubes", pile())
+    stands(table)
+    boxes(table)
+    tunnels(table)
+    return int(table.broken)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -7,8 +7,16 @@ import numpy as np
 
 from sandbox.level.bodies import JellyDef
 from sandbox.level.outlines import edges
-from sandbox.level.shapes import expand
-from sandbox.physics.energy import gravity_energy, kinetic_energy, reduced_masses, spring_energy, spring_lengths
+from sandbox.level.shapes import expand, jelly_triangles
+from sandbox.physics.elements import AREA
+from sandbox.physics.energy import (
+    gravity_energy,
+    kinetic_energy,
+    measure_elements,
+    reduced_masses,
+    spring_energy,
+    spring_lengths,
+)
 from sandbox.physics.outline import ALL_GROUPS, LINE
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.direct import BOUNCY_BANK_SHARE
@@ -60,6 +68,7 @@ def _add_body(to: World, generator: np.random.Generator, centre: tuple[float, fl
         along = 0.15 * (np.arange(7) - 3.0)[:, None] * np.array([[math.cos(way), math.sin(way)]])
         points, radius = np.asarray(centre) + along, 0.06
         pairs, sides = np.stack([np.arange(6), np.arange(1, 7)], axis=1), np.full(6, LINE)
+        triangles = []
     else:
         body = JellyDef.model_validate(
             {"type": "jelly", "id": "j", "shape": SHAPES[generator.integers(3)], "position": centre, "angle": way,
@@ -67,6 +76,7 @@ def _add_body(to: World, generator: np.random.Generator, centre: tuple[float, fl
         )  # fmt: skip
         points, pairs = expand(body)
         sides, radius = edges(body, pairs), 0.06
+        triangles = jelly_triangles(body) if generator.integers(2) else []
     to.add_particles(
         [f"{first}.{k}" for k in range(len(points))], points, radius=radius, mass=mass / len(points), owner=first,
         group=BODIES, collides=ALL_GROUPS, **touch,
@@ -75,6 +85,8 @@ def _add_body(to: World, generator: np.random.Generator, centre: tuple[float, fl
         [f"{first}:{k}" for k in range(len(pairs))], pairs[:, 0] + first, pairs[:, 1] + first, stiffness=stiffness,
         damping=damping, edge=sides,
     )  # fmt: skip
+    if len(triangles):
+        to.add_elements(AREA, np.asarray(triangles) + first, stiffness=stiffness, damping=damping)
 
 
 def random_box(seed: int, solver: str = "direct", bouncy: bool | None = None, most: int = COLUMNS * ROWS) -> Box:
@@ -94,9 +106,12 @@ def energy(of: World) -> float:
     """Kinetic energy, that of gravity and of springs [J]; with "auto" in the least k of any number of parts."""
     springs = spring_energy(of)
     if of.settings.substeps == AUTO:
-        least, _ = extremes(of)
-        error = spring_lengths(of) - of.rest_length
-        springs = float(0.5 * np.sum(least * reduced_masses(of) * (error / substep_time(of.settings)) ** 2))
+        h = substep_time(of.settings)
+        error, (value, mass, _) = spring_lengths(of) - of.rest_length, measure_elements(of)
+        constant, _ = extremes(of.stiffness, of.damping)
+        constants, _ = extremes(of.element_stiffness, of.element_damping)
+        springs = float(np.sum(constant * reduced_masses(of) * error**2) + np.sum(constants * mass * value**2)) / (h * h)
+        springs *= 0.5
     return kinetic_energy(of) + gravity_energy(of) + springs
 
 

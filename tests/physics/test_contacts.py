@@ -5,11 +5,13 @@ import math
 import numpy as np
 import pytest
 
+from sandbox.physics.contacts import DEEP_TICKS
 from sandbox.physics.energy import kinetic_energy, total_energy
 from sandbox.physics.outline import ALL_GROUPS
 from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.solvers.contact_sweep import FASTEST_PUSH
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
 from tests.physics.contact_scenes import BODIES, FLOOR, GROUND, add_chain, add_discs, add_jelly, rugged, world
@@ -117,6 +119,64 @@ def test_a_heap_of_discs_comes_to_rest():
     assert -w.contacts.gap.min() < 0.05 * 0.07
 
 
+@every_solver
+@pytest.mark.parametrize("spread", [0.0, 1.0])
+def test_discs_of_any_mass_lie_on_each_other_no_deeper_than_a_twentieth_of_a_radius(solver, spread):
+    w = world(Chain([(-1.0, 8.0), (-1.0, 0.0), (1.0, 0.0), (1.0, 8.0)]), solver=solver)
+    generator = np.random.default_rng(2)
+    k = np.arange(scaled(60, 12))
+    points = np.stack([-0.8 + 0.3 * (k % 6) + 0.1 * (k // 6 % 2), 0.3 + 0.25 * (k // 6)], axis=1)
+    radius = generator.uniform(0.05, 0.12, len(k))
+    add_discs(w, points, radius=radius, mass=10.0 ** generator.uniform(-spread, spread, len(k)))
+    run(w, scaled(360, 90))
+    contacts = w.contacts
+    smaller = np.minimum(w.radius[contacts.particle], np.where(contacts.end_a < 0, 1.0, w.radius[contacts.end_a]))
+    assert np.max(-contacts.gap / smaller) < 0.05
+    assert np.abs(w.velocity).max() < 1e-3
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
+def test_discs_of_very_unequal_mass_in_a_closed_box_never_gain_energy(restitution):
+    w = world(Chain([(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)], "hollow"), gravity=(0.0, 0.0))
+    generator = np.random.default_rng(0)
+    k = np.arange(60)
+    places = np.stack([-1.6 + 0.45 * (k % 8), -1.6 + 0.45 * (k // 8)], axis=1)
+    add_discs(w, places, radius=generator.uniform(0.05, 0.16, 60),
+              mass=10.0 ** generator.uniform(-2.0, 2.0, 60), velocity=20.0 * generator.normal(size=(60, 2)),
+              restitution=restitution)  # fmt: skip
+    energy = kinetic_energy(w)
+    for _ in range(scaled(120, 20)):
+        step(w)
+        assert kinetic_energy(w) <= energy * (1.0 + 1e-12)
+        energy = kinetic_energy(w)
+        assert np.all(np.abs(w.position) < 2.0)
+
+
+def test_discs_that_collide_in_free_space_keep_their_momentum():
+    w = world(gravity=(0.0, 0.0))
+    generator = np.random.default_rng(4)
+    places = generator.uniform(-1.5, 1.5, (40, 2))
+    add_discs(w, places, mass=10.0 ** generator.uniform(-2.0, 2.0, 40), velocity=-5.0 * places, restitution=0.7)
+    momenta = w.mass[:, None] * w.velocity
+    met = 0
+    for _ in range(60):
+        step(w)
+        met += int(np.count_nonzero(w.contact_impulse[:, 0]))
+    assert met > 20
+    assert np.abs((w.mass[:, None] * w.velocity - momenta).sum(axis=0)).max() < 1e-13 * np.abs(momenta).sum()
+
+
+def test_a_heap_takes_the_same_steps_in_every_solver():
+    reached = []
+    for solver in SOLVERS:
+        w = world(GROUND, solver=solver)
+        add_discs(w, [(0.0, 0.1), (0.05, 0.35), (-0.02, 0.6)])
+        run(w, 40)
+        reached.append(w.position.copy())
+    assert np.array_equal(reached[0], reached[1])
+    assert np.array_equal(reached[0], reached[2])
+
+
 def test_a_stack_of_jelly_cubes_stands():
     w = world(GROUND)
     for k in range(8):
@@ -134,11 +194,16 @@ def test_a_jelly_falls_on_another_and_neither_enters_it():
     assert -w.contacts.gap.min() < 0.05 * 0.05
 
 
-def test_a_disc_inside_solid_ground_is_brought_out():
-    w = world(GROUND)
-    add_discs(w, [(0.3, -0.4), (2.0, -0.01)])
+@every_solver
+@pytest.mark.parametrize("depth", [0.01, 0.1, 0.4])
+def test_a_disc_inside_solid_ground_is_out_after_the_ticks_that_its_depth_takes_and_lies_on_it(solver, depth):
+    w = world(GROUND, solver=solver)
+    add_discs(w, [(0.3, -depth), (2.0, -depth)], radius=[0.1, 0.02])
+    run(w, math.ceil(DEEP_TICKS + 60.0 * depth / FASTEST_PUSH + 12.0))
+    assert np.all(w.position[:, 1] > 0.0)
     run(w, 60)
-    assert np.all(w.position[:, 1] > 0.09)
+    assert np.all(w.position[:, 1] > 0.9 * w.radius)
+    assert np.abs(w.velocity).max() < 1e-3
 
 
 def test_a_disc_inside_a_jelly_is_brought_out_within_a_second():

@@ -39,7 +39,7 @@ from sandbox.physics.solvers.contact_sweep import (
 )
 from sandbox.physics.solvers.direct import AHEAD, LINEAR_SOLVES, MISFIT_RATE
 from sandbox.physics.solvers.goal import aim_at_form, find_tangled, let_go
-from sandbox.physics.solvers.minimise import copy, keep_tension
+from sandbox.physics.solvers.minimise import copy, keep_tension, scale
 from sandbox.physics.solvers.network import hold_spin, kinetic, linearise, solve_linear, update_impulses
 from sandbox.physics.solvers.pattern import Pattern
 from sandbox.physics.solvers.response import load_block, respond
@@ -54,6 +54,8 @@ SWEEPS = 20
 # soft, more makes tangles slow.
 WORK = 7.2e7
 FEWEST_SWEEPS = 4
+# Solves in which contacts only hold.
+HOLDS = 2
 
 
 @inner_kernel
@@ -151,11 +153,11 @@ def _cost_of(contacts, blocks):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _push_all(touching, contacts, push, blocks, inverse_mass, sweeps):  # type: ignore[no-untyped-def]
+def _push_all(touching, contacts, push, blocks, inverse_mass, sweeps, hasten):  # type: ignore[no-untyped-def]
     # Sweep all contacts; the impulses of bodies are left in `pushed`.
     load_responses(contacts, push, inverse_mass, blocks)
     _clear(touching.change)
-    solve_contacts(contacts, push, touching.given, touching.change, inverse_mass, blocks, sweeps)
+    solve_contacts(contacts, push, touching.given, touching.change, inverse_mass, blocks, sweeps, hasten)
     _clear(touching.pushed)
     for c in range(contacts.particle.shape[0]):
         jn = contacts.impulse[c, 0]
@@ -219,13 +221,16 @@ def _finish(touching, items, velocity, tension):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _let_go(touching, bodies, rows):  # type: ignore[no-untyped-def]
-    # What is tangled and fails goes on without its goal.
+def _begin_again(touching, bodies, rows, share):  # type: ignore[no-untyped-def]
+    # Bring what fails to this share of v*, without its goal.
     for k in range(touching.body.shape[0]):
-        if touching.due[k] and touching.aimed[k]:
-            body = touching.body[k]
-            let_go(bodies.row_start[body], bodies.row_start[body + 1], rows)
-            touching.aimed[k] = False
+        if touching.due[k]:
+            first_row, last_row = bodies.row_start[touching.body[k]], bodies.row_start[touching.body[k] + 1]
+            copy(first_row, last_row, rows.target, rows.trial)
+            scale(first_row, last_row, share, rows.trial)
+            if touching.aimed[k]:
+                let_go(first_row, last_row, rows)
+                touching.aimed[k] = False
 
 
 @kernel
@@ -244,30 +249,37 @@ def _push_bodies(  # type: ignore[no-untyped-def]
     open_loose(touching, mass, energy_bank)
     affordable = int(WORK * h) // max(1, _cost_of(contacts, blocks))
     failing = False
-    for solve in range(LINEAR_SOLVES + 2):
-        if solve < LINEAR_SOLVES:
+    # Linear solves while springs miss the lengths foreseen, a second where the test fails; then contacts only hold, at
+    # Newton steps on f from v* and from rest: the last one takes energy if it is made short enough.
+    stage = 0
+    while stage < LINEAR_SOLVES + HOLDS:
+        if stage < LINEAR_SOLVES:
             _solve_due(touching, items, blocks, columns, h, AHEAD, AHEAD)
-        elif solve == LINEAR_SOLVES:
-            hold(touching, contacts, push, inverse_mass, h)
         else:
-            _let_go(touching, bodies, rows)
+            hold(touching, contacts, push, inverse_mass, h)
+            _begin_again(touching, bodies, rows, 1.0 if stage == LINEAR_SOLVES else 0.0)
             _solve_due(touching, items, blocks, columns, h, 1.0, 0.0)
         sweeps = max(FEWEST_SWEEPS, min(SWEEPS, affordable))
-        _push_all(touching, contacts, push, blocks, inverse_mass, sweeps)
+        _push_all(touching, contacts, push, blocks, inverse_mass, sweeps, stage < LINEAR_SOLVES)
         affordable -= sweeps
-        if solve == 0:
+        if stage == 0:
             grant(touching, contacts, push, inverse_mass, h)
         _answer(touching, items, position, collides, terrain, rest_length, h)
         failing = judge(touching, mass, before)
-        again = failing
+        inexact = False
         for k in range(touching.body.shape[0]):
-            inexact = solve < LINEAR_SOLVES - 1 and touching.misfit[k] > MISFIT_RATE * h * h
-            touching.due[k] = inexact or touching.fails[touching.cluster[k]]
-            again = again or touching.due[k]
-        if not again or affordable <= 0:
+            missed = stage < LINEAR_SOLVES - 1 and affordable > 0 and touching.misfit[k] > MISFIT_RATE * h * h
+            inexact = inexact or missed
+            touching.due[k] = missed or touching.fails[touching.cluster[k]]
+        if not (inexact or failing):
             break
+        stage += 1
+        if failing and affordable <= 0:
+            stage = max(stage, LINEAR_SOLVES + HOLDS - 1)
+        elif failing and not inexact and stage > 1:
+            stage = max(stage, LINEAR_SOLVES)
     if failing:
-        brake(touching, items, position, mass, before, collides, terrain, rest_length, h)
+        brake(touching, items, mass, before, collides, terrain, rest_length, h)
     save(touching, items, contacts, push, inverse_mass, rest_length, energy_bank, h)
     _finish(touching, items, velocity, tension)
 

@@ -12,11 +12,11 @@ from sandbox.physics.shapes import weight_of
 from sandbox.physics.solvers.body import BANK_SHARE, BOUNCY_BANK_SHARE, body_energy, body_hidden
 from sandbox.physics.solvers.contact_sweep import FASTEST_PUSH, OVERLAP_SHARE, SOFTNESS
 from sandbox.physics.solvers.direct import ENERGY_ROUNDING, LAST_HALVINGS
-from sandbox.physics.solvers.minimise import keep_tension
+from sandbox.physics.solvers.minimise import copy, keep_tension, scale
 from sandbox.physics.solvers.network import kinetic
 
-# Halvings of what moves within bodies that fail the test, before they are slowed down as a whole.
-INNER_HALVINGS = 8
+# Halvings of what moves within bodies that fail the test, before all that moves is slowed down.
+INNER_HALVINGS = 3
 # k x^2 / 2 of a contact is this, times (x / h)^2 over its response: what its overlap x may be paid back.
 STORED = 0.5 * OVERLAP_SHARE / SOFTNESS
 
@@ -146,60 +146,82 @@ def member_of(contacts, c, touching, inverse_mass):  # type: ignore[no-untyped-d
 
 @inner_kernel
 def hold(touching, contacts, push, inverse_mass, h):  # type: ignore[no-untyped-def]
-    """Let contacts of clusters that fail neither push apart nor bounce: then they only take energy."""
+    """Let contacts of clusters that fail begin with no impulse, and neither push apart nor bounce."""
+    # From there each sweep that is not hastened takes energy: it lowers 1/2 J.W J + J.u, which is what contacts add.
     for c in range(contacts.particle.shape[0]):
         k = member_of(contacts, c, touching, inverse_mass)
-        if k >= 0 and touching.fails[touching.cluster[k]] and push.bias[c] < 0.0:
-            push.bias[c] = max(0.0, contacts.gap[c]) / h
+        if k >= 0 and touching.fails[touching.cluster[k]]:
+            push.bias[c] = max(push.bias[c], max(0.0, contacts.gap[c]) / h)
+            contacts.impulse[c, 0] = 0.0
+            contacts.impulse[c, 1] = 0.0
 
 
 @inner_kernel
-def _slow(first_row, last_row, rows, inner, factor, anchored):  # type: ignore[no-untyped-def]
-    # v = factor (mean + inner (v - mean)), with a mean of 0 where anything is anchored
+def _calm(first_row, last_row, rows):  # type: ignore[no-untyped-def]
+    # Halve the velocities within one body, v = mean + (v - mean) / 2.
     x = 0.0
     y = 0.0
     total = 0.0
-    if not anchored:
-        for r in range(first_row, last_row):
-            total += rows.mass[r]
-            x += rows.mass[r] * rows.trial[r, 0]
-            y += rows.mass[r] * rows.trial[r, 1]
+    for r in range(first_row, last_row):
+        total += rows.mass[r]
+        x += rows.mass[r] * rows.trial[r, 0]
+        y += rows.mass[r] * rows.trial[r, 1]
     if total > 0.0:
         x /= total
         y /= total
     for r in range(first_row, last_row):
-        rows.trial[r, 0] = factor * (x + inner * (rows.trial[r, 0] - x))
-        rows.trial[r, 1] = factor * (y + inner * (rows.trial[r, 1] - y))
+        rows.trial[r, 0] = x + 0.5 * (rows.trial[r, 0] - x)
+        rows.trial[r, 1] = y + 0.5 * (rows.trial[r, 1] - y)
 
 
 @inner_kernel
-def brake(touching, items, position, mass, start, collides, terrain, rest_length, h):  # type: ignore[no-untyped-def]
-    """Slow down what moves within the bodies of clusters that fail, then the bodies; at rest they pass."""
+def _slow(touching, items, halving, collides, terrain, rest_length, h):  # type: ignore[no-untyped-def]
+    # One halving of every body of a cluster that fails.
     bodies, rows, springs, shapes, _, _ = items
+    for k in range(touching.body.shape[0]):
+        if not touching.fails[touching.cluster[k]]:
+            continue
+        body = touching.body[k]
+        first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
+        first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
+        low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
+        if halving == 0:
+            touching.due[k] = True
+            copy(first_row, last_row, rows.trial, touching.free)
+        if halving < INNER_HALVINGS:
+            if not bodies.anchored[body]:
+                _calm(first_row, last_row, rows)
+        else:
+            if halving == INNER_HALVINGS:
+                copy(first_row, last_row, touching.free, rows.trial)
+            scale(first_row, last_row, 0.5 if halving < LAST_HALVINGS else 0.0, rows.trial)
+        stop_rows(first_row, last_row, rows, collides, terrain, h)
+        held = body_energy(first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h)
+        touching.after[k] = held - less_work(first_row, last_row, rows, touching.bouncy[k])
+
+
+@inner_kernel
+def brake(touching, items, mass, start, collides, terrain, rest_length, h):  # type: ignore[no-untyped-def]
+    """Slow down what moves within the bodies of clusters that fail, else all that moves, until they pass."""
+    # All that moves slowly enough along what contacts and springs want loses energy, and at rest they pass.
+    bodies, rows, springs, _, _, _ = items
+    for k in range(touching.body.shape[0]):
+        touching.due[k] = False
     for halving in range(LAST_HALVINGS + 1):
-        inner = 0.5 if halving < INNER_HALVINGS else 0.0
-        factor = 1.0 if halving <= INNER_HALVINGS else (0.5 if halving < LAST_HALVINGS else 0.0)
-        for k in range(touching.body.shape[0]):
-            if touching.fails[touching.cluster[k]]:
-                body = touching.body[k]
-                first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
-                first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
-                _slow(first_row, last_row, rows, inner, factor, bodies.anchored[body])
-                stop_rows(first_row, last_row, rows, collides, terrain, h)
-                low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
-                held = body_energy(
-                    first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h
-                )  # fmt: skip
-                touching.after[k] = held - less_work(first_row, last_row, rows, touching.bouncy[k])
-                keep_tension(first, last, rows, springs, h)
+        _slow(touching, items, halving, collides, terrain, rest_length, h)
         for i in range(touching.loose.shape[0]):
-            if touching.fails[touching.cluster[touching.body.shape[0] + i]]:
+            if halving >= INNER_HALVINGS and touching.fails[touching.cluster[touching.body.shape[0] + i]]:
                 p = touching.loose[i]
+                factor = 0.5 if halving < LAST_HALVINGS else 0.0
                 for axis in range(2):
                     v = touching.given[p, axis] + touching.change[p, axis]
                     touching.change[p, axis] = factor * v - touching.given[p, axis]
         if not judge(touching, mass, start):
             break
+    for k in range(touching.body.shape[0]):
+        if touching.due[k]:
+            first, last = bodies.spring_start[touching.body[k]], bodies.spring_start[touching.body[k] + 1]
+            keep_tension(first, last, rows, springs, h)
 
 
 @inner_kernel

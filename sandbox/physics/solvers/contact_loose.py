@@ -6,6 +6,7 @@ particles move, and a second sweep, which leaves overlap alone, takes back the s
 (soft contacts that relax: Catto 2023, "Solver2D"; small steps: Macklin and others 2019).
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -180,6 +181,52 @@ def _sweep(contacts, work, first, last, small, passed, softness):  # type: ignor
             work.velocity[q, 1] -= jy * work.weight[q]
 
 
+@inner_kernel
+def _energy(work, begin, end, gained):  # type: ignore[no-untyped-def]
+    # Kinetic energy of what can move in a cluster [J]; gained: with what forces add in the step.
+    total = 0.0
+    for k in range(begin, end):
+        if work.weight[k] > 0.0:
+            vx = work.velocity[k, 0] + gained * work.gain[k, 0]
+            vy = work.velocity[k, 1] + gained * work.gain[k, 1]
+            total += 0.5 * (vx * vx + vy * vy) / work.weight[k]
+    return total
+
+
+@inner_kernel
+def _restrain(work, first, last, begin, end, allowed):  # type: ignore[no-untyped-def]
+    # Many bounces at once can gain energy: what moves is slowed down until it has no more than it had; beside its
+    # common motion, where it touches nothing that cannot move. What is carried along gets energy from outside.
+    after = _energy(work, begin, end, 0.0)
+    if not after > allowed:
+        return
+    mass = 0.0
+    px = 0.0
+    py = 0.0
+    apart = True
+    for i in range(first, last):
+        if work.drift[i, 0] != 0.0 or work.drift[i, 1] != 0.0:
+            return
+        apart = apart and work.second[i] >= 0
+    for k in range(begin, end):
+        if work.weight[k] > 0.0:
+            mass += 1.0 / work.weight[k]
+            px += work.velocity[k, 0] / work.weight[k]
+            py += work.velocity[k, 1] / work.weight[k]
+        elif work.velocity[k, 0] != 0.0 or work.velocity[k, 1] != 0.0:
+            return
+        else:
+            apart = False
+    vx = px / mass if apart else 0.0
+    vy = py / mass if apart else 0.0
+    common = 0.5 * mass * (vx * vx + vy * vy)
+    factor = math.sqrt(max(0.0, allowed - common) / (after - common)) if after > common else 0.0
+    for k in range(begin, end):
+        if work.weight[k] > 0.0:
+            work.velocity[k, 0] = vx + factor * (work.velocity[k, 0] - vx)
+            work.velocity[k, 1] = vy + factor * (work.velocity[k, 1] - vy)
+
+
 @kernel
 def _settle(contacts, work, h):  # type: ignore[no-untyped-def]
     # Every cluster's small steps.
@@ -189,6 +236,7 @@ def _settle(contacts, work, h):  # type: ignore[no-untyped-def]
         begin = work.first_particle[g]
         end = work.first_particle[g + 1]
         parts, softness = _plan(contacts, work, first, last, h)
+        allowed = _energy(work, begin, end, 1.0)
         small = h / parts
         scale = 1.0 / parts
         _begin(contacts, work, first, last, scale)
@@ -208,6 +256,7 @@ def _settle(contacts, work, h):  # type: ignore[no-untyped-def]
             for k in range(begin, end):
                 work.pushed[k, 0] = work.velocity[k, 0] - work.pushed[k, 0]
                 work.pushed[k, 1] = work.velocity[k, 1] - work.pushed[k, 1]
+        _restrain(work, first, last, begin, end, allowed)
         for i in range(first, last):
             contacts.impulse[work.contact[i], 0] *= parts
             contacts.impulse[work.contact[i], 1] *= parts

@@ -205,8 +205,8 @@ def sweep(contacts, push, velocity, change, inverse_mass, blocks):  # type: igno
 
 
 @inner_kernel
-def solve_contacts(contacts, push, velocity, change, inverse_mass, blocks, sweeps):  # type: ignore[no-untyped-def]
-    """Sweep until nothing changes, at most so many times; each sweep goes on in the direction of those before it."""
+def solve_contacts(contacts, push, velocity, change, inverse_mass, blocks, sweeps, hasten):  # type: ignore[no-untyped-def]
+    """Sweep until nothing changes, at most so many times; hasten: each goes on in the direction of those before it."""
     # Nonlinear conjugate gradients on the sweep as a fixed point (Silcowitz-Poulsen and others 2010).
     start_impulses(contacts, change, inverse_mass, blocks)
     previous = 0.0
@@ -221,7 +221,7 @@ def solve_contacts(contacts, push, velocity, change, inverse_mass, blocks, sweep
             jn = contacts.impulse[c, 0] - push.before[c, 0]
             jt = contacts.impulse[c, 1] - push.before[c, 1]
             squared += push.along[c] * jn * jn + push.across[c] * jt * jt
-        ratio = squared / previous if previous > 0.0 else 0.0
+        ratio = squared / previous if hasten and previous > 0.0 else 0.0
         _go_on(contacts, push, change, inverse_mass, blocks, ratio if ratio < 1.0 else 0.0)
         previous = squared
 
@@ -263,5 +263,5 @@ def add_change(velocity, change, inverse_mass):  # type: ignore[no-untyped-def]
 def sweep_masses(contacts, push, velocity, change, inverse_mass, blocks, sweeps):  # type: ignore[no-untyped-def]
     """Solve contacts of particles that answer by their own mass, and bring the velocities to the end of the step."""
     load_responses(contacts, push, inverse_mass, blocks)
-    solve_contacts(contacts, push, velocity, change, inverse_mass, blocks, sweeps)
+    solve_contacts(contacts, push, velocity, change, inverse_mass, blocks, sweeps, True)
     add_change(velocity, change, inverse_mass)
