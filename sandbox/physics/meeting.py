@@ -28,7 +28,9 @@ def meet(world: World, start: Floats, h: float) -> Meeting:
     start [m/s] (n, 2): the velocities before gravity and all else from outside.
     """
     contacts, ahead = find_contacts(world, start, h), np.zeros((world.particle_count, 2))
-    bound, cluster = bound_contacts(contacts, world.inverse_mass, outline_of(world).near_start)
+    held = np.diff(outline_of(world).near_start) > 0
+    held[world.corner_particle] = True
+    bound, cluster = bound_contacts(contacts, world.inverse_mass, held)
     if not bound.all():
         settle_loose(world, contacts, np.flatnonzero(~bound), cluster, start, h, ahead)
         world.contacts = Contacts._make(array[bound] for array in contacts)

@@ -87,9 +87,9 @@ def test_energy_never_rises_where_bodies_with_areas_touch():
     for substeps in (1, 4):
         w = world(GROUND, substeps=substeps)
         for k in range(3):
-            add_filled_jelly(w, (0.3 * k, 0.7 + 1.1 * k), angle=generator.uniform(0.0, 6.0), velocity=(0.0, -5.0))
-        add_ring(w, (2.0, 1.0), inflation=1.5)
-        add_ring(w, (2.4, 2.1))
+            add_filled_jelly(w, (0.3 * k, 0.8 + 1.4 * k), angle=generator.uniform(0.0, 6.0), velocity=(0.0, -5.0))
+        add_ring(w, (5.0, 0.7), inflation=1.5)
+        add_ring(w, (5.4, 2.1))
         energy = total_energy(w)
         for _ in range(scaled(90, 6)):
             step(w)

@@ -74,29 +74,30 @@ def _join(contacts, block, inverse_mass, label):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _bind(contacts, inverse_mass, near_start, label, sprung, bound, cluster):  # type: ignore[no-untyped-def]
-    # cluster (k,) of each contact; bound (k,): those in whose cluster a spring holds anything that can move.
+def _bind(contacts, inverse_mass, held, label, tied, bound, cluster):  # type: ignore[no-untyped-def]
+    # cluster (k,) of each contact; bound (k,): those in whose cluster anything that can move is held.
     for p in range(label.shape[0]):
-        if near_start[p] != near_start[p + 1] and inverse_mass[p] > 0.0:
-            sprung[label[p]] = True
+        if held[p] and inverse_mass[p] > 0.0:
+            tied[label[p]] = True
     for c in range(contacts.particle.shape[0]):
         for end in range(3):
             p, _ = weight_of(contacts, c, end)
             if p >= 0 and inverse_mass[p] > 0.0:
                 cluster[c] = label[p]
-                bound[c] = sprung[label[p]]
+                bound[c] = tied[label[p]]
 
 
-def bound_contacts(contacts: Contacts, inverse_mass: Floats, near_start: Slots) -> tuple[NDArray[np.bool_], Slots]:
-    """Whether each contact hangs together, by others, with a particle that a spring moves; the number of its cluster.
-
-    near_start: where the springs of each particle begin, see Shapes.
+def bound_contacts(
+    contacts: Contacts, inverse_mass: Floats, held: NDArray[np.bool_]
+) -> tuple[NDArray[np.bool_], Slots]:
+    """Whether each contact hangs together, by others, with a particle that can move and is held by a spring or an
+    element, as held (n,) says; the number of its cluster.
     """
     count, size = len(inverse_mass), len(contacts.particle)
-    label, sprung = np.arange(count), np.zeros(count, dtype=np.bool_)
+    label, tied = np.arange(count), np.zeros(count, dtype=np.bool_)
     bound, cluster = np.zeros(size, dtype=np.bool_), np.zeros(size, dtype=np.int64)
     _join(contacts, np.full(count, -1, dtype=np.int64), inverse_mass, label)
-    _bind(contacts, inverse_mass, near_start, label, sprung, bound, cluster)
+    _bind(contacts, inverse_mass, held, label, tied, bound, cluster)
     return bound, cluster
 
 
