@@ -98,7 +98,11 @@ _NAMES = """\
   the colours of a chessboard, one where three corners exist. They take Cs and Cd of its material, on sliders too. A
   jelly that is crushed, laid on a line or turned inside out comes back; of one set in a single point or mirrored, only
   the shape is sure to come back, not which way it looks.
-- A ring keeps the area inside it as a whole, times its `inflation`.
+- A ring keeps the area inside it as a whole, times its `inflation`. Of Cs and Cd above 0.99 that area takes 0.99: where
+  springs and area ask for what cannot both be, the area gives way.
+- While a triangle of a jelly is turned over, or its triangles wind round an inner particle more than once, the jelly is
+  tangled: it is also drawn to its form as a whole, with Cs and Cd of its material, and does not touch itself. That
+  adds no energy that it has not lost before, and keeps its momentum, but not its spin.
 - `bending` puts an angular spring on every particle where just two springs of the body meet, of a rope, a ring, or a
   mesh. At rest the angle is that of the body's form, also where `pose` places it otherwise. It pulls hardest at a fold
   of 180 degrees from there. Its Cs and Cd are its own.

@@ -51,7 +51,7 @@ def substep_coefficients(world: World, parts: int | None = None) -> tuple[Floats
 
 def element_coefficients(world: World, parts: int | None = None) -> tuple[Floats, Floats]:
     """Cs and Cd (t,) of elements, as `substep_coefficients` gives those of springs."""
-    stiffness, damping = world.element_stiffness.copy(), world.element_damping.copy()
+    stiffness, damping = (values.copy() for values in world.element_coefficients)
     halve(stiffness, damping, parts or world.settings.fewest_substeps)
     return stiffness, damping
 
@@ -66,7 +66,7 @@ def step(world: World) -> None:
     h = substep_time(settings, parts)
     # Solvers only read them, so a tick in one part needs no copies.
     springs = world.stiffness, world.damping
-    elements = world.element_stiffness, world.element_damping
+    elements = world.element_coefficients
     if parts > 1:
         springs, elements = substep_coefficients(world, parts), element_coefficients(world, parts)
     # What a solver keeps is an impulse of one step: exact, as parts are a power of two.

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.components import label_bodies
 from sandbox.physics.elements import AREA
 from sandbox.physics.jit import inlined_kernel, kernel
-from sandbox.physics.solvers.ordering import label_bodies
 from sandbox.physics.world import Slots, World
 
 

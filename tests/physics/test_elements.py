@@ -1,6 +1,7 @@
 """Areas and bends: their errors and gradients, what they keep, and what becomes of them when springs are cut."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -176,6 +177,17 @@ def test_what_a_cut_spring_was_a_side_of_is_gone(solver):
     world.position[3] = (5.0, 5.0)
     step(world)
     assert np.all(element_energies(world) == 0.0)
+
+
+@pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
+def test_a_rigid_skin_that_is_blown_up_comes_to_rest():
+    world = ring(20, coefficient=0.85, inflation=1.3)
+    world.settings = replace(world.settings, solver="direct")
+    world.set_coefficients(1.0, 1.0, None)
+    run(world, 300)
+    assert np.abs(world.velocity).max() < 0.1
+    length = np.sqrt(np.sum((world.position[world.particle_b] - world.position[world.particle_a]) ** 2, axis=1))
+    assert np.abs(length / world.rest_length - 1.0).max() < 0.01
 
 
 def test_elements_that_make_no_sense_are_refused():

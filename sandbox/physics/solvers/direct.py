@@ -258,7 +258,7 @@ def load_constants(pattern: Pattern, world: World, elements: Pair, parts: int) -
     shapes = pattern.shapes
     if parts:
         elements = cap(*elements, parts)
-        least, most = extremes(world.element_stiffness, world.element_damping)
+        least, most = extremes(*world.element_coefficients)
         shapes.least[:], shapes.most[:] = least[shapes.slot], most[shapes.slot]
     shapes.stiffness[:], shapes.damping[:] = elements[0][shapes.slot], elements[1][shapes.slot]
     shapes.rest[:] = world.element_rest[shapes.slot]
