@@ -132,6 +132,14 @@ def test_the_whole_piece_is_dragged_scaled_and_deleted(driver):
     assert terrain(driver) == ()
 
 
+def test_a_drag_that_begins_amid_ground_draws_a_box_and_on_its_edge_moves_it(driver):
+    driver.drag((-1, -1.5), (0, 0), (5, 3))
+    assert terrain(driver)[0].polygon[0] == (-2, -2)
+    assert driver.editor.document.selection == {Item("body", "pair"), Item("body", "rope")}
+    driver.drag((0, -1), (0, -1.2), (0, -1.5))
+    assert terrain(driver)[0].polygon[0] == (-2, -2.5) and labels(driver) == ["Move"]
+
+
 def test_a_box_selects_terrain_and_the_first_view_shows_all_of_it(edit):
     far = {"id": "far", "polyline": [[20, 10], [30, 12]]}
     driver = edit(small_level(terrain=[GROUND, far], walls={"box": [-40, -5, 40, 15]}, view=None))
