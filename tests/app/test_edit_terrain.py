@@ -149,6 +149,17 @@ def test_a_box_selects_terrain_and_the_first_view_shows_all_of_it(edit):
     assert driver.editor.document.selection == {PIECE}
 
 
+def test_of_a_level_with_a_view_that_is_shown_first_and_its_ground_after_another_fit(edit):
+    far = {"id": "far", "polygon": [[-90, -60], [90, -60], [90, -2]]}
+    driver = edit(small_level(terrain=[far]))
+    zoom = driver.editor.camera.zoom
+    assert not driver.editor.contains(driver.at(90, -60))
+    driver.key(pygame.K_f)
+    assert driver.editor.contains(driver.at(89, -59)) and driver.editor.camera.zoom < zoom
+    driver.key(pygame.K_f)
+    assert driver.editor.camera.zoom == zoom
+
+
 def test_contacts_and_walls_are_switched_on_the_page_of_the_level(edit):
     driver = edit()
     driver.editor.side.choose("level")

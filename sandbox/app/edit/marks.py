@@ -12,9 +12,10 @@ from sandbox.editor.driven import Driven, driven_parts
 from sandbox.editor.scene import Scene
 from sandbox.level.driving import HydraulicDef, MotorDef
 
-# Sizes in layout units: a badge, the shortest spring with a mark, the arrow of a motor.
+# Sizes in layout units: a badge, the shortest spring and the smallest wheel with a mark, the arrow of a motor.
 BADGE = 8.0
-SHORTEST = 10.0
+SHORTEST = 20.0
+SMALLEST = 12.0
 CYLINDER = 4.5
 ARROW = (11.0, 44.0)
 WIDTH = 2.6
@@ -86,6 +87,8 @@ class DriveMarks:
     def _draw_motor(self, surface: pygame.Surface, hub: Point, rim: float, motor: MotorDef) -> None:
         """An arrow about the hub, the way that the motor turns it; a bare ring where it holds it still."""
         scale = self._ui.scale
+        if rim < SMALLEST * scale:
+            return
         radius = min(max(0.5 * rim, ARROW[0] * scale), ARROW[1] * scale)
         width = max(1, round(WIDTH * scale))
         if motor.speed == 0.0:
