@@ -31,7 +31,11 @@ Kind = Literal[
 # What a description says of null.
 _EMPTY = re.compile(r"empty = ([^.;]+)")
 # Shorter words where the description's do not fit into a field.
-_SHORTER = {"that of the level's contacts": "the level's", "as placed, of a hydraulic its shortest": "as placed"}
+_SHORTER = {
+    "that of the level's contacts": "the level's",
+    "as placed, of a hydraulic its shortest": "as placed",
+    "the group default": "default",
+}
 _KEYS = ("key", "reverse_key")
 _TITLES = {
     "a": "End a",

@@ -62,7 +62,7 @@ class WallsDrawing(Drawing[SurfaceOptions]):
     """Four walls around a box, in place of those that the level has."""
 
     defaults = SurfaceOptions()
-    start_hint = "Drag from corner to corner of the room, or click both"
+    start_hint = "Drag from corner to corner of the room, or click both; the Level page takes walls away"
     end_hint = "Click or release at the opposite corner"
 
     def joins(self, index: int) -> bool:

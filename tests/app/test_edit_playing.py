@@ -1,9 +1,11 @@
 """Between editing and playing: one key there and back, and what is kept of a run."""
 
+import numpy as np
 import pygame
 import pytest
 from conftest import small_level
 
+from sandbox.editor.placing import set_pinned
 from sandbox.level.files import write_level
 from sandbox.session.commands import CutSprings, SetCoefficients
 from sandbox.session.reading import read_replay
@@ -112,3 +114,33 @@ def test_dropping_a_level_opens_it_for_editing_while_editing_and_plays_it_while_
     assert driver.app.mode == "play"
     driver.key(pygame.K_e)
     assert driver.app.mode == "edit" and driver.editor.level_file.path == path
+
+
+def test_a_wheel_that_is_drawn_on_ground_and_given_a_motor_is_driven_by_its_key(edit):
+    driver = edit()
+    driver.key(pygame.K_d)
+    for corner in ((-4, -2), (4, -2), (4, -1), (-4, -1)):
+        driver.click_at(*corner)
+    driver.key(pygame.K_RETURN)
+    driver.key(pygame.K_q)
+    driver.drag((0, 0), (0.5, 0), (0.9, 0))
+    driver.editor.edit("Pin", lambda document: set_pinned(document, ["wheel.hub"], True))
+    driver.frames(2)
+    form = driver.editor.side.page.form
+    form.area.scroll_to(form.area.offset + form.buttons["motor"].rect.centery - driver.editor.side.back.rect.centery)
+    driver.frames(2)
+    driver.click_widget(form.buttons["motor"])
+    driver.frames(2)
+    driver.app.ui.focus_on(form.keys["motor.key"])
+    driver.key(pygame.K_RETURN)
+    driver.key(pygame.K_u)
+    level = driver.editor.document.level
+    assert level.bodies[0].motor.key == "u" and level.terrain[0].polygon is not None
+    driver.app.act("play")
+    driver.frames(2)
+    driver.post(pygame.KEYDOWN, key=pygame.K_u, mod=0, unicode="u")
+    driver.frames(60)
+    hub = driver.world.particle_slot("wheel.hub")
+    arms = driver.world.position[hub : hub + 25] - driver.world.position[hub]
+    speeds = driver.world.velocity[hub : hub + 25]
+    assert np.sum(arms[:, 0] * speeds[:, 1] - arms[:, 1] * speeds[:, 0]) > 1.0

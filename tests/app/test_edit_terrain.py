@@ -132,6 +132,14 @@ def test_the_whole_piece_is_dragged_scaled_and_deleted(driver):
     assert terrain(driver) == ()
 
 
+def test_a_drag_that_begins_amid_ground_draws_a_box_and_on_its_edge_moves_it(driver):
+    driver.drag((-1, -1.5), (0, 0), (5, 3))
+    assert terrain(driver)[0].polygon[0] == (-2, -2)
+    assert driver.editor.document.selection == {Item("body", "pair"), Item("body", "rope")}
+    driver.drag((0, -1), (0, -1.2), (0, -1.5))
+    assert terrain(driver)[0].polygon[0] == (-2, -2.5) and labels(driver) == ["Move"]
+
+
 def test_a_box_selects_terrain_and_the_first_view_shows_all_of_it(edit):
     far = {"id": "far", "polyline": [[20, 10], [30, 12]]}
     driver = edit(small_level(terrain=[GROUND, far], walls={"box": [-40, -5, 40, 15]}, view=None))
@@ -139,6 +147,17 @@ def test_a_box_selects_terrain_and_the_first_view_shows_all_of_it(edit):
         assert driver.editor.contains(driver.at(*place))
     driver.drag((-3, -3), (4, 0), (5, -0.5))
     assert driver.editor.document.selection == {PIECE}
+
+
+def test_of_a_level_with_a_view_that_is_shown_first_and_its_ground_after_another_fit(edit):
+    far = {"id": "far", "polygon": [[-90, -60], [90, -60], [90, -2]]}
+    driver = edit(small_level(terrain=[far]))
+    zoom = driver.editor.camera.zoom
+    assert not driver.editor.contains(driver.at(90, -60))
+    driver.key(pygame.K_f)
+    assert driver.editor.contains(driver.at(89, -59)) and driver.editor.camera.zoom < zoom
+    driver.key(pygame.K_f)
+    assert driver.editor.camera.zoom == zoom
 
 
 def test_contacts_and_walls_are_switched_on_the_page_of_the_level(edit):

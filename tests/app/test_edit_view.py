@@ -1,5 +1,7 @@
 """What the editor shows: pictures, ghosts, rulers, findings, forecasts, and large levels."""
 
+import itertools
+
 import numpy as np
 import pygame
 import pytest
@@ -159,3 +161,33 @@ def test_the_menu_offers_what_has_no_button(driver):
     driver.click_widget(driver.editor.bar.buttons.by_action["menu"])
     driver.choose("Select everything  [Ctrl+A]")
     assert len(driver.editor.document.selection) == 2
+
+
+WHEEL = {"type": "wheel", "id": "w", "position": [1, 2], "radius": 1, "thickness": 0.3, "segments": 6}
+ENDS = [{"id": "p", "position": [3, 0]}, {"id": "q", "position": [5, 0]}]
+
+
+def seen(driver, x, y):
+    """What the canvas shows around a point [m]."""
+    driver.move((5, 5))
+    left, top = (round(value) - 30 for value in driver.at(x, y))
+    return pygame.surfarray.array3d(driver.app.display.surface.subsurface((left, top, 60, 60)))
+
+
+def test_what_is_driven_is_marked_and_a_motor_by_the_way_it_turns(edit):
+    def wheel(**more):
+        return seen(edit(small_level(bodies=[{**WHEEL, **more}])), 1, 2)
+
+    def spring(**more):
+        return seen(edit(small_level(particles=ENDS, springs=[{"a": "p", "b": "q", **more}])), 4, 0)
+
+    motor = {"torque": 5}
+    wheels = [wheel(), *(wheel(motor={"speed": speed, **motor}) for speed in (3, -3, 0))]
+    wheels.append(wheel(motor={"speed": 3, "key": "d", **motor}))
+    springs = [
+        spring(),
+        spring(drive={"amplitude": 0.1, "period": 9}),
+        spring(hydraulic={"shortest": 1, "longest": 2, "rate": 1}),
+    ]
+    for pictures in (wheels, springs):
+        assert not any(np.array_equal(a, b) for a, b in itertools.combinations(pictures, 2))

@@ -204,6 +204,24 @@ def test_a_motor_is_added_gets_its_keys_and_goes_again_with_undo(rolling):
     assert body(rolling, "w").motor is None and "motor.key" not in form(rolling).keys
 
 
+def test_what_something_touches_is_picked_group_by_group(edit):
+    ball = {"id": "ball", "position": [5, 1], "collision_group": "balls"}
+    driver = edit(small_level(contacts={}, particles=[ball]))
+    choose(driver, ROPE)
+    reveal(driver, form(driver).pickers["collides"])
+
+    def pick(index):
+        press(driver, form(driver).pickers["collides"])
+        click_row(driver, driver.app.ui.focus, index)
+        return body(driver).collides
+
+    press(driver, form(driver).pickers["collides"])
+    assert [row.text for row in driver.app.ui.focus.rows] == ["everything", "nothing", "terrain", "default", "balls"]
+    driver.key(pygame.K_ESCAPE)
+    assert [pick(index) for index in (4, 3, 4, 1, 0)] == [("balls",), ("balls", "default"), ("default",), False, True]
+    assert form(driver).pickers["collides"].shown.text == "everything"
+
+
 def test_a_key_that_is_not_pressed_after_all_leaves_the_drive_as_it_is(rolling):
     rolling.editor.edit("Motor", lambda document: add_object(document, [Item("body", "w")], "motor"))
     rolling.frames(2)

@@ -16,7 +16,9 @@ from sandbox.app.fields import Field
 from sandbox.app.painted import TextBlock, wrapped
 from sandbox.app.shortcuts import action_of, tip_of
 from sandbox.editor.document import EditError
+from sandbox.editor.groups import collision_groups
 from sandbox.editor.property import MIXED, Property, Section
+from sandbox.editor.typed import EVERYTHING, NOTHING
 
 if TYPE_CHECKING:
     from sandbox.app.edit.screen import EditScreen
@@ -42,6 +44,11 @@ OBJECT_TEXTS = {True: "Remove", False: "Add", MIXED: "Add to the others"}
 def sentence(text: str) -> str:
     """A fault as a sentence."""
     return f"{text[:1].upper()}{text[1:]}" + ("" if text.endswith((".", "?")) else ".")
+
+
+def _listed(collides: Any) -> Sequence[str]:
+    """The groups that are listed in a value of `collides`."""
+    return collides if isinstance(collides, tuple) else ()
 
 
 class Form:
@@ -169,7 +176,7 @@ class Form:
             )  # fmt: skip
         elif about.kind in ("flags", "yes_no"):
             self._add_boxes(each, width)
-        elif about.kind in ("choice", "material"):
+        elif about.kind in ("choice", "material", "touches"):
             self._add_choice(each, width)
         elif about.kind == "part":
             press = partial(self._press_object, each.field)
@@ -262,14 +269,28 @@ class Form:
         if name in self.pickers:
             rows = self._rows(each)
             mixed_row = Row(MIXED.value, colour=MUTED)
-            shown = mixed_row if is_mixed else next((r for r in rows if r.text == each.value), Row(str(each.value)))
+            text = each.texts[0] if each.about.kind == "touches" else str(each.value)
+            shown = mixed_row if is_mixed else next((row for row in rows if row.text == text), Row(text))
             self.pickers[name].show_value(rows, shown)
 
     def _rows(self, each: Property) -> list[Row]:
+        if each.about.kind == "touches":
+            return [Row(EVERYTHING), Row(NOTHING), *(Row(name, self._toggle_of(each, name)) for name in self._groups)]
         if each.about.kind != "material":
             return [Row(value) for value in each.about.choices]
         colours = material_colours(self._screen.document.level.materials)
         return [Row(name, swatch=colour) for name, colour in colours.items()]
+
+    @property
+    def _groups(self) -> tuple[str, ...]:
+        return collision_groups(self._screen.document.level)
+
+    def _toggle_of(self, each: Property, group: str) -> str:
+        """What a row of a collision group does."""
+        listed = _listed(each.value)
+        if not listed:
+            return "this group alone"
+        return "touched: take it out" if group in listed else "touch this group too"
 
     # Changing values.
 
@@ -321,7 +342,14 @@ class Form:
         self._set(name, {label: state} if self.properties[name].about.kind == "flags" else state)
 
     def _pick(self, name: str, index: int) -> None:
-        self._set(name, self.pickers[name].rows[index].text)
+        text, each = self.pickers[name].rows[index].text, self.properties[name]
+        if each.about.kind != "touches":
+            self._set(name, text)
+        elif index < 2:
+            self._set(name, text == EVERYTHING)
+        else:
+            kept = [group for group in _listed(each.value) if group != text]
+            self._set(name, kept if len(kept) < len(_listed(each.value)) else [*kept, text])
 
     def _offer_text(self, name: str) -> None:
         """A list too long to type: it can be taken out and put in as text."""

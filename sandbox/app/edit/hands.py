@@ -15,7 +15,7 @@ from sandbox.editor.document import Document, EditError
 from sandbox.editor.gesture import Drawing
 from sandbox.editor.grouping import with_groups
 from sandbox.editor.items import Item, keys
-from sandbox.editor.pick import combined, item_at
+from sandbox.editor.pick import combined, edge_at, item_at
 from sandbox.editor.snap import PLACE_DECIMALS, Snap
 from sandbox.editor.terrain import corners_of, delete_corner, move_corner, piece_of
 
@@ -175,8 +175,14 @@ class SelectHand:
         if clicks == 2:
             found = with_groups(screen.document.level, frozenset({item}))
             screen.select(combined(selection, found, "add" if modifiers & pygame.KMOD_SHIFT else "replace"))
-        elif item not in selection or modifiers & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL | pygame.KMOD_META):
+            return
+        joins = modifiers & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL | pygame.KMOD_META)
+        if joins or (item not in selection and not self._inside_ground(item, point)):
             screen.select(combined(selection, frozenset({item}), pick_mode(modifiers, True)))
+
+    def _inside_ground(self, item: Item, point: Point) -> bool:
+        """Whether a point is amid ground, where a click selects it, but a drag begins a box: ground is large."""
+        return item.kind == "terrain" and edge_at(self._screen.scene, point, self._screen.reach) is None
 
     def _take_corner(self, pixel: Point) -> bool:
         """Begin to drag a corner of the piece that is selected, or a new one, where a press is on one."""

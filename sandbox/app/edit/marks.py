@@ -12,11 +12,14 @@ from sandbox.editor.driven import Driven, driven_parts
 from sandbox.editor.scene import Scene
 from sandbox.level.driving import HydraulicDef, MotorDef
 
-# Sizes in layout units: a badge, the shortest spring with a mark, the arrow of a motor.
+# Sizes in layout units: a badge, the shortest spring and the smallest wheel with a mark, the arrow of a motor.
 BADGE = 8.0
-SHORTEST = 10.0
+SHORTEST = 20.0
+SMALLEST = 6.0
 CYLINDER = 4.5
-ARROW = (11.0, 44.0)
+# Keys of smaller wheels are left out.
+ROOM_FOR_KEYS = 14.0
+ARROW = (8.0, 44.0)
 WIDTH = 2.6
 # The arrow goes round by this angle [degrees], its head is that long.
 SWEEP = 250
@@ -86,6 +89,8 @@ class DriveMarks:
     def _draw_motor(self, surface: pygame.Surface, hub: Point, rim: float, motor: MotorDef) -> None:
         """An arrow about the hub, the way that the motor turns it; a bare ring where it holds it still."""
         scale = self._ui.scale
+        if rim < SMALLEST * scale:
+            return
         radius = min(max(0.5 * rim, ARROW[0] * scale), ARROW[1] * scale)
         width = max(1, round(WIDTH * scale))
         if motor.speed == 0.0:
@@ -102,7 +107,8 @@ class DriveMarks:
         tip = (x + ahead[0] * head, y + ahead[1] * head)
         sides = [(x - side * ahead[1] * 0.75 * head, y + side * ahead[0] * 0.75 * head) for side in (-1, 1)]
         pygame.draw.polygon(surface, DRIVE, [tip, *sides])
-        self._draw_keys(surface, (hub[0], hub[1] + radius + 12 * scale), motor)
+        if rim >= ROOM_FOR_KEYS * scale:
+            self._draw_keys(surface, (hub[0], hub[1] + radius + 12 * scale), motor)
 
     def _draw_keys(self, surface: pygame.Surface, at: Point, drive: HydraulicDef | MotorDef) -> None:
         """Caps of the keys that drive it."""

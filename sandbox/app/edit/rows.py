@@ -290,8 +290,7 @@ def open_menu(
         take(index)
 
     sheet = ui.open_sheet(close, "@clear")
-    row_height = ui.px(LINE_HEIGHT) + 2 * ui.px(PADDING)
-    height = min(len(rows), MENU_ROWS) * row_height
+    height = sum((2 if row.detail else 1) * ui.px(LINE_HEIGHT) + 2 * ui.px(PADDING) for row in rows[:MENU_ROWS])
     down, up = ui.size[1] - below.bottom, below.top
     if height > down and up > down:
         height = min(height, up)

@@ -204,11 +204,18 @@ class EditScreen:
         self.app.rebuild()
 
     def fit(self) -> None:
-        """Show the level's view and everything in it, or a first view where there is nothing."""
-        level = self.document.level
+        """Show the level's view and all particles; again, or without a view: terrain and walls too."""
+        level, scene, before = self.document.level, self.scene, (self.camera.centre, self.camera.zoom)
         walls = None if level.walls is None else level.walls.box
-        boxes = [box for box in (level.view, walls, self.scene.bounds()) if box is not None]
-        left, bottom, right, top = zip(*(boxes or [FIRST_VIEW]), strict=True)
+        if level.view is not None:
+            self._fit_to(level.view, scene.bounds(frozenset(item for item in scene.items if item.kind != "terrain")))
+        if level.view is None or before == (self.camera.centre, self.camera.zoom):
+            self._fit_to(level.view, walls, scene.bounds())
+
+    def _fit_to(self, *boxes: Box | None) -> None:
+        """Show boxes [m], or a first view where there are none."""
+        given = [box for box in boxes if box is not None] or [FIRST_VIEW]
+        left, bottom, right, top = zip(*given, strict=True)
         self.camera.fit((min(left), min(bottom), max(right), max(top)))
 
     @property
