@@ -16,11 +16,13 @@ from sandbox.session.session import Session
 FLOOR = {"id": "floor", "polyline": [[-9, 0], [9, 0]]}
 MATERIALS = {"soft": {"stiffness": 0.4, "damping": 0.8, "tension_limit": 0.2, "compression_limit": 0.4}}
 JELLY = {"type": "jelly", "id": "jelly", "shape": {"box": [1, 1]}, "spacing": 0.25, "position": [0, 2], "angle": 0.5}
+RING = {"type": "ring", "id": "ring", "position": [-2, 2], "radius": 0.5, "segments": 10, "inflation": 1.2}
+RING |= {"bending": {"stiffness": 0.2, "damping": 0.5}, "velocity": [4, 0]}
 PISTON = {"a": "p", "b": "q", "hydraulic": {"shortest": 1, "longest": 2, "rate": 1, "key": "d"}}
 
 
 def touching_level(**changes):
-    """A jelly that falls on the floor and breaks, a ball that falls on it, and a hydraulic in wind."""
+    """A jelly that falls on the floor and breaks, a ball and a balloon that meet it, and a hydraulic in wind."""
     data = {
         "format": "spring-sandbox/level",
         "version": 1,
@@ -29,7 +31,7 @@ def touching_level(**changes):
         "contacts": {"friction": 0.3, "restitution": 0.2},
         "terrain": [FLOOR],
         "materials": MATERIALS,
-        "bodies": [{**JELLY, "material": "soft", "velocity": [0, -12], "gravity_scale": 1.5}],
+        "bodies": [{**JELLY, "material": "soft", "velocity": [0, -12], "gravity_scale": 1.5}, RING],
         "particles": [
             {"id": "ball", "position": [0.1, 3.5], "radius": 0.2, "mass": 30},
             {"id": "p", "position": [4, 1], "pinned": True},
@@ -68,6 +70,7 @@ def recorded(tmp_path_factory):
     assert session.messages == [] or all("broke" in message for message in session.messages)
     assert len(session.world.contact_particle) > 5
     assert not session.world.spring_active[:40].all()
+    assert 0 < np.count_nonzero(session.world.element_active) < session.world.element_count
     return path
 
 
