@@ -4,6 +4,8 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
+
 from sandbox.level.files import load_level, parse_level
 from sandbox.session.checking import run_checks
 from sandbox.session.reading import read_script
@@ -30,8 +32,9 @@ def test_the_program_in_the_readme_prints_that_every_tick_is_equal(tmp_path, mon
 
 
 def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_carried_out(tmp_path):
-    lines, driving = re.findall(r"```jsonl\n(.*?)```", COMMANDS, re.DOTALL)
-    assert {json.loads(line)["command"]["type"] for line in (lines + driving).splitlines()} == set(COMMAND_TYPES)
+    lines, driving, pumping = re.findall(r"```jsonl\n(.*?)```", COMMANDS, re.DOTALL)
+    shown = (lines + driving + pumping).splitlines()
+    assert {json.loads(line)["command"]["type"] for line in shown} == set(COMMAND_TYPES)
     table = COMMANDS.split("|---|---|---|")[1]
     named = {
         name
@@ -52,3 +55,10 @@ def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_ca
     for _ in range(180):
         session.advance()
     assert len(session.messages) == 1 and session.messages[0].endswith(" broke")
+    (tmp_path / "pump.jsonl").write_text(pumping)
+    session = Session(load_level("balloons"), read_script(tmp_path / "pump.jsonl"))
+    wanted = session.world.element_rest.copy()
+    for _ in range(70):
+        session.advance()
+    assert not session.messages
+    assert np.count_nonzero(session.world.element_rest > wanted) == 1

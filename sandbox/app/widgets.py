@@ -24,6 +24,11 @@ SHEET_HEIGHT = 40
 # Delay and interval of a key that is held down [ms].
 KEY_REPEAT = (400, 40)
 ENTER_KEYS = (pygame.K_RETURN, pygame.K_KP_ENTER)
+ANSWERS = (
+    pygame_gui.UI_BUTTON_PRESSED,
+    pygame_gui.UI_DROP_DOWN_MENU_CHANGED,
+    pygame_gui.UI_TEXT_ENTRY_FINISHED,
+)
 
 
 class Ui:
@@ -264,6 +269,9 @@ class Ui:
             self._focus = self._left = None
         used = bool(self.manager.process_events(event))
         self._finish_left_fields()
+        # What a widget answers comes before what the person did next, which may be in the queue already.
+        for answer in pygame.event.get(ANSWERS, pump=False):
+            self.process(answer)
         return used
 
     def _turn_field(self, notches: float) -> bool:

@@ -89,6 +89,23 @@ def test_opening_by_name_takes_a_shipped_level_and_says_what_is_wrong_with_other
     assert driver.playback.level.name == "Spider web"
 
 
+def test_clicks_that_come_between_two_frames_are_carried_out_in_their_order(driver, tmp_path):
+    path = tmp_path / "mine.json"
+    path.write_text(level_text(small_level(name="Mine")))
+    remember(path)
+    driver.app.open_gallery("mine")
+    card = driver.app.gallery.cards[0].rect.center
+    driver.app.open_gallery("levels")
+    driver.frames()
+    (mine,) = [button.rect.center for button in driver.app.ui.buttons() if button.text == "My levels"]
+    for pixel in (mine, card):
+        driver.post(pygame.MOUSEMOTION, pos=pixel, rel=(0, 0), buttons=(0, 0, 0))
+        driver.post(pygame.MOUSEBUTTONDOWN, pos=pixel, button=1)
+        driver.post(pygame.MOUSEBUTTONUP, pos=pixel, button=1)
+    driver.frames(2)
+    assert driver.playback.level.name == "Mine"
+
+
 def test_names_of_recordings_are_safe_and_never_taken(tmp_path):
     assert plain_name("Rope, bridge & jelly!") == "rope-bridge-jelly"
     assert plain_name("../..") == "run"
