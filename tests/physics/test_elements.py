@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from physics_scenes import STILL, network, run, scaled
 
+from sandbox.level.build import build_world
+from sandbox.level.model import ContactsDef
 from sandbox.physics.elements import AREA, BEND
 from sandbox.physics.energy import element_energies, measure_elements, total_energy
 from sandbox.physics.jit import COMPILED
@@ -321,6 +323,16 @@ def test_a_jelly_comes_back_from_a_hand_that_drags_it_round():
     world = jelly_abuse.drag_by_hand(jelly_abuse.jelly_level())
     energy, errors = jelly_abuse.recover(world)
     assert energy <= 1.0 + 1e-9
+    assert errors[-1] < 0.01
+
+
+@pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
+@pytest.mark.parametrize("abuse", ["randomised", "scaled x1000", "dragged round"])
+def test_a_jelly_that_touches_itself_comes_back_too(abuse):
+    level = jelly_abuse.jelly_level(stiffness=0.5, damping=0.9).model_copy(update={"contacts": ContactsDef()})
+    world = build_world(level)
+    jelly_abuse.ABUSES[abuse](world)
+    _, errors = jelly_abuse.recover(world)
     assert errors[-1] < 0.01
 
 
