@@ -145,7 +145,7 @@ def stands(table: Table) -> None:
 
 
 def boxes(table: Table) -> None:
-    """Discs of masses 1e-2..1e2 at 20 m/s in closed boxes: the largest rise of energy in a tick over that of the start."""
+    """Discs of masses 1e-2..1e2 at 20 m/s in closed boxes: the largest rise of energy in a tick over the start's."""
     for restitution in (0.0, 0.5, 1.0):
         rise = 0.0
         for seed in range(3):
