@@ -110,7 +110,9 @@ def energy(of: World) -> float:
         error, (value, mass, _) = spring_lengths(of) - of.rest_length, measure_elements(of)
         constant, _ = extremes(of.stiffness, of.damping)
         constants, _ = extremes(of.element_stiffness, of.element_damping)
-        springs = float(np.sum(constant * reduced_masses(of) * error**2) + np.sum(constants * mass * value**2)) / (h * h)
+        springs = float(np.sum(constant * reduced_masses(of) * error**2) + np.sum(constants * mass * value**2)) / (
+            h * h
+        )
         springs *= 0.5
     return kinetic_energy(of) + gravity_energy(of) + springs
 
