@@ -207,7 +207,7 @@ class App:
             self.status.update(frame_time)
             self.documents.update()
             if self.gallery is not None:
-                self.gallery.update(self.ready)
+                self.gallery.update(self.preparation.is_ready)
             self.guide.update(frame_time)
             self.ui.update(frame_time)
         self._draw()

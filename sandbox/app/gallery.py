@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import pygame
 
-from sandbox.app.camera import bounds
 from sandbox.app.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT
 from sandbox.app.painted import Painted, wrapped
-from sandbox.app.picture import draw_picture, run_ahead
+from sandbox.app.picture import crop_of, draw_picture, run_ahead
 from sandbox.app.recordings import saved_recordings
 from sandbox.app.widgets import ENTER_KEYS, Ui
 from sandbox.editor.recent import recent_levels
@@ -19,7 +18,6 @@ from sandbox.level.faults import LevelError, one_line
 from sandbox.level.files import read_level, shipped_levels
 from sandbox.level.model import Level
 from sandbox.physics.jit import COMPILED
-from sandbox.physics.query import shown_particles
 
 if TYPE_CHECKING:
     from sandbox.app.files import FileActions
@@ -193,10 +191,12 @@ class Gallery:
         self.cards.append(card)
         return card
 
-    def update(self, ready: bool) -> None:
-        """Draw one more picture, once the kernels are ready, and keep the focused card in sight."""
-        if ready and self._unpainted:
-            self._paint_picture(*self._unpainted.pop(0))
+    def update(self, is_ready: Callable[[bool], bool]) -> None:
+        """Draw one more picture of those that are ready to be run (see Preparation); keep the focused card in sight."""
+        next_one = next((each for each in self._unpainted if is_ready(each[1].has_contacts)), None)
+        if next_one is not None:
+            self._unpainted.remove(next_one)
+            self._paint_picture(*next_one)
         focus = self._ui.focus
         if isinstance(focus, Card) and focus in self.cards:
             self._show(focus)
@@ -207,7 +207,7 @@ class Gallery:
         snapshot = run_ahead(level, 0.0)
         if COMPILED and len(snapshot.mass) <= PICTURE_PARTICLES:
             snapshot = run_ahead(level, PICTURE_SECONDS)
-        box = bounds(snapshot.position[shown_particles(snapshot)])
+        box = crop_of(level, snapshot)
         twice = draw_picture(level, snapshot, (size[0] * 2, size[1] * 2), box, PICTURE_SCALE * ui.scale)
         card.picture = pygame.transform.smoothscale(twice, size)
         card.repaint()

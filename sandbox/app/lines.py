@@ -1,4 +1,4 @@
-"""Anti-aliased lines and discs drawn into a surface's pixels by kernels; by pygame where numba is missing."""
+"""Anti-aliased lines and discs, and triangles, drawn into a surface's pixels by kernels, or by pygame without numba."""
 
 import math
 
@@ -109,12 +109,34 @@ def _draw_discs(pixels, centres, radii, colours, left, top, right, bottom):  # t
                 pixels[x, y] = _blended(int(pixels[x, y]), red, green, blue, share)
 
 
+@kernel
+def _draw_triangles(pixels, corners, colours, left, top, right, bottom):  # type: ignore[no-untyped-def]
+    # Pixels whose centre lies inside; one on a side belongs to one of two triangles that share it.
+    for t in range(corners.shape[0]):
+        colour = 0xFF000000 | colours[t]
+        low = min(corners[t, 0, 1], corners[t, 1, 1], corners[t, 2, 1])
+        high = max(corners[t, 0, 1], corners[t, 1, 1], corners[t, 2, 1])
+        for y in range(max(top, math.ceil(low - 0.5)), min(bottom, math.ceil(high - 0.5))):
+            middle = y + 0.5
+            first = FARTHEST
+            last = -FARTHEST
+            for k in range(3):
+                ax, ay = corners[t, k, 0], corners[t, k, 1]
+                bx, by = corners[t, (k + 1) % 3, 0], corners[t, (k + 1) % 3, 1]
+                if (ay <= middle) != (by <= middle):
+                    x = ax + (middle - ay) * (bx - ax) / (by - ay)
+                    first = min(first, x)
+                    last = max(last, x)
+            for column in range(max(left, math.ceil(first - 0.5)), min(right, math.ceil(last - 0.5))):
+                pixels[column, y] = colour
+
+
 def _has_plain_pixels(surface: pygame.Surface) -> bool:
     return surface.get_bitsize() == 32 and surface.get_shifts()[:3] == (16, 8, 0)
 
 
 class Canvas:
-    """Draws many lines and discs on a surface; compiled: whether kernels do it, once they are ready."""
+    """Draws many lines, discs and triangles on a surface; compiled: whether kernels do it, once they are ready."""
 
     def __init__(self, surface: pygame.Surface, compiled: bool = COMPILED) -> None:
         self.surface = surface
@@ -165,6 +187,18 @@ class Canvas:
             blits.append((sprite, (round(x) - key[0] - 1, round(y) - key[0] - 1)))
         self.surface.fblits(blits, pygame.BLEND_PREMULTIPLIED)
 
+    def triangles(self, corners: NDArray[np.float64], colours: NDArray[np.int64]) -> None:
+        """Fill triangles (t, 3, 2) [pixels, within FARTHEST] in colours (t,) 0xRRGGBB."""
+        if not len(corners):
+            return
+        if self.compiled:
+            clip = self.surface.get_clip()
+            pixels = pygame.surfarray.pixels2d(self.surface)
+            _draw_triangles(pixels, corners, colours, clip.left, clip.top, clip.right, clip.bottom)
+            return
+        for outline, colour in zip(corners.tolist(), colours.tolist(), strict=True):
+            pygame.draw.polygon(self.surface, _rgb(colour), outline)
+
 
 def _disc_sprite(radius: int, colour: int) -> pygame.Surface:
     size = 2 * radius + 3
@@ -185,3 +219,4 @@ def warm_up_lines() -> None:
     canvas.lines(np.array([[1.0, 1.0, 6.0, 5.0]]), np.array([0xFFFFFF]), 2.0)
     canvas.plain_lines(np.array([[1.0, 1.0, 6.0, 5.0]]), np.array([0xFFFFFF]))
     canvas.discs(np.array([[3.0, 3.0]]), np.array([2.0]), np.array([0xFFFFFF]))
+    canvas.triangles(np.array([[[1.0, 1.0], [6.0, 5.0], [2.0, 6.0]]]), np.array([0xFFFFFF]))

@@ -7,6 +7,7 @@ os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 
 import numpy as np
 import pygame
+from numpy.typing import NDArray
 
 from sandbox.app.camera import Box, Camera, bounds
 from sandbox.app.renderer import Renderer
@@ -17,8 +18,21 @@ from sandbox.session.session import Session
 
 
 def view_of(level: Level, snapshot: Snapshot) -> Box:
-    """What the camera shows at first: the level's view, or else all of its particles."""
-    return level.view or bounds(snapshot.position[shown_particles(snapshot)])
+    """What the camera shows at first: the level's view, or else all of its particles and terrain."""
+    return level.view or bounds(_points(snapshot))
+
+
+def crop_of(level: Level, snapshot: Snapshot) -> Box:
+    """The part of the level's view with anything in it, which a small picture shows."""
+    left, bottom, right, top = view_of(level, snapshot)
+    return bounds(np.clip(_points(snapshot), (left, bottom), (right, top)))
+
+
+def _points(snapshot: Snapshot) -> NDArray[np.float64]:
+    # Corners of all that is drawn.
+    shown = shown_particles(snapshot)
+    position, radius = snapshot.position[shown], snapshot.radius[shown, None]
+    return np.concatenate([position - radius, position + radius, snapshot.terrain.vertex])
 
 
 def draw_picture(

@@ -7,29 +7,24 @@ from sandbox.physics.step import warm_up
 
 
 class Preparation:
-    """Prepares what every level needs, and what things that touch need as soon as a level has them: far more."""
+    """Prepares what every level needs, and then what things that touch need, which is as much again."""
 
     def __init__(self) -> None:
-        self._for_contacts = False
-        self._thread = threading.Thread(target=_prepare_all, daemon=True)
-        self._thread.start()
+        self._basics = threading.Event()
+        self._all = threading.Event()
+        threading.Thread(target=self._prepare, daemon=True).start()
+
+    def _prepare(self) -> None:
+        warm_up(contacts=False)
+        warm_up_lines()
+        self._basics.set()
+        warm_up()
+        self._all.set()
 
     def is_ready(self, contacts: bool) -> bool:
         """Whether a run can begin; contacts: one in which things touch."""
-        if self._thread.is_alive():
-            return False
-        if contacts and not self._for_contacts:
-            self._for_contacts = True
-            self._thread = threading.Thread(target=warm_up, daemon=True)
-            self._thread.start()
-            return False
-        return True
+        return (self._all if contacts else self._basics).is_set()
 
-    def finish(self) -> None:
-        """Wait for what is being prepared."""
-        self._thread.join()
-
-
-def _prepare_all() -> None:
-    warm_up(contacts=False)
-    warm_up_lines()
+    def finish(self, contacts: bool = False) -> None:
+        """Wait until a run can begin."""
+        (self._all if contacts else self._basics).wait()

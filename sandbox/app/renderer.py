@@ -6,6 +6,7 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
+from sandbox.app.areas import draw_areas
 from sandbox.app.camera import Camera, grid_spacing
 from sandbox.app.colours import (
     ACCENT,
@@ -78,6 +79,7 @@ class Renderer:
             self._draw_grid(canvas, camera)
             draw_terrain(canvas, camera, current.terrain, self.scale)
             with profile.part("springs"):
+                draw_areas(canvas, camera, current, pixels)
                 self._draw_springs(canvas, camera, current, position, pixels)
             with profile.part("particles"):
                 self._draw_particles(canvas, camera, current, pixels)

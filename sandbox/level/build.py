@@ -205,10 +205,12 @@ def add_elements(
         polygons, triples = (rows[_distinct(particles[rows])] for rows in (polygons, triples))
         if isinstance(material, NissenMaterial):
             inflation = body.inflation if isinstance(body, RingDef) and body.inflation is not None else 1.0
-            world.add_elements(
+            first = world.add_elements(
                 AREA, particles[polygons], form=form[polygons], inflation=inflation,
                 stiffness=material.stiffness + 0.0, damping=material.damping + 0.0, material=index[body.material],
             )  # fmt: skip
+            if len(polygons):
+                world.name_areas(body.id, range(first, first + len(polygons)))
         if bend is not None:
             triples = triples[_has_links(form[triples])]
             world.add_elements(

@@ -32,6 +32,9 @@ def worded(errors: list[dict[str, Any]]) -> Iterator[Fault]:
     """Faults of the errors that the library lists, in its order, each place and text once."""
     seen = set()
     for error in errors:
+        if error["type"] == "too_short" and len(error["input"]) >= error["ctx"]["min_length"]:
+            # The library counts the sound items alone, and has named the others already.
+            continue
         fault = _fault(error)
         if fault not in seen:
             seen.add(fault)

@@ -18,6 +18,7 @@ from sandbox.physics.narrow_phase import (
     MARGIN,
     TERRAIN,
     closest,
+    is_enclosed,
     look_at,
     may_touch,
     push_out,
@@ -129,27 +130,6 @@ def _pair_terrain(box, meets, terrain, start, other):  # type: ignore[no-untyped
 
 
 @inner_kernel
-def _winds(x, y, first, last, shapes):  # type: ignore[no-untyped-def]
-    # How often solid edges run round a place: a ray to the right crosses one that has it on its left going up, or on
-    # its right going down.
-    winding = 0
-    for e in range(first, last):
-        a = shapes.edge_a[e]
-        b = shapes.edge_b[e]
-        below = shapes.place[a, 1] <= y
-        if below == (shapes.place[b, 1] <= y) or shapes.side[e] == 0:
-            continue
-        dx = shapes.place[b, 0] - shapes.place[a, 0]
-        dy = shapes.place[b, 1] - shapes.place[a, 1]
-        right = (x - shapes.place[a, 0]) * dy - (y - shapes.place[a, 1]) * dx
-        if below and right < 0.0:
-            winding += 1
-        elif not below and right > 0.0:
-            winding -= 1
-    return winding
-
-
-@inner_kernel
 def _look_deep(p, shapes, solid, bounds, near, edges, dynamic, contacts, count):  # type: ignore[no-untyped-def]
     # A particle that is near no edge of a solid body, yet inside it, is pushed out at the nearest edge.
     x = shapes.place[p, 0]
@@ -164,9 +144,7 @@ def _look_deep(p, shapes, solid, bounds, near, edges, dynamic, contacts, count):
                 skipped = True
         if skipped or shapes.inverse[p] + shapes.inverse[body] == 0.0:
             continue
-        winding = _winds(x, y, solid[k, 0], solid[k, 1], shapes)
-        # A hollow chain runs the other way round: nothing is counted outside it, -1 inside.
-        if winding != 0 if bounds[k, 4] > 0.0 else winding <= 0:
+        if not is_enclosed(p, k, solid, bounds, shapes):
             continue
         nearest = solid[k, 0]
         lowest = math.inf
@@ -256,7 +234,7 @@ def _find(shapes, pairs, edges_of_terrain, solid, bounds, particles, dynamic, ti
         for at in range(edges_of_terrain.start[p], edges_of_terrain.start[p + 1]):
             edges = look_at(p, dynamic + edges_of_terrain.other[at], shapes, near, edges)
         if edges > 0:
-            count = touch_edges(p, h, shapes, near, edges, dynamic, contacts, count)
+            count = touch_edges(p, h, shapes, near, edges, solid, bounds, dynamic, contacts, count)
         if solid.shape[0] > 0 and (
             (tick + p) % DEEP_TICKS == 0 or _was_deep(shapes, near, edges, dynamic, kept, first, last)
         ):

@@ -7,43 +7,53 @@ from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.outline import TERRAIN_GROUP
 from sandbox.physics.world import Floats, World
 
-# A particle that would cross a line of terrain is stopped this far in front of it, in units of its distance.
+# A particle that would cross a line of terrain is stopped this far in front of it, in units of its distance, and at
+# least SKIN [m], so that rounding never carries it across. More would be seen, less could not be told from rounding.
 STOP_SHARE = 0.01
+SKIN = 1e-6
 STOPS = 3
 
 
 @kernel
 def _stop(position, velocity, ahead, collides, active, inverse_mass, terrain, h):  # type: ignore[no-untyped-def]
-    # No particle crosses an edge of terrain: its velocity towards the first in its way is cut.
     for p in range(position.shape[0]):
         if not active[p] or inverse_mass[p] == 0.0 or not collides[p] & TERRAIN_GROUP:
             continue
-        for stop in range(STOPS + 1):
-            wx = h * velocity[p, 0] + ahead[p, 0]
-            wy = h * velocity[p, 1] + ahead[p, 1]
-            e, signed, nx, ny = _crossing(p, position, wx, wy, terrain)
-            if e < 0:
-                break
-            if stop == STOPS:
-                velocity[p, 0] = 0.0
-                velocity[p, 1] = 0.0
-                ahead[p, 0] = 0.0
-                ahead[p, 1] = 0.0
-                break
-            after = signed + wx * nx + wy * ny
-            missing = (STOP_SHARE * signed - after) / h
-            velocity[p, 0] += missing * nx
-            velocity[p, 1] += missing * ny
+        wx = h * velocity[p, 0] + ahead[p, 0]
+        wy = h * velocity[p, 1] + ahead[p, 1]
+        stops, x, y = stopped(position[p, 0], position[p, 1], wx, wy, terrain)
+        if stops > STOPS:
+            velocity[p, 0] = 0.0
+            velocity[p, 1] = 0.0
+            ahead[p, 0] = 0.0
+            ahead[p, 1] = 0.0
+        elif stops > 0:
+            velocity[p, 0] += (x - wx) / h
+            velocity[p, 1] += (y - wy) / h
 
 
 @inner_kernel
-def _crossing(p, position, wx, wy, terrain):  # type: ignore[no-untyped-def]
+def stopped(x, y, wx, wy, terrain):  # type: ignore[no-untyped-def]
+    """The way w [m] of a particle's centre, cut towards each edge of terrain that it would cross, and how often it was.
+
+    More often than STOPS: it stays where it is.
+    """
+    for stop in range(STOPS + 1):
+        e, signed, nx, ny = _crossing(x, y, wx, wy, terrain)
+        if e < 0:
+            return stop, wx, wy
+        missing = max(STOP_SHARE * signed, SKIN) - (signed + wx * nx + wy * ny)
+        wx += missing * nx
+        wy += missing * ny
+    return STOPS + 1, 0.0, 0.0
+
+
+@inner_kernel
+def _crossing(x, y, wx, wy, terrain):  # type: ignore[no-untyped-def]
     # The first edge that the way w of a particle's centre crosses (-1: none), distance from it, normal towards it.
-    x = position[p, 0]
-    y = position[p, 1]
     cell = terrain.cell[0]
-    left, right = span(x + min(0.0, wx), x + max(0.0, wx), terrain.corner[0], cell, terrain.size[0])
-    bottom, top = span(y + min(0.0, wy), y + max(0.0, wy), terrain.corner[1], cell, terrain.size[1])
+    left, right = span(x + min(0.0, wx) - SKIN, x + max(0.0, wx) + SKIN, terrain.corner[0], cell, terrain.size[0])
+    bottom, top = span(y + min(0.0, wy) - SKIN, y + max(0.0, wy) + SKIN, terrain.corner[1], cell, terrain.size[1])
     soonest = 2.0
     found = -1
     distance = 0.0
@@ -66,10 +76,11 @@ def _crossing(p, position, wx, wy, terrain):  # type: ignore[no-untyped-def]
                     before, change, dx, dy = -before, -change, -dx, -dy
                     px = x - terrain.vertex[terrain.edge_b[e], 0]
                     py = y - terrain.vertex[terrain.edge_b[e], 1]
-                if not (before > 0.0 and before + change < 0.0):
-                    continue
-                when = before / -change
                 squared = dx * dx + dy * dy
+                skin = SKIN * math.sqrt(squared)
+                if not (change < 0.0 and before > -skin and before + change < 0.5 * skin):
+                    continue
+                when = max(0.0, before / -change)
                 share = ((px + when * wx) * dx + (py + when * wy) * dy) / squared
                 if when < soonest and -1e-9 <= share <= 1.0 + 1e-9:
                     length = math.sqrt(squared)

@@ -114,7 +114,8 @@ def look_at(p, e, shapes, near, count):  # type: ignore[no-untyped-def]
     if shapes.inverse[p] + shapes.inverse[a] + shapes.inverse[b] == 0.0:
         return count
     own = shapes.owner[a] == shapes.owner[p]
-    if own and shapes.edge_start[p] == shapes.edge_start[p + 1]:
+    # A tangled jelly would be kept so by its own edges.
+    if own and (shapes.tangled[p] or shapes.edge_start[p] == shapes.edge_start[p + 1]):
         return count
     if are_joined(p, a, shapes) or are_joined(p, b, shapes):
         return count
@@ -210,7 +211,45 @@ def _corner_normal(v, shapes):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def touch_edges(p, h, shapes, near, edges, dynamic, contacts, count):  # type: ignore[no-untyped-def]
+def _winds(x, y, first, last, shapes):  # type: ignore[no-untyped-def]
+    # How often solid edges run round a place: a ray to the right crosses one that has it on its left going up, or on
+    # its right going down.
+    winding = 0
+    for e in range(first, last):
+        a = shapes.edge_a[e]
+        b = shapes.edge_b[e]
+        below = shapes.place[a, 1] <= y
+        if below == (shapes.place[b, 1] <= y) or shapes.side[e] == 0:
+            continue
+        dx = shapes.place[b, 0] - shapes.place[a, 0]
+        dy = shapes.place[b, 1] - shapes.place[a, 1]
+        right = (x - shapes.place[a, 0]) * dy - (y - shapes.place[a, 1]) * dx
+        if below and right < 0.0:
+            winding += 1
+        elif not below and right > 0.0:
+            winding -= 1
+    return winding
+
+
+@inner_kernel
+def is_enclosed(p, k, solid, bounds, shapes):  # type: ignore[no-untyped-def]
+    """Whether particle p is inside the solid edges of span k."""
+    winding = _winds(shapes.place[p, 0], shapes.place[p, 1], solid[k, 0], solid[k, 1], shapes)
+    # A hollow chain runs the other way round: nothing is counted outside it, -1 inside.
+    return winding == 0 if bounds[k, 4] > 0.0 else winding > 0
+
+
+@inner_kernel
+def _is_in(p, owner, solid, bounds, shapes):  # type: ignore[no-untyped-def]
+    # Whether particle p is inside the solid edges of that owner.
+    for k in range(solid.shape[0]):
+        if shapes.owner[shapes.edge_a[solid[k, 0]]] == owner:
+            return is_enclosed(p, k, solid, bounds, shapes)
+    return False
+
+
+@inner_kernel
+def touch_edges(p, h, shapes, near, edges, solid, bounds, dynamic, contacts, count):  # type: ignore[no-untyped-def]
     """Contacts of a particle with the edges noted, owner by owner; the number of contacts then."""
     for i in range(edges):
         owner = shapes.owner[shapes.edge_a[near.edge[i]]]
@@ -225,7 +264,9 @@ def touch_edges(p, h, shapes, near, edges, dynamic, contacts, count):  # type: i
                     nearest = j
         if seen:
             continue
-        if owner != shapes.owner[p] and _is_inside(p, nearest, shapes, near):
+        # Where an outline is folded, the edge that is nearest by itself can be seen from behind outside.
+        behind = owner != shapes.owner[p] and _is_behind(p, nearest, shapes, near)
+        if behind and _is_in(p, owner, solid, bounds, shapes):
             count = push_out(p, near.edge[nearest], near.share[nearest], near.distance[nearest],
                              near.region[nearest], shapes, dynamic, contacts, count)  # fmt: skip
         else:
@@ -234,7 +275,7 @@ def touch_edges(p, h, shapes, near, edges, dynamic, contacts, count):  # type: i
 
 
 @inner_kernel
-def _is_inside(p, i, shapes, near):  # type: ignore[no-untyped-def]
+def _is_behind(p, i, shapes, near):  # type: ignore[no-untyped-def]
     e = near.edge[i]
     if shapes.side[e] == 0:
         return False

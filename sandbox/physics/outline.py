@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.shapes import Shapes
+from sandbox.physics.tangle import Triangles, tangled_particles, triangles_of
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.world import HAND_MATERIAL, Slots, World
 
@@ -39,11 +40,15 @@ class Outline:
     owner: Slots
     shielded: NDArray[np.bool_]
     dynamic: int
+    triangles: Triangles
 
 
 def outline_of(world: World) -> Outline:
     """The outline of a world's bodies, made anew where springs have changed."""
-    signature = world.spring_active, world.edge, world.particle_a, world.particle_b, world.owner
+    signature = (
+        world.spring_active, world.edge, world.particle_a, world.particle_b, world.owner, world.element_active,
+        world.corner_particle,
+    )  # fmt: skip
     kept: Outline | None = world.contact_cache
     if kept is None or not all(map(np.array_equal, kept.signature, signature)):
         kept = world.contact_cache = _make_outline(world, tuple(array.copy() for array in signature))
@@ -76,6 +81,7 @@ def _make_outline(world: World, signature: tuple[NDArray[np.generic], ...]) -> O
         owner,
         _shielded(world, chosen),
         len(chosen),
+        triangles_of(world),
     )
 
 
@@ -142,4 +148,5 @@ def shapes_of(world: World, outline: Outline) -> Shapes:
         outline.near_start,
         outline.near_of,
         outline.shielded,
+        tangled_particles(world, outline.triangles, world.particle_count + size),
     )

@@ -18,7 +18,7 @@ class Shapes(NamedTuple):
     By vertex: place [m], motion [m/s], origin [m], radius [m], friction, restitution, owner, group, collides, inverse
     [1/kg]. By edge: edge_a, edge_b, side (1: solid on the left, 0: two sides), number = its spring, or of terrain.
     Edges of vertex v: edge_of[edge_start[v]:edge_start[v + 1]]; particles that a spring joins to p: near_of likewise.
-    shielded (n,): see outline.py.
+    shielded (n,): see outline.py. By vertex, tangled: whether its body is now, and so does not touch itself.
     """
 
     place: Floats
@@ -40,6 +40,7 @@ class Shapes(NamedTuple):
     near_start: Slots
     near_of: Slots
     shielded: NDArray[np.bool_]
+    tangled: NDArray[np.bool_]
 
 
 class Near(NamedTuple):

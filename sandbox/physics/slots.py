@@ -13,6 +13,12 @@ OWN_MATERIAL = -1
 class ElementSlots(StateArrays):
     """The part of a World that adds and removes elements (see elements.py), and tunes them with their springs."""
 
+    def __init__(self) -> None:
+        super().__init__()
+        # Bodies that keep areas, and the elements of each; no state.
+        self.area_names: list[str] = []
+        self.area_elements: list[range] = []
+
     @property
     def element_count(self) -> int:
         """Element slots in use, active or not."""
@@ -71,12 +77,18 @@ class ElementSlots(StateArrays):
         self._disturb(slots)
         return first
 
-    def inflate(self, element: int, inflation: float) -> None:
-        """Let an area want this multiple of its form's."""
-        self.element_rest[element, 0] = inflation * self.element_rest[element, 1]
-        self.good["element_rest"][element] = self.element_rest[element]
-        first = self.element_first[element]
-        self._disturb(self.corner_particle[first : first + self.element_corners[element]])
+    def name_areas(self, name: str, elements: range) -> None:
+        """Name the areas of a body, to be inflated together."""
+        self.area_names.append(name)
+        self.area_elements.append(elements)
+
+    def inflate(self, body: int, inflation: float) -> None:
+        """Let each area of a body, by its place in `area_names`, want this multiple of its form's."""
+        first, last = self.area_elements[body].start, self.area_elements[body].stop
+        self.element_rest[first:last, 0] = inflation * self.element_rest[first:last, 1]
+        self.good["element_rest"][first:last] = self.element_rest[first:last]
+        corners = self.element_first[first], self.element_first[last - 1] + self.element_corners[last - 1]
+        self._disturb(self.corner_particle[corners[0] : corners[1]])
 
     def set_coefficients(self, stiffness: float | None, damping: float | None, material: int | None) -> None:
         """Set Cs, Cd or both, of one material's springs and areas or (None) of all.

@@ -14,6 +14,7 @@ from sandbox.level.limits import (
     COORDINATE_LIMIT,
     DRAG_LIMIT,
     GRAVITY_LIMIT,
+    INFLATION_LIMIT,
     MASS_RANGE,
     PARTICLE_LIMIT,
     SPEED_LIMIT,
@@ -30,6 +31,7 @@ WindSpeed = Annotated[float, Field(ge=-SPEED_LIMIT, le=SPEED_LIMIT, allow_inf_na
 DragRate = Annotated[float, Field(ge=0.0, le=DRAG_LIMIT, allow_inf_nan=False)]
 Signed = Annotated[float, Field(ge=-1.0, le=1.0, allow_inf_nan=False)]
 Fraction = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
+Inflation = Annotated[float, Field(ge=0.0, le=INFLATION_LIMIT, allow_inf_nan=False)]
 Length = Annotated[float, Field(ge=0.0, le=COORDINATE_LIMIT, allow_inf_nan=False)]
 Mass = Annotated[float, Field(ge=MASS_RANGE[0], le=MASS_RANGE[1], allow_inf_nan=False)]
 Point = tuple[Coordinate, Coordinate]
@@ -146,6 +148,14 @@ class SetDrive(_Validated):
 
 
 @dataclass(frozen=True)
+class SetInflation(_Validated):
+    """Let a body's areas, the one of a ring or those of a jelly, want this multiple of their own."""
+
+    body: Slot
+    value: Inflation
+
+
+@dataclass(frozen=True)
 class SetSolver(_Validated):
     """Set the solver or any of its settings (None = leave); substeps is a power of two or "auto"."""
 
@@ -167,7 +177,7 @@ class Redo(_Validated):
 
 Command = (
     Grab | MoveGrab | Release | Pin | Unpin | CutSprings | AddParticle | AddSpring | SetCoefficients | SetGravity
-    | SetAir | SetDrive | SetSolver | Undo | Redo
+    | SetAir | SetDrive | SetInflation | SetSolver | Undo | Redo
 )  # fmt: skip
 
 
@@ -327,6 +337,12 @@ def _set_drive(world: World, command: SetDrive) -> None:
     world.drive(command.part, command.value)
 
 
+def _set_inflation(world: World, command: SetInflation) -> None:
+    if command.body >= len(world.area_names):
+        raise CommandError(f"there is no body {command.body} that keeps an area")
+    world.inflate(command.body, command.value)
+
+
 def _set_solver(world: World, command: SetSolver) -> None:
     if command.solver is not None and command.solver not in SOLVERS:
         raise CommandError(f"there is no solver {command.solver!r}; there are {', '.join(SOLVERS)}")
@@ -349,5 +365,6 @@ _ACTIONS: dict[type, Callable[[World, Any], None]] = {
     SetGravity: _set_gravity,
     SetAir: _set_air,
     SetDrive: _set_drive,
+    SetInflation: _set_inflation,
     SetSolver: _set_solver,
 }

@@ -1,5 +1,7 @@
 """Dissipation: what the ticks of a run have taken out of the world's energy."""
 
+import numpy as np
+
 from sandbox.physics.energy import total_energy
 from sandbox.physics.world import World
 
@@ -7,8 +9,8 @@ from sandbox.physics.world import World
 class Dissipation:
     """Energy [J] lost in ticks: `before` each, then `after` it; energy that a tick gained counts against it.
 
-    What commands change between ticks is not counted, nor is a tick in which a hand holds something: the hand works.
-    Wind, muscles, hydraulics and motors work too: what they put in counts as gained, what they take out as lost.
+    What commands change between ticks is not counted, nor is a tick in which something works on the world: a hand that
+    holds a particle, a muscle, a hydraulic or motor that is driven, the wind.
     """
 
     def __init__(self) -> None:
@@ -17,9 +19,15 @@ class Dissipation:
 
     def before(self, world: World) -> None:
         """Look at a world that is about to make a tick."""
-        self._before = None if world.hands_in_use() else total_energy(world)
+        self._before = None if _is_worked_on(world) else total_energy(world)
 
     def after(self, world: World) -> None:
         """Look at it again after the tick."""
         if self._before is not None:
             self.energy += self._before - total_energy(world)
+
+
+def _is_worked_on(world: World) -> bool:
+    settings = world.settings
+    blows = settings.drag > 0.0 and any(settings.wind)
+    return world.hands_in_use() or bool(len(world.driven.muscles.spring)) or bool(np.any(world.part_value)) or blows

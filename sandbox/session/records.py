@@ -23,6 +23,7 @@ from sandbox.session.commands import (
     SetCoefficients,
     SetDrive,
     SetGravity,
+    SetInflation,
     SetSolver,
     Undo,
     Unpin,
@@ -54,6 +55,7 @@ COMMAND_TYPES: dict[str, type[Command]] = {
     "set_gravity": SetGravity,
     "set_air": SetAir,
     "set_drive": SetDrive,
+    "set_inflation": SetInflation,
     "set_solver": SetSolver,
     "undo": Undo,
     "redo": Redo,
@@ -73,6 +75,8 @@ def to_record(command: Command, world: World) -> dict[str, Any]:
             record[field] = [world.spring_names[slot] for slot in value]
         elif field == "part":
             record[field] = world.driven.part_names[value]
+        elif field == "body":
+            record[field] = world.area_names[value]
         elif field == "material":
             record[field] = world.material_names[value]
         else:
@@ -94,6 +98,8 @@ def from_record(record: dict[str, Any], world: World) -> Command:
         values["springs"] = [_slot("spring", name, world.spring_slot) for name in values["springs"]]
     if "part" in values:
         values["part"] = _slot("driven part", values["part"], world.driven.part_names.index)
+    if "body" in values:
+        values["body"] = _slot("body that keeps an area", values["body"], world.area_names.index)
     if values.get("material") is not None:
         values["material"] = _slot("material", values["material"], world.material_names.index)
     try:

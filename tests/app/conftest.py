@@ -70,7 +70,7 @@ class Driver:
 
     def frames(self, count=1):
         for _ in range(count):
-            self.app.preparation.finish()
+            self.app.preparation.finish(self.app.play is not None and self.app.play.has_contacts)
             self.app.frame(FRAME)
 
     def post(self, kind, **data):

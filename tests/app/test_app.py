@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import threading
 
 import numpy as np
 import pygame
@@ -14,7 +15,7 @@ from sandbox.app.app import run_app
 from sandbox.app.display import has_display
 from sandbox.app.playback import Playback
 from sandbox.app.shortcuts import action_of, shortcuts
-from sandbox.level.files import shipped_levels
+from sandbox.level.files import read_level, shipped_levels
 from sandbox.session.reading import read_replay
 from sandbox.session.replay import verify
 
@@ -390,12 +391,32 @@ def test_run_app_closes_after_the_given_time_and_prints_where_the_time_went(caps
     assert all(part in printed for part in ("events", "ui", "flip", "frames a second"))
 
 
-def test_a_level_in_which_things_touch_waits_until_contacts_are_prepared(driver):
+def test_a_level_in_which_things_touch_waits_until_contacts_are_prepared(driver, monkeypatch):
+    touching = threading.Event()
+    monkeypatch.setattr(driver.app.preparation, "_all", touching)
     assert driver.app.ready
     driver.app.start(Playback(small_level(contacts={})))
-    driver.app.frame(FRAME)
+    for _ in range(5):
+        driver.app.frame(FRAME)
     assert not driver.app.ready
     assert driver.playback.session.tick == 0
+    touching.set()
     driver.frames(5)
     assert driver.app.ready
     assert driver.playback.session.tick > 0
+
+
+def test_pictures_of_levels_in_which_nothing_touches_are_drawn_before_contacts_are_prepared(open_app, monkeypatch):
+    driver = open_app()
+    driver.app.preparation.finish()
+    touching = threading.Event()
+    monkeypatch.setattr(driver.app.preparation, "_all", touching)
+    driver.app.open_gallery()
+    cards = driver.app.gallery.cards
+    for _ in cards:
+        driver.app.frame(FRAME)
+    touches = {level.name: level.has_contacts for level in map(read_level, shipped_levels())}
+    assert {card.name: card.picture is None for card in cards} == touches and any(touches.values())
+    touching.set()
+    driver.frames(len(cards))
+    assert all(card.picture is not None for card in cards)

@@ -13,10 +13,14 @@ from sandbox.app.camera import Camera, bounds, grid_spacing
 from sandbox.app.colours import BACKGROUND, packed, strain_colours
 from sandbox.app.lines import Canvas
 from sandbox.app.loop import LONGEST_FRAME, SPEEDS, TickClock
-from sandbox.app.picture import draw_picture, save_picture
+from sandbox.app.picture import crop_of, draw_picture, save_picture, view_of
 from sandbox.app.playback import Playback, interpolated
 from sandbox.app.renderer import Renderer
+from sandbox.level.bodies import BoxShape, JellyDef, RingDef
+from sandbox.level.build import build_world
+from sandbox.level.model import Level
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.snapshot import take
 from sandbox.session.session import Session
 
 FRAME = 1 / 60
@@ -152,6 +156,32 @@ def test_a_line_covers_about_its_length_times_its_width(ends, compiled):
     assert brightness(drawn.surface).sum() == pytest.approx(2.0 * length, rel=0.12 if exact else 0.7)
 
 
+@pytest.mark.parametrize("compiled", [True, False])
+def test_triangles_that_share_a_side_fill_their_square(compiled):
+    if compiled and not COMPILED:
+        pytest.skip("needs numba")
+    surface = pygame.Surface((60, 60), 0, 32)
+    corners = np.array([[[10.2, 10.7], [50.2, 12.7], [48.2, 50.7]], [[10.2, 10.7], [48.2, 50.7], [8.2, 48.7]]])
+    Canvas(surface, compiled).triangles(corners, np.array([0xFF0000, 0x0000FF]))
+    red, _, blue = pygame.surfarray.array3d(surface).transpose(2, 0, 1) > 0
+    # pygame fills the pixels that a side touches, too.
+    slack = 3.0 if compiled else 80.0
+    assert np.count_nonzero(red) == pytest.approx(762, abs=slack)
+    assert np.count_nonzero(red | blue) == pytest.approx(1524, abs=2 * slack)
+    middle = (red | blue)[20:40, 20:40]
+    assert middle.all()
+
+
+def test_triangles_outside_the_clip_draw_nothing_and_of_no_height_do_not_fail():
+    surface = pygame.Surface((40, 40), 0, 32)
+    surface.set_clip(pygame.Rect(10, 10, 20, 20))
+    flat = [[5.0, 20.5], [35.0, 20.5], [20.0, 20.5]]
+    around = [[-1e6, -1e6], [1e6, -1e6], [0.0, 1e6]]
+    Canvas(surface).triangles(np.array([flat, around]), np.array([0xFFFFFF, 0xFFFFFF]))
+    white = pygame.surfarray.array3d(surface)[..., 0] > 0
+    assert np.count_nonzero(white) == 400 and white[10:30, 10:30].all()
+
+
 def test_lines_and_discs_outside_the_clip_or_beyond_all_sense_draw_nothing_and_do_not_fail():
     drawn = canvas()
     drawn.surface.set_clip((20, 10, 10, 10))
@@ -207,6 +237,34 @@ def test_a_stretched_spring_is_drawn_warm_and_a_compressed_one_blue():
     assert blue > red + 60
 
 
+def test_what_a_jelly_and_a_balloon_hold_is_filled_bluer_where_it_is_crushed():
+    bodies = (
+        JellyDef(type="jelly", id="cube", shape=BoxShape(box=(2.0, 2.0)), spacing=1.0),
+        RingDef(type="ring", id="balloon", radius=1.0, segments=16, position=(4.0, 0.0)),
+    )
+    level = Level(format="spring-sandbox/level", version=1, name="Filled", bodies=bodies)
+    camera = Camera((2.0, 0.0), 50.0, (0, 0, 400, 200))
+
+    def colour_at(world, place):
+        surface = pygame.Surface((400, 200), 0, 32)
+        snapshot = take(world)
+        Renderer().draw(surface, camera, snapshot, snapshot, 1.0)
+        x, y = camera.to_pixels(place)
+        return surface.get_at((round(x), round(y)))[:3]
+
+    world = build_world(level)
+    # Between the springs of a cell, and off the lines of the grid.
+    spots = (0.5, 0.25), (4.1, 0.1)
+    at_rest = [colour_at(world, spot) for spot in spots]
+    assert all(colour != BACKGROUND for colour in at_rest)
+    world.position *= [1.0, 0.7]
+    crushed = [colour_at(world, (x, 0.7 * y)) for x, y in spots]
+    for calm, pressed in zip(at_rest, crushed, strict=True):
+        assert pressed[2] - pressed[0] > calm[2] - calm[0]
+    world.cut(range(world.spring_count))
+    assert all(colour_at(world, (x, 0.7 * y)) == BACKGROUND for x, y in spots)
+
+
 def test_drawing_changes_nothing_in_the_snapshot():
     session = Session(small_level())
     before, snapshot = session.snapshot(), session.snapshot()
@@ -233,6 +291,15 @@ def test_a_picture_shows_every_particle_and_is_written_as_png(tmp_path):
     assert (pygame.surfarray.array2d(picture) & 0xFFFFFF != packed(BACKGROUND)).sum() > 300
     with pytest.raises(OSError):
         save_picture(session, tmp_path / "missing" / "picture.png")
+
+
+def test_a_small_picture_shows_ground_and_what_lies_in_the_view_and_no_empty_part_of_it():
+    ground = {"id": "ground", "polygon": [[-4, -1], [4, -1], [4, 0], [-4, 0]]}
+    far = [{"id": "near", "position": [0, 1], "radius": 0.5}, {"id": "flown", "position": [90, 2], "radius": 0.5}]
+    level = small_level(bodies=[], materials={}, particles=far, terrain=[ground], view=[-8, -3, 8, 9])
+    assert crop_of(level, Session(level).snapshot()) == (-4.0, -1.0, 8.0, 2.5)
+    unframed = small_level(bodies=[], materials={}, particles=far[:1], terrain=[ground], view=None)
+    assert view_of(unframed, Session(unframed).snapshot()) == (-4.0, -1.0, 4.0, 1.5)
 
 
 def test_an_empty_level_and_a_level_of_one_particle_can_be_drawn():

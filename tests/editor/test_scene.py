@@ -21,7 +21,7 @@ def test_a_scene_has_the_particles_and_springs_of_the_world(path):
     assert np.array_equal(scene.position, world.position[slots])
     assert np.array_equal(scene.pinned, world.inverse_mass[slots] == 0.0)
     assert np.array_equal(np.array(slots)[scene.particle_a], world.particle_a[springs])
-    assert np.allclose(scene.rest_length, world.rest_length[springs], rtol=1e-12)
+    assert np.allclose(scene.rest_length, world.natural_length[springs], rtol=1e-12)
     assert [scene.materials[k] for k in scene.material] == [world.material_names[k] for k in world.material[springs]]
 
 

@@ -43,6 +43,7 @@ def test_a_level_without_terrain_walls_or_contacts_has_none(path):
         ({"terrain": [{"id": "g", "polygon": [[0, 0], [1, 0]]}]}, "terrain.0.polygon: has 2 corners"),
         ({"terrain": [{"id": "g", "polygon": [[0, 0], [1, 1], [1, 0], [0, 1]]}]}, "sides touch or cross"),
         ({"terrain": [{"id": "g", "polyline": [[0, 0], [0, 0]]}]}, "a corner comes twice in a row"),
+        ({"terrain": [{"id": "g", "polyline": [[0, 0], [1e7, 0]]}]}, "polyline.1.0: 10000000.0 is above the limit"),
         ({"terrain": [{"id": "g", "polygon": SQUARE}], "particles": [{"id": "g"}]}, 'terrain.0.id: "g" is taken'),
         ({"walls": {"box": [1, 0, 0, 1]}}, "walls.box: left and bottom come first"),
         ({"contacts": {"friction": -1}}, "contacts.friction: -1 is below the limit 0"),

@@ -31,6 +31,7 @@ def ring(count=12, *, inflation=1.0, bending=None, coefficient=0.1, pinned=(), *
     springs = [(k, (k + 1) % count) for k in range(count)]
     world = network(points, springs, stiffness=coefficient, damping=coefficient, pinned=pinned, **options)
     world.add_elements(AREA, [range(count)], inflation=inflation, stiffness=coefficient, damping=coefficient)
+    world.name_areas("ring", range(1))
     if bending is not None:
         triples = [(k, (k + 1) % count, (k + 2) % count) for k in range(count)]
         world.add_elements(BEND, triples, stiffness=bending, damping=bending, material=-1)

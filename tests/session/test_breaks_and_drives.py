@@ -7,7 +7,7 @@ import pytest
 
 from sandbox.level.parse import parse_level
 from sandbox.physics.snapshot import state_hash
-from sandbox.session.commands import CommandError, CutSprings, Grab, MoveGrab, SetAir, SetDrive, apply
+from sandbox.session.commands import CommandError, CutSprings, Grab, MoveGrab, SetAir, SetDrive, SetInflation, apply
 from sandbox.session.reading import read_replay, read_script
 from sandbox.session.records import ScriptLine
 from sandbox.session.replay import verify
@@ -199,3 +199,51 @@ def test_a_script_drives_a_part_by_its_name(tmp_path):
     session = Session(busy_level(), read_script(file))
     advance(session, 33)
     assert session.world.rest_length[session.world.spring_slot(":1")] == pytest.approx(1.5)
+
+
+def test_a_balloon_and_a_jelly_are_pumped_up_by_commands_that_replay_and_undo(tmp_path):
+    data = {
+        "format": "spring-sandbox/level",
+        "version": 1,
+        "name": "Pumped",
+        "settings": {"gravity": [0.0, 0.0]},
+        "bodies": [
+            {"type": "jelly", "id": "cube", "shape": {"box": [1, 1]}, "spacing": 0.5, "position": [3, 0]},
+            {"type": "ring", "id": "balloon", "radius": 1.0, "segments": 12},
+            {"type": "ring", "id": "hoop", "radius": 1.0, "segments": 12, "inflation": None, "position": [-5, 0]},
+        ],
+    }
+    level = parse_level(json.dumps(data).encode(), "pumped")
+
+    def size(session, body):
+        place = session.world.position[[session.world.particle_slot(f"{body}.{k}") for k in range(9)]]
+        return np.sqrt(np.sum((place - place.mean(axis=0)) ** 2))
+
+    session = Session(level)
+    assert session.world.area_names == ["cube", "balloon"]
+    session.record_to(tmp_path / "run.replay")
+    before = {body: size(session, body) for body in ("cube", "balloon", "hoop")}
+    session.submit(SetInflation(0, 1.5), 1)
+    session.submit(SetInflation(1, 2.0), 2)
+    advance(session, 120)
+    assert size(session, "cube") > 1.05 * before["cube"]
+    assert size(session, "balloon") > 1.05 * before["balloon"]
+    assert size(session, "hoop") == before["hoop"]
+    session.undo()
+    session.apply_pending()
+    assert size(session, "cube") > 1.05 * before["cube"]
+    assert size(session, "balloon") == pytest.approx(before["balloon"])
+    session.stop_recording()
+    assert '"type": "set_inflation", "body": "balloon", "value": 2.0' in (tmp_path / "run.replay").read_text()
+    assert verify(read_replay(tmp_path / "run.replay")) is None
+
+
+def test_what_keeps_no_area_is_not_inflated():
+    world = Session(busy_level()).world
+    with pytest.raises(CommandError, match="there is no body 0 that keeps an area"):
+        apply(world, SetInflation(0, 1.0))
+    session = Session(busy_level(), [ScriptLine(0, 1, {"type": "set_inflation", "body": "deck", "value": 1}, 1)])
+    with pytest.raises(CommandError, match="there is no body that keeps an area 'deck'"):
+        session.advance()
+    with pytest.raises(CommandError, match="value: must be less than or equal to 100"):
+        apply(world, SetInflation(0, 101.0))

@@ -4,7 +4,7 @@ import pytest
 
 from sandbox.physics.energy import total_energy
 from sandbox.session.checking import run_checks
-from sandbox.session.commands import CutSprings, Grab, Release
+from sandbox.session.commands import CutSprings, Grab, Release, SetDrive
 from sandbox.session.session import Session
 from sandbox.session.summary import run
 from tests.session.levels import rope_level
@@ -32,6 +32,24 @@ def test_what_commands_and_hands_change_is_not_counted_as_dissipated():
     session.submit(CutSprings(tuple(range(15))))
     free = run(session, 30)
     assert free.dissipated_energy == pytest.approx(0.0, abs=1e-9 * free.kinetic_energy)
+
+
+@pytest.mark.parametrize(
+    "working",
+    [
+        {"settings": {"wind": [5.0, 0.0], "drag": 1.0}},
+        {"springs": [{"a": "soft.start", "b": "soft.end", "drive": {"amplitude": 0.3, "period": 30}}]},
+        {"springs": [{"a": "rope.end", "b": "soft.end", "hydraulic": {"shortest": 1, "longest": 9, "rate": 2}}]},
+    ],
+)
+def test_ticks_in_which_something_works_on_the_world_are_not_counted_as_dissipated(working):
+    session = Session(rope_level(**working))
+    if len(session.world.part_value):
+        session.submit(SetDrive(0, 1.0))
+    assert run(session, 60).dissipated_energy == 0.0
+    if len(session.world.part_value):
+        session.submit(SetDrive(0, 0.0))
+        assert run(session, 10).dissipated_energy != 0.0
 
 
 def test_a_check_on_a_particle_is_measured_where_it_is():

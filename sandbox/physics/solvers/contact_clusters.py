@@ -13,21 +13,24 @@ from sandbox.physics.world import Floats, Slots, World
 
 
 class Touching(NamedTuple):
-    """The bodies that something touches, by block: body, cluster; the loose particles, their cluster; and scratch.
+    """The bodies and the loose particles that something touches, in this order a cluster's members; and scratch.
 
-    row: of each particle (n,), -1: none. before, held, after [J] and misfit by block; due: to be solved again; bouncy,
-    spread: of its springs and elements; tangled, aimed: see goal.py. total, allowed [J], fails by cluster. free, pushed
-    [m/s] by row. given, change [m/s] by particle: velocities without contacts, and what those add.
+    By member: cluster, before, held, after, limit [J], fresh = its bank is begun in this step; member: of each particle
+    (n,), -1: none; row likewise. By body: misfit; due: to be solved again; bouncy, spread: of its springs and elements;
+    tangled, aimed: see goal.py. By cluster: total, allowed [J], fails. By row: free, pushed [m/s]. By particle: given,
+    change [m/s]: velocities without contacts, and what those add.
     """
 
     body: Slots
-    cluster: Slots
     loose: Slots
-    loose_cluster: Slots
+    cluster: Slots
+    member: Slots
     row: Slots
     before: Floats
     held: Floats
     after: Floats
+    limit: Floats
+    fresh: NDArray[np.bool_]
     misfit: Floats
     due: NDArray[np.bool_]
     bouncy: NDArray[np.bool_]
@@ -125,11 +128,16 @@ def find_touching(world: World, pattern: Pattern, contacts: Contacts) -> tuple[T
     _, cluster = np.unique(label[np.append(count + np.arange(len(body)), loose)], return_inverse=True)
     clusters = int(cluster.max()) + 1 if len(cluster) else 0
     size = len(body)
-    numbers, flags, sums = np.zeros((4, size)), np.zeros((5, size), dtype=np.bool_), np.zeros((2, clusters))
-    touching = Touching(
-        body, cluster[:size].astype(np.int64), loose, cluster[size:].astype(np.int64), row,
-        numbers[0], numbers[1], numbers[2], numbers[3], flags[0], flags[1], flags[2], flags[3], flags[4],
-        sums[0], sums[1], np.zeros(clusters, dtype=np.bool_), np.zeros((free_count, 2)), np.zeros((free_count, 2)),
-        world.velocity.copy(), np.zeros((count, 2)),
+    member = block.copy()
+    member[loose] = size + np.arange(len(loose))
+    members = size + len(loose)
+    flags, sums = np.zeros((5, size), dtype=np.bool_), np.zeros((2, clusters))
+    energies, vectors = np.zeros((4, members)), np.zeros((2, free_count, 2))
+    touching = Touching._make(
+        [
+            body, loose, cluster.astype(np.int64), member, row, *energies, np.zeros(members, dtype=np.bool_),
+            np.zeros(size), *flags, *sums, np.zeros(clusters, dtype=np.bool_), *vectors, world.velocity.copy(),
+            np.zeros((count, 2)),
+        ]
     )  # fmt: skip
     return touching, blocks

@@ -14,22 +14,30 @@ from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.shapes import weight_of
 from sandbox.physics.solvers import direct
 from sandbox.physics.solvers.body import (
-    BANK_SHARE,
-    BOUNCY_BANK_SHARE,
-    body_energy,
-    body_hidden,
+    body_potential,
     load_body,
     load_rows,
     open_bank,
 )
 from sandbox.physics.solvers.contact_clusters import find_touching
+from sandbox.physics.solvers.contact_energy import (
+    brake,
+    grant,
+    hold,
+    judge,
+    measure_body,
+    open_loose,
+    save,
+    stop_loose,
+    stop_rows,
+)
 from sandbox.physics.solvers.contact_sweep import (
     load_biases,
     load_responses,
     new_push,
     solve_contacts,
 )
-from sandbox.physics.solvers.direct import AHEAD, ENERGY_ROUNDING, LAST_HALVINGS, LINEAR_SOLVES, MISFIT_RATE
+from sandbox.physics.solvers.direct import AHEAD, LINEAR_SOLVES, MISFIT_RATE
 from sandbox.physics.solvers.goal import aim_at_form, find_tangled, let_go
 from sandbox.physics.solvers.minimise import copy, keep_tension
 from sandbox.physics.solvers.network import hold_spin, kinetic, linearise, solve_linear, update_impulses
@@ -39,12 +47,13 @@ from sandbox.physics.solvers.shapes import linearise_shapes, update_shapes
 from sandbox.physics.solvers.single_pass import Pair
 from sandbox.physics.world import Floats, World
 
-# Sweeps over the contacts for each linear solve, where bodies touch, and where loose particles alone do. More costs
-# time, fewer leaves piles soft and restless.
+# Sweeps over the contacts for each linear solve. More costs time, fewer leaves piles soft and restless.
 SWEEPS = 20
-LOOSE_SWEEPS = 10
-# Newton rounds on f for bodies whose energy the linear solves leave too high; after them they are braked.
-NEWTON_ROUNDS = 4
+# What all sweeps of a step of h [s] may cost: h WORK pushes of an impulse at a particle, some 10 ms of a tick at 60 Hz.
+# Where it is spent the step ends, in its energy test; a solve has this many sweeps in any case. Less leaves crowds
+# soft, more makes tangles slow.
+WORK = 7.2e7
+FEWEST_SWEEPS = 4
 
 
 @inner_kernel
@@ -69,6 +78,9 @@ def _begin(  # type: ignore[no-untyped-def]
         touching.bouncy[k] = bouncy
         touching.spread[k] = spread
         touching.before[k] = kinetic_after + moved
+        for r in range(first_row, last_row):
+            if energy_bank[rows.particle[r]] < 0.0:
+                touching.fresh[k] = True
         touching.held[k] = open_bank(
             first_row, last_row, first, last, low, high, rows, springs, shapes, energy_bank, bodies.lowest[body],
             bouncy, spread, kinetic_after, moved, rest_length, rest_before, h,
@@ -126,9 +138,21 @@ def _clear(vector):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _push_all(touching, contacts, push, blocks, inverse_mass):  # type: ignore[no-untyped-def]
+def _cost_of(contacts, blocks):  # type: ignore[no-untyped-def]
+    # What one sweep costs: the particles that answer to every impulse.
+    cost = 0
+    for c in range(contacts.particle.shape[0]):
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p >= 0:
+                k = blocks.block[p]
+                cost += 1 if k < 0 else blocks.start[k + 1] - blocks.start[k]
+    return cost
+
+
+@inner_kernel
+def _push_all(touching, contacts, push, blocks, inverse_mass, sweeps):  # type: ignore[no-untyped-def]
     # Sweep all contacts; the impulses of bodies are left in `pushed`.
-    sweeps = SWEEPS if touching.body.shape[0] > 0 else LOOSE_SWEEPS
     load_responses(contacts, push, inverse_mass, blocks)
     _clear(touching.change)
     solve_contacts(contacts, push, touching.given, touching.change, inverse_mass, blocks, sweeps)
@@ -146,8 +170,8 @@ def _push_all(touching, contacts, push, blocks, inverse_mass):  # type: ignore[n
 
 
 @inner_kernel
-def _answer(touching, items, rest_length, h):  # type: ignore[no-untyped-def]
-    # v' = free + A^-1 J^T lambda of every body; its energy and misfit.
+def _answer(touching, items, position, collides, terrain, rest_length, h):  # type: ignore[no-untyped-def]
+    # v' = free + A^-1 J^T lambda of every body, stopped at terrain; its energy and misfit.
     bodies, rows, springs, shapes, matrix, _ = items
     free_count = matrix.diagonal.shape[0]
     for k in range(touching.body.shape[0]):
@@ -168,111 +192,25 @@ def _answer(touching, items, rest_length, h):  # type: ignore[no-untyped-def]
             misfit = max(misfit, missed)
         for s in range(first, last):
             springs.tension[s] = max(0.0, -springs.impulse[s])
-        touching.after[k] = kinetic(first_row, last_row, rows.mass, rows.trial) + held
+        if stop_rows(first_row, last_row, rows, collides, terrain, h):
+            held = body_potential(
+                first, last, low, high, rows.position, rows.trial, springs, shapes, rest_length, h, h
+            )  # fmt: skip
+            keep_tension(first, last, rows, springs, h)
+        measure_body(touching, k, items, held)
         touching.misfit[k] = misfit
+    stop_loose(touching, position, collides, terrain, h)
 
 
 @inner_kernel
-def _judge(touching, contacts, push, blocks, mass, inverse_mass):  # type: ignore[no-untyped-def]
-    # Energy test of every cluster; whether any fails.
-    for cluster in range(touching.total.shape[0]):
-        touching.total[cluster] = 0.0
-        touching.allowed[cluster] = 0.0
-    for k in range(touching.body.shape[0]):
-        touching.total[touching.cluster[k]] += touching.after[k]
-        touching.allowed[touching.cluster[k]] += touching.before[k] * (1.0 + ENERGY_ROUNDING) + touching.held[k]
-    for i in range(touching.loose.shape[0]):
-        p = touching.loose[i]
-        ux, uy = touching.given[p, 0], touching.given[p, 1]
-        vx, vy = ux + touching.change[p, 0], uy + touching.change[p, 1]
-        touching.total[touching.loose_cluster[i]] += 0.5 * mass[p] * (vx * vx + vy * vy)
-        touching.allowed[touching.loose_cluster[i]] += 0.5 * mass[p] * (ux * ux + uy * uy) * (1.0 + ENERGY_ROUNDING)
-    # What overlaps is pushed apart by work that a contact does.
-    for c in range(contacts.particle.shape[0]):
-        if push.bias[c] < 0.0 and contacts.gap[c] < 0.0:
-            cluster = _cluster_of(contacts, c, touching, blocks, inverse_mass)
-            if cluster >= 0:
-                touching.allowed[cluster] -= contacts.impulse[c, 0] * push.bias[c]
-    failing = False
-    for cluster in range(touching.total.shape[0]):
-        touching.fails[cluster] = not touching.total[cluster] <= touching.allowed[cluster]
-        failing = failing or touching.fails[cluster]
-    return failing
-
-
-@inner_kernel
-def _cluster_of(contacts, c, touching, blocks, inverse_mass):  # type: ignore[no-untyped-def]
-    for end in range(3):
-        p, _ = weight_of(contacts, c, end)
-        if p >= 0 and inverse_mass[p] > 0.0:
-            if blocks.block[p] >= 0:
-                return touching.cluster[blocks.block[p]]
-            low = 0
-            high = touching.loose.shape[0] - 1
-            while low < high:
-                middle = (low + high) // 2
-                if touching.loose[middle] < p:
-                    low = middle + 1
-                else:
-                    high = middle
-            return touching.loose_cluster[low]
-    return -1
-
-
-@inner_kernel
-def _brake(touching, items, contacts, push, blocks, mass, inverse_mass, rest_length, h):  # type: ignore[no-untyped-def]
-    # Halve the velocities of clusters that fail until they pass; at rest they do.
-    bodies, rows, springs, shapes, _, _ = items
-    for halving in range(LAST_HALVINGS + 1):
-        factor = 0.5 if halving < LAST_HALVINGS else 0.0
-        for k in range(touching.body.shape[0]):
-            if touching.fails[touching.cluster[k]]:
-                body = touching.body[k]
-                first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
-                first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
-                low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
-                for r in range(first_row, last_row):
-                    rows.trial[r, 0] *= factor
-                    rows.trial[r, 1] *= factor
-                touching.after[k] = body_energy(
-                    first_row, last_row, first, last, low, high, rows, springs, shapes, rest_length, h
-                )
-                keep_tension(first, last, rows, springs, h)
-        for i in range(touching.loose.shape[0]):
-            if touching.fails[touching.loose_cluster[i]]:
-                p = touching.loose[i]
-                for axis in range(2):
-                    v = touching.given[p, axis] + touching.change[p, axis]
-                    touching.change[p, axis] = factor * v - touching.given[p, axis]
-        if not _judge(touching, contacts, push, blocks, mass, inverse_mass):
-            break
-
-
-@inner_kernel
-def _finish(touching, items, velocity, energy_bank, tension, rest_length, h):  # type: ignore[no-untyped-def]
-    # Velocities, tensions, and banks, which together hold no more than the cluster has lost.
-    bodies, rows, springs, shapes, _, _ = items
+def _finish(touching, items, velocity, tension):  # type: ignore[no-untyped-def]
+    bodies, rows, springs, _, _, _ = items
     for k in range(touching.body.shape[0]):
         body = touching.body[k]
-        first_row, last_row = bodies.row_start[body], bodies.row_start[body + 1]
-        first, last = bodies.spring_start[body], bodies.spring_start[body + 1]
-        low, high = bodies.shape_start[body], bodies.shape_start[body + 1]
-        saved = touching.held[k] + touching.before[k] - touching.after[k]
-        # As in direct.py: a tangled body keeps all that it lost for the way back to its form.
-        if bodies.anchored[body] or not touching.tangled[k]:
-            limit = (BOUNCY_BANK_SHARE if touching.bouncy[k] else BANK_SHARE) * touching.before[k]
-            if touching.spread[k]:
-                limit += body_hidden(
-                    first, last, low, high, rows.position, rows.trial, springs, shapes, rest_length, h, h
-                )  # fmt: skip
-            saved = min(saved, limit)
-        saved = min(saved, max(0.0, touching.allowed[touching.cluster[k]] - touching.total[touching.cluster[k]]))
-        energy_bank[bodies.lowest[body]] = saved if saved > 0.0 else 0.0
-        touching.allowed[touching.cluster[k]] -= max(0.0, saved)
-        for r in range(first_row, last_row):
+        for r in range(bodies.row_start[body], bodies.row_start[body + 1]):
             velocity[rows.particle[r], 0] = rows.trial[r, 0]
             velocity[rows.particle[r], 1] = rows.trial[r, 1]
-        for s in range(first, last):
+        for s in range(bodies.spring_start[body], bodies.spring_start[body + 1]):
             tension[springs.slot[s]] = springs.tension[s]
     for i in range(touching.loose.shape[0]):
         p = touching.loose[i]
@@ -293,7 +231,8 @@ def _let_go(touching, bodies, rows):  # type: ignore[no-untyped-def]
 @kernel
 def _push_bodies(  # type: ignore[no-untyped-def]
     position, velocity, mass, inverse_mass, slow_velocity, energy_bank, rest_length, stiffness, damping, material,
-    tension, numbers, least, most, parts, before, rest_before, h, touching, blocks, columns, contacts, push,
+    tension, collides, numbers, least, most, parts, before, rest_before, h, touching, blocks, columns, contacts, push,
+    terrain,
 ):  # fmt: skip
     items = contents(numbers)
     bodies, rows, _, _, matrix, _ = items
@@ -302,26 +241,35 @@ def _push_bodies(  # type: ignore[no-untyped-def]
         touching, items, energy_bank, inverse_mass, rest_length, rest_before, stiffness, damping, material, tension,
         least, most, parts, h,
     )  # fmt: skip
+    open_loose(touching, mass, energy_bank)
+    affordable = int(WORK * h) // max(1, _cost_of(contacts, blocks))
     failing = False
-    for solve in range(LINEAR_SOLVES + NEWTON_ROUNDS):
+    for solve in range(LINEAR_SOLVES + 2):
         if solve < LINEAR_SOLVES:
             _solve_due(touching, items, blocks, columns, h, AHEAD, AHEAD)
+        elif solve == LINEAR_SOLVES:
+            hold(touching, contacts, push, inverse_mass, h)
         else:
             _let_go(touching, bodies, rows)
             _solve_due(touching, items, blocks, columns, h, 1.0, 0.0)
-        _push_all(touching, contacts, push, blocks, inverse_mass)
-        _answer(touching, items, rest_length, h)
-        failing = _judge(touching, contacts, push, blocks, mass, inverse_mass)
-        again = False
+        sweeps = max(FEWEST_SWEEPS, min(SWEEPS, affordable))
+        _push_all(touching, contacts, push, blocks, inverse_mass, sweeps)
+        affordable -= sweeps
+        if solve == 0:
+            grant(touching, contacts, push, inverse_mass, h)
+        _answer(touching, items, position, collides, terrain, rest_length, h)
+        failing = judge(touching, mass, before)
+        again = failing
         for k in range(touching.body.shape[0]):
             inexact = solve < LINEAR_SOLVES - 1 and touching.misfit[k] > MISFIT_RATE * h * h
             touching.due[k] = inexact or touching.fails[touching.cluster[k]]
             again = again or touching.due[k]
-        if not again:
+        if not again or affordable <= 0:
             break
     if failing:
-        _brake(touching, items, contacts, push, blocks, mass, inverse_mass, rest_length, h)
-    _finish(touching, items, velocity, energy_bank, tension, rest_length, h)
+        brake(touching, items, position, mass, before, collides, terrain, rest_length, h)
+    save(touching, items, contacts, push, inverse_mass, rest_length, energy_bank, h)
+    _finish(touching, items, velocity, tension)
 
 
 def _push(
@@ -348,8 +296,8 @@ def _push(
     columns = np.zeros(4 * int(sizes.max(initial=0)))
     _push_bodies(
         world.position, world.velocity, world.mass, world.inverse_mass, world.slow_velocity, world.energy_bank,
-        world.rest_length, stiffness, damping, world.material, world.tension, pattern.numbers, least, most, parts,
-        before.velocity, before.rest_length, h, touching, blocks, columns, contacts, push,
+        world.rest_length, stiffness, damping, world.material, world.tension, world.collides, pattern.numbers, least,
+        most, parts, before.velocity, before.rest_length, h, touching, blocks, columns, contacts, push, world.terrain,
     )  # fmt: skip
     return touched
 

@@ -1,7 +1,6 @@
 """The shape goal of a tangled jelly: what its springs and areas cannot find alone, since a step up lies before it.
 
-A jelly is tangled while a triangle of it is turned over, or while the triangles about one of its inner particles do not
-wind round that particle just once. Each of its particles is then joined by a spring of the jelly's own Cs and Cd to its
+While a jelly is tangled (tangle.py), each of its particles is joined by a spring of the jelly's own Cs and Cd to its
 place in the form, moved and turned to fit the particles (Mueller and others 2005, shape matching). Those springs push
 no jelly as a whole, and let it lose its spin; what they add to the body's energy was lost by the body before.
 """
@@ -14,8 +13,8 @@ from numpy.typing import NDArray
 
 from sandbox.physics.elements import AREA
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.solvers.ordering import label_bodies
 from sandbox.physics.solvers.shapes import Shapes, implicit_masses
+from sandbox.physics.tangle import group_triangles, wind
 from sandbox.physics.world import Floats, Slots
 
 # No turn fits where the fit of the best is below this share [1] of what it is to itself: in one point, or a square
@@ -48,50 +47,23 @@ def lay_out_goals(shapes: Shapes, shape_body: Slots, bodies: int, form: Floats) 
     count = len(shapes.slot)
     chosen = np.flatnonzero((shapes.kind == AREA) & (shapes.wide < 0))
     corners = shapes.first[:-1][chosen, None] + np.array([0, 1, 2])
-    rows = shapes.row[corners]
-    sides = np.stack([rows, np.roll(rows, -1, axis=1)], axis=-1).reshape(-1, 2)
-    keys = sides.min(axis=1) << 32 | sides.max(axis=1)
-    order = np.argsort(keys, kind="stable")
-    shared = np.flatnonzero(keys[order][1:] == keys[order][:-1])
-    label = np.arange(len(chosen))
-    label_bodies(order[shared] // 3, order[shared + 1] // 3, label)
-    samples, of_triangle = np.unique(label, return_inverse=True)
+    jellies = group_triangles(shapes.row[corners])
+    group, member = np.full(count, -1, dtype=np.int64), np.full((count, 3), -1, dtype=np.int64)
+    group[chosen], member[chosen] = jellies.group, jellies.member
     # Elements lie by body, and so do their groups, in the order of the first of each.
-    particle_keys, at, member = np.unique(
-        of_triangle.reshape(-1, 1) << 32 | rows, return_index=True, return_inverse=True
-    )  # fmt: skip
-    group, full = np.full(count, -1, dtype=np.int64), np.full((count, 3), -1, dtype=np.int64)
-    group[chosen], full[chosen] = of_triangle, member.reshape(-1, 3)
-    # Once round: as many triangles as neighbours.
-    pairs = np.concatenate([full[chosen].reshape(-1, 1), np.roll(full[chosen], -1, axis=1).reshape(-1, 1)], axis=1)
-    both = np.unique(np.concatenate([pairs, pairs[:, ::-1]]), axis=0)
-    neighbours = np.bincount(both[:, 0], minlength=len(particle_keys))
-    inner = neighbours == np.bincount(full[chosen].reshape(-1), minlength=len(particle_keys))
-    sample = chosen[samples]
+    sample = chosen[jellies.first]
     return Goals(
         of_body=np.searchsorted(shape_body[sample], np.arange(bodies + 1)),
-        start=np.searchsorted(particle_keys >> 32, np.arange(len(sample) + 1)),
-        row=particle_keys & 0xFFFFFFFF,
-        form=form[corners.reshape(-1)[at]],
+        start=jellies.start,
+        row=jellies.particle,
+        form=form[corners.reshape(-1)[jellies.corner]],
         sample=sample,
         group=group,
-        member=full,
-        inner=inner,
-        turns=np.zeros(len(particle_keys), dtype=np.int64),
+        member=member,
+        inner=jellies.inner,
+        turns=np.zeros(len(jellies.particle), dtype=np.int64),
         tangled=np.zeros(len(sample), dtype=np.bool_),
     )
-
-
-@inner_kernel
-def _crossing(px, py, ax, ay, bx, by):  # type: ignore[no-untyped-def]
-    # +1 where the corner at p, from a to b, sweeps over the direction (1, 0) counter-clockwise, -1 clockwise.
-    below = ay - py < 0.0
-    if below == (by - py < 0.0):
-        return 0
-    side = (ax - px) * (by - py) - (ay - py) * (bx - px)
-    if below:
-        return 1 if side > 0.0 else 0
-    return -1 if side < 0.0 else 0
 
 
 @inner_kernel
@@ -112,18 +84,10 @@ def find_tangled(body, low, high, rows, shapes, goals):  # type: ignore[no-untyp
         wanted = shapes.rest[k, 0]
         if wanted * shapes.rest[k, 1] > 0.0 and not (shapes.error[k] + wanted) * wanted > 0.0:
             goals.tangled[g] = True
-        a = shapes.row[shapes.first[k]]
-        b = shapes.row[shapes.first[k] + 1]
-        c = shapes.row[shapes.first[k] + 2]
-        ax = rows.position[a, 0]
-        ay = rows.position[a, 1]
-        bx = rows.position[b, 0]
-        by = rows.position[b, 1]
-        cx = rows.position[c, 0]
-        cy = rows.position[c, 1]
-        goals.turns[goals.member[k, 0]] += _crossing(ax, ay, bx, by, cx, cy)
-        goals.turns[goals.member[k, 1]] += _crossing(bx, by, cx, cy, ax, ay)
-        goals.turns[goals.member[k, 2]] += _crossing(cx, cy, ax, ay, bx, by)
+        first = shapes.first[k]
+        wind(
+            rows.position, shapes.row[first], shapes.row[first + 1], shapes.row[first + 2], goals.member, k, goals.turns
+        )  # fmt: skip
     any_tangled = False
     for g in range(first_group, last_group):
         round_once = 1 if shapes.rest[goals.sample[g], 1] > 0.0 else -1
