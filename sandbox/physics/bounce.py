@@ -3,7 +3,7 @@
 import math
 
 from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.shapes import weight_of
+from sandbox.physics.touching import weight_of
 
 # Bodies that meet more slowly [m/s] do not bounce. Lower makes what rests tremble, higher cuts off a last bounce.
 SLOWEST_BOUNCE = 0.5

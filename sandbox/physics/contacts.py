@@ -26,8 +26,8 @@ from sandbox.physics.narrow_phase import (
     touch_edges,
 )
 from sandbox.physics.outline import TERRAIN_OWNER, outline_of, shapes_of
-from sandbox.physics.shapes import Contacts, room_for, room_near
 from sandbox.physics.terrain import Terrain
+from sandbox.physics.touching import Contacts, room_for, room_near
 from sandbox.physics.world import Floats, Slots, World
 
 # A particle that is near no edge of a solid body is looked for deep inside it once in so many ticks; one that is found

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from sandbox.physics.contacts import find_contacts
 from sandbox.physics.guard import stop_at_terrain
 from sandbox.physics.outline import outline_of
-from sandbox.physics.shapes import Contacts
 from sandbox.physics.solvers.contact_clusters import bound_contacts
 from sandbox.physics.solvers.contact_loose import settle_loose
+from sandbox.physics.touching import Contacts
 from sandbox.physics.world import Floats, World
 
 

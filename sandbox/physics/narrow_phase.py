@@ -8,7 +8,7 @@ import math
 
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.shapes import MOST_NEAR
+from sandbox.physics.touching import MOST_NEAR
 
 # A contact exists from this gap on, as a share of the radii together, so that what rests keeps its contacts; a larger
 # share costs contacts that do nothing, a smaller one lets crowded particles overlap when they are pushed.

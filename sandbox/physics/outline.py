@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.shapes import Shapes
 from sandbox.physics.tangle import Triangles, tangled_particles, triangles_of
 from sandbox.physics.terrain import Terrain
+from sandbox.physics.touching import Shapes
 from sandbox.physics.world import HAND_MATERIAL, Slots, World
 
 # The group of terrain, and the bits of every group.

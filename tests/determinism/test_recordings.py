@@ -16,7 +16,7 @@ from tests.session.play import play
 SECONDS = 20
 # Interpreted kernels are some hundred times slower, so that run is cut to what the promise names.
 INTERPRETED_TICKS = 120
-# Contacts cost more than all else there: a level of many particles that touch is cut to fewer, in particles times ticks.
+# Contacts cost more than all else there: levels in which things touch are cut further [particles times ticks].
 INTERPRETED_TOUCHES = 6_000
 
 

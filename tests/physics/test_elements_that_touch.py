@@ -10,7 +10,7 @@ from sandbox.physics.equipment import StrainLimits
 from sandbox.physics.outline import ALL_GROUPS, LINE
 from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import restore, state_hash, take
-from sandbox.physics.solvers import SOLVERS, shape_pattern
+from sandbox.physics.solvers import SOLVERS, element_pattern
 from sandbox.physics.step import step
 from tests.physics.contact_scenes import BODIES, FLOOR, GROUND, add_discs, add_jelly, world
 from tests.physics.physics_scenes import run, scaled
@@ -99,7 +99,7 @@ def test_energy_never_rises_where_bodies_with_areas_touch():
 def test_a_wide_area_answers_to_contacts_as_a_narrow_one_does(monkeypatch):
     places = []
     for narrow in (3, 2):
-        monkeypatch.setattr(shape_pattern, "NARROW", narrow)
+        monkeypatch.setattr(element_pattern, "NARROW", narrow)
         w = world(GROUND)
         ring = add_ring(w, (0.0, 0.6), segments=3)
         add_discs(w, [(0.1, 1.5)], mass=5.0)

@@ -1,9 +1,9 @@
 """One body in a step of the direct solver: what it begins with, its energies, and the bank of its losses."""
 
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.solvers.element_terms import load_shapes, shape_potential
 from sandbox.physics.solvers.minimise import copy
 from sandbox.physics.solvers.network import kinetic, load_springs, potential
-from sandbox.physics.solvers.shapes import load_shapes, shape_potential
 
 # s += SLOW_SHARE (v' - s), per step. Higher leaves fast vibration undamped, lower damps slow turning.
 SLOW_SHARE = 0.3

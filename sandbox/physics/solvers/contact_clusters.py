@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.shapes import Contacts, weight_of
 from sandbox.physics.solvers.contact_sweep import Blocks
 from sandbox.physics.solvers.pattern import Pattern
+from sandbox.physics.touching import Contacts, weight_of
 from sandbox.physics.world import Floats, Slots, World
 
 

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import contents, inner_kernel, kernel
-from sandbox.physics.shapes import weight_of
 from sandbox.physics.solvers import direct
 from sandbox.physics.solvers.body import (
     body_potential,
@@ -38,13 +37,14 @@ from sandbox.physics.solvers.contact_sweep import (
     solve_contacts,
 )
 from sandbox.physics.solvers.direct import AHEAD, LINEAR_SOLVES, MISFIT_RATE
+from sandbox.physics.solvers.element_terms import linearise_shapes, update_shapes
 from sandbox.physics.solvers.goal import aim_at_form, find_tangled, let_go
 from sandbox.physics.solvers.minimise import copy, keep_tension, scale
 from sandbox.physics.solvers.network import hold_spin, kinetic, linearise, solve_linear, update_impulses
 from sandbox.physics.solvers.pattern import Pattern
 from sandbox.physics.solvers.response import load_block, respond
-from sandbox.physics.solvers.shapes import linearise_shapes, update_shapes
 from sandbox.physics.solvers.single_pass import Pair
+from sandbox.physics.touching import weight_of
 from sandbox.physics.world import Floats, World
 
 # Sweeps over the contacts for each linear solve. More costs time, fewer leaves piles soft and restless.

@@ -8,12 +8,12 @@ is saved, up to a limit, in the banks of bodies and particles; to push apart wha
 from sandbox.physics.guard import STOPS, stopped
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.outline import TERRAIN_GROUP
-from sandbox.physics.shapes import weight_of
 from sandbox.physics.solvers.body import BANK_SHARE, BOUNCY_BANK_SHARE, body_energy, body_hidden
 from sandbox.physics.solvers.contact_sweep import FASTEST_PUSH, OVERLAP_SHARE, SOFTNESS
 from sandbox.physics.solvers.direct import ENERGY_ROUNDING, LAST_HALVINGS
 from sandbox.physics.solvers.minimise import copy, keep_tension, scale
 from sandbox.physics.solvers.network import kinetic
+from sandbox.physics.touching import weight_of
 
 # Halvings of what moves within bodies that fail the test, before all that moves is slowed down.
 INNER_HALVINGS = 3

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
-from sandbox.physics.shapes import Contacts
 from sandbox.physics.solvers.contact_sweep import FASTEST_PUSH
+from sandbox.physics.touching import Contacts
 from sandbox.physics.world import Floats, Slots, World
 
 # A small step is no longer than this [s]: 8 of them at 60 Hz. With a quarter of them, heaps of 50 layers sink into each

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.shapes import weight_of
+from sandbox.physics.touching import weight_of
 from sandbox.physics.world import Floats, Slots
 
 # Cs / Cd of a contact that overlaps: the part of the overlap that a step removes. Higher shakes what rests, lower

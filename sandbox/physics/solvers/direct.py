@@ -23,6 +23,11 @@ from sandbox.physics.solvers.body import (
     load_rows,
     open_bank,
 )
+from sandbox.physics.solvers.element_terms import (
+    HIGHEST_COEFFICIENT,
+    linearise_shapes,
+    update_shapes,
+)
 from sandbox.physics.solvers.goal import aim_at_form, find_tangled, let_go
 from sandbox.physics.solvers.halves import hire
 from sandbox.physics.solvers.measure import cap, extremes
@@ -36,11 +41,6 @@ from sandbox.physics.solvers.network import (
     update_impulses,
 )
 from sandbox.physics.solvers.pattern import Pattern, has_elements, is_current, make_pattern
-from sandbox.physics.solvers.shapes import (
-    HIGHEST_COEFFICIENT,
-    linearise_shapes,
-    update_shapes,
-)
 from sandbox.physics.solvers.single_pass import Pair, apply_explicit
 from sandbox.physics.world import Floats, World
 

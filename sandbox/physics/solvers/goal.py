@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.elements import AREA
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.solvers.shapes import Shapes, implicit_masses
+from sandbox.physics.solvers.element_terms import Shapes, implicit_masses
 from sandbox.physics.tangle import group_triangles, wind
 from sandbox.physics.world import Floats, Slots
 

@@ -12,7 +12,6 @@ from sandbox.physics.elements import AREA, BEND, element_rate, evaluate, explici
 from sandbox.physics.equation import direction, reduced_mass
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.shapes import NO_CONTACTS
 from sandbox.physics.solvers.contact_sweep import (
     add_change,
     load_biases,
@@ -23,6 +22,7 @@ from sandbox.physics.solvers.contact_sweep import (
     sweep,
 )
 from sandbox.physics.solvers.single_pass import Pair, apply_explicit
+from sandbox.physics.touching import NO_CONTACTS
 from sandbox.physics.world import LAW_HOOKE, Floats, World
 
 # The share of what an area still wants that it gets in an iteration after the first. With all of it jellies and rings,

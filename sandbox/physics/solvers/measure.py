@@ -11,7 +11,7 @@ import numpy as np
 
 from sandbox.physics.equation import half_step
 from sandbox.physics.jit import kernel
-from sandbox.physics.solvers.shapes import HIGHEST_COEFFICIENT
+from sandbox.physics.solvers.element_terms import HIGHEST_COEFFICIENT
 from sandbox.physics.substeps import MOST_AUTO
 from sandbox.physics.world import Floats
 

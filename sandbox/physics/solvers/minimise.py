@@ -1,8 +1,8 @@
 """The fallback of a step: f itself (network.py), minimised by Newton's method."""
 
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.solvers.element_terms import linearise_shapes, shape_objective, shape_slope
 from sandbox.physics.solvers.network import linearise, objective, solve_linear
-from sandbox.physics.solvers.shapes import linearise_shapes, shape_objective, shape_slope
 
 # Newton rounds of the minimisation, sufficient decrease (Armijo), halvings of a round, and the relative decrease at
 # which it ends. With 3 rounds, a whipping rope can lose most of its motion in one step.

@@ -16,10 +16,7 @@ import math
 
 from sandbox.physics.equation import SHORTEST, direction, reduced_mass
 from sandbox.physics.jit import inner_kernel, scalar_kernel
-from sandbox.physics.solvers.factor import back_substitute, factorise
-from sandbox.physics.solvers.fronts import add_block, clear_fronts
-from sandbox.physics.solvers.halves import solve_fronts
-from sandbox.physics.solvers.shapes import (
+from sandbox.physics.solvers.element_terms import (
     assemble_shapes,
     correct_wide,
     implicit_masses,
@@ -27,6 +24,9 @@ from sandbox.physics.solvers.shapes import (
     solve_again,
     take_in_wide,
 )
+from sandbox.physics.solvers.factor import back_substitute, factorise
+from sandbox.physics.solvers.fronts import add_block, clear_fronts
+from sandbox.physics.solvers.halves import solve_fronts
 
 # A linear solve is refined once where impulses that cancel are this many times those that are left: a violent step. A
 # higher bound loses the digits of one spring's step at Cd near 1, a lower one costs time on every step.

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from sandbox.physics.components import label_bodies
 from sandbox.physics.jit import bundle, kernel
 from sandbox.physics.solvers.dissection import Dissection, dissect_bodies, make_fronts, spring_places
+from sandbox.physics.solvers.element_pattern import chosen_elements, lay_out_shapes, shapes_anchored
+from sandbox.physics.solvers.element_terms import Shapes
 from sandbox.physics.solvers.fronts import Fronts
 from sandbox.physics.solvers.goal import Goals, lay_out_goals
 from sandbox.physics.solvers.ordering import minimum_degree, update_targets
-from sandbox.physics.solvers.shape_pattern import chosen_elements, lay_out_shapes, shapes_anchored
-from sandbox.physics.solvers.shapes import Shapes
 from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, Floats, Slots, World
 
 # First guess of blocks in the factor per particle; too low costs one more pass, too high memory.

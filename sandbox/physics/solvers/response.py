@@ -1,9 +1,9 @@
 """Response of a factored body: how its particles answer to impulses at some of them."""
 
 from sandbox.physics.jit import inner_kernel, unsigned
+from sandbox.physics.solvers.element_terms import correct_wide, solve_again
 from sandbox.physics.solvers.fronts import ONE, TWO, ZERO, subtract_pair
 from sandbox.physics.solvers.minimise import copy
-from sandbox.physics.solvers.shapes import correct_wide, solve_again
 
 
 @inner_kernel
@@ -89,7 +89,7 @@ def _gather(k, first_row, last_row, first, points, row, blocks, columns, matrix)
 
 @inner_kernel
 def _take_out_wide(low, high, base, first, points, row, blocks, shapes):  # type: ignore[no-untyped-def]
-    # W -= scale (P z) (P z)^T for each wide element, as shapes.py has it of A^-1.
+    # W -= scale (P z) (P z)^T for each wide element, as element_terms.py has it of A^-1.
     for k in range(low, high):
         number = shapes.wide[k]
         if number < 0:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.solvers.shapes import Shapes
+from sandbox.physics.solvers.element_terms import Shapes
 from sandbox.physics.world import Slots, World
 
 # Corners of an element that is added to the matrix; one of more is wide.
