@@ -145,7 +145,7 @@ def stands(table: Table) -> None:
 
 
 def boxes(table: Table) -> None:
-    """Discs of masses 1e-2..1e2 at 20 m/s in closed boxes: the largest rise of energy in a tick over the start's."""
+    """Discs of masses 1e-2..1e2 at 20 m/s in closed boxes: the largest rise of energy in a tick over the start."""
     for restitution in (0.0, 0.5, 1.0):
         rise = 0.0
         for seed in range(3):
@@ -216,7 +216,7 @@ def main() -> int:
     print("| scene | figures |\n|---|---|")
     settles(table, "heap of 2,000 discs", heap(2000, 40), pymunk_heap(2000, 40))
     for seed in range(1, 6):
-        settles(table, f"heap of 500 discs, seed {seed}", heap(500, 24, seed), pymunk_heap(500, 24))
+        settles(table, f"heap of 500 discs, seed {seed}", heap(500, 24, seed))
     settles(table, "heap of 500 discs, radii 0.04..0.12 m", heap(500, 24, 1, (0.04, 0.12)))
     settles(table, "heap of 500 discs, masses 0.1..10 kg", heap(500, 24, 1, spread=1.0))
     settles(table, "pile of 30 jelly cubes", pile())

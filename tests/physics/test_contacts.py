@@ -158,8 +158,11 @@ def test_discs_that_collide_in_free_space_keep_their_momentum():
     places = generator.uniform(-1.5, 1.5, (40, 2))
     add_discs(w, places, mass=10.0 ** generator.uniform(-2.0, 2.0, 40), velocity=-5.0 * places, restitution=0.7)
     momenta = w.mass[:, None] * w.velocity
-    run(w, 60)
-    assert len(w.contact_particle) > 20
+    met = 0
+    for _ in range(60):
+        step(w)
+        met += int(np.count_nonzero(w.contact_impulse[:, 0]))
+    assert met > 20
     assert np.abs((w.mass[:, None] * w.velocity - momenta).sum(axis=0)).max() < 1e-13 * np.abs(momenta).sum()
 
 
