@@ -391,9 +391,17 @@ def test_run_app_closes_after_the_given_time_and_prints_where_the_time_went(caps
     assert all(part in printed for part in ("events", "ui", "flip", "frames a second"))
 
 
-def test_a_level_in_which_things_touch_waits_until_contacts_are_prepared(driver, monkeypatch):
+def delayed_contacts(driver, monkeypatch):
+    """Preparation of contacts that takes until the event is set."""
     touching = threading.Event()
-    monkeypatch.setattr(driver.app.preparation, "_all", touching)
+    thread = threading.Thread(target=touching.wait, daemon=True)
+    thread.start()
+    monkeypatch.setattr(driver.app.preparation, "_contacts", thread)
+    return touching
+
+
+def test_a_level_in_which_things_touch_waits_until_contacts_are_prepared(driver, monkeypatch):
+    touching = delayed_contacts(driver, monkeypatch)
     assert driver.app.ready
     driver.app.start(Playback(small_level(contacts={})))
     for _ in range(5):
@@ -409,8 +417,7 @@ def test_a_level_in_which_things_touch_waits_until_contacts_are_prepared(driver,
 def test_pictures_of_levels_in_which_nothing_touches_are_drawn_before_contacts_are_prepared(open_app, monkeypatch):
     driver = open_app()
     driver.app.preparation.finish()
-    touching = threading.Event()
-    monkeypatch.setattr(driver.app.preparation, "_all", touching)
+    touching = delayed_contacts(driver, monkeypatch)
     driver.app.open_gallery()
     cards = driver.app.gallery.cards
     for _ in cards:
