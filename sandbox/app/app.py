@@ -256,7 +256,7 @@ class App:
     def title(self) -> str:
         """The window's title, so that other programs can follow what happens."""
         if self.screen is None or self.gallery is not None:
-            return "Levels - Spring Sandbox"
+            return f"{'Levels' if self.gallery is None else self.gallery.title} - Spring Sandbox"
         words = [*self.screen.title(), *(["dialog"] if self.ui.has_sheet else [])]
         words += [] if self.ready else ["preparing"]
         return " - ".join([*words, "Spring Sandbox"])

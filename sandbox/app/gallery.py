@@ -36,6 +36,8 @@ NEW_TIP = "Draw a level of your own, from an empty sheet"
 PICTURE_SECONDS = 0.8
 # Thickness of lines in pictures, which are drawn at twice their size.
 PICTURE_SCALE = 1.4
+# What is shown, a page each, and its name.
+SECTIONS = (("levels", "Levels", ""), ("mine", "My levels", ""), ("recordings", "Replays", ""))
 # Levels of more particles than this are drawn as they are built, and all where physics is interpreted: the gallery
 # stays quick.
 PICTURE_PARTICLES = 3000
@@ -117,14 +119,14 @@ class Gallery:
         self._unpainted: list[tuple[Card, Level]] = []
         self._scroll = 0.0
         self._columns = 1
+        self.title = {name: text for name, text, _ in SECTIONS}[section]
         self._open = partial(files.open_level, shipped=section == "levels")
         end = close if files.app.screen is not None else lambda: None
         self.sheet = ui.open_sheet(end, "@cover", again=lambda _: files.app.open_gallery(section))
         width, height = ui.units
         editing = files.app.mode == "edit"
         ui.label(ui.rect(MARGIN, 26, 300, 40), "Edit a level" if editing else "Spring Sandbox", self.sheet, "@display")
-        options = [("levels", "Levels", ""), ("mine", "My levels", ""), ("recordings", "Replays", "")]
-        tabs = ui.choice(ui.rect(width - MARGIN - 424, 32, 252, 32), options, self._files.app.open_gallery, self.sheet)
+        tabs = ui.choice(ui.rect(width - MARGIN - 424, 32, 252, 32), SECTIONS, self._files.app.open_gallery, self.sheet)
         tabs.show(section)
         ui.button(ui.rect(width - MARGIN - 162, 32, 58, 32), "New", files.app.documents.new, self.sheet, tip=NEW_TIP)
         ui.button(ui.rect(width - MARGIN - 98, 32, 98, 32), "Open file", files.ask_to_open, self.sheet)

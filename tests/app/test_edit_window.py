@@ -130,6 +130,7 @@ class Maker:
         self.twin.frames(2)
         self.person.click(self.place_of_label("My levels"))
         self.twin.choose("My levels")
+        self.person.wait_for("My levels")
         self.picture("my levels")
         card = self.twin.app.gallery.cards[0]
         self.person.click(card.rect.center)
