@@ -127,7 +127,7 @@ class FileActions:
 
     def _stop_and_name(self) -> None:
         assert self.app.play is not None
-        path = self.app.play.playback.session.stop_recording()
+        path = self.app.play.playback.stop_recording()
         if path is None:
             return
         self.app.status.take_back(_recording(path))

@@ -136,7 +136,7 @@ class PlayScreen:
 
     def leave(self) -> None:
         """End a recording that is being made; its file is complete."""
-        path = self.playback.session.stop_recording()
+        path = self.playback.stop_recording()
         if path is not None:
             self._app.say(f"Saved as {path}")
 

@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -103,6 +104,11 @@ class Playback:
             if len(self.previous.mass) != len(self.current.mass) or self.clock.paused:
                 self.previous = self.current
         self._drain()
+
+    def stop_recording(self) -> Path | None:
+        """End a recording, with all that was submitted until now in it; its file, None where none was being made."""
+        self.apply_pending()
+        return self.session.stop_recording()
 
     def advance(self, frame_time: float) -> int:
         """Let frame_time [s] of wall time pass; returns the ticks that were made."""

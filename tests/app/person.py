@@ -18,6 +18,9 @@ DEADLINE = 90.0
 # A movement that changes no pixel is given up after this [s].
 PATIENCE = 1.0
 
+# So long a drag is held on to where it ends.
+HELD_TICKS = 20
+
 needs_a_screen = pytest.mark.skipif(
     not (shutil.which("Xvfb") and shutil.which("xdotool")), reason="needs Xvfb and xdotool (apt install xvfb xdotool)"
 )
@@ -110,11 +113,20 @@ class Person:
         self.seen("mousedown", 1, patience=PATIENCE)
         self.do("mouseup", 1)
 
+    def tick(self) -> int:
+        """The tick of the run, as the title has it."""
+        return int(self.title().partition("tick ")[2].split()[0])
+
     def drag(self, points: list[tuple[float, float]], while_held: str | None = None) -> None:
+        """Drag along points; while_held: what the title says of what is held, which then is held on for some ticks."""
         self.do("mousemove", *map(round, points[0]))
         self.do("mousedown", 1)
         if while_held:
             self.wait_for(while_held)
         for point in points[1:]:
             self.do("mousemove", *map(round, point))
+        if while_held:
+            until = self.tick() + HELD_TICKS
+            while self.tick() < until:
+                assert self.app.poll() is None
         self.do("mouseup", 1)

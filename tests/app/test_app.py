@@ -166,6 +166,19 @@ def test_record_drag_slide_and_save_gives_a_replay_that_verifies(driver, documen
     assert not driver.app.ui.has_sheet
 
 
+def test_a_recording_holds_what_was_done_before_it_ended_though_no_frame_came_between(driver, documents):
+    driver.key(pygame.K_r, CTRL)
+    start = driver.pixel_of("rope.3")
+    driver.press(start)
+    driver.frames(5)
+    driver.post(pygame.MOUSEBUTTONUP, pos=tuple(map(round, start)), button=1)
+    driver.key(pygame.K_r, CTRL)
+    driver.key(pygame.K_RETURN)
+    replay = read_replay(next(documents.iterdir()))
+    assert {line.record["type"] for line in replay.script} >= {"grab", "release"}
+    assert verify(replay) is None
+
+
 def test_a_replays_name_that_exists_is_refused_and_nothing_is_overwritten(driver, documents):
     documents.mkdir()
     (documents / "taken.replay.jsonl").write_text("mine")

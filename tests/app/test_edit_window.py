@@ -144,7 +144,7 @@ class Maker:
         self.person.wait_for("tick", "playing")
         self.twin.app.act("play")
         self.twin.frames(REST)
-        while int(self.person.title().partition("tick ")[2].split()[0]) < self.twin.playback.session.tick:
+        while self.person.tick() < self.twin.playback.session.tick:
             assert self.person.app.poll() is None
         self.press("record")
         self.person.wait_for("recording")
