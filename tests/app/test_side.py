@@ -602,4 +602,4 @@ def test_names_without_a_width_can_be_opened_shown_and_typed_over(edit, tmp_path
     driver.app.open_gallery("mine")
     driver.frames(3)
     assert [card.name for card in driver.app.gallery.cards] == [name]
-    assert driver.app.title() == "Levels - Spring Sandbox"
+    assert driver.app.title() == "My levels - Spring Sandbox"
