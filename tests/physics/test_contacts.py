@@ -135,6 +135,20 @@ def test_discs_of_any_mass_lie_on_each_other_no_deeper_than_a_twentieth_of_a_rad
     assert np.abs(w.velocity).max() < 1e-3
 
 
+@pytest.mark.parametrize(("tick_rate", "substeps"), [(30, 1), (60, 1), (60, 2), (120, 1)])
+def test_discs_bounce_the_same_wherever_in_a_tick_they_meet_the_ground(tick_rate, substeps):
+    w = world(FLOOR, tick_rate=tick_rate, substeps=substeps)
+    drops = np.linspace(1.0, 1.4, 40)
+    add_discs(w, np.stack([np.arange(-20.0, 20.0), drops + 0.1], axis=1), restitution=0.5)
+    heights = []
+    for _ in range(tick_rate):
+        step(w)
+        heights.append(w.position[:40, 1] - 0.1)
+    landing = np.argmin(heights[: round(0.6 * tick_rate)], axis=0)
+    peaks = np.array([max(height[disc] for height in heights[tick:]) for disc, tick in enumerate(landing)])
+    np.testing.assert_allclose(peaks / drops, 0.25, atol=0.02)
+
+
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
 def test_discs_of_very_unequal_mass_in_a_closed_box_never_gain_energy(restitution):
     w = world(Chain([(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)], "hollow"), gravity=(0.0, 0.0))

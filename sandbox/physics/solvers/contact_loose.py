@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sandbox.physics.bounce import SLOWEST_BOUNCE
 from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
 from sandbox.physics.solvers.contact_sweep import FASTEST_PUSH
 from sandbox.physics.touching import Contacts
@@ -137,8 +138,9 @@ def _begin(contacts, work, first, last, scale):  # type: ignore[no-untyped-def]
 
 
 @inlined_kernel
-def _sweep(contacts, work, first, last, small, passed, softness):  # type: ignore[no-untyped-def]
-    # One sweep in order, after the time `passed`; softness 0: what overlaps is not pushed apart.
+def _sweep(contacts, work, first, last, small, passed, softness, ends):  # type: ignore[no-untyped-def]
+    # One sweep in order, after the time `passed`; softness 0: what overlaps is not pushed apart. ends: whether the step
+    # does with it; what would meet in the first small step of the next one, and bounce there, is not slowed before.
     for i in range(first, last):
         c = work.contact[i]
         p = work.first[i]
@@ -161,6 +163,8 @@ def _sweep(contacts, work, first, last, small, passed, softness):  # type: ignor
         if contacts.bounce[c] >= 0.0:
             bias = -contacts.bounce[c]
         elif gap > 0.0:
+            if ends and contacts.restitution[c] > 0.0 and nx * ux + ny * uy < -SLOWEST_BOUNCE:
+                continue
             bias = gap / small
         elif softness > 0.0:
             bias = max(OVERLAP_SHARE * gap / small, -FASTEST_PUSH)
@@ -248,7 +252,11 @@ def _settle(contacts, work, h):  # type: ignore[no-untyped-def]
                     work.velocity[k, axis] = free + work.pushed[k, axis]
                     work.pushed[k, axis] = free
             for turn in range(2):
-                _sweep(contacts, work, first, last, small, small * (part + turn), 0.0 if turn == 1 else softness)
+                relaxes = turn == 1
+                _sweep(
+                    contacts, work, first, last, small, small * (part + turn), 0.0 if relaxes else softness,
+                    relaxes and part == parts - 1,
+                )  # fmt: skip
                 if turn == 0:
                     for k in range(begin, end):
                         work.way[k, 0] += small * work.velocity[k, 0]
