@@ -438,5 +438,6 @@ def test_pictures_of_levels_in_which_nothing_touches_are_drawn_before_contacts_a
     touches = {level.name: level.has_contacts for level in map(read_level, shipped_levels())}
     assert {card.name: card.picture is None for card in cards} == touches and any(touches.values())
     touching.set()
+    driver.app.preparation.finish(contacts=True)
     driver.frames(len(cards))
     assert all(card.picture is not None for card in cards)
