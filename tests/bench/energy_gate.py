@@ -141,11 +141,10 @@ def energies(graphs: Graphs, count: int, *, start: bool = False) -> Floats:
     separation = world.position[world.particle_b] - world.position[world.particle_a]
     error = np.sqrt(np.sum(separation**2, axis=1)) - world.rest_length
     value, effective, _ = measure_elements(world)
-    of_elements = SOLVERS[world.settings.solver].spring_constant(
-        world.element_stiffness, world.element_damping, effective, h
-    )
+    stiffness, damping = world.element_coefficients
+    of_elements = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, effective, h)
     if world.settings.substeps == AUTO:
-        of_elements = extremes(world.element_stiffness, world.element_damping)[start] * effective / (h * h)
+        of_elements = extremes(stiffness, damping)[start] * effective / (h * h)
     moving = np.where(world.inverse_mass > 0.0, world.mass * np.sum(world.velocity**2, axis=1), 0.0)
     return 0.5 * (
         np.bincount(graphs.of_particle, moving, count)
