@@ -15,6 +15,7 @@ from sandbox.level.files import shipped_levels
 
 def test_every_shipped_level_has_a_card_with_a_picture(open_app):
     driver = open_app()
+    driver.app.preparation.finish(contacts=True)
     driver.frames(len(shipped_levels()) + 2)
     cards = driver.app.gallery.cards
     assert len(cards) == len(shipped_levels())
