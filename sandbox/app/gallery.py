@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pygame
 
 from sandbox.app.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT
-from sandbox.app.painted import Painted, wrapped
+from sandbox.app.painted import Lit, wrapped
 from sandbox.app.picture import crop_of, draw_picture, run_ahead
 from sandbox.app.recordings import saved_recordings
 from sandbox.app.widgets import ENTER_KEYS, Ui
@@ -43,7 +43,7 @@ SECTIONS = (("levels", "Levels", ""), ("mine", "My levels", ""), ("recordings", 
 PICTURE_PARTICLES = 3000
 
 
-class Card(Painted):
+class Card(Lit):
     """One thing to open: a picture where there is one, a name, a line of text."""
 
     def __init__(
@@ -84,14 +84,6 @@ class Card(Painted):
             inset = self.picture.get_rect(center=frame.center)
             card.blit(self.picture, inset)
         pygame.draw.line(card, LINE, (1, height), (width - 2, height))
-
-    def on_hovered(self) -> None:
-        """Show that a click opens this."""
-        self.repaint()
-
-    def on_unhovered(self) -> None:
-        """Back to how it was."""
-        self.repaint()
 
     def process_event(self, event: pygame.event.Event) -> bool:
         """Open on a click."""

@@ -33,6 +33,18 @@ class Painted(UIElement):
         return False
 
 
+class Lit(Painted):
+    """A painted widget that looks otherwise while it is `hovered`, under the mouse."""
+
+    def on_hovered(self) -> None:
+        """Show that it can be used."""
+        self.repaint()
+
+    def on_unhovered(self) -> None:
+        """Back to how it was."""
+        self.repaint()
+
+
 def wrapped(text: str, font: pygame.font.Font, widest: int, most_lines: int) -> list[str]:
     """The words of a text in lines no wider than `widest` [pixels]; what does not fit ends in an ellipsis."""
     lines: list[str] = []

@@ -25,7 +25,7 @@ from sandbox.physics.narrow_phase import (
     touch_disc,
     touch_edges,
 )
-from sandbox.physics.outline import TERRAIN_OWNER, outline_of, shapes_of
+from sandbox.physics.outline import TERRAIN_OWNER, Outline, shapes_of
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.touching import Contacts, room_for, room_near
 from sandbox.physics.world import Floats, Slots, World
@@ -271,12 +271,11 @@ def _pairs_of_terrain(terrain: Terrain, box: Floats, meets: Slots, room: int) ->
         room = count
 
 
-def find_contacts(world: World, start: Floats, h: float) -> Contacts:
+def find_contacts(world: World, outline: Outline, start: Floats, h: float) -> Contacts:
     """All contacts of a step of h [s] that begins with the velocities which gravity and all else have left.
 
-    start [m/s] (n, 2): the velocities before those.
+    outline: of the world as it is now. start [m/s] (n, 2): the velocities before those.
     """
-    outline = outline_of(world)
     shapes = shapes_of(world, outline)
     particles = world.particle_count
     objects = particles + outline.dynamic

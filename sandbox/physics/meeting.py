@@ -27,8 +27,9 @@ def meet(world: World, start: Floats, h: float) -> Meeting:
 
     start [m/s] (n, 2): the velocities before gravity and all else from outside.
     """
-    contacts, ahead = find_contacts(world, start, h), np.zeros((world.particle_count, 2))
-    held = np.diff(outline_of(world).near_start) > 0
+    outline, ahead = outline_of(world), np.zeros((world.particle_count, 2))
+    contacts = find_contacts(world, outline, start, h)
+    held = np.diff(outline.near_start) > 0
     held[world.corner_particle] = True
     bound, cluster = bound_contacts(contacts, world.inverse_mass, held)
     if not bound.all():

@@ -7,7 +7,7 @@ import pygame
 
 from sandbox.app.colours import ACCENT, LINE, MUTED, TEXT, mixed
 from sandbox.app.edit.rows import FIELD_BACKGROUND
-from sandbox.app.painted import Painted, wrapped
+from sandbox.app.painted import Lit, Painted, wrapped
 from sandbox.app.widgets import ENTER_KEYS, Ui
 
 TEXT_SIZE = 12.5
@@ -143,7 +143,7 @@ class KeyBox(Painted):
         return True
 
 
-class Scrub(Painted):
+class Scrub(Lit):
     """The label of a number, which a drag to the right or left counts up or down.
 
     turn(steps) is called as it goes, done() at its end.
@@ -161,13 +161,12 @@ class Scrub(Painted):
         super().__init__(ui, rect, container)
         self._text, self._turn, self._done = text, turn, done
         self._from: float | None = None
-        self._is_hovered = False
         self.repaint()
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """The text; brighter under the mouse, with a dotted line that says it can be dragged."""
         ui, surface = self.ui, pygame.Surface(size, pygame.SRCALPHA)
-        is_lit = self._is_hovered or self._from is not None
+        is_lit = self.hovered or self._from is not None
         text = wrapped(self._text, ui.font(TEXT_SIZE), size[0], 1)[0]
         picture = ui.font(TEXT_SIZE).render(text, True, TEXT if is_lit else MUTED)
         at = picture.get_rect(midleft=(0, size[1] // 2))
@@ -176,16 +175,6 @@ class Scrub(Painted):
             for x in range(0, at.width, ui.px(4)):
                 surface.fill(ACCENT, (x, at.bottom, ui.px(2), max(1, ui.px(1))))
         return surface
-
-    def on_hovered(self) -> None:
-        """Become brighter."""
-        self._is_hovered = True
-        self.repaint()
-
-    def on_unhovered(self) -> None:
-        """Back to how it was."""
-        self._is_hovered = False
-        self.repaint()
 
     def process_event(self, event: pygame.event.Event) -> bool:
         """Follow a drag that began on it."""

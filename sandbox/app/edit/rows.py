@@ -9,7 +9,7 @@ import pygame
 
 from sandbox.app.colours import ACCENT, LINE, MUTED, TEXT, Colour, mixed
 from sandbox.app.edit.scroll import WHEEL_STEP
-from sandbox.app.painted import Painted, wrapped
+from sandbox.app.painted import Lit, Painted, wrapped
 from sandbox.app.widgets import ENTER_KEYS, Ui
 
 # Sizes in layout units.
@@ -201,7 +201,7 @@ class RowList(Painted):
             surface.blit(ui.font(11).render(text, True, MUTED), (left, y))
 
 
-class Picker(Painted):
+class Picker(Lit):
     """A value that a menu of rows changes: opens below it, by a click, Enter, Space or an arrow key."""
 
     def __init__(self, ui: Ui, rect: pygame.Rect, choose: Callable[[int], None], container: Any = None) -> None:
@@ -209,7 +209,6 @@ class Picker(Painted):
         self.rows: Sequence[Row] = ()
         self.shown = Row("")
         self._choose = choose
-        self._is_hovered = False
         ui.add(self)
         self.repaint()
 
@@ -224,7 +223,7 @@ class Picker(Painted):
         ui = self.ui
         surface = pygame.Surface(size, pygame.SRCALPHA)
         place = surface.get_rect()
-        back = mixed(FIELD_BACKGROUND, TEXT, 0.06) if self._is_hovered else FIELD_BACKGROUND
+        back = mixed(FIELD_BACKGROUND, TEXT, 0.06) if self.hovered else FIELD_BACKGROUND
         pygame.draw.rect(surface, back, place, border_radius=ui.px(6))
         pygame.draw.rect(surface, LINE, place, 1, border_radius=ui.px(6))
         left = ui.px(8)
@@ -240,16 +239,6 @@ class Picker(Painted):
         chevron = [(x - half, y - half // 2), (x, y + half // 2), (x + half, y - half // 2)]
         pygame.draw.lines(surface, MUTED, False, chevron, 2)
         return surface
-
-    def on_hovered(self) -> None:
-        """Become lighter."""
-        self._is_hovered = True
-        self.repaint()
-
-    def on_unhovered(self) -> None:
-        """Back to how it was."""
-        self._is_hovered = False
-        self.repaint()
 
     def process_event(self, event: pygame.event.Event) -> bool:
         """Open on a click."""
