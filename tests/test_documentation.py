@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from sandbox.level.files import load_level, parse_level
+from sandbox.level.format.files import load_level, parse_level
 from sandbox.session.checking import run_checks
-from sandbox.session.reading import read_script
 from sandbox.session.records import COMMAND_TYPES
+from sandbox.session.replay.reader import read_script
 from sandbox.session.session import Session
 
 ROOT = Path(__file__).resolve().parents[1]
