@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sandbox.level.files import parse_level
+from sandbox.level.format.files import parse_level
 from sandbox.physics.snapshot import hash_by_array, state_hash
 from sandbox.session.records import ScriptLine
 from sandbox.session.session import Session

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.level.files import parse_level, shipped_levels
+from sandbox.level.format.files import parse_level, shipped_levels
 from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers import SOLVERS

@@ -2,7 +2,7 @@
 
 import pytest
 
-from sandbox.level.files import shipped_levels
+from sandbox.level.format.files import shipped_levels
 from sandbox.physics.jit import COMPILED
 from tests.determinism.golden import FOLDER, KEPT_TICKS, golden_names, played, read_golden
 
