@@ -21,13 +21,12 @@ NO_EDGE, LINE, SOLID_LEFT, SOLID_RIGHT = 0, 1, 2, 3
 
 @dataclass(frozen=True)
 class Outline:
-    """What the edges of a world's springs are, which topology alone decides; signature: what it was made for.
+    """What the edges of a world's springs are, which topology alone decides.
 
     shielded: particles inside a solid body that no torn spring lays bare; discs do not meet them.
     solid (k, 2): first edge and one past the last of each owner's edges where any is solid, terrain included.
     """
 
-    signature: tuple[NDArray[np.generic], ...]
     edge_a: Slots
     edge_b: Slots
     side: Slots
@@ -44,18 +43,11 @@ class Outline:
 
 
 def outline_of(world: World) -> Outline:
-    """The outline of a world's bodies, made anew where springs have changed."""
-    signature = (
-        world.spring_active, world.edge, world.particle_a, world.particle_b, world.owner, world.element_active,
-        world.corner_particle,
-    )  # fmt: skip
-    kept: Outline | None = world.contact_cache
-    if kept is None or not all(map(np.array_equal, kept.signature, signature)):
-        kept = world.contact_cache = _make_outline(world, tuple(array.copy() for array in signature))
-    return kept
+    """The outline of a world's bodies, made anew where topology has changed."""
+    return world.derived(_make_outline)
 
 
-def _make_outline(world: World, signature: tuple[NDArray[np.generic], ...]) -> Outline:
+def _make_outline(world: World) -> Outline:
     terrain, count = world.terrain, world.particle_count
     chosen = np.flatnonzero(world.spring_active & (world.edge != NO_EDGE))
     # Edges of one owner lie together, so that a whole outline can be walked through.
@@ -70,7 +62,6 @@ def _make_outline(world: World, signature: tuple[NDArray[np.generic], ...]) -> O
     ends = world.particle_a[joined].astype(np.int64), world.particle_b[joined].astype(np.int64)
     edges = np.arange(len(edge_a))
     return Outline(
-        signature,
         edge_a,
         edge_b,
         side,
