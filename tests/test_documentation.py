@@ -4,6 +4,7 @@ import ast
 import functools
 import json
 import re
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +27,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 COMMANDS = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
 PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
 PROSE = " ".join(PHYSICS.split())
+BENCHMARKS = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 FOLDERS = "sandbox|levels|assets|docs|tests|examples"
 
@@ -84,10 +86,46 @@ def rows(page, heading):
     return [[cell.strip().strip("`") for cell in line.strip("|").split("|")] for line in table[2:]]
 
 
+def anchor(heading):
+    """What a link to a heading is called."""
+    return re.sub(r"[^\w -]", "", heading.strip().lower()).replace(" ", "-")
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_every_file_and_folder_that_a_page_names_exists(page):
     named = re.findall(rf"`((?:{FOLDERS})(?:/[\w.-]+)*/?)`", page.read_text(encoding="utf-8"))
     assert [name for name in named if not (ROOT / name).exists()] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_link_within_the_project_leads_somewhere(page):
+    astray = []
+    for target in re.findall(r"\]\(([^)]+)\)", page.read_text(encoding="utf-8")):
+        name, _, place = target.partition("#")
+        if "://" in target:
+            continue
+        found = page if not name else next(
+            (path for path in (page.parent / name, page.parent / f"{name}.md") if path.is_file()), None
+        )  # fmt: skip
+        headings = re.findall(r"^#+ (.*)$", found.read_text(encoding="utf-8"), re.M) if found and place else []
+        if found is None or (place and place not in map(anchor, headings)):
+            astray.append(target)
+    assert astray == []
+
+
+def test_the_map_in_the_readme_names_every_room_and_every_folder_and_no_other():
+    mapped = {
+        name
+        for folders, _ in rows(README, "## Where things are")
+        for name in re.findall(r"[\w/.]+", folders.replace("`", ""))
+    }
+    tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False).stdout.split()
+    if not tracked:
+        pytest.skip("no checkout: what belongs to the project cannot be told")
+    folders = {path.split("/")[0] for path in tracked if "/" in path and not path.startswith(".")}
+    public = {path for path in tracked if re.fullmatch(r"sandbox/(?!__)\w+\.py", path)}
+    rooms = {"/".join(path.split("/")[:2]) for path in tracked if re.match(r"sandbox/\w+/", path)}
+    assert mapped == (folders - {"sandbox"}) | rooms | public
 
 
 def row_of_springs(solver, coefficient, count):
@@ -193,3 +231,16 @@ def test_kernels_use_no_operation_whose_bits_differ_between_machines():
                 differing.append(f"{file}: {function.name}: {ast.unparse(node)}")
     assert len(kernels()) > 100
     assert differing == []
+
+
+def test_every_figure_of_the_readme_s_benchmark_stands_in_the_full_table():
+    full = {(row[0], *row[2:4]) for row in rows(BENCHMARKS, "## Beside other engines")}
+    short = rows(README, "## Beside other engines")
+    assert len(short) == 6
+    assert [row for row in short for k in (1, 3, 5) if (row[0], row[k], row[k + 1]) not in full] == []
+
+
+def test_every_benchmark_program_that_is_named_exists():
+    named = re.findall(r"python -m tests\.bench\.(\w+)", BENCHMARKS)
+    assert len(set(named)) > 5
+    assert [name for name in named if not (ROOT / "tests" / "bench" / f"{name}.py").is_file()] == []
