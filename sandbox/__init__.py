@@ -9,23 +9,23 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOME = {
-    "Level": "sandbox.level.model",
-    "load_level": "sandbox.level.files",
-    "build_world": "sandbox.level.build",
+    "Level": "sandbox.level.format.model",
+    "load_level": "sandbox.level.format.files",
+    "build_world": "sandbox.level.build.build_world",
     "World": "sandbox.physics.world",
     "step": "sandbox.physics.step",
     "Session": "sandbox.session.session",
-    "Replay": "sandbox.session.replay",
+    "Replay": "sandbox.session.replay.verify",
 }
 __all__ = ["Level", "Replay", "Session", "World", "__version__", "build_world", "load_level", "step"]
 
 if TYPE_CHECKING:
-    from sandbox.level.build import build_world
-    from sandbox.level.files import load_level
-    from sandbox.level.model import Level
+    from sandbox.level.build.build_world import build_world
+    from sandbox.level.format.files import load_level
+    from sandbox.level.format.model import Level
     from sandbox.physics.step import step
     from sandbox.physics.world import World
-    from sandbox.session.replay import Replay
+    from sandbox.session.replay.verify import Replay
     from sandbox.session.session import Session
 
 

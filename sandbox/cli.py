@@ -23,9 +23,9 @@ from sandbox.terminal import (
 )
 
 if TYPE_CHECKING:
-    from sandbox.level.model import Level
+    from sandbox.level.format.model import Level
     from sandbox.physics.world import World
-    from sandbox.session.replay import Replay
+    from sandbox.session.replay.verify import Replay
     from sandbox.session.session import Session
 
 EXIT_OK, EXIT_FAILED, EXIT_REFUSED, EXIT_INTERRUPTED = 0, 1, 2, 130
@@ -126,7 +126,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _level(name: str) -> "Level":
-    from sandbox.level.files import LevelError, load_level
+    from sandbox.level.format.files import LevelError, load_level
 
     try:
         return load_level(name)
@@ -135,8 +135,8 @@ def _level(name: str) -> "Level":
 
 
 def _recording(name: str, partial: bool = False) -> "Replay":
-    from sandbox.session.reading import read_replay
-    from sandbox.session.replay import ReplayError
+    from sandbox.session.replay.reader import read_replay
+    from sandbox.session.replay.verify import ReplayError
 
     try:
         return read_replay(name, partial)
@@ -146,7 +146,7 @@ def _recording(name: str, partial: bool = False) -> "Replay":
 
 def _is_replay(name: str) -> bool:
     """Whether a file's first bytes are a recording's, plain or compressed; anything else is taken for a level."""
-    from sandbox.session.reading import begins_as_replay
+    from sandbox.session.replay.reader import begins_as_replay
 
     try:
         return begins_as_replay(name)
@@ -168,7 +168,7 @@ def _play(options: argparse.Namespace) -> int:
 
 
 def _play_headless(level: "Level", replay: "Replay | None") -> int:
-    from sandbox.app.picture import save_picture
+    from sandbox.app.draw.picture import save_picture
     from sandbox.session.session import Session
 
     picture = Path("sandbox.png")
@@ -225,7 +225,7 @@ def _keep_apart(options: argparse.Namespace) -> None:
 
 
 def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
-    from sandbox.level.files import LevelError, level_data, parse_level
+    from sandbox.level.format.files import LevelError, level_data, parse_level
 
     given = {name: getattr(options, name) for name in ("solver", "substeps") if getattr(options, name) is not None}
     if not given:
@@ -239,8 +239,8 @@ def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
 
 
 def _scripted_session(level: "Level", commands: Path | None) -> "Session":
-    from sandbox.session.reading import read_script
-    from sandbox.session.replay import ReplayError
+    from sandbox.session.replay.reader import read_script
+    from sandbox.session.replay.verify import ReplayError
     from sandbox.session.session import Session
 
     try:
@@ -307,7 +307,7 @@ def _replay(options: argparse.Namespace) -> int:
 
 def _verify(name: str, partial: bool) -> tuple[int, dict[str, Any]]:
     from sandbox.session.probe import finite
-    from sandbox.session.replay import ReplayError, verify
+    from sandbox.session.replay.verify import ReplayError, verify
 
     try:
         replay = _recording(name, partial)
@@ -334,7 +334,7 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _check_level(name: str) -> int:
-    from sandbox.level.build import build_world
+    from sandbox.level.build.build_world import build_world
     from sandbox.physics.stability import report
     from sandbox.session.checking import run_checks
 
@@ -365,7 +365,7 @@ def _render(options: argparse.Namespace) -> int:
     if replay and ticks > replay.ticks:
         raise Refused(f"{options.level}: is {replay.ticks / level.settings.tick_rate:g} s long")
     _run_with_bar(session, ticks, options.level)
-    from sandbox.app.picture import save_picture
+    from sandbox.app.draw.picture import save_picture
 
     save_picture(session, options.output, options.size)
     return EXIT_OK
@@ -382,7 +382,7 @@ def _edit(options: argparse.Namespace) -> int:
 
 
 def _format(options: argparse.Namespace) -> int:
-    from sandbox.level.files import LevelError, read_level, write_level
+    from sandbox.level.format.files import LevelError, read_level, write_level
 
     try:
         warning = write_level(read_level(options.file), options.file)
@@ -394,7 +394,7 @@ def _format(options: argparse.Namespace) -> int:
 
 
 def _schema(options: argparse.Namespace) -> int:
-    from sandbox.level.schema import schema
+    from sandbox.level.format.schema import schema
 
     print(json.dumps(schema(), indent=2))
     return EXIT_OK

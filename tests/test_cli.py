@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from sandbox.cli import main
-from sandbox.level.files import shipped_folder
+from sandbox.level.format.files import shipped_folder
 
 ROPE = {
     "format": "spring-sandbox/level", "version": 1, "name": "Short rope", "settings": {"solver": "iterative"},
@@ -260,7 +260,7 @@ def test_a_standard_output_that_is_full_is_told_in_one_line(rope):
 
 
 def test_a_recording_that_breaks_off_on_a_full_disk_is_told_and_the_run_goes_on(rope, tmp_path, capsys, monkeypatch):
-    from sandbox.session.recording import Recorder
+    from sandbox.session.replay.writer import Recorder
 
     def full(self, world):
         if world.tick == 2:
@@ -313,7 +313,7 @@ def test_nothing_that_is_read_is_written_over(rope, tmp_path, options, monkeypat
 def test_an_interrupted_run_leaves_a_recording_that_is_only_cut_off(rope, tmp_path, suffix, monkeypatch, capsys):
     import signal
 
-    from sandbox.session.recording import Recorder
+    from sandbox.session.replay.writer import Recorder
 
     write, replay = Recorder.write_tick, tmp_path / f"run.{suffix}"
 

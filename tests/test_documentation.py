@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.level.files import load_level, parse_level
+from sandbox.level.format.files import load_level, parse_level
 from sandbox.physics.energy import kinetic_energy, spring_energy, spring_lengths
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.stability import report
@@ -18,8 +18,8 @@ from sandbox.physics.step import step
 from sandbox.physics.substeps import halve
 from sandbox.physics.world import World
 from sandbox.session.checking import run_checks
-from sandbox.session.reading import read_script
 from sandbox.session.records import COMMAND_TYPES
+from sandbox.session.replay.reader import read_script
 from sandbox.session.session import Session
 
 ROOT = Path(__file__).resolve().parents[1]

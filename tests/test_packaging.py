@@ -27,7 +27,7 @@ def test_an_installed_wheel_finds_its_levels_and_assets_from_another_folder(tmp_
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(installed)
     program = (
-        "import sandbox; from sandbox.level.files import load_level, shipped_folder, shipped_levels\n"
+        "import sandbox; from sandbox.level.format.files import load_level, shipped_folder, shipped_levels\n"
         "assert load_level('rope').name and shipped_levels()\n"
         "print(sandbox.__file__, len(shipped_levels()), len(list(shipped_folder('assets').iterdir())))"
     )

@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pygame
 
-from sandbox.app.colours import BACKGROUND, WARNING
-from sandbox.app.dialogs import show_lines
 from sandbox.app.display import SCALE_RANGE, Display
+from sandbox.app.draw.colours import BACKGROUND, WARNING
 from sandbox.app.edit.documents import Documents
 from sandbox.app.edit.tour import Guide
 from sandbox.app.files import FileActions
@@ -17,17 +16,18 @@ from sandbox.app.gallery import Gallery
 from sandbox.app.help import show_help
 from sandbox.app.idle import IdleCollector
 from sandbox.app.input import Input
-from sandbox.app.play import PlayScreen
-from sandbox.app.playback import Playback
+from sandbox.app.play.play_screen import PlayScreen
+from sandbox.app.play.playback import Playback
+from sandbox.app.play.status import NOTICES, Notice, StatusLine, draw_spinner
 from sandbox.app.preparing import Preparation
 from sandbox.app.profile import Profile
-from sandbox.app.progress import Progress
 from sandbox.app.screen import Screen
 from sandbox.app.shortcuts import Mode
-from sandbox.app.status import NOTICES, Notice, StatusLine, draw_spinner
-from sandbox.app.widgets import Ui
-from sandbox.level.model import Level
-from sandbox.session.replay import Replay
+from sandbox.app.widgets.dialogs import show_lines
+from sandbox.app.widgets.progress import Progress
+from sandbox.app.widgets.ui import Ui
+from sandbox.level.format.model import Level
+from sandbox.session.replay.verify import Replay
 
 FRAME_RATE = 60
 # How often the status figures and the window title change [s].

@@ -10,8 +10,8 @@ os.environ.setdefault("SDL_VIDEO_X11_WMCLASS", "spring-sandbox")
 
 import pygame
 
-from sandbox.app.colours import ACCENT
-from sandbox.app.icons import icon
+from sandbox.app.draw.colours import ACCENT
+from sandbox.app.widgets.icons import icon
 
 # Window at scale 1, and the smallest that everything fits in.
 WINDOW_SIZE = (1280, 720)

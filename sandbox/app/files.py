@@ -4,14 +4,14 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.app.dialogs import ask
-from sandbox.app.playback import Playback
+from sandbox.app.play.playback import Playback
 from sandbox.app.recordings import SUFFIX, chosen_path, free_path, plain_name, recordings_folder
-from sandbox.level.faults import LevelError, one_line
-from sandbox.level.files import load_level, read_level
-from sandbox.level.writing import refusal_of
-from sandbox.session.reading import begins_as_replay, read_replay
-from sandbox.session.replay import ReplayError
+from sandbox.app.widgets.dialogs import ask
+from sandbox.level.faults.level_error import LevelError, one_line
+from sandbox.level.format.files import load_level, read_level
+from sandbox.level.format.writing import refusal_of
+from sandbox.session.replay.reader import begins_as_replay, read_replay
+from sandbox.session.replay.verify import ReplayError
 
 if TYPE_CHECKING:
     from sandbox.app.app import App

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import pygame
 
-from sandbox.app.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT
-from sandbox.app.painted import Lit, wrapped
-from sandbox.app.picture import crop_of, draw_picture, run_ahead
+from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT
+from sandbox.app.draw.picture import crop_of, draw_picture, run_ahead
 from sandbox.app.recordings import saved_recordings
-from sandbox.app.widgets import ENTER_KEYS, Ui
-from sandbox.editor.recent import recent_levels
-from sandbox.level.faults import LevelError, one_line
-from sandbox.level.files import read_level, shipped_levels
-from sandbox.level.model import Level
+from sandbox.app.widgets.painted import Lit, wrapped
+from sandbox.app.widgets.ui import ENTER_KEYS, Ui
+from sandbox.editor.storage.recent import recent_levels
+from sandbox.level.faults.level_error import LevelError, one_line
+from sandbox.level.format.files import read_level, shipped_levels
+from sandbox.level.format.model import Level
 from sandbox.physics.jit import COMPILED
 
 if TYPE_CHECKING:

@@ -6,11 +6,11 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.colours import ACCENT, MUTED, TEXT
-from sandbox.app.edit.scroll import ScrollArea
-from sandbox.app.painted import Painted
+from sandbox.app.draw.colours import ACCENT, MUTED, TEXT
+from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.shortcuts import Mode, Shortcut, shortcuts
-from sandbox.app.widgets import Ui
+from sandbox.app.widgets.painted import Painted
+from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
 COLUMN_WIDTH = 500.0

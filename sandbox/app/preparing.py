@@ -2,7 +2,7 @@
 
 import threading
 
-from sandbox.app.lines import warm_up_lines
+from sandbox.app.draw.lines import warm_up_lines
 from sandbox.physics.step import warm_up
 
 

@@ -5,11 +5,11 @@ from typing import Literal, Protocol
 
 import pygame
 
-from sandbox.app.camera import Camera
-from sandbox.app.colours import Colour
+from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import Colour
 from sandbox.app.profile import Profile
 from sandbox.app.shortcuts import Mode
-from sandbox.app.widgets import Ui
+from sandbox.app.widgets.ui import Ui
 
 Pixel = tuple[float, float]
 Pointer = Literal["down", "move", "up"]

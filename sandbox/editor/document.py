@@ -8,14 +8,14 @@ from typing import Any
 from pydantic import ValidationError
 
 from sandbox.editor.items import Item, Kind, Selection, keys
-from sandbox.level.bodies import AnyBody
-from sandbox.level.canonical import level_text
-from sandbox.level.faults import LevelError, shown
-from sandbox.level.limits import FILE_LIMIT, FORMAT, VERSION
-from sandbox.level.model import Level, NissenMaterial
-from sandbox.level.quantities import Described, Description, replaced
-from sandbox.level.validate import check_level, outline_faults
-from sandbox.level.wording import worded
+from sandbox.level.faults.level_error import LevelError, shown
+from sandbox.level.faults.validate import check_level, outline_faults
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.limits import FILE_LIMIT, FORMAT, VERSION
+from sandbox.level.format.messages import worded
+from sandbox.level.format.model import Level, NissenMaterial
+from sandbox.level.format.quantities import Described, Description, replaced
+from sandbox.level.kinds.bodies import AnyBody
 
 # Below this many definitions and listed points, 209 bytes of a file's limit each, the text of a level is not measured.
 MEASURED_SIZE = 40_000

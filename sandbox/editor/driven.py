@@ -7,9 +7,9 @@ import numpy as np
 
 from sandbox.editor.items import Item
 from sandbox.editor.scene import Scene
-from sandbox.level.bodies import WheelDef
-from sandbox.level.driving import HydraulicDef, MotorDef
-from sandbox.level.parts import parts
+from sandbox.level.build.actuators import parts
+from sandbox.level.format.drives import HydraulicDef, MotorDef
+from sandbox.level.kinds.bodies import WheelDef
 
 
 class Driven(NamedTuple):

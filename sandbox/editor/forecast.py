@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.editor.driven import restless
-from sandbox.editor.finding import called, falling_particles
 from sandbox.editor.items import Selection
+from sandbox.editor.lint.finding import called, falling_particles
 from sandbox.editor.scene import make_scene
-from sandbox.level.build import build_world
-from sandbox.level.model import Level
+from sandbox.level.build.build_world import build_world
+from sandbox.level.format.model import Level
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 

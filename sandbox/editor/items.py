@@ -4,9 +4,9 @@ import functools
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal, NamedTuple
 
-from sandbox.level.bodies import AnyBody
-from sandbox.level.model import Level, ParticleDef, SpringDef, TerrainDef
-from sandbox.level.quantities import replaced
+from sandbox.level.format.model import Level, ParticleDef, SpringDef, TerrainDef
+from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.bodies import AnyBody
 
 Kind = Literal["body", "particle", "spring", "terrain"]
 Definition = AnyBody | ParticleDef | SpringDef | TerrainDef

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene
-from sandbox.level.model import Level
+from sandbox.level.format.model import Level
 
 Point = tuple[float, float]
 Box = tuple[float, float, float, float]

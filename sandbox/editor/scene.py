@@ -11,16 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.editor.items import Item, Selection, items_of
-from sandbox.level.bodies import AnyBody, JellyDef, RingDef, WebDef, WheelDef
-from sandbox.level.expansion import Expansion, expansion
-from sandbox.level.layout import Layout
-from sandbox.level.limits import BODY_RADIUS, DEFAULT_MATERIAL
-from sandbox.level.model import Level, ParticleDef
-from sandbox.level.parts import given_length
-from sandbox.level.quantities import replaced
-from sandbox.level.shapes import distances
-from sandbox.level.surfaces import surfaces_of
-from sandbox.level.welds import united
+from sandbox.level.build.actuators import given_length
+from sandbox.level.build.expansion import Expansion, expansion
+from sandbox.level.build.layout import Layout
+from sandbox.level.build.welds import united
+from sandbox.level.format.limits import BODY_RADIUS, DEFAULT_MATERIAL
+from sandbox.level.format.model import Level, ParticleDef
+from sandbox.level.format.quantities import replaced
+from sandbox.level.format.surfaces import surfaces_of
+from sandbox.level.kinds.bodies import AnyBody, JellyDef, RingDef, WebDef, WheelDef
+from sandbox.level.kinds.shapes import distances
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from sandbox.editor.drawing_options import Options, ParticleOptions, RopeOptions
 from sandbox.editor.scene import Scene
-from sandbox.level.bodies import RopeDef
+from sandbox.editor.tools.drawing_options import Options, ParticleOptions, RopeOptions
+from sandbox.level.kinds.bodies import RopeDef
 
 Point = tuple[float, float]
 

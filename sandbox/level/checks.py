@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from sandbox.level.quantities import Description, Name, Seconds
+from sandbox.level.format.quantities import Description, Name, Seconds
 
 PARTICLE_METRICS = ("x", "y", "speed")
 Metric = Literal[

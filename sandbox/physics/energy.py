@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sandbox.physics.elements import element_values
+from sandbox.physics.constraints import element_values
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import element_coefficients, substep_coefficients, substep_time
 from sandbox.physics.world import HAND_MATERIAL, LAW_HOOKE, Floats, World

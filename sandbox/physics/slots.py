@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sandbox.physics.arrays import Floats, StateArrays
-from sandbox.physics.elements import AREA, BEND, Elements
+from sandbox.physics.constraints import AREA, BEND, Elements
+from sandbox.physics.state import Floats, StateArrays
 
 # The material index of an element with Cs and Cd of its own, which no slider reaches.
 OWN_MATERIAL = -1
@@ -16,7 +16,7 @@ HIGHEST_OF_RING = 0.99
 
 
 class ElementSlots(StateArrays):
-    """The part of a World that adds and removes elements (see elements.py), and tunes them with their springs."""
+    """The part of a World that adds and removes elements (see constraints.py), and tunes them with their springs."""
 
     def __init__(self) -> None:
         super().__init__()

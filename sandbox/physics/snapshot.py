@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.arrays import STATE_ARRAYS
 from sandbox.physics.settings import WorldSettings
+from sandbox.physics.state import STATE_ARRAYS
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.world import Floats, Slots, World
 

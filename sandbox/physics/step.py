@@ -4,19 +4,20 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sandbox.physics.actuators import Driven, Hydraulics, Motors, Muscles, StrainLimits
 from sandbox.physics.breaking import yield_and_break
+from sandbox.physics.collision.collide import leave, meet
+from sandbox.physics.collision.outline import TERRAIN_GROUP
+from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_springs
-from sandbox.physics.elements import AREA
-from sandbox.physics.equipment import Driven, Hydraulics, Motors, Muscles, StrainLimits
 from sandbox.physics.forces import Before, apply_forces
 from sandbox.physics.jit import kernel
-from sandbox.physics.meeting import leave, meet
-from sandbox.physics.outline import TERRAIN_GROUP
-from sandbox.physics.quarantine import contain_inputs, contain_outcome
+from sandbox.physics.sanitise import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
-from sandbox.physics.solvers import SOLVERS, halves
-from sandbox.physics.solvers.direct import pattern_of
-from sandbox.physics.solvers.dissection import dissect
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.solvers.direct.solve import pattern_of
+from sandbox.physics.solvers.linear import parallel
+from sandbox.physics.solvers.linear.dissection import dissect
 from sandbox.physics.substeps import halve, substep_count
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import Floats, World
@@ -116,4 +117,4 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
         # That is too small a body to be dissected by itself, or to need a second thread.
         dissect(np.array([0]), np.array([1]), world.position)
         pattern = pattern_of(world)
-        halves.warm_up(pattern.matrix.fronts, pattern.rows.change)
+        parallel.warm_up(pattern.matrix.fronts, pattern.rows.change)

@@ -6,7 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sandbox.physics.arrays import (
+from sandbox.physics.actuators import Driven, StrainLimits, Surface, unlimited
+from sandbox.physics.constraints import BEND
+from sandbox.physics.names import Names
+from sandbox.physics.settings import AUTO, WorldSettings
+from sandbox.physics.slots import ElementSlots
+from sandbox.physics.state import (
     BANK_UNOPENED,
     CONTACT_ARRAYS,
     CORNER_ARRAYS,
@@ -16,11 +21,6 @@ from sandbox.physics.arrays import (
     Floats,
     Slots,
 )
-from sandbox.physics.elements import BEND
-from sandbox.physics.equipment import Driven, StrainLimits, Surface, unlimited
-from sandbox.physics.names import Names
-from sandbox.physics.settings import AUTO, WorldSettings
-from sandbox.physics.slots import ElementSlots
 from sandbox.physics.terrain import NO_TERRAIN, Terrain
 
 LAW_NISSEN = 0

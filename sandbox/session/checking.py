@@ -1,7 +1,7 @@
 """Checking: runs a level and holds the checks that it carries against what was measured."""
 
 from sandbox.level.checks import CheckDef, CheckResult, check_ticks, evaluate
-from sandbox.level.model import Level
+from sandbox.level.format.model import Level
 from sandbox.session.session import Session
 from sandbox.session.summary import Summary, particle_metric, run
 

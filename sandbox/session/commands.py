@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
-from sandbox.level.limits import (
+from sandbox.level.format.limits import (
     COORDINATE_LIMIT,
     DRAG_LIMIT,
     GRAVITY_LIMIT,

@@ -5,15 +5,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sandbox.level.build import build_world
-from sandbox.level.model import Level
-from sandbox.physics.arrays import STATE_ARRAYS
+from sandbox.level.build.build_world import build_world
+from sandbox.level.format.model import Level
 from sandbox.physics.snapshot import Snapshot, restore, take
+from sandbox.physics.state import STATE_ARRAYS
 from sandbox.physics.step import step
 from sandbox.session.breaks import break_lines
 from sandbox.session.commands import Command, CommandError, Grab, Redo, Release, SetDrive, Undo, apply, name_added
-from sandbox.session.recording import Recorder
 from sandbox.session.records import ScriptLine, from_record, to_record
+from sandbox.session.replay.writer import Recorder
 
 KEYFRAME_TICKS = 60
 # Memory for keyframes [bytes]; beyond it every other one goes, and undo re-steps twice as far.

@@ -9,11 +9,11 @@ import json
 
 import pygame
 import pytest
-from person import VirtualScreen
 
 from sandbox.app.app import App
 from sandbox.app.display import Display
-from sandbox.level.files import parse_level
+from sandbox.level.format.files import parse_level
+from tests.support.person import VirtualScreen
 
 FRAME = 1 / 60
 
@@ -153,7 +153,9 @@ class Driver:
 @pytest.fixture
 def documents(tmp_path, monkeypatch):
     """The person's documents, empty, and a data folder of their own."""
-    monkeypatch.setattr("sandbox.editor.storage.platformdirs.user_data_dir", lambda *_, **__: str(tmp_path / "data"))
+    monkeypatch.setattr(
+        "sandbox.editor.storage.level_file.platformdirs.user_data_dir", lambda *_, **__: str(tmp_path / "data")
+    )
     monkeypatch.setattr("sandbox.app.recordings.platformdirs.user_documents_dir", lambda: str(tmp_path))
     return tmp_path / "Spring Sandbox"
 

@@ -9,15 +9,15 @@ import threading
 import numpy as np
 import pygame
 import pytest
-from conftest import FRAME, small_level
 
 from sandbox.app.app import run_app
 from sandbox.app.display import has_display
-from sandbox.app.playback import Playback
+from sandbox.app.play.playback import Playback
 from sandbox.app.shortcuts import action_of, shortcuts
-from sandbox.level.files import read_level, shipped_levels
-from sandbox.session.reading import read_replay
-from sandbox.session.replay import verify
+from sandbox.level.format.files import read_level, shipped_levels
+from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.verify import verify
+from tests.app.conftest import FRAME, small_level
 
 DISPLAY_NAMES = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
 CTRL = pygame.KMOD_CTRL
@@ -371,8 +371,8 @@ def test_a_window_made_smaller_and_larger_again_shows_what_it_showed(driver):
 
 def test_a_long_run_played_again_shows_how_far_it_is(driver, monkeypatch):
     now, shown = [0.0], []
-    monkeypatch.setattr("sandbox.app.progress.time.perf_counter", lambda: now[0])
-    monkeypatch.setattr("sandbox.app.progress.draw_bar", lambda surface, ui, share, text: shown.append(share))
+    monkeypatch.setattr("sandbox.app.widgets.progress.time.perf_counter", lambda: now[0])
+    monkeypatch.setattr("sandbox.app.widgets.progress.draw_bar", lambda surface, ui, share, text: shown.append(share))
     for done in range(0, 1000, 100):
         now[0] += 0.06
         driver.playback.session.progress(done, 1000)

@@ -5,23 +5,23 @@ from dataclasses import replace
 import numpy as np
 import pygame
 import pytest
-from conftest import small_level
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sandbox.app.camera import Camera, bounds, grid_spacing
-from sandbox.app.colours import BACKGROUND, packed, strain_colours
-from sandbox.app.lines import Canvas
+from sandbox.app.draw.camera import Camera, bounds, grid_spacing
+from sandbox.app.draw.colours import BACKGROUND, packed, strain_colours
+from sandbox.app.draw.lines import Canvas
+from sandbox.app.draw.picture import crop_of, draw_picture, save_picture, view_of
+from sandbox.app.draw.renderer import Renderer
 from sandbox.app.loop import LONGEST_FRAME, SPEEDS, TickClock
-from sandbox.app.picture import crop_of, draw_picture, save_picture, view_of
-from sandbox.app.playback import Playback, interpolated
-from sandbox.app.renderer import Renderer
-from sandbox.level.bodies import BoxShape, JellyDef, RingDef
-from sandbox.level.build import build_world
-from sandbox.level.model import Level
+from sandbox.app.play.playback import Playback, interpolated
+from sandbox.level.build.build_world import build_world
+from sandbox.level.format.model import Level
+from sandbox.level.kinds.bodies import BoxShape, JellyDef, RingDef
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.snapshot import take
 from sandbox.session.session import Session
+from tests.app.conftest import small_level
 
 FRAME = 1 / 60
 within = st.floats(-1e4, 1e4)
@@ -105,7 +105,7 @@ def test_a_paused_clock_gives_single_ticks_only():
 def test_a_run_that_is_too_slow_loses_time_instead_of_running_away(monkeypatch):
     playback = Playback(small_level(settings={"solver": "single_pass", "tick_rate": 10_000}))
     now = [0.0]
-    monkeypatch.setattr("sandbox.app.playback.time.perf_counter", lambda: now[0])
+    monkeypatch.setattr("sandbox.app.play.playback.time.perf_counter", lambda: now[0])
     advance = playback.session.advance
 
     def slow_tick():

@@ -4,10 +4,10 @@ import json
 
 import pygame
 import pytest
-from conftest import small_level
 
-from sandbox.level.canonical import level_text
-from sandbox.level.files import parse_level
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.files import parse_level
+from tests.app.conftest import small_level
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
 

@@ -5,8 +5,8 @@ import math
 import pygame
 import pytest
 
-from sandbox.editor.drawing_options import described
-from sandbox.level.bodies import BridgeDef, GirderDef, JellyDef, RopeDef, WebDef, WheelDef
+from sandbox.editor.tools.drawing_options import described
+from sandbox.level.kinds.bodies import BridgeDef, GirderDef, JellyDef, RopeDef, WebDef, WheelDef
 
 CTRL = pygame.KMOD_CTRL
 

@@ -5,14 +5,14 @@ import os
 
 import pygame
 import pytest
-from conftest import small_level
 
 from sandbox.app.edit import documents as documents_module
 from sandbox.app.edit.documents import OFFERED
-from sandbox.editor.autosave import Autosave, orphans
-from sandbox.editor.storage import LevelFile
-from sandbox.level.canonical import level_text
-from sandbox.level.files import read_level, shipped_levels, write_level
+from sandbox.editor.storage.autosave import Autosave, orphans
+from sandbox.editor.storage.level_file import LevelFile
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.files import read_level, shipped_levels, write_level
+from tests.app.conftest import small_level
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
 

@@ -3,13 +3,13 @@
 import numpy as np
 import pygame
 import pytest
-from conftest import small_level
 
-from sandbox.editor.placing import set_pinned
-from sandbox.level.files import write_level
+from sandbox.editor.edits.placing import set_pinned
+from sandbox.level.format.files import write_level
 from sandbox.session.commands import CutSprings, SetCoefficients
-from sandbox.session.reading import read_replay
-from sandbox.session.replay import verify
+from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.verify import verify
+from tests.app.conftest import small_level
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
 

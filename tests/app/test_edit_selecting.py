@@ -3,9 +3,9 @@
 import numpy as np
 import pygame
 import pytest
-from conftest import small_level
 
 from sandbox.editor.items import Item
+from tests.app.conftest import small_level
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
 ROPE, PAIR = Item("body", "rope"), Item("body", "pair")

@@ -2,9 +2,9 @@
 
 import pygame
 import pytest
-from conftest import small_level
 
 from sandbox.editor.items import Item
+from tests.app.conftest import small_level
 
 GROUND = {"id": "ground", "polygon": [[-2, -2], [4, -2], [4, -1], [-2, -1]]}
 PIECE = Item("terrain", "ground")

@@ -5,15 +5,15 @@ import itertools
 import numpy as np
 import pygame
 import pytest
-from conftest import small_level
 
-from sandbox.app.camera import Camera
-from sandbox.app.colours import BACKGROUND
+from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import BACKGROUND
 from sandbox.app.edit.actions import MENU
-from sandbox.app.edit.canvas import PLAIN_FROM, Chosen, ScenePainter
-from sandbox.app.edit.handles import Handles
+from sandbox.app.edit.canvas.canvas import PLAIN_FROM, Chosen, ScenePainter
+from sandbox.app.edit.canvas.handles import Handles
 from sandbox.app.shortcuts import shortcuts
 from sandbox.editor.scene import make_scene
+from tests.app.conftest import small_level
 
 LARGE = [{"type": "jelly", "id": "big", "shape": {"box": [4.0, 3.0]}, "spacing": 0.07}]
 

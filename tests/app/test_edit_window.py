@@ -9,12 +9,12 @@ import subprocess
 import sys
 
 import pytest
-from person import DEADLINE, Person, needs_a_screen
 
 from sandbox.app.display import WINDOW_SIZE
 from sandbox.app.shortcuts import tip_of
-from sandbox.level.files import read_level
-from sandbox.session.reading import read_replay
+from sandbox.level.format.files import read_level
+from sandbox.session.replay.reader import read_replay
+from tests.support.person import DEADLINE, Person, needs_a_screen
 
 pytestmark = needs_a_screen
 

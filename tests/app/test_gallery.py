@@ -5,12 +5,12 @@ import os
 import numpy as np
 import pygame
 import pytest
-from conftest import Driver, small_level
 
 from sandbox.app.recordings import chosen_path, free_path, plain_name
-from sandbox.editor.recent import remember
-from sandbox.level.canonical import level_text
-from sandbox.level.files import shipped_levels
+from sandbox.editor.storage.recent import remember
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.files import shipped_levels
+from tests.app.conftest import Driver, small_level
 
 
 def test_every_shipped_level_has_a_card_with_a_picture(open_app):

@@ -3,7 +3,7 @@
 import pygame
 import pytest
 
-from sandbox.app.edit.scroll import ScrollBar
+from sandbox.app.edit.side.scroll import ScrollBar
 from sandbox.app.help import ShortcutTable
 
 

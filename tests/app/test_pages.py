@@ -2,10 +2,10 @@
 
 import pygame
 import pytest
-from conftest import small_level
 
 from sandbox.editor.items import Item
-from sandbox.level.files import read_level
+from sandbox.level.format.files import read_level
+from tests.app.conftest import small_level
 
 CTRL = pygame.KMOD_CTRL
 

@@ -2,10 +2,10 @@
 
 import pygame
 import pytest
-from conftest import small_level
 
-from sandbox.app.sliders import fraction_of, value_at
+from sandbox.app.widgets.sliders import fraction_of, value_at
 from sandbox.session.commands import SetCoefficients
+from tests.app.conftest import small_level
 
 
 def coefficients(driver):

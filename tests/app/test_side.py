@@ -2,16 +2,16 @@
 
 import pygame
 import pytest
-from conftest import small_level
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sandbox.app.edit.rows import RowList
-from sandbox.app.edit.side import PAGES
-from sandbox.editor.additions import add_object
+from sandbox.app.edit.side.rows import RowList
+from sandbox.app.edit.side.side import PAGES
+from sandbox.editor.edits.additions import add_object
 from sandbox.editor.items import Item
-from sandbox.level.canonical import level_text
-from sandbox.level.files import parse_level, read_level
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.files import parse_level, read_level
+from tests.app.conftest import small_level
 
 ROPE, PAIR = Item("body", "rope"), Item("body", "pair")
 LOOSE = {

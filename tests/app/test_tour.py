@@ -3,7 +3,7 @@
 import pygame
 import pytest
 
-from sandbox.editor.preferences import preference, set_preference
+from sandbox.editor.storage.preferences import preference, set_preference
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
 

@@ -1,14 +1,14 @@
 """A real window on a virtual screen, driven by xdotool: drag, slide, pause, record, save; the replay verifies."""
 
 import numpy as np
-from conftest import Driver, small_level
-from person import DEADLINE, Person, needs_a_screen
 
 from sandbox.app.display import WINDOW_SIZE
-from sandbox.level.files import write_level
-from sandbox.session.reading import read_replay
-from sandbox.session.replay import verify
+from sandbox.level.format.files import write_level
+from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
+from tests.app.conftest import Driver, small_level
+from tests.support.person import DEADLINE, Person, needs_a_screen
 
 pytestmark = needs_a_screen
 

@@ -10,7 +10,7 @@ import time
 import numpy as np
 
 from sandbox.physics.step import step
-from tests.physics.closed_boxes import allowed, energy, outside, random_box
+from tests.support.closed_boxes import allowed, energy, outside, random_box
 
 
 def run(seed: int, solver: str, seconds: float) -> tuple[float, float, int, float, float, bool]:

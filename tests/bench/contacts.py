@@ -14,12 +14,12 @@ from collections.abc import Callable
 import numpy as np
 import pymunk
 
+from sandbox.physics.collision.outline import outline_of
 from sandbox.physics.energy import kinetic_energy
-from sandbox.physics.outline import outline_of
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
 from sandbox.physics.world import World
-from tests.physics.contact_scenes import GROUND, add_chain, add_discs, add_jelly, world
+from tests.support.contact_scenes import GROUND, add_chain, add_discs, add_jelly, world
 
 SECONDS = 10
 

@@ -17,10 +17,10 @@ import pygame
 
 from sandbox.app.app import App
 from sandbox.app.display import Display
-from sandbox.app.edit.screen import EditScreen
+from sandbox.app.edit.edit_screen import EditScreen
 from sandbox.editor.document import empty_level
-from sandbox.level.bodies import BoxShape, JellyDef
-from sandbox.level.model import Level, ParticleDef, SpringDef
+from sandbox.level.format.model import Level, ParticleDef, SpringDef
+from sandbox.level.kinds.bodies import BoxShape, JellyDef
 
 FRAME = 1.0 / 60.0  # [s]
 # How often everything is done; the figures are medians.

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.physics.elements import AREA, BEND
+from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.energy import measure_elements
 from sandbox.physics.settings import AUTO, Substeps, WorldSettings
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.measure import extremes
+from sandbox.physics.solvers.direct.energy_norm import extremes
 from sandbox.physics.step import step
 from sandbox.physics.world import Floats, Slots, World
 

@@ -12,14 +12,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "physics"))
 
 import pymunk
-from physics_scenes import girder, grid_with_diagonals, rope
 
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.step import step
 from sandbox.physics.world import World
+from tests.support.physics_scenes import girder, grid_with_diagonals, rope
 
 GRAVITY = (0.0, -9.81)
 ITERATIONS = 10

@@ -12,14 +12,12 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "physics"))
-
-from physics_scenes import grid_with_diagonals
 
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.solvers import single_pass
 from sandbox.physics.step import element_coefficients, step, substep_coefficients, substep_time
+from tests.support.physics_scenes import grid_with_diagonals
 
 SIDE = 32
 PAIRS = 7

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sandbox.physics.solvers.pattern import make_pattern
+from sandbox.physics.solvers.direct.system import make_pattern
 from sandbox.physics.step import step, warm_up
 from sandbox.physics.world import Floats
 from tests.bench import scenes

@@ -6,12 +6,12 @@ import time
 import tracemalloc
 from pathlib import Path
 
-from sandbox.level.files import LevelError, parse_level
+from sandbox.level.format.files import LevelError, parse_level
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "level"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from enormous_levels import enormous
-from malformed_levels import small
+from tests.support.enormous_levels import enormous
+from tests.support.malformed_levels import small
 
 SHOWN = 15
 

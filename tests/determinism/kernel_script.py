@@ -52,8 +52,8 @@ def busy_world(solver: str, substeps: int):
     """
     import numpy as np
 
-    from sandbox.physics.elements import AREA, BEND
-    from sandbox.physics.equipment import Driven, Hydraulics, Motors, Muscles, StrainLimits
+    from sandbox.physics.actuators import Driven, Hydraulics, Motors, Muscles, StrainLimits
+    from sandbox.physics.constraints import AREA, BEND
     from sandbox.physics.settings import WorldSettings
     from sandbox.physics.world import LAW_HOOKE, World
 
@@ -97,7 +97,7 @@ def busy_world(solver: str, substeps: int):
 
 def touching_world(solver: str, substeps: int):
     """Discs that fall on a mesh whose springs are edges, between terrain and walls."""
-    from sandbox.physics.outline import ALL_GROUPS, LINE
+    from sandbox.physics.collision.outline import ALL_GROUPS, LINE
     from sandbox.physics.terrain import Chain, make_terrain
 
     world = busy_world(solver, substeps)

@@ -6,12 +6,12 @@ import sys
 
 import pytest
 
-from sandbox.level.files import read_level, shipped_levels
+from sandbox.level.format.files import read_level, shipped_levels
 from sandbox.physics.jit import COMPILED
-from sandbox.session.reading import read_replay
-from sandbox.session.replay import ReplayError, verify
+from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.verify import ReplayError, verify
 from sandbox.session.session import Session
-from tests.session.play import play
+from tests.support.play import play
 
 # Where things touch, the wild person makes ticks of many contacts: there, a part of it has to do.
 SECONDS, TOUCHING_SECONDS = 20, 5

@@ -7,12 +7,12 @@ import threading
 from itertools import pairwise
 
 import pytest
-from storage_children import Child, edit_forever, named
 
-from sandbox.editor import autosave as module
-from sandbox.editor.autosave import Autosave, orphans
-from sandbox.editor.storage import StorageError
-from sandbox.level.files import parse_level, read_level, shipped_levels
+from sandbox.editor.storage import autosave as module
+from sandbox.editor.storage.autosave import Autosave, orphans
+from sandbox.editor.storage.level_file import StorageError
+from sandbox.level.format.files import parse_level, read_level, shipped_levels
+from tests.support.storage_children import Child, edit_forever, named
 
 
 @pytest.fixture

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from sandbox.editor.document import Document, EditError, empty_level
-from sandbox.editor.drawing import DRAWINGS
-from sandbox.editor.drawing_options import RopeOptions, described, stepped
 from sandbox.editor.items import Item
 from sandbox.editor.scene import make_scene
-from sandbox.editor.snap import Snap, snap
-from sandbox.level.build import build_world
-from sandbox.level.canonical import level_text
-from sandbox.level.parse import parse_level
+from sandbox.editor.tools.drawing import DRAWINGS
+from sandbox.editor.tools.drawing_options import RopeOptions, described, stepped
+from sandbox.editor.tools.snap import Snap, snap
+from sandbox.level.build.build_world import build_world
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.parse import parse_level
 
 REACH = 0.1
 TWO_POINTS = ["spring", "rope", "bridge", "girder", "web", "box", "circle", "wheel", "ring"]

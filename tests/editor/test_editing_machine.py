@@ -13,20 +13,20 @@ from hypothesis.stateful import (
     rule,
     run_state_machine_as_test,
 )
-from zoo import zoo
 
-from sandbox.editor import copying, deleting, fields, grouping, keeping, materials, moving, placing, terrain
 from sandbox.editor.document import Document, EditError, empty_level, select
+from sandbox.editor.edits import bake, copying, deleting, fields, grouping, materials, moving, placing, terrain
 from sandbox.editor.history import History
 from sandbox.editor.items import Item, chosen_items, items_of
 from sandbox.editor.scene import make_scene
-from sandbox.level.bodies import JellyDef, RopeDef, WheelDef
-from sandbox.level.build import build_world
-from sandbox.level.canonical import level_text
+from sandbox.level.build.build_world import build_world
 from sandbox.level.checks import CheckDef
-from sandbox.level.model import Level, NissenMaterial, ParticleDef, TerrainDef, WallsDef
-from sandbox.level.parse import parse_level
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.model import Level, NissenMaterial, ParticleDef, TerrainDef, WallsDef
+from sandbox.level.format.parse import parse_level
+from sandbox.level.kinds.bodies import JellyDef, RopeDef, WheelDef
 from sandbox.physics.step import step
+from tests.support.zoo import zoo
 
 # How many random makers and how long each stays; HYPOTHESIS_PROFILE=nightly is the long run.
 NIGHTLY = os.environ.get("HYPOTHESIS_PROFILE") == "nightly"
@@ -347,11 +347,11 @@ class EditingMachine(RuleBasedStateMachine):
             world.set_coefficients(0.05, None, None)
         for _ in range(ticks):
             step(world)
-        self._edit(keeping.keep_coefficients, world)
-        self._edit(keeping.keep_pose, world)
+        self._edit(bake.keep_coefficients, world)
+        self._edit(bake.keep_pose, world)
         if self.document.level is self.states[self.index].level:
-            self._edit(keeping.keep_pins, world)
-            self._edit(keeping.keep_cuts, world)
+            self._edit(bake.keep_pins, world)
+            self._edit(bake.keep_cuts, world)
 
     @rule(to=st.floats(0, 1), way=st.sampled_from(["undo", "undo", "redo", "go"]))
     def travel(self, to, way) -> None:

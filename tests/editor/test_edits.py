@@ -4,25 +4,32 @@ import math
 
 import numpy as np
 import pytest
-from zoo import zoo
 
-from sandbox.editor.copying import array_circle, array_line, copy_text, duplicate, paste
-from sandbox.editor.deleting import break_apart, delete
 from sandbox.editor.document import Document, EditError, empty_level
-from sandbox.editor.fields import rename, set_field, set_level_field, set_setting
-from sandbox.editor.grouping import group, reorder, ungroup, with_groups
+from sandbox.editor.edits.copying import array_circle, array_line, copy_text, duplicate, paste
+from sandbox.editor.edits.deleting import break_apart, delete
+from sandbox.editor.edits.fields import rename, set_field, set_level_field, set_setting
+from sandbox.editor.edits.grouping import group, reorder, ungroup, with_groups
+from sandbox.editor.edits.materials import (
+    add_material,
+    assign,
+    delete_material,
+    rename_material,
+    set_checks,
+    set_material,
+)
+from sandbox.editor.edits.moving import rotate
+from sandbox.editor.edits.names import free_id
+from sandbox.editor.edits.placing import add_body, add_particle, add_spring, cut_springs, set_pinned, unweld, weld
 from sandbox.editor.items import Item, items_of
-from sandbox.editor.materials import add_material, assign, delete_material, rename_material, set_checks, set_material
-from sandbox.editor.moving import rotate
-from sandbox.editor.names import free_id
-from sandbox.editor.placing import add_body, add_particle, add_spring, cut_springs, set_pinned, unweld, weld
 from sandbox.editor.scene import make_scene
-from sandbox.level.bodies import RopeDef
-from sandbox.level.build import build_world
-from sandbox.level.canonical import level_text
+from sandbox.level.build.build_world import build_world
 from sandbox.level.checks import CheckDef
-from sandbox.level.model import NissenMaterial, ParticleDef
-from sandbox.level.parse import parse_level
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.model import NissenMaterial, ParticleDef
+from sandbox.level.format.parse import parse_level
+from sandbox.level.kinds.bodies import RopeDef
+from tests.support.zoo import zoo
 
 STEEL = NissenMaterial(stiffness=0.2, damping=0.3)
 

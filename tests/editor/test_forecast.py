@@ -8,11 +8,19 @@ import pytest
 from sandbox.editor.forecast import Forecast
 from sandbox.editor.items import Item
 from sandbox.editor.scene import make_scene
-from sandbox.level.bodies import BoxShape, JellyDef, RopeDef, WheelDef
-from sandbox.level.build import build_world
-from sandbox.level.driving import MotorDef, MuscleDef
-from sandbox.level.model import HookeMaterial, Level, NissenMaterial, ParticleDef, Settings, SpringDef, TerrainDef
-from sandbox.level.quantities import replaced
+from sandbox.level.build.build_world import build_world
+from sandbox.level.format.drives import MotorDef, MuscleDef
+from sandbox.level.format.model import (
+    HookeMaterial,
+    Level,
+    NissenMaterial,
+    ParticleDef,
+    Settings,
+    SpringDef,
+    TerrainDef,
+)
+from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.bodies import BoxShape, JellyDef, RopeDef, WheelDef
 from sandbox.physics.step import step
 
 STEEL = NissenMaterial(stiffness=1.0, damping=1.0)

@@ -1,12 +1,12 @@
 """History: steps with labels, undo without end, drags as one step, and what is saved."""
 
 import pytest
-from zoo import zoo
 
 from sandbox.editor.document import Document, empty_level
-from sandbox.editor.fields import set_level_field
+from sandbox.editor.edits.fields import set_level_field
 from sandbox.editor.history import History
 from sandbox.editor.items import Item
+from tests.support.zoo import zoo
 
 
 def named(history, name):

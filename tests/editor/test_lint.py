@@ -4,22 +4,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from zoo import zoo
 
 from sandbox.editor.document import Document, empty_level
-from sandbox.editor.drawing import DRAWINGS
-from sandbox.editor.finding import LISTED, connected_parts
+from sandbox.editor.edits.placing import weld
 from sandbox.editor.items import Item, items_of
-from sandbox.editor.lint import findings
-from sandbox.editor.placing import weld
+from sandbox.editor.lint.finding import LISTED, connected_parts
+from sandbox.editor.lint.lint import findings
 from sandbox.editor.scene import make_scene
-from sandbox.editor.snap import Snap
-from sandbox.level.bodies import BoxShape, BridgeDef, JellyDef, RopeDef, WheelDef
-from sandbox.level.build import build_world
+from sandbox.editor.tools.drawing import DRAWINGS
+from sandbox.editor.tools.snap import Snap
+from sandbox.level.build.build_world import build_world
 from sandbox.level.checks import CheckDef
-from sandbox.level.driving import MotorDef
-from sandbox.level.files import read_level
-from sandbox.level.model import (
+from sandbox.level.format.drives import MotorDef
+from sandbox.level.format.files import read_level
+from sandbox.level.format.model import (
     ContactsDef,
     Level,
     NissenMaterial,
@@ -29,8 +27,10 @@ from sandbox.level.model import (
     TerrainDef,
     WallsDef,
 )  # fmt: skip
-from sandbox.level.quantities import replaced
+from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.bodies import BoxShape, BridgeDef, JellyDef, RopeDef, WheelDef
 from sandbox.physics.stability import report, spring_loads
+from tests.support.zoo import zoo
 
 LEVELS = sorted((Path(__file__).resolve().parents[2] / "levels").glob("*.json"))
 

@@ -4,17 +4,17 @@ import math
 
 import numpy as np
 import pytest
-from zoo import zoo
 
 from sandbox.editor.document import Document, EditError, empty_level
-from sandbox.editor.fields import set_field
+from sandbox.editor.edits.fields import set_field
+from sandbox.editor.edits.moving import align, can_scale_unevenly, distribute, mirror, move, rotate, scale
+from sandbox.editor.edits.placing import add_body, add_particle
 from sandbox.editor.items import Item, items_of
-from sandbox.editor.moving import align, can_scale_unevenly, distribute, mirror, move, rotate, scale
-from sandbox.editor.placing import add_body, add_particle
 from sandbox.editor.scene import make_scene
-from sandbox.level.bodies import BridgeDef, CircleShape, GirderDef, JellyDef, RopeDef
-from sandbox.level.build import build_world
-from sandbox.level.model import ParticleDef
+from sandbox.level.build.build_world import build_world
+from sandbox.level.format.model import ParticleDef
+from sandbox.level.kinds.bodies import BridgeDef, CircleShape, GirderDef, JellyDef, RopeDef
+from tests.support.zoo import zoo
 
 BODIES = [body.id for body in zoo().bodies]
 

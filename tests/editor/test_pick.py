@@ -1,13 +1,13 @@
 """What is under the pointer, in a box, in a lasso."""
 
 import pytest
-from zoo import zoo
 
 from sandbox.editor.items import Item
 from sandbox.editor.pick import combined, item_at, items_in_box, items_in_lasso, items_of_material, particle_at
 from sandbox.editor.scene import make_scene
-from sandbox.level.bodies import BoxShape, JellyDef, RopeDef
-from sandbox.level.model import Level, ParticleDef, SpringDef
+from sandbox.level.format.model import Level, ParticleDef, SpringDef
+from sandbox.level.kinds.bodies import BoxShape, JellyDef, RopeDef
+from tests.support.zoo import zoo
 
 BALL, SMALL, LINK, CUBE, ROPE = (
     Item("particle", "ball"),

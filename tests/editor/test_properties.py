@@ -6,17 +6,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sandbox.editor.abouts import abouts
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.items import Item, definitions, items_of
-from sandbox.editor.level_properties import add_check, check_properties, delete_check, level_properties
-from sandbox.editor.properties import properties
-from sandbox.editor.property import MIXED, Property
-from sandbox.editor.typed import line_text, list_text, number_text, read_line, read_pairs, read_words
-from sandbox.level.bodies import KINDS
-from sandbox.level.canonical import level_text
-from sandbox.level.files import parse_level
-from sandbox.level.model import Level, ParticleDef, Settings, SpringDef
+from sandbox.editor.panel.field_info import abouts
+from sandbox.editor.panel.level_properties import add_check, check_properties, delete_check, level_properties
+from sandbox.editor.panel.properties import properties
+from sandbox.editor.panel.property import MIXED, Property
+from sandbox.editor.panel.typed import line_text, list_text, number_text, read_line, read_pairs, read_words
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.files import parse_level
+from sandbox.level.format.model import Level, ParticleDef, Settings, SpringDef
+from sandbox.level.kinds.bodies import KINDS
 
 LEVEL = {
     "format": "spring-sandbox/level",

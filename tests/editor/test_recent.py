@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.editor import recent
-from sandbox.editor.recent import RECENT_COUNT, recent_levels, remember
+from sandbox.editor.storage import recent
+from sandbox.editor.storage.recent import RECENT_COUNT, recent_levels, remember
 
 
 def made(folder, *names):

@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from zoo import zoo
 
 from sandbox.editor.document import Document, empty_level
+from sandbox.editor.edits.moving import move
 from sandbox.editor.items import Item, items_of
-from sandbox.editor.moving import move
 from sandbox.editor.scene import make_scene
-from sandbox.level.build import build_world
-from sandbox.level.files import read_level, shipped_levels
+from sandbox.level.build.build_world import build_world
+from sandbox.level.format.files import read_level, shipped_levels
+from tests.support.zoo import zoo
 
 
 @pytest.mark.parametrize("path", shipped_levels(), ids=lambda path: path.stem)

@@ -6,9 +6,9 @@ import pytest
 
 from sandbox.editor.items import Item
 from sandbox.editor.scene import make_scene
-from sandbox.editor.snap import snap
-from sandbox.level.bodies import RopeDef
-from sandbox.level.model import Level, ParticleDef
+from sandbox.editor.tools.snap import snap
+from sandbox.level.format.model import Level, ParticleDef
+from sandbox.level.kinds.bodies import RopeDef
 
 
 @pytest.fixture(scope="module")

@@ -4,21 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from zoo import zoo
 
-from sandbox.editor.copying import copy_text, duplicate, paste
-from sandbox.editor.deleting import delete
 from sandbox.editor.document import Document, EditError, empty_level
-from sandbox.editor.drawing import DRAWINGS
-from sandbox.editor.fields import rename, set_field
-from sandbox.editor.grouping import group, reorder
-from sandbox.editor.items import Item
-from sandbox.editor.moving import align, mirror, move, rotate, scale
-from sandbox.editor.pick import corner_at, item_at, items_in_box, items_in_lasso
-from sandbox.editor.properties import properties
-from sandbox.editor.scene import make_scene
-from sandbox.editor.snap import Snap, snap
-from sandbox.editor.terrain import (
+from sandbox.editor.edits.copying import copy_text, duplicate, paste
+from sandbox.editor.edits.deleting import delete
+from sandbox.editor.edits.fields import rename, set_field
+from sandbox.editor.edits.grouping import group, reorder
+from sandbox.editor.edits.moving import align, mirror, move, rotate, scale
+from sandbox.editor.edits.terrain import (
     add_terrain,
     corners_of,
     delete_corner,
@@ -27,7 +20,14 @@ from sandbox.editor.terrain import (
     set_walls,
     with_corners,
 )
-from sandbox.level.model import TerrainDef, WallsDef
+from sandbox.editor.items import Item
+from sandbox.editor.panel.properties import properties
+from sandbox.editor.pick import corner_at, item_at, items_in_box, items_in_lasso
+from sandbox.editor.scene import make_scene
+from sandbox.editor.tools.drawing import DRAWINGS
+from sandbox.editor.tools.snap import Snap, snap
+from sandbox.level.format.model import TerrainDef, WallsDef
+from tests.support.zoo import zoo
 
 GROUND, RAMP = Item("terrain", "ground"), Item("terrain", "ramp")
 SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))

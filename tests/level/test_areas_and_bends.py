@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from sandbox.level.bodies import BendingDef, JellyDef, MeshDef, RingDef, RopeDef
-from sandbox.level.build import build_world
-from sandbox.level.faults import LevelError
-from sandbox.level.files import parse_level
-from sandbox.level.shapes import jelly_triangles
-from sandbox.physics.elements import AREA, BEND
+from sandbox.level.build.build_world import build_world
+from sandbox.level.faults.level_error import LevelError
+from sandbox.level.format.files import parse_level
+from sandbox.level.kinds.bodies import BendingDef, JellyDef, MeshDef, RingDef, RopeDef
+from sandbox.level.kinds.shapes import jelly_triangles
+from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.energy import measure_elements
 
 

@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from sandbox.level.build import build_world
-from sandbox.level.canonical import level_text
-from sandbox.level.faults import LevelError
-from sandbox.level.limits import MOTOR_LIMIT
-from sandbox.level.parse import parse_level
-from sandbox.level.parts import driving_keys, parts
-from sandbox.level.salvage import salvage
+from sandbox.level.build.actuators import driving_keys, parts
+from sandbox.level.build.build_world import build_world
+from sandbox.level.faults.level_error import LevelError
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.limits import MOTOR_LIMIT
+from sandbox.level.format.parse import parse_level
+from sandbox.level.format.salvage import salvage
 
 WHEEL = {"type": "wheel", "id": "w", "radius": 1, "thickness": 0.3, "segments": 6}
 ROPE = {"type": "rope", "id": "r", "start": [0, 5], "end": [4, 5], "segments": 4}

@@ -5,11 +5,11 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from malformed_levels import encoded
 
-from sandbox.level.build import build_world
-from sandbox.level.files import parse_level
+from sandbox.level.build.build_world import build_world
+from sandbox.level.format.files import parse_level
 from sandbox.physics.step import step
+from tests.support.malformed_levels import encoded
 
 
 def world_of(body, **keys):

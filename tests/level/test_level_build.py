@@ -4,16 +4,16 @@ import math
 
 import numpy as np
 import pytest
-from malformed_levels import GOOD, encoded
 
-from sandbox.level.build import build_world
-from sandbox.level.expansion import expansion
-from sandbox.level.faults import LevelError
-from sandbox.level.files import parse_level
-from sandbox.level.shapes import count, expand, form_count
+from sandbox.level.build.build_world import build_world
+from sandbox.level.build.expansion import expansion
+from sandbox.level.faults.level_error import LevelError
+from sandbox.level.format.files import parse_level
+from sandbox.level.kinds.shapes import count, expand, form_count
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from sandbox.physics.world import HAND_COUNT, LAW_HOOKE, LAW_NISSEN
+from tests.support.malformed_levels import GOOD, encoded
 
 
 def level_of(*bodies, **keys):

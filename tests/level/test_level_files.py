@@ -7,12 +7,11 @@ import stat
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from malformed_levels import GOOD, encoded
 
-from sandbox.level import files
-from sandbox.level.build import build_world
-from sandbox.level.canonical import level_text
-from sandbox.level.files import (
+from sandbox.level.build.build_world import build_world
+from sandbox.level.format import files
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.files import (
     LevelError,
     level_data,
     load_level,
@@ -22,8 +21,9 @@ from sandbox.level.files import (
     shipped_levels,
     write_level,
 )
-from sandbox.level.shapes import form_count
+from sandbox.level.kinds.shapes import form_count
 from sandbox.physics.snapshot import state_hash
+from tests.support.malformed_levels import GOOD, encoded
 
 
 def good():

@@ -1,15 +1,15 @@
 """The models: defaults, ranges and what stays open, as the format says."""
 
 import pytest
-from malformed_levels import GOOD, changed, encoded
 from pydantic import ValidationError
 
-from sandbox.level.bodies import RopeDef
 from sandbox.level.checks import CheckDef, check_ticks, evaluate
-from sandbox.level.files import LevelError, parse_level
-from sandbox.level.limits import DEFAULT_SOLVER
-from sandbox.level.model import NissenMaterial, Settings
+from sandbox.level.format.files import LevelError, parse_level
+from sandbox.level.format.limits import DEFAULT_SOLVER
+from sandbox.level.format.model import NissenMaterial, Settings
+from sandbox.level.kinds.bodies import RopeDef
 from sandbox.physics.solvers import SOLVERS
+from tests.support.malformed_levels import GOOD, changed, encoded
 
 MINIMAL = b'{"format": "spring-sandbox/level", "version": 1, "name": "n"}'
 

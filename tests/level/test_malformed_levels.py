@@ -3,11 +3,11 @@
 import gc
 
 import pytest
-from enormous_levels import enormous
-from malformed_levels import GOOD, changed, encoded, small
 
-from sandbox.level.files import LevelError, parse_level
-from sandbox.level.limits import FAULT_LIMIT
+from sandbox.level.format.files import LevelError, parse_level
+from sandbox.level.format.limits import FAULT_LIMIT
+from tests.support.enormous_levels import enormous
+from tests.support.malformed_levels import GOOD, changed, encoded, small
 
 SMALL = list(small())
 

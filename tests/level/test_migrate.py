@@ -1,12 +1,12 @@
 """Migrations: older versions are brought to this one step by step, in memory; newer ones are refused."""
 
 import pytest
-from malformed_levels import GOOD, encoded
 
-from sandbox.level.files import LevelError, parse_level
-from sandbox.level.limits import VERSION
-from sandbox.level.migrate import MIGRATIONS, migrated
-from sandbox.level.salvage import salvage
+from sandbox.level.format.files import LevelError, parse_level
+from sandbox.level.format.limits import VERSION
+from sandbox.level.format.migrate import MIGRATIONS, migrated
+from sandbox.level.format.salvage import salvage
+from tests.support.malformed_levels import GOOD, encoded
 
 
 def title_to_name(raw):

@@ -3,13 +3,13 @@
 import copy
 
 import pytest
-from malformed_levels import GOOD, changed, encoded, small
 
-from sandbox.level.canonical import level_text
-from sandbox.level.files import LevelError, parse_level
-from sandbox.level.limits import FAULT_LIMIT
-from sandbox.level.salvage import salvage
-from sandbox.level.validate import check_level
+from sandbox.level.faults.validate import check_level
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.files import LevelError, parse_level
+from sandbox.level.format.limits import FAULT_LIMIT
+from sandbox.level.format.salvage import salvage
+from tests.support.malformed_levels import GOOD, changed, encoded, small
 
 SMALL = list(small())
 

@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from sandbox.level.build import build_world
-from sandbox.level.canonical import level_text
+from sandbox.level.build.build_world import build_world
 from sandbox.level.checks import check_ticks, evaluate
-from sandbox.level.files import load_level, parse_level, read_level, shipped_levels
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.files import load_level, parse_level, read_level, shipped_levels
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step

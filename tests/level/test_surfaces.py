@@ -5,15 +5,15 @@ import json
 import numpy as np
 import pytest
 
-from sandbox.level.build import build_world
-from sandbox.level.canonical import level_text
-from sandbox.level.faults import LevelError
-from sandbox.level.files import read_level, shipped_levels
-from sandbox.level.outlines import edges
-from sandbox.level.parse import parse_level
-from sandbox.level.salvage import salvage
-from sandbox.level.shapes import expand
-from sandbox.physics.outline import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
+from sandbox.level.build.build_world import build_world
+from sandbox.level.faults.level_error import LevelError
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.files import read_level, shipped_levels
+from sandbox.level.format.parse import parse_level
+from sandbox.level.format.salvage import salvage
+from sandbox.level.kinds.outlines import edges
+from sandbox.level.kinds.shapes import expand
+from sandbox.physics.collision.outline import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.step import step
 
 SQUARE = [[0, 0], [4, 0], [4, -1], [0, -1]]

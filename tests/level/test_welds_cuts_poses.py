@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from malformed_levels import encoded
 
-from sandbox.level.build import build_world
-from sandbox.level.canonical import level_text
-from sandbox.level.files import LevelError, parse_level
-from sandbox.level.model import ParticleDef
-from sandbox.level.quantities import replaced
-from sandbox.level.welds import united
+from sandbox.level.build.build_world import build_world
+from sandbox.level.build.welds import united
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.files import LevelError, parse_level
+from sandbox.level.format.model import ParticleDef
+from sandbox.level.format.quantities import replaced
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
+from tests.support.malformed_levels import encoded
 
 
 def level_of(*bodies, **keys):

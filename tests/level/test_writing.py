@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.level import writing
-from sandbox.level.writing import write_file, write_over
+from sandbox.level.format import writing
+from sandbox.level.format.writing import write_file, write_over
 
 OLD, NEW = b'{"old": 1}', b'{"new": 2}' * 100
 
@@ -78,7 +78,7 @@ def test_a_write_that_fails_late_leaves_the_old_file_and_nothing_else(path, monk
 def test_a_real_limit_of_size_leaves_the_old_file_and_nothing_else(path):
     script = (
         "import resource, sys, pathlib\n"
-        "from sandbox.level.writing import write_over\n"
+        "from sandbox.level.format.writing import write_over\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))\n"
         "try: write_over(pathlib.Path(sys.argv[1]), b'x' * 100_000)\n"
         "except OSError as error: print(error.strerror)\n"

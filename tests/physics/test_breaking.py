@@ -2,15 +2,16 @@
 
 import numpy as np
 import pytest
-from physics_scenes import girder, network, random_graph, rope, run, scaled
 
+from sandbox.physics.actuators import NEVER, Driven, Muscles, StrainLimits
 from sandbox.physics.energy import kinetic_energy, reduced_masses, spring_lengths
-from sandbox.physics.equipment import NEVER, Driven, Muscles, StrainLimits
 from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import restore, state_hash, take
-from sandbox.physics.solvers import SOLVERS, direct
-from sandbox.physics.solvers.measure import extremes
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.solvers.direct import solve
+from sandbox.physics.solvers.direct.energy_norm import extremes
 from sandbox.physics.step import step, substep_coefficients, substep_time
+from tests.support.physics_scenes import girder, network, random_graph, rope, run, scaled
 
 FAST = {"single_pass": (0.2, 0.2), "iterative": (0.5, 0.9), "direct": (0.9, 0.95)}
 # Strains that the solver lets a rope's link, and a girder's chord, reach under their own weight, and less.
@@ -140,7 +141,7 @@ def held(world):
     if world.settings.substeps == AUTO:
         constant = reduced_masses(world) * extremes(world.stiffness, world.damping)[0] / (h * h)
     else:
-        constant = direct.spring_constant(*substep_coefficients(world), reduced_masses(world), h)
+        constant = solve.spring_constant(*substep_coefficients(world), reduced_masses(world), h)
     error = (spring_lengths(world) - world.rest_length) * world.spring_active
     return kinetic_energy(world) + 0.5 * np.sum(constant * error * error) + world.energy_bank.clip(min=0.0).sum()
 

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from sandbox.physics.collision.outline import LINE
 from sandbox.physics.energy import kinetic_energy, total_energy
-from sandbox.physics.outline import LINE
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
-from tests.physics.closed_boxes import allowed, energy, outside, random_box
-from tests.physics.contact_scenes import FLOOR, add_discs, add_jelly, world
-from tests.physics.physics_scenes import run, scaled
+from tests.support.closed_boxes import allowed, energy, outside, random_box
+from tests.support.contact_scenes import FLOOR, add_discs, add_jelly, world
+from tests.support.physics_scenes import run, scaled
 
 BIN = Chain(
     [(-3.0, -1.0), (3.0, -1.0), (3.0, 3.0), (2.0, 3.0), (1.5, 0.0), (-1.5, 0.0), (-2.0, 3.0), (-3.0, 3.0)], "solid"

@@ -5,17 +5,17 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.physics.contacts import DEEP_TICKS
+from sandbox.physics.collision.contacts import DEEP_TICKS
+from sandbox.physics.collision.outline import ALL_GROUPS
 from sandbox.physics.energy import kinetic_energy, total_energy
-from sandbox.physics.outline import ALL_GROUPS
 from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.contact_sweep import FASTEST_PUSH
+from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
-from tests.physics.contact_scenes import BODIES, FLOOR, GROUND, add_chain, add_discs, add_jelly, rugged, world
-from tests.physics.physics_scenes import run, scaled
+from tests.support.contact_scenes import BODIES, FLOOR, GROUND, add_chain, add_discs, add_jelly, rugged, world
+from tests.support.physics_scenes import run, scaled
 
 every_solver = pytest.mark.parametrize("solver", SOLVERS)
 

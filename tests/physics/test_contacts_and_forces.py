@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.outline import outline_of
+from sandbox.physics.collision.outline import outline_of
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
-from tests.physics.contact_scenes import FLOOR, GROUND, add_discs, add_jelly, world
-from tests.physics.physics_scenes import run
+from tests.support.contact_scenes import FLOOR, GROUND, add_discs, add_jelly, world
+from tests.support.physics_scenes import run
 
 every_solver = pytest.mark.parametrize("solver", SOLVERS)
 # What pulls at a disc like gravity does: gravity itself, less of it by a larger scale, and a hurricane in thin air.

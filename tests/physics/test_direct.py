@@ -10,7 +10,8 @@ import pytest
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
-from sandbox.physics.solvers import SOLVERS, pattern
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.solvers.direct import system
 from sandbox.physics.stability import coefficient_limits, report
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE, World
@@ -358,8 +359,8 @@ def test_the_stability_report_says_what_the_energy_test_proves():
 
 def test_a_matrix_too_large_for_its_table_of_updates_gives_the_same_bits(monkeypatch):
     ends = []
-    for largest in (pattern.LARGEST_TABLE, 1):
-        monkeypatch.setattr(pattern, "LARGEST_TABLE", largest)
+    for largest in (system.LARGEST_TABLE, 1):
+        monkeypatch.setattr(system, "LARGEST_TABLE", largest)
         ends.append(state_hash(run(scenes.lattice(6).world(), 10)))
     assert ends[0] == ends[1]
 

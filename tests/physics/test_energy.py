@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from physics_scenes import network, run
 
 from sandbox.physics.energy import gravity_energy, kinetic_energy, reduced_masses, spring_energy, spring_lengths
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE, World
+from tests.support.physics_scenes import network, run
 
 
 def test_kinetic_and_gravity_energy_count_free_active_particles():

@@ -5,7 +5,6 @@ import re
 
 import numpy as np
 import pytest
-from physics_scenes import network, scaled
 
 from sandbox.physics.equation import (
     coefficients_from_frequency,
@@ -17,6 +16,7 @@ from sandbox.physics.equation import (
     spring_impulse,
 )
 from sandbox.physics.step import step
+from tests.support.physics_scenes import network, scaled
 
 DIGITS = 2.2e-16
 

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from physics_scenes import network, run
 
+from sandbox.physics.actuators import Driven, Motors
 from sandbox.physics.energy import gravity_energy, kinetic_energy, total_energy
-from sandbox.physics.equipment import Driven, Motors
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
+from tests.support.physics_scenes import network, run
 
 SOFT = {"single_pass": (0.05, 0.1), "iterative": (0.3, 0.9), "direct": (0.5, 0.9)}
 

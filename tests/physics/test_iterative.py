@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from physics_scenes import grid, grid_with_diagonals, lengths, network, random_graph, run, scaled
 
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
 from sandbox.physics.strain import strain
 from sandbox.physics.world import LAW_HOOKE
+from tests.support.physics_scenes import grid, grid_with_diagonals, lengths, network, random_graph, run, scaled
 
 
 def textbook_step(world, accumulated):

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from physics_scenes import SCENES, STILL, lengths, network, random_graph, run, scaled
 
 from sandbox.physics.energy import kinetic_energy, spring_energy
 from sandbox.physics.stability import report
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE
+from tests.support.physics_scenes import SCENES, STILL, lengths, network, random_graph, run, scaled
 
 SUBSTEPS = (1, 2, 4, 8, 16, 32, 64)
 

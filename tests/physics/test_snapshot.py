@@ -4,16 +4,16 @@ import dataclasses
 
 import numpy as np
 import pytest
-from physics_scenes import grid, network, run, scaled
 
-from sandbox.physics.arrays import STATE_ARRAYS
-from sandbox.physics.elements import AREA, BEND
-from sandbox.physics.equipment import Driven
+from sandbox.physics.actuators import Driven
+from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.state import STATE_ARRAYS
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE, World
+from tests.support.physics_scenes import grid, network, run, scaled
 
 
 def busy_world(solver="iterative"):

@@ -4,12 +4,22 @@ import dataclasses
 
 import numpy as np
 import pytest
-from physics_scenes import SCENES, girder, grid_with_diagonals, lengths, network, random_graph, rope, run, scaled
 
 from sandbox.physics.energy import reduced_masses
 from sandbox.physics.stability import coefficient_limits, effective_count, largest_eigenvalue, report
 from sandbox.physics.step import substep_coefficients, substep_time
 from sandbox.physics.world import LAW_HOOKE, World
+from tests.support.physics_scenes import (
+    SCENES,
+    girder,
+    grid_with_diagonals,
+    lengths,
+    network,
+    random_graph,
+    rope,
+    run,
+    scaled,
+)
 
 
 def incidence(world):

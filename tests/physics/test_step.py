@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from physics_scenes import STILL, grid_with_diagonals, lengths, network, run, scaled
 
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import state_hash
@@ -12,6 +11,7 @@ from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step, substep_coefficients, substep_time, warm_up
 from sandbox.physics.substeps import halve
 from sandbox.physics.world import LAW_HOOKE, World
+from tests.support.physics_scenes import STILL, grid_with_diagonals, lengths, network, run, scaled
 
 both_solvers = pytest.mark.parametrize("solver", list(SOLVERS))
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from physics_scenes import network
 
 from sandbox.physics.snapshot import take
 from sandbox.physics.strain import load_bearing, strain
 from sandbox.physics.world import World
+from tests.support.physics_scenes import network
 
 
 def chain():

@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from physics_scenes import STILL, grid_with_diagonals, network, rope, run, scaled
 
-from sandbox.physics.arrays import FAMILIES, STATE_ARRAYS
-from sandbox.physics.elements import AREA
+from sandbox.physics.constraints import AREA
 from sandbox.physics.energy import kinetic_energy, spring_energy
 from sandbox.physics.settings import WorldSettings
+from sandbox.physics.state import FAMILIES, STATE_ARRAYS
 from sandbox.physics.step import step
 from sandbox.physics.world import HAND_COUNT, LAW_HOOKE, World
+from tests.support.physics_scenes import STILL, grid_with_diagonals, network, rope, run, scaled
 
 
 def held_rope(**options):

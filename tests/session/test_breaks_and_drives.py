@@ -5,12 +5,12 @@ import json
 import numpy as np
 import pytest
 
-from sandbox.level.parse import parse_level
+from sandbox.level.format.parse import parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import CommandError, CutSprings, Grab, MoveGrab, SetAir, SetDrive, SetInflation, apply
-from sandbox.session.reading import read_replay, read_script
 from sandbox.session.records import ScriptLine
-from sandbox.session.replay import verify
+from sandbox.session.replay.reader import read_replay, read_script
+from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from sandbox.session.summary import run
 

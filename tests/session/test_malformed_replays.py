@@ -2,12 +2,12 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.session.reading import read_replay, read_script
-from sandbox.session.replay import ReplayError, verify
+from sandbox.session.replay.reader import read_replay, read_script
+from sandbox.session.replay.verify import ReplayError, verify
 from sandbox.session.session import Session
-from tests.session.levels import rope_level
-from tests.session.malformed import bad_commands, cases, sealed
-from tests.session.play import play
+from tests.support.malformed_replays import bad_commands, cases, sealed
+from tests.support.play import play
+from tests.support.rope_level import rope_level
 
 
 @pytest.fixture(scope="module")

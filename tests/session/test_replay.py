@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.physics.arrays import CONTACT_ARRAYS, STATE_ARRAYS, VECTOR_ARRAYS
+from sandbox.physics.state import CONTACT_ARRAYS, STATE_ARRAYS, VECTOR_ARRAYS
 from sandbox.session.commands import AddParticle, AddSpring, CutSprings, Grab, MoveGrab, Pin, Release
-from sandbox.session.reading import read_replay
-from sandbox.session.replay import Divergence, ReplayError, verify
+from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.verify import Divergence, ReplayError, verify
 from sandbox.session.session import Session
-from tests.session.levels import rope_level
-from tests.session.play import play
+from tests.support.play import play
+from tests.support.rope_level import rope_level
 
 TICKS = 300
 

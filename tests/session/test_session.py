@@ -15,7 +15,7 @@ from sandbox.session.commands import (
     Unpin,
 )
 from sandbox.session.session import Session
-from tests.session.levels import rope_level
+from tests.support.rope_level import rope_level
 
 
 @pytest.fixture

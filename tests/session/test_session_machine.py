@@ -18,9 +18,9 @@ from hypothesis.stateful import (
     run_state_machine_as_test,
 )
 
-from sandbox.level.build import build_world
-from sandbox.level.files import parse_level
-from sandbox.level.model import Level
+from sandbox.level.build.build_world import build_world
+from sandbox.level.format.files import parse_level
+from sandbox.level.format.model import Level
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from sandbox.session.commands import (
@@ -41,10 +41,10 @@ from sandbox.session.commands import (
     Unpin,
     apply,
 )
-from sandbox.session.reading import read_replay
-from sandbox.session.replay import ReplayError, verify
+from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.verify import ReplayError, verify
 from sandbox.session.session import Session
-from tests.session.levels import rope_level
+from tests.support.rope_level import rope_level
 
 EMPTY = parse_level(
     json.dumps(
@@ -311,7 +311,7 @@ def short_intervals(monkeypatch):
     """Keyframes and stored states every few ticks, and few of them kept, so that short runs meet them."""
     monkeypatch.setattr("sandbox.session.session.KEYFRAME_TICKS", 5)
     monkeypatch.setattr("sandbox.session.session.KEYFRAME_BUDGET", 25_000)
-    monkeypatch.setattr("sandbox.session.recording.STATE_TICKS", 7)
+    monkeypatch.setattr("sandbox.session.replay.writer.STATE_TICKS", 7)
 
 
 def test_a_session_does_what_its_model_does():

@@ -7,7 +7,7 @@ from sandbox.session.checking import run_checks
 from sandbox.session.commands import CutSprings, Grab, Release, SetDrive
 from sandbox.session.session import Session
 from sandbox.session.summary import run
-from tests.session.levels import rope_level
+from tests.support.rope_level import rope_level
 
 
 @pytest.mark.parametrize("solver", ["single_pass", "iterative", "direct"])

@@ -5,12 +5,12 @@ import json
 import numpy as np
 import pytest
 
-from sandbox.level.parse import parse_level
-from sandbox.physics.arrays import CONTACT_ARRAYS
+from sandbox.level.format.parse import parse_level
 from sandbox.physics.snapshot import state_hash
+from sandbox.physics.state import CONTACT_ARRAYS
 from sandbox.session.commands import AddParticle, CutSprings, SetDrive, apply
-from sandbox.session.reading import read_replay
-from sandbox.session.replay import verify
+from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 
 FLOOR = {"id": "floor", "polyline": [[-9, 0], [9, 0]]}

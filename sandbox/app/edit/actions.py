@@ -5,24 +5,24 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Literal
 
-from sandbox.app.camera import Box
-from sandbox.app.colours import material_colours
-from sandbox.app.dialogs import choose, choose_row, fill_in
+from sandbox.app.draw.camera import Box
+from sandbox.app.draw.colours import material_colours
 from sandbox.app.edit.bar import TOOLS
-from sandbox.app.edit.hands import DrawHand, SelectHand
-from sandbox.app.edit.rows import Row
+from sandbox.app.edit.canvas.pointer import DrawHand, SelectHand
+from sandbox.app.edit.side.rows import Row
 from sandbox.app.shortcuts import shortcuts
-from sandbox.editor.copying import array_circle, array_line, duplicate
-from sandbox.editor.deleting import break_apart, delete
+from sandbox.app.widgets.dialogs import choose, choose_row, fill_in
 from sandbox.editor.document import Document
-from sandbox.editor.grouping import group, reorder, ungroup
+from sandbox.editor.edits.copying import array_circle, array_line, duplicate
+from sandbox.editor.edits.deleting import break_apart, delete
+from sandbox.editor.edits.grouping import group, reorder, ungroup
+from sandbox.editor.edits.moving import align, distribute, mirror
+from sandbox.editor.edits.placing import unweld
 from sandbox.editor.items import Item
-from sandbox.editor.moving import align, distribute, mirror
 from sandbox.editor.pick import items_of_material
-from sandbox.editor.placing import unweld
 
 if TYPE_CHECKING:
-    from sandbox.app.edit.screen import EditScreen
+    from sandbox.app.edit.edit_screen import EditScreen
 
 # A copy is put this many steps of the grid to the right of and below what it is of.
 COPY_STEPS = 2

@@ -5,14 +5,14 @@ from typing import TYPE_CHECKING, Any
 
 import pygame
 
-from sandbox.app.colours import ACCENT, DISABLED, TEXT, Colour
-from sandbox.app.icons import icon
+from sandbox.app.draw.colours import ACCENT, DISABLED, TEXT, Colour
+from sandbox.app.play.toolbar import BAR_HEIGHT, BUTTON, GAP, ICON, ROOM_FOR_NAME
 from sandbox.app.shortcuts import tip_of
-from sandbox.app.toolbar import BAR_HEIGHT, BUTTON, GAP, ICON, ROOM_FOR_NAME
-from sandbox.app.widgets import Ui, set_icon
+from sandbox.app.widgets.icons import icon
+from sandbox.app.widgets.ui import Ui, set_icon
 
 if TYPE_CHECKING:
-    from sandbox.app.edit.screen import EditScreen
+    from sandbox.app.edit.edit_screen import EditScreen
 
 # Tools in the order of the palette; the picture of each has its name.
 TOOLS = (

@@ -5,17 +5,17 @@ from typing import TYPE_CHECKING
 
 import pygame
 
-from sandbox.app.dialogs import choose
-from sandbox.editor.copying import copy_text, paste
-from sandbox.editor.deleting import delete
+from sandbox.app.widgets.dialogs import choose
 from sandbox.editor.document import Document
-from sandbox.level.canonical import level_text
-from sandbox.level.faults import LevelError
-from sandbox.level.files import parse_level
-from sandbox.level.model import Level
+from sandbox.editor.edits.copying import copy_text, paste
+from sandbox.editor.edits.deleting import delete
+from sandbox.level.faults.level_error import LevelError
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.files import parse_level
+from sandbox.level.format.model import Level
 
 if TYPE_CHECKING:
-    from sandbox.app.edit.screen import EditScreen
+    from sandbox.app.edit.edit_screen import EditScreen
 
 
 class Clipboard:

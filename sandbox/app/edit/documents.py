@@ -6,18 +6,18 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.app.dialogs import ask, choose, show_lines
-from sandbox.app.edit.screen import EditScreen
-from sandbox.app.playback import Playback
+from sandbox.app.edit.edit_screen import EditScreen
+from sandbox.app.play.playback import Playback
 from sandbox.app.recordings import plain_name, recordings_folder
-from sandbox.editor.autosave import Autosave, Orphan, orphans
+from sandbox.app.widgets.dialogs import ask, choose, show_lines
 from sandbox.editor.document import Document, empty_level
 from sandbox.editor.history import History
-from sandbox.editor.recent import remember
-from sandbox.editor.storage import ChangedOnDisk, FileExists, LevelFile, LevelInUse, StorageError
-from sandbox.level.faults import LevelError, one_line
-from sandbox.level.files import load_level
-from sandbox.level.model import Level
+from sandbox.editor.storage.autosave import Autosave, Orphan, orphans
+from sandbox.editor.storage.level_file import ChangedOnDisk, FileExists, LevelFile, LevelInUse, StorageError
+from sandbox.editor.storage.recent import remember
+from sandbox.level.faults.level_error import LevelError, one_line
+from sandbox.level.format.files import load_level
+from sandbox.level.format.model import Level
 
 if TYPE_CHECKING:
     from sandbox.app.app import App

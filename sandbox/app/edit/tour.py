@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING, Any
 
 import pygame
 
-from sandbox.app.colours import ACCENT, MUTED, TEXT, WARNING
-from sandbox.app.edit.hands import DrawHand
-from sandbox.app.edit.screen import EditScreen
-from sandbox.app.painted import TextBlock
-from sandbox.app.widgets import Ui
-from sandbox.editor.preferences import preference, set_preference
+from sandbox.app.draw.colours import ACCENT, MUTED, TEXT, WARNING
+from sandbox.app.edit.canvas.pointer import DrawHand
+from sandbox.app.edit.edit_screen import EditScreen
+from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.ui import Ui
+from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.editor.tour import STEPS, Situation, Target, Tour
 
 if TYPE_CHECKING:

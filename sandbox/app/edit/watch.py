@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.editor.forecast import Forecast
-from sandbox.editor.lint import Finding, findings
-from sandbox.level.model import Level
+from sandbox.editor.lint.lint import Finding, findings
+from sandbox.level.format.model import Level
 
 if TYPE_CHECKING:
-    from sandbox.app.edit.screen import EditScreen
+    from sandbox.app.edit.edit_screen import EditScreen
 
 # Time [s] that each of the two may take of a frame, and how long the level has to stay as it is before they begin.
 SLICE = 0.004

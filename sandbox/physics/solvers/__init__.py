@@ -4,7 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from sandbox.physics.forces import Before
-from sandbox.physics.solvers import contact_direct, direct, iterative, single_pass
+from sandbox.physics.solvers import iterative, single_pass
+from sandbox.physics.solvers.direct import contact_solve, solve
 from sandbox.physics.solvers.single_pass import Pair
 from sandbox.physics.world import Floats, World
 
@@ -28,5 +29,5 @@ class Solver:
 SOLVERS = {
     "single_pass": Solver(single_pass.solve, single_pass.spring_constant, proven_limit=True, bounded=False),
     "iterative": Solver(iterative.solve, single_pass.spring_constant, proven_limit=False, bounded=False),
-    "direct": Solver(contact_direct.solve, direct.spring_constant, proven_limit=False, bounded=True),
+    "direct": Solver(contact_solve.solve, solve.spring_constant, proven_limit=False, bounded=True),
 }

@@ -8,11 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sandbox.physics.elements import AREA, BEND, element_rate, evaluate, explicit_mass, look
+from sandbox.physics.collision.types import NO_CONTACTS
+from sandbox.physics.constraints import AREA, BEND, element_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, reduced_mass
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.solvers.contact_sweep import (
+from sandbox.physics.solvers.contact.gauss_seidel import (
     add_change,
     load_biases,
     load_responses,
@@ -22,7 +23,6 @@ from sandbox.physics.solvers.contact_sweep import (
     sweep,
 )
 from sandbox.physics.solvers.single_pass import Pair, apply_explicit
-from sandbox.physics.touching import NO_CONTACTS
 from sandbox.physics.world import LAW_HOOKE, Floats, World
 
 # The share of what an area still wants that it gets in an iteration after the first. With all of it jellies and rings,
@@ -75,8 +75,9 @@ def _prepare_elements(position, velocity, inverse_mass, elements, stiffness, dam
 
 @inner_kernel
 def _iterate_elements(inverse_mass, elements, wanted, change):  # type: ignore[no-untyped-def]
-    # A bend obeys (1 - Cd) j = -(Cs C / h + Cd (dC/dt + g . dv)) m, the equation with the velocity after the step (see
-    # direct.py): so can all of more bends than there are ways to bend. Both go at once into the velocity change dv.
+    # A bend obeys (1 - Cd) j = -(Cs C / h + Cd (dC/dt + g . dv)) m, the equation with the velocity after the step
+    # (see direct/solve.py): so can all of more bends than there are ways to bend. Both go at once into the velocity
+    # change dv.
     for k in range(elements.kind.shape[0]):
         if wanted.whole[k] == 0.0:
             continue

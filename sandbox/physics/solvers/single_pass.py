@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.elements import element_rate, evaluate, explicit_mass, look
+from sandbox.physics.constraints import element_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, reduced_mass, spring_impulse
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
-from sandbox.physics.solvers.contact_sweep import load_biases, loose_blocks, new_push, sweep_masses
+from sandbox.physics.solvers.contact.gauss_seidel import load_biases, loose_blocks, new_push, sweep_masses
 from sandbox.physics.world import Floats, World
 
 # Cs and Cd of springs (m,) or elements (t,).

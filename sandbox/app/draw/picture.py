@@ -1,0 +1,65 @@
+"""Pictures of levels and runs, drawn off screen."""
+
+import os
+from pathlib import Path
+
+os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+
+import numpy as np
+import pygame
+from numpy.typing import NDArray
+
+from sandbox.app.draw.camera import Box, Camera, bounds
+from sandbox.app.draw.renderer import Renderer
+from sandbox.level.format.model import Level
+from sandbox.physics.query import shown_particles
+from sandbox.physics.snapshot import Snapshot
+from sandbox.session.session import Session
+
+
+def view_of(level: Level, snapshot: Snapshot) -> Box:
+    """What the camera shows at first: the level's view, or else all of its particles and terrain."""
+    return level.view or bounds(_points(snapshot))
+
+
+def crop_of(level: Level, snapshot: Snapshot) -> Box:
+    """The part of the level's view with anything in it, which a small picture shows."""
+    left, bottom, right, top = view_of(level, snapshot)
+    return bounds(np.clip(_points(snapshot), (left, bottom), (right, top)))
+
+
+def _points(snapshot: Snapshot) -> NDArray[np.float64]:
+    # Corners of all that is drawn.
+    shown = shown_particles(snapshot)
+    position, radius = snapshot.position[shown], snapshot.radius[shown, None]
+    return np.concatenate([position - radius, position + radius, snapshot.terrain.vertex])
+
+
+def draw_picture(
+    level: Level, snapshot: Snapshot, size: tuple[int, int], box: Box | None = None, scale: float | None = None
+) -> pygame.Surface:
+    """A picture of a state of a level; size [pixels]; box [m], None = the level's view; scale: thickness of lines."""
+    surface = pygame.Surface(size, 0, 32)
+    camera = Camera(viewport=(0, 0, *size))
+    camera.fit(view_of(level, snapshot) if box is None else box)
+    renderer = Renderer(max(0.6, min(size[0] / 1280, size[1] / 720)) if scale is None else scale)
+    renderer.draw(surface, camera, snapshot, snapshot, 1.0)
+    return surface
+
+
+def save_picture(session: Session, path: Path, size: tuple[int, int] = (1280, 720)) -> None:
+    """Draw the present state of a session into a PNG file; needs no display. Raises OSError."""
+    surface = draw_picture(session.level, session.snapshot(), size)
+    try:
+        pygame.image.save(surface, str(path))
+    except pygame.error as error:
+        raise OSError(0, str(error), str(path)) from None
+
+
+def run_ahead(level: Level, seconds: float) -> Snapshot:
+    """The state of a level after so many seconds by itself."""
+    session = Session(level)
+    with np.errstate(over="ignore", invalid="ignore"):
+        for _ in range(round(seconds * level.settings.tick_rate)):
+            session.advance()
+    return session.snapshot()

@@ -1,0 +1,277 @@
+"""Painter of the scene that is edited: a layer that is kept while nothing changes, and what moves drawn over it."""
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+import pygame
+from numpy.typing import NDArray
+
+from sandbox.app.draw.camera import Box, Camera, grid_spacing
+from sandbox.app.draw.colours import (
+    ACCENT,
+    BACKGROUND,
+    GRID,
+    GRID_AXIS,
+    GRID_FINE,
+    PARTICLE,
+    PINNED,
+    WELD,
+    Colour,
+    material_colours,
+    mixed,
+    packed,
+)
+from sandbox.app.draw.lines import Canvas
+from sandbox.app.draw.renderer import (
+    CROWDED,
+    DENSITY,
+    GRID_STEP,
+    PIN_RADIUS,
+    SMALLEST_RADIUS,
+    SPRING_WIDTH,
+    THINNEST_SPRING,
+)
+from sandbox.app.edit.canvas.edited_terrain import Ground, paint_ground, paint_walls
+from sandbox.editor.items import Item, Selection
+from sandbox.editor.scene import Scene
+from sandbox.level.format.limits import BODY_RADIUS
+
+# Distance of the points that the pointer snaps to, at least [pixels at scale 1].
+SNAP_STEP = 16.0
+# More particles and springs than this are drawn plainly while they change, and smoothly afterwards.
+PLAIN_FROM = 6_000
+# What is only a preview is this much paler.
+GHOST_SHARE = 0.45
+HIGHLIGHT_WIDTH = 2.4
+# The smooth picture is made of so many springs or particles at a time, for so long [s] in every frame.
+CHUNK = 2_000
+SLICE = 0.006
+# Particles that would be smaller than this [pixels] are left out of the plain picture.
+SMALLEST_PLAIN = 1.0
+HOVERED: Colour = (180, 190, 205)
+
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Part:
+    """Particles and springs of a scene to draw; tint: in place of their own colours; ghost: pale."""
+
+    scene: Scene
+    particles: Mask
+    springs: Mask
+    tint: Colour | None = None
+    ghost: bool = False
+
+
+class Chosen(NamedTuple):
+    """Which particles (n,), springs (m,) and items (k,) of a scene are selected."""
+
+    particles: Mask
+    springs: Mask
+    items: Mask
+
+    @classmethod
+    def of(cls, scene: Scene, selection: Selection) -> "Chosen":
+        """Find them, which takes time in large selections."""
+        chosen = scene.chosen(selection)
+        return cls(chosen[scene.particle_item], chosen[scene.spring_item], chosen)
+
+
+class ScenePainter:
+    """Draws scenes on a surface; `compiled`: whether the kernels are ready; scale: pixels per layout unit."""
+
+    def __init__(self, scale: float) -> None:
+        self.scale = scale
+        self.compiled = True
+        self._layer: pygame.Surface | None = None
+        self._scene: Scene | None = None
+        self._key: tuple[object, ...] = ()
+        self._finer: pygame.Surface | None = None
+        self._work: Iterator[None] | None = None
+
+    def draw(self, surface: pygame.Surface, camera: Camera, scene: Scene, chosen: Chosen, hidden: bool) -> None:
+        """Draw grid, scene and selection, from the layer that is kept where it still holds.
+
+        hidden: the selection is left out, because it is drawn elsewhere while it moves. Of a large scene the first
+        picture is plain; a smooth one is made in the frames that follow, and takes its place.
+        """
+        key = (camera.centre, camera.zoom, camera.viewport, self.scale, id(chosen.particles), hidden, self.compiled)
+        if self._layer is None or scene is not self._scene or key != self._key:
+            self._key, self._scene, self._chosen = key, scene, chosen
+            is_large = len(scene.particle_a) + len(scene.position) > PLAIN_FROM
+            self._layer = pygame.Surface(surface.get_size(), 0, 32)
+            for _ in self._layer_work(self._layer, camera, scene, chosen, hidden, is_large):
+                pass
+            self._work = None
+            if is_large and not hidden:
+                self._finer = pygame.Surface(surface.get_size(), 0, 32)
+                self._work = self._layer_work(self._finer, camera, scene, chosen, hidden, False)
+        elif self._work is not None:
+            self._refine()
+        surface.blit(self._layer, camera.viewport[:2], camera.viewport)
+
+    def _refine(self) -> None:
+        """Go on with the smooth picture for a moment."""
+        assert self._work is not None
+        end = time.perf_counter() + SLICE
+        for _ in self._work:
+            if time.perf_counter() > end:
+                return
+        self._work, self._layer = None, self._finer
+
+    def _layer_work(
+        self, layer: pygame.Surface, camera: Camera, scene: Scene, chosen: Chosen, hidden: bool, plain: bool
+    ) -> Iterator[None]:
+        # The clip holds while a slice is drawn, and nobody else draws on the layer.
+        layer.set_clip(camera.viewport)
+        layer.fill(BACKGROUND)
+        draw_grid(layer, camera, self.scale)
+        particles, springs, items = chosen
+        canvas = Canvas(layer, self.compiled)
+        if scene.level.walls is not None:
+            paint_walls(canvas, camera, scene.level.walls.box, self.scale)
+        paint_ground(canvas, camera, Ground(scene, ~items), self.scale)
+        if not hidden:
+            paint_ground(canvas, camera, Ground(scene, items, ACCENT), self.scale)
+        away = springs | hanging_springs(scene, particles) if hidden else springs
+        yield from self._slices(layer, camera, Part(scene, ~particles, ~away), plain)
+        if not hidden:
+            yield from self._slices(layer, camera, Part(scene, particles, springs, ACCENT), plain)
+
+    def paint_moved(self, surface: pygame.Surface, camera: Camera, moved: Scene, chosen: Chosen) -> None:
+        """Draw the selection in a scene where it has been moved, and the springs of others that hang on it."""
+        particles, springs, items = chosen
+        self.paint_ground(surface, camera, Ground(moved, items, ACCENT))
+        nobody = np.zeros(len(particles), dtype=np.bool_)
+        self.paint(surface, camera, Part(moved, nobody, hanging_springs(moved, particles) & ~springs))
+        self.paint(surface, camera, Part(moved, particles, springs, ACCENT))
+
+    def paint_hovered(self, surface: pygame.Surface, camera: Camera, scene: Scene, item: Item) -> None:
+        """Draw what a click would select, brighter; of large bodies only the springs."""
+        particles, springs, items = Chosen.of(scene, frozenset({item}))
+        self.paint_ground(surface, camera, Ground(scene, items, HOVERED))
+        if np.count_nonzero(springs) > PLAIN_FROM:
+            particles = np.zeros(len(particles), dtype=np.bool_)
+        self.paint(surface, camera, Part(scene, particles, springs, HOVERED))
+
+    def paint_ground(self, surface: pygame.Surface, camera: Camera, ground: Ground) -> None:
+        """Draw terrain."""
+        paint_ground(Canvas(surface, self.compiled), camera, ground, self.scale)
+
+    def paint_walls(self, surface: pygame.Surface, camera: Camera, box: Box, colour: Colour) -> None:
+        """Draw walls."""
+        paint_walls(Canvas(surface, self.compiled), camera, box, self.scale, colour)
+
+    def paint(self, surface: pygame.Surface, camera: Camera, part: Part) -> None:
+        """Draw a part of a scene, plainly where it is large."""
+        for _ in self._slices(surface, camera, part, bool(np.count_nonzero(part.springs) > PLAIN_FROM)):
+            pass
+
+    def _slices(self, surface: pygame.Surface, camera: Camera, part: Part, plain: bool) -> Iterator[None]:
+        """Draw a part, a slice at each turn."""
+        scene, springs, particles = part.scene, np.flatnonzero(part.springs), np.flatnonzero(part.particles)
+        canvas = Canvas(surface, self.compiled)
+        pixels = camera.project(scene.position)
+        colours = self._colours(part)[scene.material[springs]]
+        ends = np.concatenate([pixels[scene.particle_a[springs]], pixels[scene.particle_b[springs]]], axis=1)
+        if plain:
+            canvas.plain_lines(np.ascontiguousarray(ends), colours)
+        else:
+            width = self._width(camera, scene.rest_length[springs])
+            passes = [(colours, width)]
+            if part.tint is not None:
+                under = np.full(len(springs), packed(mixed(BACKGROUND, part.tint, 0.55)))
+                passes.insert(0, (under, width + HIGHLIGHT_WIDTH * self.scale))
+            for tones, wide in passes:
+                for start in range(0, len(springs), CHUNK):
+                    stop = start + CHUNK
+                    canvas.lines(np.ascontiguousarray(ends[start:stop]), tones[start:stop], wide)
+                    yield
+        crowded = self._radius(camera, part)
+        if plain and len(springs) > PLAIN_FROM and crowded < SMALLEST_PLAIN:
+            return
+        for start in range(0, len(particles), CHUNK):
+            self._paint_particles(canvas, camera, part, particles[start : start + CHUNK], pixels, crowded, plain)
+            yield
+
+    def _colours(self, part: Part) -> NDArray[np.int64]:
+        """Colours (materials,) of the springs."""
+        by_name = material_colours(part.scene.materials)
+        share = GHOST_SHARE if part.ghost else 0.0
+        return np.array([packed(mixed(by_name[name], BACKGROUND, share)) for name in part.scene.materials])
+
+    def _width(self, camera: Camera, rest: NDArray[np.float64]) -> float:
+        spacing = float(np.median(rest)) * camera.zoom if len(rest) else np.inf
+        return float(np.clip(spacing * DENSITY, THINNEST_SPRING * self.scale, SPRING_WIDTH * self.scale))
+
+    def _radius(self, camera: Camera, part: Part) -> float:
+        """About how large [pixels] particles may be to leave room between them."""
+        rest = part.scene.rest_length[part.springs]
+        return float(np.median(rest)) * camera.zoom * CROWDED if len(rest) else np.inf
+
+    def _paint_particles(
+        self, canvas: Canvas, camera: Camera, part: Part, shown: NDArray[np.int64], pixels: NDArray[np.float64],
+        crowded: float, plain: bool,
+    ) -> None:  # fmt: skip
+        scene, own = part.scene, part.scene.radius[shown]
+        smallest = max(min(SMALLEST_RADIUS * self.scale, crowded), THINNEST_SPRING * self.scale)
+        radii = np.maximum(own * camera.zoom, smallest)
+        # Particles of the usual radius shrink with the mesh that they belong to, or it is a field of dots.
+        radii = np.where(own <= BODY_RADIUS, np.minimum(radii, max(smallest, crowded)), radii)
+        centres = np.ascontiguousarray(pixels[shown])
+        colour = mixed(PARTICLE, BACKGROUND, GHOST_SHARE) if part.ghost else PARTICLE
+        if plain:
+            canvas.discs(centres, radii, np.full(len(shown), packed(part.tint or colour)))
+            return
+        rim = np.minimum(1.4 * self.scale, radii * 0.6)
+        canvas.discs(centres, radii + rim, np.full(len(shown), packed(part.tint or BACKGROUND)))
+        canvas.discs(centres, radii, np.full(len(shown), packed(colour)))
+        held = scene.pinned[shown]
+        fade = GHOST_SHARE if part.ghost else 0.0
+        self._paint_rings(canvas, centres[held], radii[held], mixed(PINNED, BACKGROUND, fade))
+        if len(scene.welds):
+            welded = np.isin(shown, scene.welds) & ~held
+            self._paint_rings(canvas, centres[welded], radii[welded], mixed(WELD, BACKGROUND, fade))
+
+    def _paint_rings(
+        self, canvas: Canvas, centres: NDArray[np.float64], radii: NDArray[np.float64], colour: Colour
+    ) -> None:
+        size = np.maximum(radii + 2.0 * self.scale, PIN_RADIUS * self.scale)
+        for extra, ring in ((0.0, colour), (-1.8 * self.scale, BACKGROUND), (-3.4 * self.scale, colour)):
+            canvas.discs(centres, np.maximum(size + extra, 0.5), np.full(len(centres), packed(ring)))
+
+
+def draw_grid(surface: pygame.Surface, camera: Camera, scale: float) -> None:
+    """Draw the lines that the pointer snaps to, and brighter ones that the rulers name."""
+    left, top, width, height = camera.viewport
+    (x0, y1), (x1, y0) = camera.to_world((left, top)), camera.to_world((left + width, top + height))
+    for wanted, colour in ((SNAP_STEP, GRID_FINE), (GRID_STEP, GRID)):
+        spacing = grid_spacing(camera.zoom, wanted * scale)
+        for low, high, vertical in ((x0, x1, True), (y0, y1, False)):
+            for index in range(int(np.ceil(low / spacing)), int(np.floor(high / spacing)) + 1):
+                at = camera.to_pixels((index * spacing, index * spacing))
+                tone = GRID_AXIS if index == 0 else colour
+                if vertical:
+                    surface.fill(tone, (round(at[0]), top, 1, height))
+                else:
+                    surface.fill(tone, (left, round(at[1]), width, 1))
+
+
+def moved_by(scene: Scene, chosen: Chosen, matrix: NDArray[np.float64]) -> Scene:
+    """The scene with what is chosen where a matrix (2, 3) takes it."""
+    position = scene.position.copy()
+    position[chosen.particles] = position[chosen.particles] @ matrix[:, :2].T + matrix[:, 2]
+    position = position[scene.first_of_weld] if len(scene.welds) else position
+    corner, corners = scene.corner.copy(), chosen.items[scene.corner_item]
+    corner[corners] = corner[corners] @ matrix[:, :2].T + matrix[:, 2]
+    return replace(scene, position=position, corner=corner)
+
+
+def hanging_springs(scene: Scene, particles: Mask) -> Mask:
+    """Springs (m,) with an end at one of the particles (n,)."""
+    held = particles | particles[scene.first_of_weld] if len(scene.welds) else particles
+    return held[scene.particle_a] | held[scene.particle_b]

@@ -1,0 +1,113 @@
+"""Corners of the terrain that is selected: handles to drag them, to put new ones in, and the gesture that does it."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pygame
+
+from sandbox.app.draw.camera import Camera, Point
+from sandbox.app.draw.colours import MUTED
+from sandbox.app.edit.canvas.overlay import CORNER, draw_corner
+from sandbox.editor.document import Document, EditError
+from sandbox.editor.edits.terrain import corners_of, form_of, insert_corner, move_corner, piece_of
+from sandbox.editor.items import Item
+
+if TYPE_CHECKING:
+    from sandbox.app.edit.edit_screen import EditScreen
+
+# Sizes in layout units: how far off a press still takes a corner; edges shorter than this have no middle to take.
+REACH = 9.0
+SHORTEST = 34.0
+MIDDLE = 3.2
+
+
+class Corners:
+    """Handles of the corners of a piece of terrain, and of the middles of its edges, where new corners begin."""
+
+    def __init__(self, document: Document, item: Item, camera: Camera, scale: float) -> None:
+        self.item, self._scale = item, scale
+        piece = piece_of(document.level, str(item.key))
+        self.points = corners_of(piece)
+        self.places = [camera.to_pixels(point) for point in self.points]
+        count = len(self.points)
+        edges = [(k, (k + 1) % count) for k in range(count if form_of(piece) == "solid" else count - 1)]
+        # Middles by the number that a corner there would have.
+        self.middles = {
+            a + 1: _middle(self.places[a], self.places[b])
+            for a, b in edges
+            if math.dist(self.places[a], self.places[b]) >= SHORTEST * scale
+        }
+
+    def corner_at(self, pixel: Point) -> int | None:
+        """Number of the corner at a pixel."""
+        return self._nearest(dict(enumerate(self.places)), pixel)
+
+    def middle_at(self, pixel: Point) -> int | None:
+        """The number that a corner would have that begins at the middle of an edge at a pixel."""
+        return self._nearest(self.middles, pixel)
+
+    def _nearest(self, places: dict[int, Point], pixel: Point) -> int | None:
+        near = [number for number, place in places.items() if math.dist(place, pixel) <= REACH * self._scale]
+        return min(near, key=lambda number: math.dist(places[number], pixel), default=None)
+
+    def draw(self, surface: pygame.Surface, chosen: int | None) -> None:
+        """Draw them; chosen: the corner that Delete takes out."""
+        for place in self.middles.values():
+            pygame.draw.aacircle(surface, MUTED, place, MIDDLE * self._scale, max(1, round(self._scale)))
+        for number, place in enumerate(self.places):
+            draw_corner(surface, place, self._scale, CORNER, is_chosen=number == chosen)
+
+
+class CornerMoving:
+    """Moves a corner of terrain, or a new one, to what it snaps to."""
+
+    matrix: np.ndarray | None = None
+
+    def __init__(self, screen: "EditScreen", corners: Corners, number: int, *, is_new: bool) -> None:
+        self._screen, self._item, self._number, self._is_new = screen, corners.item, number, is_new
+        self._anchor = corners.points[number - 1]
+        self._snap = screen.snapped(corners.points[number % len(corners.points)], pygame.KMOD_ALT)
+        self._ghost: Document | None = None
+        self._moved = False
+
+    @property
+    def measure(self) -> str:
+        """Where it is."""
+        x, y = self._snap.point
+        return f"{x:.4g}, {y:.4g} m"
+
+    def to(self, point: Point, modifiers: int) -> None:
+        """Alt snaps to nothing."""
+        self._moved = True
+        self._snap = self._screen.snapped(point, modifiers, self._anchor, frozenset({self._item}))
+        try:
+            self._ghost = self._changed(self._screen.document)
+        except EditError:
+            self._ghost = None
+
+    @property
+    def chosen(self) -> tuple[Item, int] | None:
+        """The corner, once there is one."""
+        return (self._item, self._number) if self._moved or not self._is_new else None
+
+    def _changed(self, document: Document) -> Document:
+        change = insert_corner if self._is_new else move_corner
+        return change(document, str(self._item.key), self._number, self._snap.point)
+
+    def ghost(self) -> Document | None:
+        """The piece as it would be."""
+        return self._ghost
+
+    def end(self) -> None:
+        """Move it, or put it in."""
+        if self._moved:
+            self._screen.edit("Add a corner" if self._is_new else "Move a corner", self._changed)
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """What it snaps to."""
+        self._screen.draw_snap(surface, self._snap)
+
+
+def _middle(a: Point, b: Point) -> Point:
+    return (a[0] + b[0]) / 2, (a[1] + b[1]) / 2

@@ -1,0 +1,222 @@
+"""Gestures of the select tool: moving, scaling, turning, and choosing by a box or a lasso."""
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+import pygame
+
+from sandbox.app.draw.camera import Point
+from sandbox.app.draw.colours import ACCENT
+from sandbox.app.edit.canvas.handles import Handles, Scaling, Turn
+from sandbox.editor.document import Document, EditError
+from sandbox.editor.edits.moving import move, rotate, scale
+from sandbox.editor.edits.placing import weld
+from sandbox.editor.pick import Mode, combined, items_in_box, items_in_lasso
+from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap, snap
+
+if TYPE_CHECKING:
+    from sandbox.app.edit.edit_screen import EditScreen
+
+# Points of a lasso are at least this far apart [layout units].
+LASSO_STEP = 4.0
+
+
+class Gesture(Protocol):
+    """A drag of the select tool; matrix (2, 3): what it does to the selection so far, None = nothing."""
+
+    matrix: np.ndarray | None
+
+    @property
+    def measure(self) -> str:
+        """How far it is, in a few words."""
+        ...
+
+    def to(self, point: Point, modifiers: int) -> None:
+        """The pointer is at a point [m] now."""
+        ...
+
+    def end(self) -> None:
+        """The pointer is released."""
+        ...
+
+    def ghost(self) -> Document | None:
+        """The document as it would be, where the matrix does not say it."""
+        ...
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """Draw what the gesture shows besides the moved selection."""
+        ...
+
+
+def pick_mode(modifiers: int, click: bool) -> Mode:
+    """How Shift and Ctrl join what is picked to what is selected already."""
+    shift, ctrl = modifiers & pygame.KMOD_SHIFT, modifiers & (pygame.KMOD_CTRL | pygame.KMOD_META)
+    if ctrl:
+        return "toggle" if click and not shift else "subtract"
+    return "add" if shift else "replace"
+
+
+class _Matrix:
+    """A gesture that changes the selection by its matrix, or not at all."""
+
+    def ghost(self) -> Document | None:
+        """None: what changes is the selection itself."""
+        return None
+
+
+class Moving(_Matrix):
+    """Moves the selection, drawn by one of its particles to what it snaps to; an end that comes onto one is joined."""
+
+    def __init__(self, screen: "EditScreen", start: Point) -> None:
+        self._screen, self._start = screen, start
+        self.matrix: np.ndarray | None = None
+        self._snap = Snap(start)
+        others = frozenset(screen.scene.items) - screen.document.selection
+        self._taken = snap(screen.scene, start, screen.reach, skip=others)
+        self._anchor = self._taken.point
+        self._by = (0.0, 0.0)
+
+    @property
+    def measure(self) -> str:
+        """The way so far."""
+        dx, dy = self._by
+        return f"{dx:+.4g}, {dy:+.4g} m"
+
+    def to(self, point: Point, modifiers: int) -> None:
+        """Shift keeps to round directions, Alt to nothing."""
+        wanted = (self._anchor[0] + point[0] - self._start[0], self._anchor[1] + point[1] - self._start[1])
+        along = self._anchor if modifiers & pygame.KMOD_SHIFT else None
+        self._snap = self._screen.snapped(wanted, modifiers, along, self._screen.document.selection)
+        if self._snap.kind == "grid" and self._taken.kind != "end":
+            self._by = self._steps(wanted)
+            self._snap = replace(self._snap, point=(self._anchor[0] + self._by[0], self._anchor[1] + self._by[1]))
+        else:
+            self._by = (self._snap.point[0] - self._anchor[0], self._snap.point[1] - self._anchor[1])
+        self.matrix = np.array([[1.0, 0.0, self._by[0]], [0.0, 1.0, self._by[1]]])
+
+    def _steps(self, wanted: Point) -> Point:
+        """The way in whole steps of the grid, for what is not taken by an end: what stands on the grid stays on it."""
+        grid = self._screen.grid
+        dx, dy = (round((to - start) / grid) * grid for to, start in zip(wanted, self._anchor, strict=True))
+        return round(dx, PLACE_DECIMALS) + 0.0, round(dy, PLACE_DECIMALS) + 0.0
+
+    def end(self) -> None:
+        """Move, and join where an end came onto a particle."""
+        if self._by != (0.0, 0.0):
+            self._screen.edit("Move", self._moved)
+
+    def _moved(self, document: Document) -> Document:
+        moved = move(document, *self._by)
+        own, target = self._taken.name, self._snap.name
+        if own is None or target is None or "end" not in (self._taken.kind, self._snap.kind):
+            return moved
+        try:
+            return weld(moved, target, own)
+        except EditError as error:
+            self._screen.say(f"Not joined: {error}")
+            return moved
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """What it snaps to."""
+        self._screen.draw_snap(surface, self._snap)
+
+
+class Transforming(_Matrix):
+    """Scales or turns the selection by one of its handles."""
+
+    def __init__(self, screen: "EditScreen", handles: Handles, name: str, start: Point, even: bool) -> None:
+        self._screen, self._handles, self._name, self._start, self._even = screen, handles, name, start, even
+        self.matrix: np.ndarray | None = None
+        self._change: Scaling | Turn | None = None
+
+    @property
+    def measure(self) -> str:
+        """The angle, or the factors, so far."""
+        change = self._change
+        if isinstance(change, Turn):
+            return f"{math.degrees(change.angle):+.4g}°"
+        if isinstance(change, Scaling):
+            return f"{change.x:.4g}" if change.x == change.y else f"{change.x:.4g} x {change.y:.4g}"
+        return ""
+
+    def to(self, point: Point, modifiers: int) -> None:
+        """Shift keeps the sides' ratio, Ctrl the middle; Alt turns freely."""
+        alt, shift = modifiers & pygame.KMOD_ALT, modifiers & pygame.KMOD_SHIFT
+        if self._name == "turn":
+            self._change = self._handles.turn(self._start, point, bool(alt))
+        else:
+            place = self._screen.snapped(point, modifiers).point if self._screen.grid_snaps(modifiers) else point
+            about_centre = bool(modifiers & pygame.KMOD_CTRL)
+            self._change = self._handles.scaling(
+                self._name, self._start, place, self._even or bool(shift), about_centre
+            )
+        self.matrix = self._change.matrix
+
+    def end(self) -> None:
+        """Scale or turn."""
+        change = self._change
+        if isinstance(change, Turn) and change.angle:
+            self._screen.edit("Turn", lambda document: rotate(document, change.angle, change.centre))
+        elif isinstance(change, Scaling) and (change.x, change.y) != (1.0, 1.0):
+            self._screen.edit("Scale", lambda document: scale(document, change.x, change.y, change.centre))
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """Nothing besides."""
+
+
+class Boxing(_Matrix):
+    """Selects what lies in a box."""
+
+    matrix: np.ndarray | None = None
+    measure = ""
+
+    def __init__(self, screen: "EditScreen", start: Point) -> None:
+        self._screen, self._start, self._end, self._modifiers = screen, start, start, 0
+
+    def to(self, point: Point, modifiers: int) -> None:
+        """The other corner."""
+        self._end, self._modifiers = point, modifiers
+
+    def end(self) -> None:
+        """Select."""
+        found = items_in_box(self._screen.scene, (*self._start, *self._end))
+        self._screen.select(combined(self._screen.document.selection, found, pick_mode(self._modifiers, False)))
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """The box."""
+        (x0, y0), (x1, y1) = map(self._screen.camera.to_pixels, (self._start, self._end))
+        box = pygame.Rect(round(min(x0, x1)), round(min(y0, y1)), round(abs(x1 - x0)), round(abs(y1 - y0)))
+        shade = pygame.Surface(box.size, pygame.SRCALPHA)
+        shade.fill((*ACCENT, 28))
+        surface.blit(shade, box)
+        pygame.draw.rect(surface, ACCENT, box, 1)
+
+
+class Lassoing(_Matrix):
+    """Selects what lies inside a freehand line."""
+
+    matrix: np.ndarray | None = None
+    measure = ""
+
+    def __init__(self, screen: "EditScreen", start: Point) -> None:
+        self._screen, self._line, self._modifiers = screen, [start], 0
+
+    def to(self, point: Point, modifiers: int) -> None:
+        """The line goes on."""
+        self._modifiers = modifiers
+        step = LASSO_STEP * self._screen.scale / self._screen.camera.zoom
+        if math.dist(point, self._line[-1]) >= step:
+            self._line.append(point)
+
+    def end(self) -> None:
+        """Select."""
+        found = items_in_lasso(self._screen.scene, self._line)
+        self._screen.select(combined(self._screen.document.selection, found, pick_mode(self._modifiers, False)))
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """The line, and its way back."""
+        points = [self._screen.camera.to_pixels(point) for point in self._line]
+        if len(points) > 2:
+            pygame.draw.aalines(surface, ACCENT, True, points)

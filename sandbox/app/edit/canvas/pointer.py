@@ -1,0 +1,342 @@
+"""Hands: what the pointer does with a tool of the editor: select and move, or draw."""
+
+import math
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+import pygame
+
+from sandbox.app.draw.camera import Point
+from sandbox.app.edit.canvas.corners import CornerMoving, Corners
+from sandbox.app.edit.canvas.gestures import Boxing, Gesture, Lassoing, Moving, Transforming, pick_mode
+from sandbox.app.edit.canvas.handles import Handles
+from sandbox.app.edit.canvas.overlay import draw_outline
+from sandbox.editor.document import Document, EditError
+from sandbox.editor.edits.grouping import with_groups
+from sandbox.editor.edits.terrain import corners_of, delete_corner, move_corner, piece_of
+from sandbox.editor.items import Item, keys
+from sandbox.editor.pick import combined, edge_at, item_at
+from sandbox.editor.tools.drawing_tool import Drawing
+from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap
+
+if TYPE_CHECKING:
+    from sandbox.app.edit.edit_screen import EditScreen
+
+# A drag shorter than this is a click [layout units].
+CLICK_REACH = 4.0
+
+
+class Hand(Protocol):
+    """A tool under the pointer; matrix: what it does to the selection so far."""
+
+    @property
+    def hint(self) -> str:
+        """What to do next, in one line."""
+        ...
+
+    @property
+    def measure(self) -> str:
+        """Sizes of what is under way; empty where nothing is."""
+        ...
+
+    @property
+    def matrix(self) -> np.ndarray | None:
+        """What becomes of the selection so far (2, 3); None = nothing."""
+        ...
+
+    def down(self, point: Point, modifiers: int, clicks: int) -> None:
+        """The pointer is pressed at a point [m]."""
+        ...
+
+    def move(self, point: Point, modifiers: int) -> None:
+        """The pointer moves while pressed."""
+        ...
+
+    def up(self, point: Point, modifiers: int) -> None:
+        """The pointer is released."""
+        ...
+
+    def hover(self, point: Point | None, modifiers: int) -> None:
+        """Where the pointer is while nothing is pressed; None = elsewhere."""
+        ...
+
+    def cancel(self) -> bool:
+        """Give up what is under way; whether there was anything."""
+        ...
+
+    def ghost(self) -> Document | None:
+        """The document as it would be."""
+        ...
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """Draw what belongs to the tool."""
+        ...
+
+
+class SelectHand:
+    """Selects, and moves what is selected; lasso: a drag in the open draws a lasso and no box."""
+
+    def __init__(self, screen: "EditScreen", lasso: bool) -> None:
+        self._screen, self._lasso = screen, lasso
+        self._gesture: Gesture | None = None
+        self._pressed: Point | None = None
+        self._clicked: Item | None = None
+        self._double = False
+        self._chosen: tuple[Item, int] | None = None
+        self.hovered: Item | None = None
+
+    @property
+    def hint(self) -> str:
+        """The keys that join and take away, or what a piece of terrain lets do with its corners."""
+        if self.corner is not None:
+            return "Drag the corner or nudge it by the arrows; Delete takes it out; dots between corners make new ones"
+        if self.piece is not None and self._gesture is None:
+            return "Drag corners, or dots between them for new ones; drag the piece to move it"
+        around = "Drag around parts" if self._lasso else "Click or drag a box"
+        return f"{around} to select; Shift adds, Ctrl takes away; double click: its group"
+
+    @property
+    def measure(self) -> str:
+        """Of the drag."""
+        return self._gesture.measure if self._gesture is not None else ""
+
+    @property
+    def matrix(self) -> np.ndarray | None:
+        """Of the drag."""
+        return self._gesture.matrix if self._gesture is not None else None
+
+    @property
+    def piece(self) -> Item | None:
+        """The piece of terrain that alone is selected."""
+        selection = self._screen.document.selection
+        only = next(iter(selection)) if len(selection) == 1 else None
+        return only if only is not None and only.kind == "terrain" else None
+
+    @property
+    def corner(self) -> int | None:
+        """The corner that was clicked, of the piece that is selected."""
+        if self._chosen is None or self._chosen[0] != self.piece:
+            return None
+        corners = self._corners()
+        return self._chosen[1] if corners is not None and self._chosen[1] < len(corners.points) else None
+
+    def _corners(self) -> Corners | None:
+        piece, screen = self.piece, self._screen
+        return None if piece is None else Corners(screen.document, piece, screen.camera, screen.scale)
+
+    def delete_corner(self) -> bool:
+        """Take the clicked corner out; whether there is one."""
+        piece, corner = self.piece, self.corner
+        if piece is None or corner is None:
+            return False
+        self._chosen = None
+        self._screen.edit("Delete a corner", lambda document: delete_corner(document, str(piece.key), corner))
+        return True
+
+    def nudge_corner(self, dx: float, dy: float) -> bool:
+        """Move the clicked corner by dx, dy [m]; whether there is one."""
+        piece, corner = self.piece, self.corner
+        if piece is None or corner is None:
+            return False
+        screen, key = self._screen, str(piece.key)
+        x, y = corners_of(piece_of(screen.document.level, key))[corner]
+        place = (round(x + dx, PLACE_DECIMALS) + 0.0, round(y + dy, PLACE_DECIMALS) + 0.0)
+        screen.edit(
+            "Nudge a corner", lambda document: move_corner(document, key, corner, place), merge="nudge a corner"
+        )
+        return True
+
+    def handles(self) -> Handles | None:
+        """The handles around the selection."""
+        screen = self._screen
+        selection = screen.document.selection
+        box = screen.selection_box
+        if box is None or len(keys(selection, "spring")) == len(selection):
+            return None
+        return Handles(box, screen.camera, screen.scale, screen.scales_apart)
+
+    def down(self, point: Point, modifiers: int, clicks: int) -> None:
+        """Take a handle, an item, or begin a box."""
+        screen = self._screen
+        handles = self.handles()
+        name = handles.at(screen.camera.to_pixels(point)) if handles is not None else None
+        self._pressed, self._clicked, self._gesture, self._double = point, None, None, clicks == 2
+        self._chosen = None
+        if self._take_corner(screen.camera.to_pixels(point)):
+            return
+        if handles is not None and name is not None:
+            self._gesture = Transforming(screen, handles, name, point, not screen.scales_apart)
+            return
+        item = item_at(screen.scene, point, screen.reach)
+        self._clicked = item
+        if item is None:
+            return
+        selection = screen.document.selection
+        if clicks == 2:
+            found = with_groups(screen.document.level, frozenset({item}))
+            screen.select(combined(selection, found, "add" if modifiers & pygame.KMOD_SHIFT else "replace"))
+            return
+        joins = modifiers & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL | pygame.KMOD_META)
+        if joins or (item not in selection and not self._inside_ground(item, point)):
+            screen.select(combined(selection, frozenset({item}), pick_mode(modifiers, True)))
+
+    def _inside_ground(self, item: Item, point: Point) -> bool:
+        """Whether a point is amid ground, where a click selects it, but a drag begins a box: ground is large."""
+        return item.kind == "terrain" and edge_at(self._screen.scene, point, self._screen.reach) is None
+
+    def _take_corner(self, pixel: Point) -> bool:
+        """Begin to drag a corner of the piece that is selected, or a new one, where a press is on one."""
+        corners = self._corners()
+        if corners is None:
+            return False
+        number, middle = corners.corner_at(pixel), corners.middle_at(pixel)
+        if number is not None:
+            self._gesture = CornerMoving(self._screen, corners, number, is_new=False)
+        elif middle is not None:
+            self._gesture = CornerMoving(self._screen, corners, middle, is_new=True)
+        return self._gesture is not None
+
+    def move(self, point: Point, modifiers: int) -> None:
+        """Go on with the drag; a new one begins once it is more than a click."""
+        if self._pressed is None:
+            return
+        screen = self._screen
+        if self._gesture is None:
+            if math.dist(point, self._pressed) * screen.camera.zoom <= CLICK_REACH * screen.scale:
+                return
+            self._gesture = self._begun(self._pressed)
+        self._gesture.to(point, modifiers)
+
+    def _begun(self, start: Point) -> Gesture:
+        screen = self._screen
+        if self._clicked is not None and self._clicked in screen.document.selection:
+            return Moving(screen, start)
+        return Lassoing(screen, start) if self._lasso else Boxing(screen, start)
+
+    def up(self, point: Point, modifiers: int) -> None:
+        """End the drag; a click selects what is there alone, in the open nothing."""
+        gesture, pressed, self._gesture, self._pressed = self._gesture, self._pressed, None, None
+        if gesture is not None:
+            gesture.end()
+            self._chosen = gesture.chosen if isinstance(gesture, CornerMoving) else None
+        elif pressed is not None and not self._double and pick_mode(modifiers, True) == "replace":
+            self._screen.select(frozenset() if self._clicked is None else frozenset({self._clicked}))
+
+    def hover(self, point: Point | None, modifiers: int) -> None:
+        """Find the item under the pointer."""
+        self.hovered = None if point is None else item_at(self._screen.scene, point, self._screen.reach)
+
+    def cancel(self) -> bool:
+        """Give the drag up, or else the selection."""
+        under_way, self._gesture, self._pressed = self._gesture is not None, None, None
+        if under_way or not self._screen.document.selection:
+            return under_way
+        self._screen.select(frozenset())
+        return True
+
+    def ghost(self) -> Document | None:
+        """Of the drag."""
+        return self._gesture.ghost() if self._gesture is not None else None
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """The handles, or what the drag shows."""
+        if self._gesture is not None:
+            self._gesture.draw(surface)
+            return
+        handles, corners = self.handles(), self._corners()
+        if handles is not None:
+            handles.draw(surface)
+        if corners is not None:
+            corners.draw(surface, self.corner)
+
+
+class DrawHand:
+    """Draws with one of the editor's drawings; name: as in the history."""
+
+    matrix: np.ndarray | None = None
+
+    def __init__(self, screen: "EditScreen", drawing: Drawing[Any], name: str) -> None:
+        self._screen, self.drawing, self._name = screen, drawing, name
+        self._snap: Snap | None = None
+        self._ghost: Document | None = None
+        self._ghost_before: Document | None = None
+        self._ghost_of: tuple[object, ...] = ()
+
+    @property
+    def hint(self) -> str:
+        """What to do next, or why it cannot be done."""
+        return self.drawing.hint
+
+    @property
+    def measure(self) -> str:
+        """Sizes of what is drawn."""
+        return self.drawing.measure
+
+    def _snapped(self, point: Point, modifiers: int) -> Snap:
+        self.drawing.reach = CLICK_REACH * self._screen.scale / self._screen.camera.zoom
+        self._snap = self._screen.snapped(point, modifiers, self.drawing.anchor)
+        return self._snap
+
+    def down(self, point: Point, modifiers: int, clicks: int) -> None:
+        """Begin, or go on."""
+        self.drawing.down(self._snapped(point, modifiers))
+
+    def move(self, point: Point, modifiers: int) -> None:
+        """Move the end."""
+        self.drawing.move(self._snapped(point, modifiers))
+
+    def up(self, point: Point, modifiers: int) -> None:
+        """Draw it, where it is complete."""
+        self.drawing.up(self._snapped(point, modifiers))
+        self._take()
+
+    def finish(self) -> None:
+        """End it at the pointer."""
+        self.drawing.finish()
+        self._take()
+
+    def adjust(self, by: int) -> None:
+        """Count the parts of what is drawn up or down."""
+        try:
+            self.drawing.adjust(by)
+        except EditError as error:
+            self._screen.say(str(error))
+
+    def _take(self) -> None:
+        try:
+            document = self.drawing.done(self._screen.document)
+        except EditError as error:
+            self._screen.say(str(error))
+            return
+        if document is not None:
+            self._screen.apply(self._name, document)
+
+    def hover(self, point: Point | None, modifiers: int) -> None:
+        """Show what a click would do."""
+        if point is None:
+            self._snap = None
+        else:
+            self.drawing.move(self._snapped(point, modifiers))
+
+    def cancel(self) -> bool:
+        """Give the drawing up."""
+        under_way = self.drawing.under_way
+        self.drawing.cancel()
+        return under_way
+
+    def ghost(self) -> Document | None:
+        """The document with what is drawn, kept while nothing changes."""
+        drawing, document = self.drawing, self._screen.document
+        if self._snap is None and not drawing.under_way:
+            return None
+        of = (tuple(drawing.points), drawing.pointer, drawing.options)
+        if document is not self._ghost_before or of != self._ghost_of:
+            self._ghost_before, self._ghost_of, self._ghost = document, of, drawing.ghost(document)
+        return self._ghost
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """The corners so far, and where it snaps to."""
+        outline = [self._screen.camera.to_pixels(point) for point in self.drawing.outline]
+        draw_outline(surface, outline, self._screen.scale)
+        if self._snap is not None:
+            self._screen.draw_snap(surface, self._snap)

@@ -1,0 +1,105 @@
+"""View: what the canvas of the editor shows: the scene, ghosts of what would be, and marks over them."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pygame
+
+from sandbox.app.draw.camera import Point
+from sandbox.app.draw.colours import ACCENT
+from sandbox.app.edit.canvas.canvas import Chosen, Part, ScenePainter, moved_by
+from sandbox.app.edit.canvas.edited_terrain import Ground
+from sandbox.app.edit.canvas.marks import DriveMarks
+from sandbox.app.edit.canvas.overlay import SPOT_SECONDS, draw_cursor, draw_label, draw_spot
+from sandbox.app.edit.canvas.pointer import SelectHand
+from sandbox.editor.items import Selection
+from sandbox.editor.scene import Scene, make_scene
+
+if TYPE_CHECKING:
+    from sandbox.app.edit.edit_screen import EditScreen
+
+# What will hang nearer than this [pixels] to where it is drawn is not shown again.
+MOVED = 2.0
+
+
+class View:
+    """Draws the canvas of a screen, and keeps what is worth keeping from frame to frame."""
+
+    def __init__(self, screen: "EditScreen") -> None:
+        self._screen = screen
+        self._painter = ScenePainter(screen.scale)
+        self._marks = DriveMarks(screen.ui)
+        self._chosen: tuple[Scene, Selection, Chosen] | None = None
+        self._ghost: Scene | None = None
+        self._hanging: tuple[Scene, object, Scene] | None = None
+        self._spot: tuple[Point, float] | None = None
+
+    def point_out(self, place: Point) -> None:
+        """Circle a place [m] for a moment."""
+        self._spot = (place, 0.0)
+
+    def update(self, frame_time: float, ready: bool) -> None:
+        """Let frame_time [s] pass; ready: whether the kernels are there."""
+        self._painter.compiled, self._painter.scale = ready, self._screen.scale
+        if self._spot is not None:
+            place, age = self._spot
+            self._spot = (place, age + frame_time) if age < SPOT_SECONDS else None
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """Draw everything inside the rulers."""
+        self._draw_scene(surface)
+        self._draw_forecast(surface)
+        self._draw_ghost(surface)
+        self._draw_marks(surface)
+
+    def _draw_scene(self, surface: pygame.Surface) -> None:
+        screen = self._screen
+        scene, selection, matrix = screen.scene, screen.document.selection, screen.hand.matrix
+        if self._chosen is None or self._chosen[0] is not scene or self._chosen[1] is not selection:
+            self._chosen = (scene, selection, Chosen.of(scene, selection))
+        chosen = self._chosen[2]
+        self._painter.draw(surface, screen.camera, scene, chosen, matrix is not None)
+        if matrix is not None:
+            scene = moved_by(scene, chosen, matrix)
+            self._painter.paint_moved(surface, screen.camera, scene, chosen)
+        self._marks.draw(surface, screen.camera, scene)
+
+    def _draw_forecast(self, surface: pygame.Surface) -> None:
+        scene, position = self._screen.scene, self._screen.watch.hanging
+        if position is None:
+            return
+        if self._hanging is None or self._hanging[0] is not scene or self._hanging[1] is not position:
+            self._hanging = (scene, position, replace(scene, position=position))
+        # What stays where it is would only lie over itself.
+        moved = np.abs(position - scene.position).max(axis=1) * self._screen.camera.zoom > MOVED
+        springs = moved[scene.particle_a] | moved[scene.particle_b]
+        self._painter.paint(surface, self._screen.camera, Part(self._hanging[2], moved, springs, ghost=True))
+
+    def _draw_ghost(self, surface: pygame.Surface) -> None:
+        screen = self._screen
+        ghost = screen.hand.ghost()
+        if ghost is None or ghost.level is screen.document.level:
+            return
+        if self._ghost is None or self._ghost.level is not ghost.level:
+            self._ghost = make_scene(ghost.level, screen.scene)
+        drawn, new = self._ghost, ghost.selection
+        walls = ghost.level.walls
+        if walls is not None and walls is not screen.document.level.walls:
+            self._painter.paint_walls(surface, screen.camera, walls.box, ACCENT)
+        self._painter.paint_ground(surface, screen.camera, Ground(drawn, drawn.chosen(new), ghost=True))
+        part = Part(drawn, drawn.particles_of(new), drawn.springs_of(new), ghost=True)
+        self._painter.paint(surface, screen.camera, part)
+
+    def _draw_marks(self, surface: pygame.Surface) -> None:
+        screen, hand = self._screen, self._screen.hand
+        hand.draw(surface)
+        under = hand.hovered if isinstance(hand, SelectHand) and hand.matrix is None else None
+        if under is not None and under not in screen.document.selection:
+            self._painter.paint_hovered(surface, screen.camera, screen.scene, under)
+        if screen.cursor is not None:
+            draw_cursor(surface, screen.camera.to_pixels(screen.cursor), screen.scale)
+        if self._spot is not None:
+            draw_spot(surface, screen.camera.to_pixels(self._spot[0]), self._spot[1], screen.scale)
+        if hand.measure and screen.pointer is not None:
+            draw_label(surface, screen.ui, screen.pointer, hand.measure, screen.camera.viewport)

@@ -1,0 +1,389 @@
+"""EditScreen: a level that is edited: canvas and rulers, palette, bar, tool options, and the panel at the side."""
+
+import math
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import pygame
+
+from sandbox.app.draw.camera import Box, Camera, Point, grid_spacing
+from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, SURFACE, TEXT, WARNING, Colour
+from sandbox.app.edit.actions import edit_actions
+from sandbox.app.edit.bar import Bar, Palette
+from sandbox.app.edit.canvas.canvas import SNAP_STEP
+from sandbox.app.edit.canvas.overlay import draw_snap
+from sandbox.app.edit.canvas.pointer import DrawHand, Hand, SelectHand
+from sandbox.app.edit.canvas.rulers import RULER, Rulers
+from sandbox.app.edit.canvas.view import View
+from sandbox.app.edit.clipboard import Clipboard
+from sandbox.app.edit.side.options import OPTIONS_HEIGHT, OptionsRow
+from sandbox.app.edit.side.side import Side
+from sandbox.app.edit.watch import Watch
+from sandbox.app.play.stage import PICK_RADIUS
+from sandbox.app.play.status import STATUS_HEIGHT
+from sandbox.app.play.toolbar import BAR_HEIGHT
+from sandbox.app.profile import Profile
+from sandbox.app.screen import Pixel, Pointer
+from sandbox.app.shortcuts import Mode
+from sandbox.app.widgets.ui import Ui
+from sandbox.editor.document import Document, EditError
+from sandbox.editor.edits.moving import can_scale_unevenly, move
+from sandbox.editor.forecast import Forecast
+from sandbox.editor.history import History
+from sandbox.editor.items import Selection
+from sandbox.editor.lint.finding import Finding
+from sandbox.editor.scene import Scene, make_scene
+from sandbox.editor.storage.level_file import LevelFile
+from sandbox.editor.tools.drawing import DRAWINGS
+from sandbox.editor.tools.snap import Snap, snap
+
+if TYPE_CHECKING:
+    from sandbox.app.app import App
+
+# Sizes in layout units.
+PALETTE_WIDTH = 52.0
+SIDE_WIDTH = 292.0
+# A nudge with Shift is this many steps of the grid.
+NUDGE_LEAP = 10
+# Of more items than this the panel at the side follows a frame later.
+LARGE_SELECTION = 1_000
+# Scenes of so many states are kept, for who goes back to them; one of 20,000 particles takes some megabytes.
+SCENES_KEPT = 4
+# View [m] of a level in which nothing is yet.
+FIRST_VIEW: Box = (-6.0, -3.0, 6.0, 4.0)
+
+
+class EditScreen:
+    """Edits a level; panels and tools change it by `edit` alone, so that every change can be undone."""
+
+    mode: Mode = "edit"
+    notices_left = PALETTE_WIDTH + RULER + 12.0
+
+    def __init__(self, app: "App", history: History, level_file: LevelFile) -> None:
+        self.app = app
+        self.ui = app.ui
+        self.history = history
+        self.level_file = level_file
+        self.camera = Camera(viewport=self._viewport())
+        self.view = View(self)
+        self.tool = "select"
+        self.snapping = True
+        self.show_side = True
+        self.cursor: Point | None = None
+        self.pointer: Pixel | None = None
+        self._scenes: deque[Scene] = deque(maxlen=SCENES_KEPT)
+        self._box: tuple[Scene, Selection, Box | None] | None = None
+        self._apart: tuple[Document, bool] | None = None
+        self._seen: Document | None = None
+        self._is_side_late = False
+        self.watch = Watch(self)
+        self.clipboard = Clipboard(self)
+        self.hands: dict[str, Hand] = {
+            "select": SelectHand(self, lasso=False),
+            "lasso": SelectHand(self, lasso=True),
+            **{name: DrawHand(self, drawing(), f"Draw {name}") for name, drawing in DRAWINGS.items()},
+        }
+        self.actions: dict[str, Callable[[], object]] = edit_actions(self)
+        self.fit()
+
+    # The document.
+
+    @property
+    def document(self) -> Document:
+        """The level in work, and what of it is selected."""
+        return self.history.document
+
+    @property
+    def scene(self) -> Scene:
+        """The level as arrays."""
+        level, scenes = self.document.level, self._scenes
+        if not scenes or scenes[-1].level is not level:
+            known = next((scene for scene in scenes if scene.level is level), None)
+            scenes.append(known or make_scene(level, scenes[-1] if scenes else None))
+        return scenes[-1]
+
+    @property
+    def selection_box(self) -> Box | None:
+        """The box [m] around the selection; None where nothing is selected."""
+        scene, selection = self.scene, self.document.selection
+        if self._box is None or self._box[0] is not scene or self._box[1] is not selection:
+            self._box = (scene, selection, scene.bounds(selection) if selection else None)
+        return self._box[2]
+
+    def edit(self, label: str, function: Callable[[Document], Document], merge: str | None = None) -> bool:
+        """Make an edit a step of the history; False, and a line for the person, where it cannot be made."""
+        try:
+            document = function(self.document)
+        except EditError as error:
+            self.say(str(error))
+            return False
+        self.apply(label, document, merge)
+        return True
+
+    def apply(self, label: str, document: Document, merge: str | None = None) -> None:
+        """Take a document over as a step of the history."""
+        before = self.document.level
+        self.history.apply(label, document, merge)
+        self.level_changed(label, before)
+
+    def level_changed(self, label: str, before: object) -> None:
+        """Have the autosave follow, where the level is another than before."""
+        if self.document.level is not before:
+            self.app.documents.note(self.document.level, self.level_file.path, label)
+
+    def step_to(self, index: int) -> None:
+        """Show the state after a step of the history."""
+        before = self.document.level
+        self.leave()
+        self.history.go_to(index)
+        self.level_changed(self.history.labels[index], before)
+
+    def select(self, selection: Selection) -> None:
+        """Select items; the history has no step for it, but what is nudged next is a step of its own."""
+        self.history.end_merge()
+        self.history.select(selection)
+
+    def say(self, text: str) -> None:
+        """Show a line to the person."""
+        self.app.say(text)
+
+    # What the panels ask.
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What the linter found."""
+        return self.watch.findings
+
+    @property
+    def forecast(self) -> Forecast | None:
+        """Where everything will hang; None while it is not asked for."""
+        return self.watch.forecast
+
+    def show(self, place: Point) -> None:
+        """Bring a place [m] into view, and mark it for a moment."""
+        left, top, width, height = self.camera.viewport
+        pixel = self.camera.to_pixels(place)
+        if not pygame.Rect(left, top, width, height).inflate(-width // 5, -height // 5).collidepoint(pixel):
+            self.camera.centre = place
+        self.view.point_out(place)
+
+    # Layout.
+
+    @property
+    def scale(self) -> float:
+        """Pixels per layout unit."""
+        return self.ui.scale
+
+    def _viewport(self) -> tuple[int, int, int, int]:
+        ui, (width, height) = self.ui, self.ui.size
+        left, top = ui.px(PALETTE_WIDTH) + ui.px(RULER), ui.px(BAR_HEIGHT + OPTIONS_HEIGHT) + ui.px(RULER)
+        right = ui.px(SIDE_WIDTH) if getattr(self, "show_side", True) else 0
+        return left, top, max(width - left - right, 1), max(height - top - ui.px(STATUS_HEIGHT), 1)
+
+    def build(self, ui: Ui) -> None:
+        """Lay the widgets out anew."""
+        self.ui = ui
+        before = self.camera.viewport
+        self.camera.viewport = self._viewport()
+        self.camera.zoom *= math.sqrt(self.camera.viewport[2] * self.camera.viewport[3] / max(before[2] * before[3], 1))
+        width, height = ui.units
+        self.bar = Bar(ui, self.app.act)
+        self.palette = Palette(ui, self.app.act, BAR_HEIGHT, PALETTE_WIDTH, height - BAR_HEIGHT - STATUS_HEIGHT)
+        self.options = OptionsRow(self, ui.rect(PALETTE_WIDTH, BAR_HEIGHT, width - PALETTE_WIDTH, OPTIONS_HEIGHT))
+        self.rulers = Rulers(ui)
+        self.side = Side(ui, self, self._side_place()) if self.show_side else None
+
+    def _side_place(self) -> pygame.Rect:
+        ui, (width, height), top = self.ui, self.ui.units, BAR_HEIGHT + OPTIONS_HEIGHT
+        return ui.rect(width - SIDE_WIDTH, top, SIDE_WIDTH, height - top - STATUS_HEIGHT)
+
+    def toggle_side(self) -> None:
+        """Hide or show the panel at the side."""
+        self.show_side = not self.show_side
+        self.app.rebuild()
+
+    def fit(self) -> None:
+        """Show the level's view and all particles; again, or without a view: terrain and walls too."""
+        level, scene, before = self.document.level, self.scene, (self.camera.centre, self.camera.zoom)
+        walls = None if level.walls is None else level.walls.box
+        if level.view is not None:
+            self._fit_to(level.view, scene.bounds(frozenset(item for item in scene.items if item.kind != "terrain")))
+        if level.view is None or before == (self.camera.centre, self.camera.zoom):
+            self._fit_to(level.view, walls, scene.bounds())
+
+    def _fit_to(self, *boxes: Box | None) -> None:
+        """Show boxes [m], or a first view where there are none."""
+        given = [box for box in boxes if box is not None] or [FIRST_VIEW]
+        left, bottom, right, top = zip(*given, strict=True)
+        self.camera.fit((min(left), min(bottom), max(right), max(top)))
+
+    @property
+    def scales_apart(self) -> bool:
+        """Whether width and height of the selection can be changed each by itself."""
+        document = self.document
+        if self._apart is None or self._apart[0] is not document:
+            self._apart = (document, can_scale_unevenly(document))
+        return self._apart[1]
+
+    # Tools.
+
+    @property
+    def hand(self) -> Hand:
+        """What the pointer does."""
+        return self.hands[self.tool]
+
+    def choose_tool(self, name: str) -> None:
+        """Take another tool up."""
+        if name != self.tool and isinstance(self.hand, DrawHand):
+            self.hand.cancel()
+        self.tool = name
+
+    def cancel(self) -> None:
+        """Give up what is under way, then the tool, then the selection."""
+        self.cursor = None
+        if not self.hand.cancel() and self.tool != "select":
+            self.choose_tool("select")
+
+    @property
+    def reach(self) -> float:
+        """How far off a particle [m] the pointer still takes it."""
+        return PICK_RADIUS * self.scale / self.camera.zoom
+
+    @property
+    def grid(self) -> float:
+        """Distance [m] of the points that the pointer snaps to."""
+        return grid_spacing(self.camera.zoom, SNAP_STEP * self.scale)
+
+    def grid_snaps(self, modifiers: int) -> bool:
+        """Whether anything draws the pointer now."""
+        return self.snapping and not modifiers & pygame.KMOD_ALT
+
+    def snapped(self, point: Point, modifiers: int, anchor: Point | None = None, skip: Selection = frozenset()) -> Snap:
+        """Where the pointer is taken to be."""
+        if not self.grid_snaps(modifiers):
+            return snap(self.scene, point, 0.0)
+        return snap(self.scene, point, self.reach, self.grid, anchor, skip)
+
+    # Pointer and keys.
+
+    def contains(self, pixel: Pixel) -> bool:
+        """Whether a pixel shows the level."""
+        return pygame.Rect(self.camera.viewport).collidepoint(pixel)
+
+    def point(self, kind: Pointer, pixel: Pixel, modifiers: int, clicks: int = 1) -> None:
+        """Hand a pointer event to the tool."""
+        point = self.camera.to_world(pixel)
+        self.pointer = pixel
+        if kind == "down":
+            self.cursor = None
+            self.history.end_merge()
+            self.hand.down(point, modifiers, clicks)
+        elif kind == "move":
+            self.hand.move(point, modifiers)
+        else:
+            self.hand.up(point, modifiers)
+
+    def press_key(self, key: int, modifiers: int) -> bool:
+        """No key of a level works while it is edited."""
+        return False
+
+    def release_key(self, key: int) -> None:
+        """Nothing was held."""
+
+    def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
+        """Nudge the selection by a step of the grid, ten with Shift; without one, move the keyboard cursor."""
+        step = self.grid * (NUDGE_LEAP if modifiers & pygame.KMOD_SHIFT else 1)
+        if isinstance(self.hand, SelectHand) and self.hand.nudge_corner(dx * step, dy * step):
+            return
+        if self.tool in ("select", "lasso") and self.document.selection:
+            self.edit("Nudge", lambda document: move(document, dx * step, dy * step), merge="nudge")
+            return
+        left, top, width, height = self.camera.viewport
+        x, y = self.cursor or self.snapped(self.camera.to_world(self.camera.middle), 0).point
+        (low_x, high_y), (high_x, low_y) = (
+            self.camera.to_world(corner) for corner in ((left, top), (left + width, top + height))
+        )
+        self.cursor = (min(max(x + dx * step, low_x), high_x), min(max(y + dy * step, low_y), high_y))
+        if isinstance(self.hand, DrawHand):
+            self.hand.move(self.cursor, modifiers)
+
+    def press_cursor(self) -> None:
+        """Click at the keyboard cursor; without one, end what is drawn."""
+        hand = self.hand
+        if self.cursor is not None:
+            hand.down(self.cursor, 0, 1)
+            hand.up(self.cursor, 0)
+        elif isinstance(hand, DrawHand):
+            hand.finish()
+
+    # A frame.
+
+    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
+        """Follow the pointer, look for faults a little, and show the state in the widgets."""
+        self.view.update(frame_time, ready)
+        if not pygame.mouse.get_pressed()[0] or pointer is None:
+            self.pointer = pointer
+            at = self.cursor if self.cursor is not None else None if pointer is None else self.camera.to_world(pointer)
+            self.hand.hover(at, pygame.key.get_mods())
+        with profile.part("lint"):
+            self.watch.update(frame_time)
+        self.bar.show(self)
+        self.palette.show(self.tool)
+        self.options.refresh()
+        self._refresh_side()
+
+    def _refresh_side(self) -> None:
+        """Refresh the panel; where much is selected, which takes it long, a frame after the canvas has answered."""
+        is_large = len(self.document.selection) > LARGE_SELECTION
+        is_new = is_large and self.document is not self._seen and not self._is_side_late
+        self._seen, self._is_side_late = self.document, is_new
+        if self.side is not None and not is_new:
+            self.side.refresh()
+
+    def draw(self, surface: pygame.Surface, profile: Profile) -> None:
+        """Draw canvas and rulers."""
+        surface.fill(SURFACE)
+        surface.set_clip(self.camera.viewport)
+        with profile.part("canvas"):
+            self.view.draw(surface)
+        surface.set_clip(None)
+        self.rulers.draw(surface, self.camera, self.pointer)
+
+    def draw_snap(self, surface: pygame.Surface, snapped: Snap) -> None:
+        """Mark what the pointer snaps to, with a word."""
+        draw_snap(surface, self.ui, self.camera.to_pixels(snapped.point), snapped)
+
+    def status(self, ticks: float, frame: float) -> list[tuple[str, Colour]]:
+        """What to do next, where the pointer is, and what the level has."""
+        scene, selection = self.scene, self.document.selection
+        parts: list[tuple[str, Colour]] = [
+            (self.tool if self.tool != "box" else "jelly", ACCENT),
+            (self.hand.hint, TEXT),
+        ]
+        errors = sum(finding.severity == "error" for finding in self.findings)
+        warnings = sum(finding.severity == "warning" for finding in self.findings)
+        if errors:
+            parts.append((f"{errors} {'error' if errors == 1 else 'errors'}", DANGER))
+        if warnings:
+            parts.append((f"{warnings} {'warning' if warnings == 1 else 'warnings'}", WARNING))
+        if selection:
+            parts.append((f"{len(selection):,} selected", MUTED))
+        if self.pointer is not None:
+            x, y = self.camera.to_world(self.pointer)
+            parts.append((f"{x:.3f}, {y:.3f} m", MUTED))
+        return [*parts, (f"{len(scene.position):,} particles", MUTED), (f"{len(scene.particle_a):,} springs", MUTED)]
+
+    def title(self) -> list[str]:
+        """Level, * where it is not saved, and the state."""
+        name = self.document.level.name + ("" if self.history.is_saved else "*")
+        words = [name, "editing", self.tool]
+        if self.document.selection:
+            words.append(f"{len(self.document.selection)} selected")
+        return words
+
+    def leave(self) -> None:
+        """Give up what is under way; the document stays as it is."""
+        if self.hand.matrix is not None or isinstance(self.hand, DrawHand):
+            self.hand.cancel()
+        self.history.end_merge()

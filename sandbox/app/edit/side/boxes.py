@@ -1,0 +1,198 @@
+"""Boxes: what a form has beside lines to type into: a box to tick, one that takes a key, labels that are dragged."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pygame
+
+from sandbox.app.draw.colours import ACCENT, LINE, MUTED, TEXT, mixed
+from sandbox.app.edit.side.rows import FIELD_BACKGROUND
+from sandbox.app.widgets.painted import Lit, Painted, wrapped
+from sandbox.app.widgets.ui import ENTER_KEYS, Ui
+
+TEXT_SIZE = 12.5
+# Keys that a level can name: letters and digits.
+KEYS = frozenset(map(ord, "abcdefghijklmnopqrstuvwxyz0123456789"))
+NO_KEY = "none"
+# A label is dragged so far for each step [layout units].
+SCRUB_STEP = 5.0
+
+
+class CheckBox(Painted):
+    """A box to tick; its state may be MIXED."""
+
+    def __init__(self, ui: Ui, rect: pygame.Rect, label: str, toggle: Callable[[bool], object], container: Any) -> None:
+        super().__init__(ui, rect, container)
+        self.label, self.state = label, False
+        self.mixed = False
+        self._toggle = toggle
+        ui.add(self)
+        self.repaint()
+
+    def show_state(self, state: bool, is_mixed: bool) -> None:
+        """Show it ticked or not, or that the items differ."""
+        if (state, is_mixed) != (self.state, self.mixed):
+            self.state, self.mixed = state, is_mixed
+            self.repaint()
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface:
+        """Box, tick or dash, and label."""
+        ui = self.ui
+        surface = pygame.Surface(size, pygame.SRCALPHA)
+        side = ui.px(16)
+        box = pygame.Rect(0, (size[1] - side) // 2, side, side)
+        pygame.draw.rect(surface, ACCENT if self.state else FIELD_BACKGROUND, box, border_radius=ui.px(4))
+        pygame.draw.rect(surface, ACCENT if self.state else LINE, box, 1, border_radius=ui.px(4))
+        x, y, part = box.centerx, box.centery, side / 4
+        if self.mixed:
+            pygame.draw.line(surface, MUTED, (x - part, y), (x + part, y), ui.px(2))
+        elif self.state:
+            points = [(x - part, y), (x - part / 4, y + part * 0.8), (x + part * 1.1, y - part * 0.8)]
+            pygame.draw.lines(surface, FIELD_BACKGROUND, False, points, ui.px(2))
+        text = ui.font(12.5).render(self.label, True, TEXT)
+        surface.blit(text, (side + ui.px(7), (size[1] - text.get_height()) // 2))
+        return surface
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Tick on a click."""
+        pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
+        if pressed and self.hover_point(*self.ui.manager.calculate_scaled_mouse_position(event.pos)):
+            self._toggle(not self.state)
+            return True
+        return False
+
+    def press_key(self, event: pygame.event.Event) -> bool:
+        """Tick by Enter or Space."""
+        if event.key in (*ENTER_KEYS, pygame.K_SPACE):
+            self._toggle(not self.state)
+            return True
+        return False
+
+
+class KeyBox(Painted):
+    """Shows a key; after a click, Enter or Space it takes the next one that is pressed, Delete takes it away.
+
+    choose(key) is called with it, or with None.
+    """
+
+    def __init__(self, ui: Ui, rect: pygame.Rect, choose: Callable[[str | None], object], container: Any) -> None:
+        super().__init__(ui, rect, container)
+        self.key: str | None = None
+        self.listening = False
+        self._choose = choose
+        ui.add(self)
+        self.repaint()
+
+    def show_key(self, key: str | None) -> None:
+        """Show a key, or a word in its place."""
+        if key != self.key:
+            self.key = key
+            self.repaint()
+
+    def _listen(self, listening: bool) -> None:
+        self.listening = listening
+        self.repaint()
+
+    def update(self, time_delta: float) -> None:
+        """Listen no longer once the keyboard is elsewhere."""
+        super().update(time_delta)
+        if self.listening and self.ui.focus is not self:
+            self._listen(False)
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface:
+        """A key's cap, or what to do."""
+        ui, surface = self.ui, pygame.Surface(size, pygame.SRCALPHA)
+        place = surface.get_rect()
+        pygame.draw.rect(surface, FIELD_BACKGROUND, place, border_radius=ui.px(6))
+        pygame.draw.rect(surface, ACCENT if self.listening else LINE, place, 1, border_radius=ui.px(6))
+        has_key = self.key is not None and len(self.key) == 1 and not self.listening
+        words = "press a letter or digit" if self.listening else self.key or NO_KEY
+        picture = ui.font(TEXT_SIZE).render(words.upper() if has_key else words, True, TEXT if has_key else MUTED)
+        at = picture.get_rect(midleft=(ui.px(9), size[1] // 2))
+        if has_key:
+            cap = pygame.Rect(ui.px(5), ui.px(4), max(at.width + ui.px(12), size[1] - ui.px(8)), size[1] - ui.px(8))
+            pygame.draw.rect(surface, mixed(FIELD_BACKGROUND, TEXT, 0.16), cap, border_radius=ui.px(4))
+            at = picture.get_rect(center=cap.center)
+        surface.blit(picture, at)
+        return surface
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Listen after a click."""
+        pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
+        if pressed and self.hover_point(*self.ui.manager.calculate_scaled_mouse_position(event.pos)):
+            self.ui.focus_on(self)
+            self._listen(True)
+            return True
+        return False
+
+    def press_key(self, event: pygame.event.Event) -> bool:
+        """Take the key."""
+        if not self.listening:
+            if event.key in (*ENTER_KEYS, pygame.K_SPACE):
+                self._listen(True)
+                return True
+            return False
+        if event.mod & (pygame.KMOD_CTRL | pygame.KMOD_META | pygame.KMOD_ALT):
+            return False
+        if event.key in KEYS:
+            self._listen(False)
+            self._choose(chr(event.key))
+        elif event.key in (pygame.K_DELETE, pygame.K_BACKSPACE):
+            self._listen(False)
+            self._choose(None)
+        return True
+
+
+class Scrub(Lit):
+    """The label of a number, which a drag to the right or left counts up or down.
+
+    turn(steps) is called as it goes, done() at its end.
+    """
+
+    def __init__(
+        self,
+        ui: Ui,
+        rect: pygame.Rect,
+        text: str,
+        turn: Callable[[int], object],
+        done: Callable[[], object],
+        container: Any,
+    ) -> None:
+        super().__init__(ui, rect, container)
+        self._text, self._turn, self._done = text, turn, done
+        self._from: float | None = None
+        self.repaint()
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface:
+        """The text; brighter under the mouse, with a dotted line that says it can be dragged."""
+        ui, surface = self.ui, pygame.Surface(size, pygame.SRCALPHA)
+        is_lit = self.hovered or self._from is not None
+        text = wrapped(self._text, ui.font(TEXT_SIZE), size[0], 1)[0]
+        picture = ui.font(TEXT_SIZE).render(text, True, TEXT if is_lit else MUTED)
+        at = picture.get_rect(midleft=(0, size[1] // 2))
+        surface.blit(picture, at)
+        if is_lit:
+            for x in range(0, at.width, ui.px(4)):
+                surface.fill(ACCENT, (x, at.bottom, ui.px(2), max(1, ui.px(1))))
+        return surface
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Follow a drag that began on it."""
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+            x, y = self.ui.manager.calculate_scaled_mouse_position(event.pos)
+            if self.hover_point(x, y):
+                self._from = x
+                return True
+        elif event.type == pygame.MOUSEMOTION and self._from is not None:
+            x = self.ui.manager.calculate_scaled_mouse_position(event.pos)[0]
+            steps = int((x - self._from) / self.ui.px(SCRUB_STEP))
+            if steps:
+                self._from += steps * self.ui.px(SCRUB_STEP)
+                self._turn(steps)
+            return True
+        elif event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self._from is not None:
+            self._from = None
+            self.repaint()
+            self._done()
+            return True
+        return False

@@ -1,0 +1,154 @@
+"""ChecksPage: what the level promises of its own run, and whether it holds."""
+
+import threading
+from typing import TYPE_CHECKING, Any
+
+import pygame
+
+from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED
+from sandbox.app.edit.side.form import GAP, ROW, Form
+from sandbox.app.edit.side.rows import Row, RowList
+from sandbox.editor.document import Document
+from sandbox.editor.panel.level_properties import add_check, check_properties, delete_check
+from sandbox.editor.panel.typed import number_text
+from sandbox.level.checks import CheckDef, CheckResult, check_ticks
+from sandbox.level.faults.level_error import LevelError
+from sandbox.level.format.model import Level
+from sandbox.level.format.quantities import replaced
+from sandbox.session.checking import run_checks
+
+if TYPE_CHECKING:
+    from sandbox.app.edit.edit_screen import EditScreen
+
+# Part of the page that the list takes.
+LIST_PART = 0.38
+NOTHING = "No checks yet. A check says what has to hold after some seconds of the level's run."
+
+
+class Trial:
+    """Runs a level's checks in a thread of its own; `results` fills up as they end, those of the longest run last."""
+
+    def __init__(self, level: Level) -> None:
+        self.level = level
+        self.results: dict[CheckDef, CheckResult] = {}
+        self.fault: str | None = None
+        self.is_stopped = False
+        self._thread = threading.Thread(target=self._work, name="checks", daemon=True)
+        self._thread.start()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether there are checks to come."""
+        return self._thread.is_alive()
+
+    def holds_for(self, level: Level) -> bool:
+        """Whether its results are those of a level: only what runs has to be the same."""
+        parts = ("bodies", "particles", "springs", "welds", "materials", "settings")
+        return all(getattr(level, part) is getattr(self.level, part) for part in parts)
+
+    def wait(self) -> None:
+        """Wait until all of them have ended."""
+        self._thread.join()
+
+    def _work(self) -> None:
+        by_ticks: dict[int, list[CheckDef]] = {}
+        for check in self.level.checks:
+            by_ticks.setdefault(check_ticks(check, self.level.settings.tick_rate), []).append(check)
+        try:
+            for _, checks in sorted(by_ticks.items()):
+                if self.is_stopped:
+                    return
+                results = run_checks(replaced(self.level, checks=tuple(checks)))
+                self.results = {**self.results, **dict(zip(checks, results, strict=True))}
+        except LevelError as error:
+            self.fault = error.faults[0]
+        except (ArithmeticError, MemoryError) as error:
+            self.fault = f"the level cannot be run: {error}"
+
+
+class ChecksPage:
+    """The checks as a list, the chosen one as a form."""
+
+    def __init__(self, screen: "EditScreen", place: pygame.Rect, container: Any) -> None:
+        self._screen, self._ui = screen, screen.ui
+        ui = self._ui
+        self.trial: Trial | None = None
+        self.chosen = 0
+        self._shown: tuple[object, ...] = ()
+        tall = round(place.height * LIST_PART)
+        top = pygame.Rect(place.left, place.top, place.width - ui.px(6), tall)
+        self.list = RowList(ui, top, self._choose, container, empty=NOTHING, most_lines=2)
+        third = (top.width - 2 * ui.px(GAP)) // 3
+        self.buttons = []
+        for number, (text, do, tip) in enumerate((
+            ("Add", self._add, "Add a check"),
+            ("Delete", self._delete, "Delete the chosen check"),
+            ("Run now", self._run, "Run the level from its beginning and measure"),
+        )):  # fmt: skip
+            at = pygame.Rect(place.left + number * (third + ui.px(GAP)), top.bottom + ui.px(8), third, ui.px(ROW))
+            self.buttons.append(ui.button(at, text, do, container, style="@segment", tip=tip))
+        below = self.buttons[0].relative_rect.bottom + ui.px(12)
+        self.form = Form(screen, pygame.Rect(place.left, below, place.width, place.bottom - below), container)
+
+    def refresh(self) -> None:
+        """Show the checks and their results as they are now."""
+        document, trial = self._screen.document, self.trial
+        if trial is not None and not trial.holds_for(document.level):
+            trial.is_stopped = True
+            trial = self.trial = None
+        results = {} if trial is None else trial.results
+        is_running = trial is not None and trial.is_running
+        fresh = (document.level.checks, document.selection, self.chosen, len(results), is_running)
+        if fresh != self._shown:
+            self._shown = fresh
+            self._show(document, results, is_running)
+            if trial is not None and trial.fault is not None and not is_running:
+                self._screen.say(trial.fault)
+        self.form.refresh()
+
+    def _show(self, document: Document, results: dict[CheckDef, CheckResult], is_running: bool) -> None:
+        checks = document.level.checks
+        self.chosen = min(max(self.chosen, 0), max(len(checks) - 1, 0))
+        rows = [_row(check, results.get(check), is_running) for check in checks]
+        self.list.show_rows(rows, self.chosen if checks else None, reveal=True)
+        for button in self.buttons[1:]:
+            (button.enable if checks else button.disable)()
+        self.buttons[2].set_text("Running" if is_running else "Run now")
+        self.form.show(check_properties(document, self.chosen))
+
+    def _choose(self, index: int) -> None:
+        self.chosen = index
+
+    def _add(self) -> None:
+        if self._screen.edit("Add a check", add_check):
+            self.chosen = len(self._screen.document.level.checks) - 1
+
+    def _delete(self) -> None:
+        chosen = self.chosen
+        self._screen.edit("Delete a check", lambda document: delete_check(document, chosen))
+
+    def _run(self) -> None:
+        if self.trial is None or not self.trial.is_running:
+            self.trial = Trial(self._screen.document.level)
+
+    def close(self) -> None:
+        """Take the page away."""
+        if self.trial is not None:
+            self.trial.is_stopped = True
+        self.form.close()
+        for widget in (self.list, *self.buttons):
+            self._ui.remove(widget)
+
+
+def _row(check: CheckDef, result: CheckResult | None, is_running: bool) -> Row:
+    bounds = []
+    if check.at_least is not None:
+        bounds.append(f"at least {number_text(check.at_least)}")
+    if check.at_most is not None:
+        bounds.append(f"at most {number_text(check.at_most)}")
+    subject = check.metric if check.particle is None else f"{check.metric} of {check.particle}"
+    wanted = f"{subject} {' and '.join(bounds)}"
+    if result is None:
+        return Row(check.name, f"running: {wanted}" if is_running else wanted, DISABLED)
+    verdict = "holds" if result.passed else "fails"
+    return Row(check.name, f"{verdict}: {result.value:.4g}; {wanted}", ACCENT if result.passed else DANGER)

@@ -1,0 +1,72 @@
+"""FindingsPage: what the linter has found; a click selects it and shows where it is, a button mends what it can."""
+
+from typing import TYPE_CHECKING, Any
+
+import pygame
+
+from sandbox.app.draw.colours import ACCENT, DANGER, WARNING, Colour
+from sandbox.app.edit.side.form import GAP, ROW
+from sandbox.app.edit.side.rows import Row, RowList
+from sandbox.editor.items import items_of
+from sandbox.editor.lint.finding import Finding, Remedy
+
+if TYPE_CHECKING:
+    from sandbox.app.edit.edit_screen import EditScreen
+
+SEVERITIES: dict[str, Colour] = {"error": DANGER, "warning": WARNING, "hint": ACCENT}
+NOTHING = "Nothing to complain about."
+LINES = 6
+NO_REMEDY = "Choose one to see it"
+
+
+class FindingsPage:
+    """Findings, the gravest first."""
+
+    def __init__(self, screen: "EditScreen", place: pygame.Rect, container: Any) -> None:
+        self._screen = screen
+        self._ui = screen.ui
+        ui, below = screen.ui, screen.ui.px(ROW + 2 * GAP)
+        upper = pygame.Rect(place.topleft, (place.width - ui.px(6), place.height - below))
+        self.list = RowList(ui, upper, self._show, container, empty=NOTHING, at_once=False, most_lines=LINES)
+        row = pygame.Rect(place.left, place.bottom - ui.px(ROW + 4), upper.width, ui.px(ROW))
+        self.mend = ui.button(row, "", self._mend, container, style="@segment", tip="Mend what is chosen above")
+        self._offer(None)
+        self.findings: list[Finding] = []
+        self._shown: object = None
+
+    def refresh(self) -> None:
+        """Show what has been found by now."""
+        found = self._screen.findings
+        if found is self._shown:
+            return
+        self._shown = found
+        grades = list(SEVERITIES)
+        self.findings = sorted(found, key=lambda finding: grades.index(finding.severity))
+        rows = [Row(each.text, each.severity, SEVERITIES[each.severity]) for each in self.findings]
+        self.list.show_rows(rows, None)
+        self._offer(None)
+
+    def _show(self, index: int) -> None:
+        screen, finding = self._screen, self.findings[index]
+        known = finding.items.intersection(items_of(screen.document.level))
+        if known:
+            screen.select(known)
+        if finding.place is not None:
+            screen.show(finding.place)
+        self.list.show_rows(self.list.rows, index)
+        self._offer(finding.remedy)
+
+    def _offer(self, remedy: Remedy | None) -> None:
+        """Let the button do what mends the chosen finding."""
+        self._remedy = remedy
+        self.mend.set_text(NO_REMEDY if remedy is None else remedy.label)
+        (self.mend.disable if remedy is None else self.mend.enable)()
+
+    def _mend(self) -> None:
+        if self._remedy is not None:
+            self._screen.edit(self._remedy.label, self._remedy.edit)
+
+    def close(self) -> None:
+        """Take the page away."""
+        self._ui.remove(self.list)
+        self._ui.remove(self.mend)

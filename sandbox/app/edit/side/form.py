@@ -1,0 +1,372 @@
+"""Form: a scrolling page of properties, a row each, that shows their values and takes new ones."""
+
+from collections.abc import Sequence
+from functools import partial
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import pygame
+
+from sandbox.app.draw.colours import MUTED, material_colours
+from sandbox.app.edit.side.boxes import CheckBox, KeyBox, Scrub
+from sandbox.app.edit.side.rows import Picker, Row
+from sandbox.app.edit.side.scroll import ScrollArea
+from sandbox.app.shortcuts import action_of, tip_of
+from sandbox.app.widgets.dialogs import choose
+from sandbox.app.widgets.fields import Field
+from sandbox.app.widgets.painted import TextBlock, wrapped
+from sandbox.editor.document import EditError
+from sandbox.editor.edits.collision_groups import collision_groups
+from sandbox.editor.panel.property import MIXED, Property, Section
+from sandbox.editor.panel.typed import EVERYTHING, NOTHING
+
+if TYPE_CHECKING:
+    from sandbox.app.edit.edit_screen import EditScreen
+
+# Sizes in layout units.
+ROW = 28.0
+GAP = 5.0
+LABEL_WIDTH = 108.0
+HEADING = 24.0
+SECTION_GAP = 10.0
+NOTE_LINES = 3
+NOTE_LINE = 15.0
+# Characters of a line to type into; what is longer is copied and pasted as a whole.
+TEXT_LENGTH = 600
+# Choices of at most this many letters in all, and so many of them, stand side by side, others in a menu.
+SIDE_BY_SIDE = 14
+MOST_SIDE_BY_SIDE = 4
+SQUARED = {"m/s^2": "m/s²"}
+# What the button of an object says while some have one, all or none.
+OBJECT_TEXTS = {True: "Remove", False: "Add", MIXED: "Add to the others"}
+
+
+def sentence(text: str) -> str:
+    """A fault as a sentence."""
+    return f"{text[:1].upper()}{text[1:]}" + ("" if text.endswith((".", "?")) else ".")
+
+
+def _listed(collides: Any) -> Sequence[str]:
+    """The groups that are listed in a value of `collides`."""
+    return collides if isinstance(collides, tuple) else ()
+
+
+class Form:
+    """Properties in a place [pixels]; the widgets are made anew only when other fields are shown."""
+
+    def __init__(self, screen: "EditScreen", place: pygame.Rect, container: Any, empty: str = "") -> None:
+        self._screen, self._ui = screen, screen.ui
+        self._place, self._container, self._empty = place, container, empty
+        self.area: ScrollArea | None = None
+        self.properties: dict[str, Property] = {}
+        self.fields: dict[str, tuple[Field, ...]] = {}
+        self.pickers: dict[str, Picker] = {}
+        self.boxes: dict[str, dict[str, CheckBox]] = {}
+        self.choices: dict[str, Any] = {}
+        self.buttons: dict[str, Any] = {}
+        self.keys: dict[str, KeyBox] = {}
+        self.scrubs: dict[str, Scrub] = {}
+        self._notes: dict[str, TextBlock] = {}
+        self._widgets: list[Any] = []
+        self._named: dict[str, Any] = {}
+        self._structure: object = None
+        self._is_stale = False
+        self._y = 0.0
+
+    def show(self, sections: Sequence[Section]) -> None:
+        """Show properties."""
+        structure = [(s.title, [self._structure_of(p) for p in s.properties]) for s in sections]
+        self.properties = {each.field: each for section in sections for each in section.properties}
+        if structure != self._structure:
+            self._structure = structure
+            self._remake(sections)
+        self._is_stale = False
+        for each in self.properties.values():
+            self._show_value(each)
+
+    def refresh(self) -> None:
+        """Keep what has the keyboard in sight, and bring fields that were typed into to the values that they gave."""
+        if self.area is not None:
+            self.area.follow_focus()
+        if self._is_stale:
+            self._is_stale = False
+            for each in list(self.properties.values()):
+                self._show_value(each)
+
+    def close(self) -> None:
+        """Take what is being typed, and take the widgets away."""
+        if any(field.entry.is_focused for fields in self.fields.values() for field in fields):
+            self._ui.blur()
+        for widget in self._widgets:
+            self._ui.remove(widget)
+        self._widgets, self._named = [], {}
+        if self.area is not None:
+            self.area.kill()
+            self.area = None
+
+    # Making rows.
+
+    def _structure_of(self, each: Property) -> tuple[object, ...]:
+        about = each.about
+        lines = self._lines(each) if not each.editable else 0
+        return each.field, about.kind, about.title, about.unit, about.choices, each.axes, lines, self._is_long(each)
+
+    def _is_long(self, each: Property) -> bool:
+        return each.about.kind in ("list", "pairs", "words") and len(each.texts[0]) > TEXT_LENGTH
+
+    def _lines(self, each: Property) -> int:
+        """Lines that a text takes which is only shown."""
+        font = self._ui.font(11.0)
+        return len(wrapped(each.texts[0], font, self._ui.px(self._inside - LABEL_WIDTH), NOTE_LINES))
+
+    @property
+    def _inside(self) -> float:
+        return self._place.width / self._ui.scale - 12.0
+
+    def _remake(self, sections: Sequence[Section]) -> None:
+        ui = self._ui
+        offset = self.area.offset if self.area is not None else 0.0
+        focused = next((name for name, widget in self._named.items() if widget is ui.focus), "")
+        self.close()
+        self.fields, self.pickers, self.boxes, self.choices, self._notes = {}, {}, {}, {}, {}
+        self.buttons, self.keys, self.scrubs = {}, {}, {}
+        self.area = ScrollArea(ui, self._place, self._container)
+        self._y = 0.0
+        if not sections and self._empty:
+            place = ui.rect(0, 4, self._inside, 120)
+            self._keep(TextBlock(ui, place, self._empty, self.area.content, 12.5))
+        for number, section in enumerate(sections):
+            style = "@title" if number == 0 else "@heading"
+            title = section.title if number == 0 else section.title.upper()
+            self._y += SECTION_GAP if number else 0.0
+            self._keep(ui.label(self._rect(0, self._inside, HEADING - 4), title, self.area.content, style))
+            self._y += HEADING
+            for each in section.properties:
+                self._add(each)
+        self.area.set_height(ui.px(self._y + 8))
+        self.area.scroll_to(offset)
+        if focused in self._named:
+            ui.focus_on(self._named[focused])
+
+    def _keep(self, widget: Any, name: str = "") -> Any:
+        self._widgets.append(widget)
+        if name:
+            self._named[name] = widget
+        return widget
+
+    def _rect(self, x: float, width: float, height: float = ROW) -> pygame.Rect:
+        return self._ui.rect(x, self._y, width, height)
+
+    def _add(self, each: Property) -> None:
+        about, ui = each.about, self._ui
+        assert self.area is not None
+        content = self.area.content
+        self._add_label(each)
+        width = self._inside - LABEL_WIDTH
+        if not each.editable:
+            height = max(ROW - 8, self._lines(each) * NOTE_LINE + 2)
+            place = ui.rect(LABEL_WIDTH, self._y + 7, width, height)
+            self._notes[each.field] = self._keep(TextBlock(ui, place, "", content, 11.5))
+            self._y += max(ROW, height + 8)
+            return
+        if about.kind == "point":
+            half = (width - GAP) / 2
+            self.fields[each.field] = (
+                self._entry(each, LABEL_WIDTH, half, 0), self._entry(each, LABEL_WIDTH + half + GAP, half, 1),
+            )  # fmt: skip
+        elif about.kind in ("flags", "yes_no"):
+            self._add_boxes(each, width)
+        elif about.kind in ("choice", "material", "touches"):
+            self._add_choice(each, width)
+        elif about.kind == "part":
+            press = partial(self._press_object, each.field)
+            button = ui.button(self._rect(LABEL_WIDTH, width), "", press, content, style="@segment", tip=about.tooltip)
+            self.buttons[each.field] = self._keep(button, each.field)
+        elif about.kind == "key":
+            self._add_key(each, width)
+        elif self._is_long(each):
+            place = self._rect(LABEL_WIDTH, width)
+            text = f"{len(each.value):,} of them"
+            button = ui.button(place, text, partial(self._offer_text, each.field), content, tip=about.tooltip)
+            self._keep(button, each.field)
+        else:
+            self.fields[each.field] = (self._entry(each, LABEL_WIDTH, width, 0),)
+        self._y += ROW + GAP
+
+    def _add_label(self, each: Property) -> None:
+        assert self.area is not None
+        about, place = each.about, self._rect(0, LABEL_WIDTH - 4)
+        text = about.title + (f" [{SQUARED.get(about.unit, about.unit)}]" if about.unit else "")
+        tip = escape(about.tooltip, quote=False)
+        if each.editable and about.kind in ("number", "integer"):
+            scrub = Scrub(self._ui, place, text, partial(self._scrub, each.field), self._end_scrub, self.area.content)
+            scrub.set_tooltip(f"{tip} Drag to change it.")
+            self.scrubs[each.field] = self._keep(scrub)
+            return
+        self._keep(self._ui.label(place, text, self.area.content, "@muted")).set_tooltip(tip)
+
+    def _add_key(self, each: Property, width: float) -> None:
+        assert self.area is not None
+        box = KeyBox(self._ui, self._rect(LABEL_WIDTH, width), partial(self._press_key, each.field), self.area.content)
+        box.set_tooltip(escape(f"{each.about.tooltip} Click here, then press it; Delete takes it away.", quote=False))
+        self.keys[each.field] = self._keep(box, each.field)
+
+    def _entry(self, each: Property, x: float, width: float, axis: int) -> Field:
+        assert self.area is not None
+        commit = partial(self._type, each.field, axis)
+        field = self._ui.field(self._rect(x, width), "", commit, self.area.content, TEXT_LENGTH)
+        if each.about.empty:
+            field.entry.placeholder_text = f"({each.about.empty})"
+            field.entry.set_text("")
+        axis_name = f"{each.axes[axis]}. " if each.about.kind == "point" else ""
+        field.entry.set_tooltip(escape(axis_name + each.about.tooltip, quote=False))
+        self._keep(field.entry, f"{each.field} {axis}")
+        return field
+
+    def _add_boxes(self, each: Property, width: float) -> None:
+        assert self.area is not None
+        labels = each.about.choices or ("yes",)
+        wide = width / max(len(labels), 2)
+        self.boxes[each.field] = {}
+        for number, label in enumerate(labels):
+            place = self._rect(LABEL_WIDTH + number * wide, wide - GAP)
+            box = CheckBox(self._ui, place, label, partial(self._tick, each.field, label), self.area.content)
+            self.boxes[each.field][label] = self._keep(box, f"{each.field} {label}")
+
+    def _add_choice(self, each: Property, width: float) -> None:
+        assert self.area is not None
+        about, content = each.about, self.area.content
+        if len(about.choices) in range(1, MOST_SIDE_BY_SIDE + 1) and sum(map(len, about.choices)) <= SIDE_BY_SIDE:
+            options = [(value, value, about.tooltip) for value in about.choices]
+            row = self._ui.choice(self._rect(LABEL_WIDTH, width), options, partial(self._choose, each.field), content)
+            self.choices[each.field] = row
+            for value, button in row.buttons.items():
+                self._keep(button, f"{each.field} {value}")
+            return
+        picker = Picker(self._ui, self._rect(LABEL_WIDTH, width), partial(self._pick, each.field), content)
+        picker.set_tooltip(escape(about.tooltip, quote=False))
+        self.pickers[each.field] = self._keep(picker, each.field)
+
+    # Showing values.
+
+    def _show_value(self, each: Property) -> None:
+        name, is_mixed = each.field, each.value is MIXED
+        if name in self._notes:
+            self._notes[name].show_text(each.texts[0])
+        for field, text in zip(self.fields.get(name, ()), each.texts, strict=False):
+            field.show(text)
+            # What is being typed stays; once it is done the value has to be shown.
+            self._is_stale = self._is_stale or field.text != text
+        for label, box in self.boxes.get(name, {}).items():
+            state = each.value[label] if each.about.kind == "flags" else each.value
+            box.show_state(state is True, state is MIXED)
+        if name in self.buttons and self.buttons[name].text != OBJECT_TEXTS[each.value]:
+            self.buttons[name].set_text(OBJECT_TEXTS[each.value])
+        if name in self.keys:
+            self.keys[name].show_key(MIXED.value if is_mixed else each.value)
+        if name in self.choices:
+            self.choices[name].show("" if is_mixed else each.value)
+        if name in self.pickers:
+            rows = self._rows(each)
+            mixed_row = Row(MIXED.value, colour=MUTED)
+            text = each.texts[0] if each.about.kind == "touches" else str(each.value)
+            shown = mixed_row if is_mixed else next((row for row in rows if row.text == text), Row(text))
+            self.pickers[name].show_value(rows, shown)
+
+    def _rows(self, each: Property) -> list[Row]:
+        if each.about.kind == "touches":
+            return [Row(EVERYTHING), Row(NOTHING), *(Row(name, self._toggle_of(each, name)) for name in self._groups)]
+        if each.about.kind != "material":
+            return [Row(value) for value in each.about.choices]
+        colours = material_colours(self._screen.document.level.materials)
+        return [Row(name, swatch=colour) for name, colour in colours.items()]
+
+    @property
+    def _groups(self) -> tuple[str, ...]:
+        return collision_groups(self._screen.document.level)
+
+    def _toggle_of(self, each: Property, group: str) -> str:
+        """What a row of a collision group does."""
+        listed = _listed(each.value)
+        if not listed:
+            return "this group alone"
+        return "touched: take it out" if group in listed else "touch this group too"
+
+    # Changing values.
+
+    def _press_object(self, name: str) -> None:
+        each = self.properties[name]
+        verb, wanted = ("Remove", False) if each.value is True else ("Add", True)
+        self._screen.edit(f"{verb}: {each.about.title.lower()}", lambda document: each.set(document, wanted))
+
+    def _press_key(self, name: str, key: str | None) -> None:
+        if not self._set(name, key) or key is None:
+            return
+        action = action_of(ord(key), 0, "play")
+        if action is not None:
+            self._screen.say(f"While this level is played, {key.upper()} drives; else it is: {tip_of(action, 'play')}.")
+
+    def _scrub(self, name: str, steps: int) -> None:
+        each = self.properties[name]
+        value = each.stepped(steps)
+        if value is not None:
+            self._is_stale = True
+            label = each.about.title
+            self._screen.edit(label, lambda document: each.set(document, value), merge=f"scrub {name}")
+
+    def _end_scrub(self) -> None:
+        self._screen.history.end_merge()
+
+    def _choose(self, name: str, value: str) -> None:
+        self._set(name, value)
+
+    def _set(self, name: str, value: Any) -> bool:
+        each = self.properties.get(name)
+        if each is None:
+            return False
+        self._is_stale = True
+        return self._screen.edit(each.about.title, lambda document: each.set(document, value))
+
+    def _type(self, name: str, axis: int, text: str) -> bool:
+        each = self.properties.get(name)
+        if each is None:
+            return False
+        try:
+            value = each.typed(text, axis)
+        except EditError as error:
+            self._screen.say(sentence(str(error)))
+            return False
+        return self._set(name, value)
+
+    def _tick(self, name: str, label: str, state: bool) -> None:
+        self._set(name, {label: state} if self.properties[name].about.kind == "flags" else state)
+
+    def _pick(self, name: str, index: int) -> None:
+        text, each = self.pickers[name].rows[index].text, self.properties[name]
+        if each.about.kind != "touches":
+            self._set(name, text)
+        elif index < 2:
+            self._set(name, text == EVERYTHING)
+        else:
+            kept = [group for group in _listed(each.value) if group != text]
+            self._set(name, kept if len(kept) < len(_listed(each.value)) else [*kept, text])
+
+    def _offer_text(self, name: str) -> None:
+        """A list too long to type: it can be taken out and put in as text."""
+
+        def put() -> None:
+            try:
+                pygame.scrap.put_text(self.properties[name].texts[0])
+            except pygame.error:
+                self._screen.say("The system's clipboard cannot be used.")
+
+        def take() -> None:
+            try:
+                text = pygame.scrap.get_text() if pygame.scrap.has_text() else ""
+            except pygame.error:
+                text = ""
+            self._type(name, 0, text)
+
+        title = self.properties[name].about.title
+        choices = [("Copy as text", put), ("Paste in its place", take)]
+        choose(self._ui, title, "This list is too long to be typed on a line.", choices)

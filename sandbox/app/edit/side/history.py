@@ -1,0 +1,42 @@
+"""HistoryPage: every step with its label; a click goes there."""
+
+from typing import TYPE_CHECKING, Any
+
+import pygame
+
+from sandbox.app.draw.colours import DISABLED, TEXT
+from sandbox.app.edit.side.rows import Row, RowList
+from sandbox.editor.document import Document
+
+if TYPE_CHECKING:
+    from sandbox.app.edit.edit_screen import EditScreen
+
+
+class HistoryPage:
+    """The steps of the history, the present one marked, those that were undone in grey below it."""
+
+    def __init__(self, screen: "EditScreen", place: pygame.Rect, container: Any) -> None:
+        self._screen = screen
+        self._ui = screen.ui
+        self.list = RowList(screen.ui, place, self._go, container)
+        self._shown: Document | None = None
+
+    def refresh(self) -> None:
+        """Show the steps as they are now."""
+        history = self._screen.history
+        if history.document is self._shown:
+            return
+        self._shown = history.document
+        rows = [
+            Row(label or "Edit", colour=TEXT if index <= history.index else DISABLED)
+            for index, label in enumerate(history.labels)
+        ]
+        self.list.show_rows(rows, history.index, reveal=True)
+
+    def _go(self, index: int) -> None:
+        if index != self._screen.history.index:
+            self._screen.step_to(index)
+
+    def close(self) -> None:
+        """Take the page away."""
+        self._ui.remove(self.list)

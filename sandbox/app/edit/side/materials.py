@@ -1,0 +1,356 @@
+"""MaterialsPage: the level's materials, where they are used, and the coefficients of the chosen one."""
+
+import math
+from collections import Counter
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import pygame
+
+from sandbox.app.draw.colours import material_colours
+from sandbox.app.edit.side.boxes import Scrub
+from sandbox.app.edit.side.form import GAP, ROW, sentence
+from sandbox.app.edit.side.rows import Row, RowList
+from sandbox.app.edit.side.scroll import ScrollArea
+from sandbox.app.widgets.fields import Field
+from sandbox.app.widgets.sliders import LogSlider
+from sandbox.editor.document import Document, EditError
+from sandbox.editor.edits.materials import add_material, assign, delete_material, rename_material, set_material
+from sandbox.editor.panel.field_info import About, abouts
+from sandbox.editor.panel.property import Property
+from sandbox.editor.panel.typed import line_text, number_text, read_line, read_number
+from sandbox.editor.pick import items_of_material
+from sandbox.level.format.limits import DEFAULT_MATERIAL
+from sandbox.level.format.model import HookeMaterial, Level, Material, MaterialDef, NissenMaterial
+from sandbox.level.format.quantities import replaced
+from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
+
+if TYPE_CHECKING:
+    from sandbox.app.edit.edit_screen import EditScreen
+
+# Part of the page that the list takes.
+LIST_PART = 0.3
+FIELD_WIDTH = 96.0
+SHORT = {"stiffness": "Cs  stiffness", "damping": "Cd  damping", "k": "k  stiffness", "c": "c  damping"}
+LIMITS = tuple(MaterialDef.model_fields)
+LAWS = (
+    ("nissen", "Impulse", "The impulse-based spring: Cs and Cd, the same behaviour for every mass"),
+    ("hooke", "Hooke", "The classic spring, F = -k x - c u, for comparison: it explodes where k or c is too large"),
+)
+
+
+class MaterialsPage:
+    """Materials as swatches; below, what the chosen one is made of."""
+
+    def __init__(self, screen: "EditScreen", place: pygame.Rect, container: Any) -> None:
+        self._screen, self._ui = screen, screen.ui
+        ui = self._ui
+        self.chosen = _of_selection(screen.document)
+        self.fields: dict[str, Field] = {}
+        self.sliders: dict[str, LogSlider] = {}
+        self._made_for: tuple[object, ...] = ()
+        self._shown: tuple[object, ...] = ()
+        self._slid: tuple[str, float] | None = None
+        self._uses: tuple[object, object, Counter[str], Counter[str]] | None = None
+        self._widgets: list[Any] = []
+        self._y = 0.0
+        tall = round(place.height * LIST_PART)
+        top = pygame.Rect(place.left, place.top, place.width - ui.px(6), tall)
+        self.list = RowList(ui, top, self._choose, container)
+        half = (top.width - ui.px(GAP)) // 2
+        self.buttons = {}
+        for number, (text, do, tip) in enumerate((
+            ("Assign to selection", self._assign, "Make the selection of this material"),
+            ("Select users", self._select, "Select everything of this material"),
+            ("Add", self._add, "Add a material like this one"),
+            ("Delete", self._delete, "Delete this material, where nothing uses it"),
+        )):  # fmt: skip
+            left, down = number % 2 * (half + ui.px(GAP)), number // 2 * ui.px(ROW + GAP)
+            at = pygame.Rect(place.left + left, top.bottom + ui.px(8) + down, half, ui.px(ROW))
+            self.buttons[text] = ui.button(at, text, do, container, style="@segment", tip=tip)
+        below = self.buttons["Add"].relative_rect.bottom + ui.px(12)
+        rest = pygame.Rect(place.left, below, place.width, place.bottom - below)
+        self._inside = place.width / ui.scale - 12.0
+        self.area = ScrollArea(ui, rest, container)
+
+    # Making the editor of a material.
+
+    def _remake(self, material: Material) -> None:
+        self._drop()
+        ui, content, self._y = self._ui, self.area.content, 0.0
+        if self.chosen != DEFAULT_MATERIAL:
+            self._add_field("name", "Name", self._rename, "What levels and files call it.", width=self._inside - 108.0)
+        self._label("Law")
+        place = ui.rect(108, self._y, self._inside - 108, ROW)
+        self.law = ui.choice(place, LAWS, self._choose_law, content)
+        self._widgets += self.law.buttons.values()
+        self._y += ROW + GAP + 4
+        for name, about in abouts(type(material)).items():
+            if name in SHORT:
+                self._add_coefficient(name, about)
+        if isinstance(material, NissenMaterial):
+            self._add_field("frequency", "Frequency [Hz]", self._type_frequency, "How fast such a spring swings.")
+            self._add_field("ratio", "Damping ratio", self._type_ratio, "1: it comes to rest without swinging.")
+        heading = ui.label(ui.rect(0, self._y + 6, self._inside, ROW - 4), "BREAKS AND YIELDS", content, "@heading")
+        self._widgets.append(heading)
+        self._y += ROW + 4
+        for name in LIMITS:
+            self._add_limit(name, abouts(type(material))[name])
+        self.area.set_height(ui.px(self._y))
+
+    def _label(self, text: str, tip: str = "") -> None:
+        label = self._ui.label(self._ui.rect(0, self._y, self._inside, ROW), text, self.area.content, "@muted")
+        if tip:
+            label.set_tooltip(tip)
+        self._widgets.append(label)
+
+    def _add_field(
+        self, name: str, label: str, commit: Callable[[str], bool], tip: str, width: float = FIELD_WIDTH
+    ) -> None:
+        ui = self._ui
+        if label:
+            self._label(label, tip)
+        place = ui.rect(self._inside - width, self._y, width, ROW)
+        self.fields[name] = ui.field(place, "", commit, self.area.content, 600)
+        self.fields[name].entry.set_tooltip(tip)
+        self._widgets.append(self.fields[name].entry)
+        self._y += ROW + GAP
+
+    def _add_coefficient(self, name: str, about: About) -> None:
+        unit = f" [{about.unit}]" if name in ("k", "c") else ""
+        self._add_field(name, SHORT[name] + unit, partial(self._type_coefficient, name), about.tooltip)
+        if name in ("k", "c"):
+            return
+        place = self._ui.rect(-4, self._y - 4, self._inside + 8, ROW)
+        slide = partial(self._slide, name)
+        self.sliders[name] = LogSlider(self._ui, place, slide, self._end_slide, self.area.content)
+        self._widgets.append(self.sliders[name])
+        self._y += ROW - 2
+
+    def _add_limit(self, name: str, about: About) -> None:
+        turn, done = partial(self._scrub_limit, name), self._screen.history.end_merge
+        place = self._ui.rect(0, self._y, self._inside - FIELD_WIDTH - GAP, ROW)
+        scrub = Scrub(self._ui, place, about.title, turn, done, self.area.content)
+        scrub.set_tooltip(f"{about.tooltip} Drag to change it.")
+        self._widgets.append(scrub)
+        self._add_field(name, "", partial(self._type_limit, name), about.tooltip)
+        if about.empty:
+            self.fields[name].entry.placeholder_text = f"({about.empty})"
+            self.fields[name].entry.set_text("")
+
+    def _drop(self) -> None:
+        if any(field.entry.is_focused for field in self.fields.values()):
+            self._ui.blur()
+        for widget in self._widgets:
+            self._ui.remove(widget)
+        self._widgets, self.fields, self.sliders = [], {}, {}
+
+    # Showing.
+
+    def refresh(self) -> None:
+        """Show the materials as they are now."""
+        self._take_slide()
+        self.area.follow_focus()
+        level = self._screen.document.level
+        fresh = (level.materials, level.bodies, level.springs, level.settings.tick_rate, self.chosen)
+        if all(new is old for new, old in zip(fresh, self._shown, strict=False)) and self._shown:
+            return
+        self._shown = fresh
+        materials = _materials(level)
+        if self.chosen not in materials:
+            self.chosen = next(iter(materials))
+        names, colours = list(materials), material_colours(level.materials)
+        rows = [Row(name, self._reading(level, name, materials[name]), colours[name]) for name in names]
+        self.list.show_rows(rows, names.index(self.chosen), reveal=True)
+        material = materials[self.chosen]
+        made_for = (type(material), self.chosen == DEFAULT_MATERIAL)
+        if made_for != self._made_for:
+            self._made_for = made_for
+            self._remake(material)
+        self._show(level, material)
+
+    def _show(self, level: Level, material: Material) -> None:
+        is_default = self.chosen == DEFAULT_MATERIAL
+        if not is_default:
+            self.fields["name"].show(line_text(self.chosen))
+        (self.buttons["Delete"].disable if is_default else self.buttons["Delete"].enable)()
+        self.law.show("hooke" if isinstance(material, HookeMaterial) else "nissen")
+        for name in self.fields.keys() & type(material).model_fields.keys():
+            value = getattr(material, name)
+            self.fields[name].show("" if value is None else number_text(value))
+        for name, slider in self.sliders.items():
+            slider.show_value(getattr(material, name), None, False, True)
+        if isinstance(material, NissenMaterial):
+            reading = frequency_from_coefficients(material.stiffness, material.damping, 1.0 / level.settings.tick_rate)
+            for name, value in zip(("frequency", "ratio"), reading, strict=True):
+                self.fields[name].show("infinite" if math.isinf(value) else f"{value:.4g}")
+
+    def _used(self, level: Level) -> tuple[Counter[str], Counter[str]]:
+        """How many bodies and loose springs are of each material, counted anew only where these have changed."""
+        uses = self._uses
+        if uses is None or uses[0] is not level.bodies or uses[1] is not level.springs:
+            of_bodies = Counter(body.material for body in level.bodies)
+            of_springs = Counter(spring.material for spring in level.springs)
+            uses = self._uses = (level.bodies, level.springs, of_bodies, of_springs)
+        return uses[2], uses[3]
+
+    def _reading(self, level: Level, name: str, material: Material) -> str:
+        bodies, springs = self._used(level)
+        uses = [
+            f"{number:,} {one if number == 1 else many}"
+            for number, one, many in ((bodies[name], "body", "bodies"), (springs[name], "spring", "springs"))
+            if number
+        ]
+        if isinstance(material, HookeMaterial):
+            values = f"k {number_text(material.k)}, c {number_text(material.c)}"
+        else:
+            values = f"Cs {number_text(material.stiffness)}, Cd {number_text(material.damping)}"
+        return f"{values} · {', '.join(uses) or 'not used'}"
+
+    # Changing.
+
+    @property
+    def _material(self) -> Material:
+        return _materials(self._screen.document.level)[self.chosen]
+
+    def _choose(self, index: int) -> None:
+        self.chosen = self.list.rows[index].text
+
+    def _edit(self, label: str, change: Callable[[Document], Document], merge: str | None = None) -> bool:
+        # Whatever was typed is shown again as the document has it.
+        self._shown = ()
+        return self._screen.edit(f"{self.chosen}: {label}", change, merge)
+
+    def _put(self, label: str, material: Material, merge: str | None = None) -> bool:
+        name = self.chosen
+        return self._edit(label, lambda document: set_material(document, name, material), merge)
+
+    def _slide(self, name: str, value: float) -> None:
+        # The mouse moves more often than a large level can be changed.
+        self._slid = (name, value)
+
+    def _take_slide(self) -> None:
+        if self._slid is not None:
+            (name, value), self._slid = self._slid, None
+            key = f"{self.chosen} {name}"
+            self._put(SHORT[name][:2], replaced(self._material, **{name: value}), merge=key)
+
+    def _end_slide(self) -> None:
+        self._take_slide()
+        self._screen.history.end_merge()
+
+    def _choose_law(self, law: str) -> None:
+        is_hooke = isinstance(self._material, HookeMaterial)
+        if (law == "hooke") != is_hooke:
+            limits = {name: getattr(self._material, name) for name in MaterialDef.model_fields}
+            self._put("law", HookeMaterial(law="hooke", **limits) if law == "hooke" else NissenMaterial(**limits))
+
+    def _number(self, label: str, text: str) -> float | None:
+        try:
+            return read_number(label, text)
+        except EditError as error:
+            self._screen.say(sentence(str(error)))
+            return None
+
+    def _type_coefficient(self, name: str, text: str) -> bool:
+        value = self._number(SHORT[name].split()[0], text)
+        return value is not None and self._put(SHORT[name][:2].strip(), replaced(self._material, **{name: value}))
+
+    def _type_limit(self, name: str, text: str) -> bool:
+        about = abouts(type(self._material))[name]
+        is_empty = about.optional and not text.strip()
+        value = None if is_empty else self._number(about.title, text)
+        if value is None and not is_empty:
+            return False
+        return self._put(about.title.lower(), replaced(self._material, **{name: value}))
+
+    def _scrub_limit(self, name: str, steps: int) -> None:
+        about = abouts(type(self._material))[name]
+        value = Property(name, about, getattr(self._material, name)).stepped(steps)
+        if value is not None:
+            changed = replaced(self._material, **{name: value})
+            self._put(about.title.lower(), changed, merge=f"{self.chosen} {name}")
+
+    def _type_frequency(self, text: str) -> bool:
+        frequency, material = self._number("Frequency", text), self._material
+        if frequency is None or not isinstance(material, NissenMaterial):
+            return False
+        ratio = self._now(material)[1]
+        if not math.isfinite(ratio):
+            self._screen.say("There was no damping ratio to keep: it is 1 now.")
+            ratio = 1.0
+        return self._put_frequency(frequency, ratio)
+
+    def _type_ratio(self, text: str) -> bool:
+        ratio, material = self._number("Damping ratio", text), self._material
+        if ratio is None or not isinstance(material, NissenMaterial):
+            return False
+        frequency = self._now(material)[0]
+        if not math.isfinite(frequency):
+            self._screen.say("There is no frequency to keep: type the frequency first.")
+            return False
+        return self._put_frequency(frequency, ratio)
+
+    def _tick_time(self) -> float:
+        return 1.0 / self._screen.document.level.settings.tick_rate
+
+    def _now(self, material: NissenMaterial) -> tuple[float, float]:
+        return frequency_from_coefficients(material.stiffness, material.damping, self._tick_time())
+
+    def _put_frequency(self, frequency: float, ratio: float) -> bool:
+        try:
+            stiffness, damping = coefficients_from_frequency(frequency, ratio, self._tick_time())
+        except ValueError as error:
+            self._screen.say(sentence(str(error)))
+            return False
+        return self._put("frequency", replaced(self._material, stiffness=stiffness, damping=damping))
+
+    def _rename(self, text: str) -> bool:
+        old, new = self.chosen, read_line(text)
+        if not self._edit("rename", lambda document: rename_material(document, old, new)):
+            return False
+        self.chosen = new
+        return True
+
+    def _add(self) -> None:
+        taken, material = _materials(self._screen.document.level), self._material
+        name = next(f"material {k}" for k in range(1, len(taken) + 2) if f"material {k}" not in taken)
+        if self._screen.edit("Add a material", lambda document: add_material(document, name, material)):
+            self.chosen = name
+            self.refresh()
+            self._ui.focus_on(self.fields["name"].entry)
+
+    def _delete(self) -> None:
+        name = self.chosen
+        self._edit("delete", lambda document: delete_material(document, name))
+
+    def _assign(self) -> None:
+        name = self.chosen
+        self._edit("assign", lambda document: assign(document, name))
+
+    def _select(self) -> None:
+        self._screen.select(items_of_material(self._screen.document.level, self.chosen))
+
+    def close(self) -> None:
+        """Take the page away."""
+        self._drop()
+        for widget in (self.list, *self.buttons.values()):
+            self._ui.remove(widget)
+        self.area.kill()
+
+
+def _materials(level: Level) -> dict[str, Material]:
+    """Every material that something in the level can be of."""
+    return {DEFAULT_MATERIAL: NissenMaterial(), **level.materials}
+
+
+def _of_selection(document: Document) -> str:
+    """The material of what is selected first, else the first of the level's own."""
+    level = document.level
+    chosen = next((item for item in document.selection if item.kind != "particle"), None)
+    if chosen is not None:
+        if chosen.kind == "spring":
+            return level.springs[int(chosen.key)].material
+        return next(body.material for body in level.bodies if body.id == chosen.key)
+    return next(iter(level.materials), DEFAULT_MATERIAL)

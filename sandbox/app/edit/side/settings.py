@@ -1,0 +1,64 @@
+"""SettingsPage: the level's name and maker, its first view, and how its time passes."""
+
+from typing import TYPE_CHECKING, Any
+
+import pygame
+
+from sandbox.app.edit.side.form import GAP, ROW, Form
+from sandbox.editor.document import Document
+from sandbox.editor.edits.fields import set_level_field
+from sandbox.editor.panel.level_properties import level_properties
+from sandbox.level.format.model import Level
+
+if TYPE_CHECKING:
+    from sandbox.app.edit.edit_screen import EditScreen
+
+# Digits after the point of a view [m] that is taken from the camera.
+VIEW_DECIMALS = 3
+
+
+class SettingsPage:
+    """Settings of the level as a whole."""
+
+    def __init__(self, screen: "EditScreen", place: pygame.Rect, container: Any) -> None:
+        self._screen, self._ui = screen, screen.ui
+        below = self._ui.px(ROW + 2 * GAP)
+        self.form = Form(screen, pygame.Rect(place.topleft, (place.width, place.height - below)), container)
+        half = (place.width - self._ui.px(12 + GAP)) // 2
+        row = pygame.Rect(place.left, place.bottom - self._ui.px(ROW + 4), half, self._ui.px(ROW))
+        tip = "Let the level open with what the canvas shows now"
+        self.from_camera = self._ui.button(row, "View from here", self._take_view, container, style="@segment", tip=tip)
+        row = row.move(half + self._ui.px(GAP), 0)
+        tip = "Let the level open with everything in sight"
+        self.no_view = self._ui.button(row, "View: everything", self._drop_view, container, style="@segment", tip=tip)
+        self._shown: Level | None = None
+
+    def refresh(self) -> None:
+        """Show the level as it is now."""
+        document = self._screen.document
+        if document.level is not self._shown:
+            self._shown = document.level
+            self.form.show(level_properties(document))
+        self.form.refresh()
+
+    def _take_view(self) -> None:
+        camera = self._screen.camera
+        left, top, width, height = camera.viewport
+        (x0, y1), (x1, y0) = camera.to_world((left, top)), camera.to_world((left + width, top + height))
+        view = tuple(round(value, VIEW_DECIMALS) + 0.0 for value in (x0, y0, x1, y1))
+        self._set_view(view)
+
+    def _drop_view(self) -> None:
+        self._set_view(None)
+
+    def _set_view(self, view: tuple[float, ...] | None) -> None:
+        def with_view(document: Document) -> Document:
+            return set_level_field(document, "view", view)
+
+        self._screen.edit("View", with_view)
+
+    def close(self) -> None:
+        """Take the page away."""
+        self.form.close()
+        self._ui.remove(self.from_camera)
+        self._ui.remove(self.no_view)

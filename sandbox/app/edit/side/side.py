@@ -1,0 +1,113 @@
+"""Side: the panel at the right of the editor, a page at a time."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol
+
+import pygame
+from pygame_gui.elements import UIButton
+
+from sandbox.app.edit.side.checks import ChecksPage
+from sandbox.app.edit.side.findings import FindingsPage
+from sandbox.app.edit.side.history import HistoryPage
+from sandbox.app.edit.side.materials import MaterialsPage
+from sandbox.app.edit.side.properties import PropertiesPage
+from sandbox.app.edit.side.settings import SettingsPage
+from sandbox.app.widgets.ui import Ui
+
+if TYPE_CHECKING:
+    from sandbox.app.edit.edit_screen import EditScreen
+
+# Sizes in layout units.
+MARGIN = 14.0
+TAB = 26.0
+TOP = 10.0
+GAP = 4.0
+
+
+class Page(Protocol):
+    """A page of the panel."""
+
+    def refresh(self) -> None:
+        """Show the document as it is now; costs nothing where it has not changed."""
+        ...
+
+    def close(self) -> None:
+        """Take the page away."""
+        ...
+
+
+PAGES: dict[str, tuple[str, str, Callable[["EditScreen", pygame.Rect, Any], Page]]] = {
+    "properties": ("Properties", "What is selected", PropertiesPage),
+    "materials": ("Materials", "What springs are made of", MaterialsPage),
+    "level": ("Level", "Name, maker, view, time and solver", SettingsPage),
+    "checks": ("Checks", "What must hold of the level's run", ChecksPage),
+    "history": ("History", "Every step so far", HistoryPage),
+    "findings": ("Findings", "What you may have overlooked", FindingsPage),
+}
+COLUMNS = 3
+
+
+class Side:
+    """The panel in a place [pixels]; `tab` is the page that is shown."""
+
+    def __init__(self, ui: Ui, screen: "EditScreen", place: pygame.Rect) -> None:
+        self._ui, self._screen = ui, screen
+        before: Side | None = getattr(screen, "side", None)
+        self.back = ui.panel(place)
+        self.tab: str = "properties" if before is None else before.tab
+        if before is not None:
+            # The window is laid out anew: what is being typed in the old panel is not lost.
+            before.close()
+        names = list(PAGES)
+        width = place.width / ui.scale - 2 * MARGIN
+        self._rows = []
+        for first in range(0, len(names), COLUMNS):
+            options = [(name, PAGES[name][0], PAGES[name][1]) for name in names[first : first + COLUMNS]]
+            y = TOP + first // COLUMNS * (TAB + GAP)
+            self._rows.append(ui.choice(ui.rect(MARGIN, y, width, TAB), options, self.choose, self.back))
+        top = TOP + len(self._rows) * (TAB + GAP) + 8
+        self._place = ui.rect(MARGIN, top, width + 6, place.height / ui.scale - top - 6)
+        self.page: Page = self._made()
+
+    def choose(self, tab: str) -> None:
+        """Show another page."""
+        if tab != self.tab:
+            self.page.close()
+            self.tab = tab
+            self.page = self._made()
+
+    def turn(self, by: int) -> None:
+        """Show the page that many tabs further, and give its tab the keyboard."""
+        names = list(PAGES)
+        self.choose(names[(names.index(self.tab) + by) % len(names)])
+        self._ui.focus_on(self._tab_button(self.tab))
+
+    def _tab_button(self, tab: str) -> UIButton:
+        return next(row.buttons[tab] for row in self._rows if tab in row.buttons)
+
+    def _made(self) -> Page:
+        for row in self._rows:
+            row.show(self.tab if self.tab in row.buttons else "")
+        page = PAGES[self.tab][2](self._screen, self._place, self.back)
+        page.refresh()
+        return page
+
+    def refresh(self) -> None:
+        """Show the document as it is now."""
+        self.page.refresh()
+        self._count_findings()
+
+    def _count_findings(self) -> None:
+        count = len(self._screen.findings)
+        button = self._tab_button("findings")
+        text = f"Findings {count}" if count else "Findings"
+        if button.text != text:
+            button.set_text(text)
+
+    def close(self) -> None:
+        """Take what is being typed, and take the panel away."""
+        self.page.close()
+        for row in self._rows:
+            for button in row.buttons.values():
+                self._ui.remove(button)
+        self.back.kill()

@@ -1,0 +1,36 @@
+"""DriveKeys: keys that a level gives to its motors and hydraulics, held down while the run is played."""
+
+import pygame
+
+from sandbox.app.play.playback import Playback
+from sandbox.level.build.actuators import driving_keys
+from sandbox.session.commands import SetDrive
+
+
+class DriveKeys:
+    """Drives parts of one run while their keys are held; a press and its release are one gesture."""
+
+    def __init__(self, playback: Playback) -> None:
+        self.playback = playback
+        self._keys = {ord(key): parts for key, parts in driving_keys(playback.level).items()}
+        # The gesture of each key that is held, in the order of pressing.
+        self._held: dict[int, int] = {}
+
+    def press(self, key: int, modifiers: int) -> bool:
+        """Drive what the key drives; whether it drives anything."""
+        if key not in self._keys or modifiers & (pygame.KMOD_CTRL | pygame.KMOD_META | pygame.KMOD_ALT):
+            return False
+        if key not in self._held:
+            self._held[key] = self.playback.session.new_gesture()
+            for part, value in self._keys[key]:
+                self.playback.submit(SetDrive(part, value), self._held[key])
+        return True
+
+    def release(self, key: int) -> None:
+        """Stop what the key drove, or let the key go on that still drives it another way."""
+        gesture = self._held.pop(key, None)
+        if gesture is None:
+            return
+        for part, _ in self._keys[key]:
+            still = [value for held in self._held for other, value in self._keys[held] if other == part]
+            self.playback.submit(SetDrive(part, still[-1] if still else 0.0), gesture)

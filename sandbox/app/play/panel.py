@@ -1,0 +1,348 @@
+"""Panel: Cs and Cd with their Hz reading and proven limit, gravity, and the solver with its settings."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pygame
+
+from sandbox.app.draw.colours import WARNING
+from sandbox.app.play.playback import Playback
+from sandbox.app.widgets.fields import Field
+from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.sliders import LogSlider
+from sandbox.app.widgets.ui import Ui
+from sandbox.level.format.limits import GRAVITY_LIMIT, SUBSTEPS
+from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
+from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
+from sandbox.physics.settings import AUTO
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.stability import CoefficientLimits, coefficient_limits
+from sandbox.physics.world import LAW_HOOKE
+from sandbox.session.commands import Command, SetCoefficients, SetGravity, SetSolver
+
+# Sizes in layout units.
+PANEL_WIDTH = 292.0
+MARGIN = 18.0
+INSIDE = PANEL_WIDTH - 2 * MARGIN
+ROW = 28.0
+ENTRY_WIDTH = 82.0
+# Height that everything takes; in a lower window rows and gaps shrink by the same part.
+FULL_HEIGHT = 636.0
+# Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
+LOOK_EVERY = 15
+ALL_MATERIALS = "All springs"
+DASH = "–"
+SOLVER_LABELS = {"single_pass": "Single pass", "iterative": "Iterative", "direct": "Direct"}
+
+
+class Panel:
+    """The panel at the right of a window; `say` shows a line to the person."""
+
+    def __init__(self, ui: Ui, playback: Playback, say: Callable[[str], None], top: float, height: float) -> None:
+        self._ui, self.playback, self._say = ui, playback, say
+        self.material: int | None = None
+        self._gesture: int | None = None
+        self._limits: CoefficientLimits | None = None
+        self._limits_of: tuple[object, ...] = ()
+        self._refreshes = -1
+        self._refreshed_at: tuple[object, ...] = ()
+        self._y = 0.0
+        self._tight = min(1.0, height / FULL_HEIGHT)
+        self.back = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
+        self._build_springs()
+        self._build_world()
+        self.refresh()
+
+    # Building.
+
+    def _row(self, height: float, gap: float = 0.0, x: float = MARGIN, width: float = INSIDE) -> pygame.Rect:
+        """The next row, and the gap after it."""
+        place = self._place(x, 0.0, width, height)
+        self._y += (height + gap) * self._tight
+        return place
+
+    def _place(self, x: float, below: float, width: float, height: float) -> pygame.Rect:
+        return self._ui.rect(x, 14 + self._y + below * self._tight, width, height * self._tight)
+
+    def _heading(self, text: str) -> None:
+        self._ui.label(self._row(18, 6), text.upper(), self.back, "@heading")
+
+    def _named_field(self, text: str, commit: Callable[[str], bool]) -> Field:
+        """A label at the left and a line to type into at the right, on a row of their own."""
+        self._ui.label(self._place(MARGIN, 0, INSIDE - ENTRY_WIDTH - 8, ROW), text, self.back)
+        return self._ui.field(self._row(ROW, 4, MARGIN + INSIDE - ENTRY_WIDTH, ENTRY_WIDTH), "", commit, self.back, 24)
+
+    def _pair(self, first: str, second: str, commits: tuple[Callable[[str], bool], ...]) -> tuple[Field, Field]:
+        """Two labelled lines to type into, side by side."""
+        half, fields = (INSIDE - 12) / 2, []
+        for index, (text, commit) in enumerate(zip((first, second), commits, strict=True)):
+            x = MARGIN + index * (half + 12)
+            self._ui.label(self._place(x, 0, half, 18), text, self.back, "@muted")
+            fields.append(self._ui.field(self._place(x, 19, half, ROW), "", commit, self.back, 24))
+        self._row(19 + ROW, 6)
+        return fields[0], fields[1]
+
+    def _build_springs(self) -> None:
+        ui = self._ui
+        self._heading("Springs")
+        names = [ALL_MATERIALS, *self._material_names()]
+        self.menu = ui.menu(self._row(30, 10), names, ALL_MATERIALS, self._choose_material, self.back)
+        self.stiffness_limit = self._limit_label()
+        self.stiffness_field = self._named_field("Cs  stiffness", lambda text: self._type_coefficient(text, True))
+        self.stiffness = self._slider(lambda value: self._slide(value, True))
+        self.damping_limit = self._limit_label()
+        self.damping_field = self._named_field("Cd  damping", lambda text: self._type_coefficient(text, False))
+        self.damping = self._slider(lambda value: self._slide(value, False))
+        self.frequency, self.ratio = self._pair(
+            "Frequency [Hz]", "Damping ratio", (self._type_frequency, self._type_ratio)
+        )
+        self.note = TextBlock(ui, self._row(45, 8), "", self.back)
+
+    def _limit_label(self) -> TextBlock:
+        """Room for a coefficient's proven limit, on its row."""
+        place = self._place(MARGIN + 96, 6, INSIDE - ENTRY_WIDTH - 104, ROW - 8)
+        return TextBlock(self._ui, place, "", self.back, 11.0, WARNING)
+
+    def _slider(self, changed: Callable[[float], None]) -> LogSlider:
+        return LogSlider(self._ui, self._row(28, 2, MARGIN - 8, INSIDE + 16), changed, self._end_gesture, self.back)
+
+    def _build_world(self) -> None:
+        ui = self._ui
+        self._heading("World")
+        self.gravity_x, self.gravity_y = self._pair(
+            "Gravity x [m/s²]",
+            "Gravity y [m/s²]",
+            (lambda text: self._type_gravity(text, 0), lambda text: self._type_gravity(text, 1)),
+        )
+        self._row(4)
+        self._heading("Solver")
+        options = [(name, SOLVER_LABELS.get(name, name), "") for name in SOLVERS]
+        self.solver = ui.choice(self._row(ROW, 8), options, self._choose_solver, self.back)
+        ui.label(self._row(18, 2), "Substeps", self.back, "@muted")
+        counts = [(str(count), str(count), "") for count in SUBSTEPS]
+        counts.insert(0, (AUTO, "Auto", "Every tick takes as many as it needs, 1 to 8"))
+        self.substeps = ui.choice(self._row(ROW - 2, 6), counts, self._choose_substeps, self.back)
+        self.iterations, self.warm_start = self._pair(
+            "Iterations", "Warm start (0 to 1)", (self._type_iterations, self._type_warm_start)
+        )
+        self._heading("Energy [J]")
+        columns = (self._place(MARGIN, 0, INSIDE / 2, 34), self._place(MARGIN + INSIDE / 2, 0, INSIDE / 2, 34))
+        self.energies = [TextBlock(ui, place, "", self.back) for place in columns]
+
+    def _material_names(self) -> list[str]:
+        return list(self.playback.session.world.material_names)
+
+    # Showing.
+
+    def refresh(self) -> None:
+        """Show what the world has now."""
+        world = self.playback.session.world
+        settings = world.settings
+        self.gravity_x.show(f"{settings.gravity[0]:g}")
+        self.gravity_y.show(f"{settings.gravity[1]:g}")
+        self.solver.show(settings.solver)
+        self.substeps.show(str(settings.substeps))
+        self.iterations.show(str(settings.iterations))
+        self.warm_start.show(f"{settings.warm_start:g}")
+        if self._refreshes % LOOK_EVERY == 0 or self.playback.clock.paused:
+            self._show_energy()
+        self._refreshes += 1
+        fresh = (self.playback.revision, self.material)
+        if fresh == self._refreshed_at and self._refreshes % LOOK_EVERY:
+            return
+        self._refreshed_at = fresh
+        inputs = (world.stiffness, world.damping, world.spring_active, world.inverse_mass)
+        key = (settings, self.material, *(array.tobytes() for array in inputs))
+        if key != self._limits_of:
+            self._limits_of = key
+            self._limits = coefficient_limits(world, self.material)
+            self._show_springs()
+
+    def _show_energy(self) -> None:
+        world = self.playback.session.world
+        kinetic, springs, gravity = kinetic_energy(world), spring_energy(world), gravity_energy(world)
+        dissipated = self.playback.dissipation.energy
+        self.energies[0].show_text(f"kinetic {kinetic:.4g}\nsprings {springs:.4g}")
+        self.energies[1].show_text(f"gravity {gravity:.4g}\ndissipated {dissipated:.4g}")
+
+    def _chosen(self) -> np.ndarray:
+        world = self.playback.session.world
+        chosen = world.material >= 0 if self.material is None else world.material == self.material
+        return np.flatnonzero(chosen & (world.law != LAW_HOOKE) & world.spring_active)
+
+    def _show_springs(self) -> None:
+        world, chosen, limits = self.playback.session.world, self._chosen(), self._limits
+        assert limits is not None
+        if not len(chosen):
+            self.stiffness_limit.show_text("")
+            self.damping_limit.show_text("")
+            for slider, field in ((self.stiffness, self.stiffness_field), (self.damping, self.damping_field)):
+                slider.show_value(slider.value, None, False, False)
+                field.show(DASH)
+            self.frequency.show(DASH)
+            self.ratio.show(DASH)
+            self.note.show_text(self._no_spring_note())
+            return
+        stiffness, damping = world.stiffness[chosen], world.damping[chosen]
+        for values, slider, field, limit, label in (
+            (stiffness, self.stiffness, self.stiffness_field, limits.stiffness, self.stiffness_limit),
+            (damping, self.damping, self.damping_field, limits.damping, self.damping_limit),
+        ):
+            label.show_text(f"limit {limit:.3g}" if limit is not None and limit < 1.0 else "")
+            is_mixed = bool(values.min() != values.max())
+            slider.show_value(float(np.median(values)), limit, is_mixed, True)
+            field.show("mixed" if is_mixed else f"{values[0]:.6g}")
+        self._show_reading(stiffness, damping)
+        self.note.show_text(f"{limits.reason[0].upper()}{limits.reason[1:]}.")
+
+    def _show_reading(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
+        if stiffness.min() != stiffness.max() or damping.min() != damping.max():
+            self.frequency.show("mixed")
+            self.ratio.show("mixed")
+            return
+        frequency, ratio = frequency_from_coefficients(float(stiffness[0]), float(damping[0]), self._tick_time())
+        self.frequency.show(_reading(frequency))
+        self.ratio.show(_reading(ratio))
+
+    def _no_spring_note(self) -> str:
+        world = self.playback.session.world
+        hooke = (world.law == LAW_HOOKE) & ((world.material == self.material) | (self.material is None))
+        if not hooke.any():
+            return "No spring is of this material."
+        first = int(np.flatnonzero(hooke)[0])
+        k, c = world.hooke_stiffness[first], world.hooke_damping[first]
+        return f"Classic Hooke springs, k = {k:g} N/m, c = {c:g} N s/m: Cs and Cd do not apply."
+
+    # Changing.
+
+    def _tick_time(self) -> float:
+        return 1.0 / self.playback.session.world.settings.tick_rate
+
+    def _submit(self, command: Command, gesture: int | None = None) -> None:
+        self.playback.submit(command, gesture)
+
+    def choose_material(self, material: int | None) -> None:
+        """Show and change the springs of a material (index); None = all."""
+        self.material = material
+        self._rebuild_menu(ALL_MATERIALS if material is None else self._material_names()[material])
+
+    def _choose_material(self, name: str) -> None:
+        self.choose_material(None if name == ALL_MATERIALS else self._material_names().index(name))
+
+    def _choose_solver(self, name: str) -> None:
+        self._submit(SetSolver(solver=name))
+
+    def _choose_substeps(self, count: str) -> None:
+        self._submit(SetSolver(substeps=AUTO if count == AUTO else int(count)))
+
+    def _rebuild_menu(self, name: str) -> None:
+        if self.menu.selected_option[0] != name:
+            self._ui.replace_menu(self.menu, name)
+
+    def _slide(self, value: float, is_stiffness: bool) -> None:
+        if self._gesture is None:
+            self._gesture = self.playback.session.new_gesture()
+        self._set(value, is_stiffness, self._gesture)
+
+    def _set(self, value: float, is_stiffness: bool, gesture: int | None = None) -> None:
+        command = SetCoefficients(
+            stiffness=value if is_stiffness else None,
+            damping=None if is_stiffness else value,
+            material=self.material,
+        )
+        self._submit(command, gesture)
+
+    def _end_gesture(self) -> None:
+        self._gesture = None
+
+    def _number(self, text: str, what: str, low: float, high: float) -> float | None:
+        """A typed number in low..high, or None with a line that says what is wrong."""
+        try:
+            value = float(text.strip().replace(",", "."))
+        except ValueError:
+            self._say(f"{what}: {text.strip() or 'nothing'!r} is not a number.")
+            return None
+        if not low <= value <= high:
+            self._say(f"{what}: {value:g} is outside {low:g} to {high:g}. The old value stays.")
+            return None
+        return value
+
+    def _type_coefficient(self, text: str, is_stiffness: bool) -> bool:
+        value = self._number(text, "Cs" if is_stiffness else "Cd", 0.0, 1.0)
+        if value is None or not self._has_springs():
+            return False
+        self._set(value, is_stiffness)
+        return True
+
+    def _has_springs(self) -> bool:
+        if not len(self._chosen()):
+            self._say("There is no spring here that Cs and Cd apply to.")
+            return False
+        return True
+
+    def _type_frequency(self, text: str) -> bool:
+        frequency = self._number(text, "Frequency", 0.0, math.inf)
+        if frequency is None:
+            return False
+        ratio = _typed_or_none(self.ratio.text)
+        if ratio is None:
+            self._say("There was no single damping ratio to keep: it is 1 now.")
+        return self._set_frequency(frequency, 1.0 if ratio is None else ratio)
+
+    def _type_ratio(self, text: str) -> bool:
+        ratio = self._number(text, "Damping ratio", 0.0, math.inf)
+        if ratio is None:
+            return False
+        frequency = _typed_or_none(self.frequency.text)
+        if frequency is None:
+            self._say("There is no single frequency to keep: type the frequency first.")
+            return False
+        return self._set_frequency(frequency, ratio)
+
+    def _set_frequency(self, frequency: float, ratio: float) -> bool:
+        try:
+            stiffness, damping = coefficients_from_frequency(frequency, ratio, self._tick_time())
+        except ValueError as error:
+            self._say(f"{error}.")
+            return False
+        if not self._has_springs():
+            return False
+        self._submit(SetCoefficients(stiffness=stiffness, damping=damping, material=self.material))
+        return True
+
+    def _type_gravity(self, text: str, axis: int) -> bool:
+        value = self._number(text, "Gravity", -GRAVITY_LIMIT, GRAVITY_LIMIT)
+        if value is None:
+            return False
+        x, y = self.playback.session.world.settings.gravity
+        self._submit(SetGravity((value, y) if axis == 0 else (x, value)))
+        return True
+
+    def _type_iterations(self, text: str) -> bool:
+        value = self._number(text, "Iterations", 1, 1000)
+        if value is None or value != int(value):
+            if value is not None:
+                self._say(f"Iterations: {value:g} is not a whole number.")
+            return False
+        self._submit(SetSolver(iterations=int(value)))
+        return True
+
+    def _type_warm_start(self, text: str) -> bool:
+        value = self._number(text, "Warm start", 0.0, 1.0)
+        if value is None:
+            return False
+        self._submit(SetSolver(warm_start=value))
+        return True
+
+
+def _reading(value: float) -> str:
+    return "infinite" if math.isinf(value) else f"{value:.4g}"
+
+
+def _typed_or_none(text: str) -> float | None:
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None

@@ -1,0 +1,226 @@
+"""PlayScreen: a run on the screen, with the bar of its tools at the top and the panel at the right."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pygame
+
+from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colour
+from sandbox.app.edit.bake_choice import ask_to_keep
+from sandbox.app.loop import SPEEDS
+from sandbox.app.play.drive_keys import DriveKeys
+from sandbox.app.play.panel import PANEL_WIDTH, Panel
+from sandbox.app.play.playback import Playback
+from sandbox.app.play.stage import Stage
+from sandbox.app.play.status import STATUS_HEIGHT, status_parts
+from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
+from sandbox.app.profile import Profile
+from sandbox.app.screen import Pixel, Pointer
+from sandbox.app.shortcuts import Mode
+from sandbox.app.widgets.ui import Ui
+from sandbox.physics.query import shown_particles, shown_springs
+
+if TYPE_CHECKING:
+    from sandbox.app.app import App
+
+
+class PlayScreen:
+    """Plays a level or a replay; source: the file of the level; of_document: the level is what the editor has open."""
+
+    mode: Mode = "play"
+    notices_left = 16.0
+
+    def __init__(self, app: "App", playback: Playback, source: Path | None = None, of_document: bool = False) -> None:
+        self._app = app
+        self._ui = app.ui
+        self.source, self.of_document = source, of_document
+        self.show_panel = True
+        self.panel: Panel | None = None
+        self.stage = Stage(playback, self.viewport, app.scale)
+        self._keys = DriveKeys(playback)
+        self.actions = self._actions()
+        app.follow(playback)
+
+    @property
+    def camera(self) -> Camera:
+        """What part of the world is seen."""
+        return self.stage.camera
+
+    @property
+    def playback(self) -> Playback:
+        """The run."""
+        return self.stage.playback
+
+    @property
+    def has_contacts(self) -> bool:
+        """Whether things touch in the run."""
+        return self.playback.session.world.has_contacts
+
+    @property
+    def viewport(self) -> tuple[int, int, int, int]:
+        """The part of the window that shows the world, in pixels."""
+        ui, (width, height) = self._ui, self._ui.size
+        top, bottom = ui.px(BAR_HEIGHT), ui.px(STATUS_HEIGHT)
+        right = ui.px(PANEL_WIDTH) if self.show_panel else 0
+        return 0, top, max(width - right, 1), max(height - top - bottom, 1)
+
+    def build(self, ui: Ui) -> None:
+        """Lay the bar and the panel out anew."""
+        self._ui = ui
+        self.toolbar = Toolbar(ui, self._app.act, self.of_document)
+        self.stage.place(self.viewport, ui.scale)
+        before, self.panel = self.panel, None
+        if self.show_panel:
+            height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
+            self.panel = Panel(ui, self.playback, self._app.say, BAR_HEIGHT, height)
+            if before is not None and before.playback is self.playback:
+                self.panel.choose_material(before.material)
+
+    # Actions.
+
+    def _actions(self) -> dict[str, Callable[[], object]]:
+        stage, files = self.stage, self._app.files
+        return {
+            "tool_drag": lambda: stage.choose_tool("drag"),
+            "tool_pin": lambda: stage.choose_tool("pin"),
+            "tool_cut": lambda: stage.choose_tool("cut"),
+            "let_go": stage.let_go,
+            "undo": lambda: self.playback.submit_undo(),
+            "redo": lambda: self.playback.submit_redo(),
+            "pause": lambda: self.playback.toggle_pause(),
+            "step": lambda: self.playback.clock.step_once(),
+            "slow": self._slower,
+            "reset": self._reset,
+            "zoom_in": lambda: stage.camera.zoom_at(stage.cursor, 2),
+            "zoom_out": lambda: stage.camera.zoom_at(stage.cursor, -2),
+            "fit": stage.fit,
+            "record": files.toggle_recording,
+            "save": files.save_run,
+            "press": lambda: stage.press_cursor(pygame.key.get_mods()),
+            "next_particle": lambda: stage.visit_particle(1),
+            "previous_particle": lambda: stage.visit_particle(-1),
+            "panel": self._toggle_panel,
+            "gallery": self._app.open_gallery,
+            "recordings": lambda: self._app.open_gallery("recordings"),
+            "open": files.ask_to_open,
+            "edit": self._edit,
+            "keep": lambda: ask_to_keep(self._app),
+        }
+
+    def _edit(self) -> None:
+        """Back to the document that is played, or edit the level of the run."""
+        documents = self._app.documents
+        if self.of_document:
+            documents.back()
+        elif self.source is not None:
+            documents.open(self.source)
+        else:
+            documents.edit_level(self.playback.level)
+
+    def _slower(self) -> None:
+        clock = self.playback.clock
+        clock.speed = SPEEDS[(SPEEDS.index(clock.speed) + 1) % len(SPEEDS)]
+
+    def _reset(self) -> None:
+        self.leave()
+        self.stage.replace_playback(self.playback.reset())
+        self._app.follow(self.playback)
+        if self.panel is not None:
+            self.panel.playback = self.playback
+
+    def _toggle_panel(self) -> None:
+        self.show_panel = not self.show_panel
+        self._app.rebuild()
+
+    def leave(self) -> None:
+        """End a recording that is being made; its file is complete."""
+        path = self.playback.stop_recording()
+        if path is not None:
+            self._app.say(f"Saved as {path}")
+
+    # Pointer and keys.
+
+    def contains(self, pixel: Pixel) -> bool:
+        """Whether a pixel shows the world."""
+        return self.stage.contains(pixel)
+
+    def point(self, kind: Pointer, pixel: Pixel, modifiers: int, clicks: int = 1) -> None:
+        """Hand a pointer event to the tool; a press takes the keyboard cursor away."""
+        if kind == "down":
+            self.stage.cursor = None
+        self.stage.point(kind, pixel, modifiers)
+
+    def press_key(self, key: int, modifiers: int) -> bool:
+        """Drive what the level lets a key drive."""
+        if self._keys.playback is not self.playback:
+            self._keys = DriveKeys(self.playback)
+        return self._keys.press(key, modifiers)
+
+    def release_key(self, key: int) -> None:
+        """Stop driving."""
+        if self._keys.playback is self.playback:
+            self._keys.release(key)
+
+    def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
+        """Move the keyboard cursor."""
+        self.stage.move_cursor(dx, dy, modifiers)
+
+    # A frame.
+
+    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
+        """Let time pass, where no page is open and the physics is ready."""
+        self.stage.update(frame_time if ready and not self._ui.has_sheet else 0.0, pointer, profile)
+        self.stage.renderer.compiled = ready
+        for message in self.playback.messages:
+            self._app.say(message)
+        self.playback.messages.clear()
+        if self.panel is not None and ready:
+            self.panel.refresh()
+        self.toolbar.show(
+            BarState(
+                self.playback.level.name,
+                self.stage.tool_name,
+                self.playback.clock.paused,
+                self.playback.clock.speed,
+                self.playback.session.recording is not None,
+                self.playback.session.can_undo,
+                self.playback.session.can_redo,
+                self.show_panel,
+            )
+        )
+
+    def draw(self, surface: pygame.Surface, profile: Profile) -> None:
+        """Draw the world."""
+        self.stage.draw(surface, profile)
+
+    def status(self, ticks: float, frame: float) -> list[tuple[str, Colour]]:
+        """State, recording, tick and figures of the run."""
+        playback, current = self.playback, self.playback.current
+        parts: list[tuple[str, Colour]] = [(self._state(), ACCENT if not playback.clock.paused else WARNING)]
+        if playback.session.recording is not None:
+            parts.append((f"recording {playback.session.recording.name}", DANGER))
+        if playback.replay is not None:
+            parts.append((playback.verdict or f"replay, {playback.replay.ticks:,} ticks", TEXT))
+        parts.append((f"tick {playback.session.tick:,}", MUTED))
+        counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
+        return parts + status_parts(*counts, ticks, frame, self.stage.renderer.non_finite, playback.behind)
+
+    def _state(self) -> str:
+        """The state of the run in a word, as status line and window title show it."""
+        clock = self.playback.clock
+        if clock.paused:
+            return "paused"
+        return "playing" if clock.speed == 1.0 else f"slow motion 1/{round(1 / clock.speed)}"
+
+    def title(self) -> list[str]:
+        """Level, tick and state, so that other programs can follow what happens."""
+        words = [self.playback.level.name, f"tick {self.playback.session.tick}", self._state()]
+        if self.stage.drag.holds:
+            words.append(f"holding {len(self.stage.drag.holds)}")
+        if self.playback.session.recording is not None:
+            words.append("recording")
+        if self.playback.replay is not None:
+            words.append(self.playback.verdict or "watching")
+        return words

@@ -1,0 +1,184 @@
+"""Stage: the world on the screen: pointer and keyboard cursor to tools, pan and zoom, and the drawing of it."""
+
+import math
+from typing import Literal
+
+import numpy as np
+import pygame
+
+from sandbox.app.draw.camera import Box, Camera, bounds
+from sandbox.app.draw.picture import view_of
+from sandbox.app.draw.renderer import Overlay, Renderer
+from sandbox.app.play.playback import Playback
+from sandbox.app.profile import Profile
+from sandbox.physics.query import nearest_particle, shown_particles
+from sandbox.tools.cut import CutTool
+from sandbox.tools.drag import DragTool
+from sandbox.tools.pin import PinTool
+from sandbox.tools.tool import PointerEvent, Tool
+
+# How far off a particle a press still hits it, and a step of the keyboard cursor [layout units].
+PICK_RADIUS = 14.0
+CURSOR_STEP, CURSOR_LEAP = 4.0, 24.0
+
+Pixel = tuple[float, float]
+
+
+class Stage:
+    """One run on the screen, in the viewport (left, top, width, height) [pixels] of its camera."""
+
+    def __init__(self, playback: Playback, viewport: tuple[int, int, int, int], scale: float) -> None:
+        self.playback = playback
+        self.camera = Camera(viewport=viewport)
+        self.renderer = Renderer(scale)
+        self.cursor: tuple[float, float] | None = None
+        self.pressed_by_key = False
+        self._hovered: int | None = None
+        self._make_tools()
+        self._first_box = view_of(playback.level, playback.current)
+        self._fit(self._first_box)
+
+    def _make_tools(self) -> None:
+        new_gesture = self.playback.session.new_gesture
+        self.drag, self.cut, self.pin = DragTool(new_gesture), CutTool(new_gesture), PinTool(new_gesture)
+        self.tools: dict[str, Tool] = {"drag": self.drag, "pin": self.pin, "cut": self.cut}
+        self.tool_name = "drag"
+
+    @property
+    def tool(self) -> Tool:
+        """The tool in use."""
+        return self.tools[self.tool_name]
+
+    def choose_tool(self, name: str) -> None:
+        """Take another tool up; what is held stays held."""
+        if self.cut.trail:
+            self.cut.cancel()
+        self.tool_name = name
+        self.pressed_by_key = False
+
+    def replace_playback(self, playback: Playback) -> None:
+        """Show another run of the same level, with the same camera and tool."""
+        name = self.tool_name
+        self.playback = playback
+        self.pressed_by_key = False
+        self._make_tools()
+        self.tool_name = name
+
+    def fit(self) -> None:
+        """Show the level's view, or all of its particles; asked for again, all particles wherever they are.
+
+        Where an explosion has carried them farther than any zoom shows, the view that the run began with.
+        """
+        snapshot = self.playback.current
+        box = view_of(self.playback.level, snapshot)
+        if self._is_fitted and self._box == box:
+            box = bounds(snapshot.position[shown_particles(snapshot)])
+        if not self.camera.can_show(box):
+            box = self._first_box
+            self.playback.messages.append("Some particles are too far away to be shown. Ctrl+Z or R brings them back.")
+        self._fit(box)
+
+    def _fit(self, box: Box) -> None:
+        self.camera.fit(box)
+        self._box, self._fitted_at = box, (self.camera.centre, self.camera.zoom)
+
+    @property
+    def _is_fitted(self) -> bool:
+        """Whether the camera is as the last fit left it."""
+        return self._fitted_at == (self.camera.centre, self.camera.zoom)
+
+    def place(self, viewport: tuple[int, int, int, int], scale: float) -> None:
+        """Move to another part of the window and keep showing about the same."""
+        before, fitted = self.camera.viewport, self._is_fitted
+        self.camera.viewport = viewport
+        self.renderer.scale = scale
+        if fitted:
+            self._fit(self._box)
+        else:
+            # By areas, so that a window made smaller and larger again shows what it showed.
+            self.camera.zoom *= math.sqrt(viewport[2] * viewport[3] / max(before[2] * before[3], 1))
+
+    def contains(self, pixel: Pixel) -> bool:
+        """Whether a pixel shows the world."""
+        return pygame.Rect(self.camera.viewport).collidepoint(pixel)
+
+    def point(self, kind: Literal["down", "move", "up"], pixel: Pixel, modifiers: int, button: int = 1) -> None:
+        """Hand a pointer event to the tool."""
+        if self.playback.has_pending:
+            self.playback.apply_pending()
+        event = PointerEvent(
+            kind,
+            self.camera.to_world(pixel),
+            PICK_RADIUS * self.renderer.scale / self.camera.zoom,
+            button,
+            bool(modifiers & pygame.KMOD_SHIFT),
+            bool(modifiers & pygame.KMOD_CTRL),
+        )
+        self.playback.respond(self.tool.handle(event, self.playback.current))
+
+    def let_go(self) -> None:
+        """Give up what the tools do and hold."""
+        for tool in self.tools.values():
+            self.playback.respond(tool.cancel())
+        self.pressed_by_key = False
+        self.cursor = None
+
+    # Keyboard cursor.
+
+    def move_cursor(self, dx: int, dy: int, modifiers: int) -> None:
+        """Move the keyboard cursor, which appears in the middle at first; dy is upward."""
+        step = (CURSOR_LEAP if modifiers & pygame.KMOD_SHIFT else CURSOR_STEP) * self.renderer.scale
+        x, y = self._cursor_pixel()
+        left, top, width, height = self.camera.viewport
+        moved = (min(max(x + dx * step, left), left + width), min(max(y - dy * step, top), top + height))
+        self._cursor_to(moved, modifiers)
+
+    def press_cursor(self, modifiers: int) -> None:
+        """Press the tool at the keyboard cursor, or release it."""
+        pixel = self._cursor_pixel()
+        self._cursor_to(pixel, modifiers)
+        self.point("up" if self.pressed_by_key else "down", pixel, modifiers)
+        self.pressed_by_key = not self.pressed_by_key
+
+    def visit_particle(self, by: int) -> None:
+        """Move the keyboard cursor to the next particle, or the one before."""
+        snapshot = self.playback.current
+        slots = np.flatnonzero(shown_particles(snapshot) & np.isfinite(snapshot.position).all(axis=1))
+        if not len(slots):
+            return
+        here = None if self.cursor is None else nearest_particle(snapshot, self.cursor, np.inf)
+        index = int(np.searchsorted(slots, here)) + by if here is not None else 0
+        x, y = snapshot.position[slots[index % len(slots)]].tolist()
+        self._cursor_to(self.camera.to_pixels((x, y)), 0)
+
+    def _cursor_pixel(self) -> Pixel:
+        return self.camera.middle if self.cursor is None else self.camera.to_pixels(self.cursor)
+
+    def _cursor_to(self, pixel: Pixel, modifiers: int) -> None:
+        self.cursor = self.camera.to_world(pixel)
+        if self.pressed_by_key:
+            self.point("move", pixel, modifiers)
+
+    # A frame.
+
+    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
+        """Apply what is due and let time pass; pointer: where the mouse is over the world, if it is."""
+        with profile.part("commands"):
+            self.playback.apply_pending()
+            for tool in self.tools.values():
+                tool.reconcile(self.playback.current)
+        with profile.part("ticks"):
+            self.playback.advance(frame_time)
+        self._hovered = None
+        if pointer is not None and self.tool_name != "cut" and not self.drag.dragging:
+            within = PICK_RADIUS * self.renderer.scale / self.camera.zoom
+            self._hovered = nearest_particle(self.playback.current, self.camera.to_world(pointer), within)
+
+    def draw(self, surface: pygame.Surface, profile: Profile) -> None:
+        """Draw the world into the viewport."""
+        surface.set_clip(self.camera.viewport)
+        playback = self.playback
+        overlay = Overlay(self._hovered, self.cut.trail, self.cursor)
+        alpha = playback.clock.alpha(playback.session.world.settings.tick_rate)
+        self.renderer.draw(surface, self.camera, playback.previous, playback.current, alpha, overlay, profile)
+        surface.set_clip(None)

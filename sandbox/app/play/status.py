@@ -1,0 +1,197 @@
+"""StatusLine: what is on the screen in figures, the legend of the colours, and notices that come and go."""
+
+import math
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+import pygame
+
+from sandbox.app.draw.colours import (
+    ACCENT,
+    DANGER,
+    FULL_STRAIN,
+    LINE,
+    MUTED,
+    SLIGHT_STRAIN,
+    SURFACE,
+    TEXT,
+    WARNING,
+    Colour,
+    strain_colours,
+)
+from sandbox.app.widgets.painted import wrapped
+from sandbox.app.widgets.ui import Ui
+
+# Sizes in layout units.
+STATUS_HEIGHT = 30.0
+NOTICE_SECONDS = 6.0
+SECONDS_A_LETTER = 0.06
+NOTICES = 4
+LEGEND_WIDTH = 96.0
+NOTICE_COLOUR: Colour = (33, 39, 49)
+
+
+@dataclass
+class Notice:
+    """A line for the person, that goes after some seconds."""
+
+    text: str
+    left: float = NOTICE_SECONDS
+
+
+class StatusLine:
+    """The line at the bottom, and the notices above it."""
+
+    def __init__(self, ui: Ui, notices: deque[Notice]) -> None:
+        self.ui = ui
+        self.notices = notices
+        self._legend: pygame.Surface | None = None
+        self._texts: dict[tuple[str, Colour], pygame.Surface] = {}
+
+    def say(self, text: str) -> None:
+        """Show a line for some seconds."""
+        for notice in self.notices:
+            if notice.text == text:
+                notice.left = NOTICE_SECONDS
+                return
+        self.notices.append(Notice(text, max(NOTICE_SECONDS, len(text) * SECONDS_A_LETTER)))
+
+    def take_back(self, text: str) -> None:
+        """Show a line no longer."""
+        for notice in list(self.notices):
+            if notice.text == text:
+                self.notices.remove(notice)
+
+    def update(self, frame_time: float) -> None:
+        """Let notices age by frame_time [s]."""
+        for notice in list(self.notices):
+            notice.left -= frame_time
+            if notice.left <= 0.0:
+                self.notices.remove(notice)
+
+    def draw(
+        self,
+        surface: pygame.Surface,
+        parts: list[tuple[str, Colour]],
+        right: float,
+        notices_left: float | None,
+        legend: bool = True,
+    ) -> None:
+        """Draw parts of text from the left, the legend up to `right`, notices from a left edge; in layout units."""
+        ui = self.ui
+        height = ui.px(STATUS_HEIGHT)
+        top = surface.get_height() - height
+        pygame.draw.rect(surface, SURFACE, (0, top, surface.get_width(), height))
+        parts_end = ui.px(right - (LEGEND_WIDTH + 150 if legend else 0))
+        x = ui.px(16)
+        for text, colour in parts:
+            picture = self._text(text, colour)
+            if x + picture.get_width() > parts_end:
+                break
+            surface.blit(picture, (x, top + (height - picture.get_height()) // 2))
+            x += picture.get_width() + ui.px(18)
+        if legend:
+            self._draw_legend(surface, ui.px(right), top, height)
+        if notices_left is not None:
+            self._draw_notices_above(surface, top, notices_left)
+
+    def draw_notices(self, surface: pygame.Surface, left: float) -> None:
+        """Draw the notices alone, over a page that covers the line."""
+        self._draw_notices_above(surface, surface.get_height(), left)
+
+    def _draw_legend(self, surface: pygame.Surface, right: int, top: int, height: int) -> None:
+        ui = self.ui
+        width = ui.px(LEGEND_WIDTH)
+        if self._legend is None:
+            place = np.linspace(-1.0, 1.0, width)
+            full = np.log1p(FULL_STRAIN / SLIGHT_STRAIN)
+            colours = strain_colours(np.sign(place) * np.expm1(np.abs(place) * full) * SLIGHT_STRAIN)
+            self._legend = pygame.Surface((width, ui.px(6)), 0, 32)
+            pixels = pygame.surfarray.pixels2d(self._legend)
+            pixels[:] = colours[:, None]
+            del pixels
+        after, before = self._text("stretched", MUTED), self._text("compressed", MUTED)
+        x = right - ui.px(16) - after.get_width()
+        surface.blit(after, (x, top + (height - after.get_height()) // 2))
+        x -= width + ui.px(8)
+        surface.blit(self._legend, (x, top + (height - self._legend.get_height()) // 2))
+        surface.blit(before, (x - ui.px(8) - before.get_width(), top + (height - before.get_height()) // 2))
+
+    def _draw_notices_above(self, surface: pygame.Surface, bottom: int, left: float) -> None:
+        ui = self.ui
+        y = bottom - ui.px(12)
+        for notice in reversed(self.notices):
+            lines = [self._text(line, TEXT) for line in wrapped(notice.text, ui.font(13), ui.px(520), 6)]
+            height = sum(line.get_height() for line in lines) + ui.px(16)
+            width = max(line.get_width() for line in lines) + ui.px(30)
+            y -= height
+            card = pygame.Surface((width, height), pygame.SRCALPHA)
+            pygame.draw.rect(card, (*NOTICE_COLOUR, 240), card.get_rect(), border_radius=ui.px(8))
+            pygame.draw.rect(card, LINE, card.get_rect(), 1, border_radius=ui.px(8))
+            pygame.draw.rect(card, ACCENT, (ui.px(8), ui.px(9), ui.px(3), height - ui.px(18)), border_radius=ui.px(2))
+            line_y = ui.px(8)
+            for line in lines:
+                card.blit(line, (ui.px(19), line_y))
+                line_y += line.get_height()
+            card.set_alpha(round(255 * min(1.0, notice.left / 0.4)))
+            surface.blit(card, (ui.px(left), y))
+            y -= ui.px(8)
+
+    def _text(self, text: str, colour: Colour) -> pygame.Surface:
+        key = (text, colour)
+        if key not in self._texts:
+            if len(self._texts) > 400:
+                self._texts.clear()
+            self._texts[key] = self.ui.font(13 if colour == TEXT else 12).render(text, True, colour)
+        return self._texts[key]
+
+
+def _card(surface: pygame.Surface, ui: Ui, text: str, inset: float) -> pygame.Rect:
+    card = pygame.Rect(0, 0, ui.px(380), ui.px(96))
+    card.center = (surface.get_width() // 2, surface.get_height() // 2)
+    pygame.draw.rect(surface, NOTICE_COLOUR, card, border_radius=ui.px(12))
+    pygame.draw.rect(surface, LINE, card, 1, border_radius=ui.px(12))
+    surface.blit(ui.font(15, True).render(text, True, TEXT), (card.left + ui.px(inset), card.top + ui.px(24)))
+    return card
+
+
+def draw_spinner(surface: pygame.Surface, ui: Ui, seconds: float, text: str, detail: str) -> None:
+    """A card in the middle of the window with a turning ring, while something takes its time."""
+    card = _card(surface, ui, text, 84)
+    middle = pygame.Vector2(card.left + ui.px(46), card.centery)
+    for dot in range(10):
+        turn = math.tau * dot / 10
+        age = (dot / 10 - seconds * 0.9) % 1.0
+        colour = [round(a + (z - a) * age) for a, z in zip(LINE, ACCENT, strict=True)]
+        at = middle + pygame.Vector2(math.cos(turn), math.sin(turn)) * ui.px(16)
+        pygame.draw.aacircle(surface, colour, at, ui.px(3))
+    surface.blit(ui.font(12).render(detail, True, MUTED), (card.left + ui.px(84), card.top + ui.px(50)))
+
+
+def draw_bar(surface: pygame.Surface, ui: Ui, share: float, text: str) -> None:
+    """A card in the middle of the window with a bar that is filled to a share (0..1)."""
+    card = _card(surface, ui, text, 28)
+    bar = pygame.Rect(card.left + ui.px(28), card.top + ui.px(58), card.width - ui.px(56), ui.px(6))
+    pygame.draw.rect(surface, LINE, bar, border_radius=ui.px(3))
+    bar.width = round(bar.width * min(max(share, 0.0), 1.0))
+    pygame.draw.rect(surface, ACCENT, bar, border_radius=ui.px(3))
+
+
+def status_parts(
+    particles: int, springs: int, ticks: float, frame: float, non_finite: int, behind: bool
+) -> list[tuple[str, Colour]]:
+    """The figures of the status line, warnings first in warning colours."""
+    parts: list[tuple[str, Colour]] = []
+    if non_finite:
+        verb = "particle is" if non_finite == 1 else "particles are"
+        parts.append((f"{non_finite:,} {verb} no longer finite and not drawn: undo or reset", DANGER))
+    if behind:
+        parts.append(("slower than real time", WARNING))
+    parts += [
+        (f"{particles:,} particles", MUTED),
+        (f"{springs:,} springs", MUTED),
+        (f"{ticks:.0f} ticks/s", MUTED),
+        (f"{frame:.1f} ms/frame", MUTED),
+    ]
+    return parts

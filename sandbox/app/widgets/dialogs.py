@@ -1,0 +1,218 @@
+"""Dialogs: lines that a person has to see, questions with a typed answer, choices, and long lists to choose from."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+from sandbox.app.draw.colours import TEXT, WARNING
+from sandbox.app.edit.side.rows import MENU_ROWS, Row, RowList
+from sandbox.app.widgets.fields import Again
+from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.ui import Ui
+
+# Sizes in layout units.
+WIDTH = 560.0
+MARGIN = 24.0
+LINE_HEIGHT = 21.0
+MOST_LINES = 14
+# Characters of a fault that fit on a line of the box.
+LINE_CHARACTERS = 74
+# Height of a row of a list.
+ROW_HEIGHT = 29.0
+
+# A button: its label, and what it does.
+Choice = tuple[str, Callable[[], object]]
+
+
+def _box(
+    ui: Ui, height: float, close: Callable[[], None], again: Again, is_question: bool = False
+) -> tuple[Any, Any, float]:
+    """A modal box in the middle: the sheet, the box and its width in layout units."""
+    width, tall = ui.units
+    box_width = min(WIDTH, width - 40)
+    sheet = ui.open_sheet(close, again=again, is_question=is_question)
+    box = ui.panel(ui.rect((width - box_width) / 2, max((tall - height) / 2, 10), box_width, height), sheet, "@dialog")
+    return sheet, box, box_width
+
+
+def show_lines(ui: Ui, title: str, lines: list[str], other: Choice | None = None) -> None:
+    """Show lines until they are closed; more than fit are counted; other: what else can be done, on a second button."""
+    shown = lines[:MOST_LINES] + ([f"... and {len(lines) - MOST_LINES} more"] if len(lines) > MOST_LINES else [])
+    rows = sum(1 + len(line) // LINE_CHARACTERS for line in shown)
+    height = min(MARGIN * 2 + 40 + rows * LINE_HEIGHT + 60, ui.units[1] - 20)
+
+    def close() -> None:
+        ui.close_sheet(sheet)
+
+    def do_other() -> None:
+        close()
+        if other is not None:
+            other[1]()
+
+    def again(other_ui: Ui) -> None:
+        show_lines(other_ui, title, lines, other)
+
+    sheet, box, width = _box(ui, height, close, again)
+    ui.label(ui.rect(MARGIN, MARGIN - 6, width - 2 * MARGIN, 28), title, box, "@title")
+    place = ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN, height - MARGIN * 2 - 84)
+    TextBlock(ui, place, "\n".join(shown), box, 13.0, TEXT)
+    bottom = height - MARGIN - 34
+    button = ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), "Close", close, box, style="@primary")
+    if other is not None:
+        ui.button(ui.rect(width - MARGIN - 310, bottom, 190, 34), other[0], do_other, box)
+    ui.focus_on(button)
+
+
+def ask(
+    ui: Ui,
+    title: str,
+    hint: str,
+    text: str,
+    verb: str,
+    answer: Callable[[str], str | None],
+    other: tuple[str, Callable[[], None]] | None = None,
+    then: Callable[[str], object] | None = None,
+) -> None:
+    """Ask for a line of text; answer gives None where it is taken, else what is wrong with it, and the box stays.
+
+    other: the second button and what it does, instead of one that leaves everything as it is, as Escape does.
+    then: what is done with a text that was taken, once the box is closed.
+    """
+    height = 246.0
+
+    def close() -> None:
+        ui.close_sheet(sheet)
+
+    def do_other() -> None:
+        close()
+        if other is not None:
+            other[1]()
+
+    def accept() -> None:
+        take(field.entry.get_text())
+
+    def take(typed: str) -> bool:
+        fault = answer(typed.strip())
+        if fault is None:
+            close()
+            if then is not None:
+                then(typed.strip())
+            return True
+        note.show_text(fault)
+        return False
+
+    def again(other_ui: Ui) -> None:
+        ask(other_ui, title, hint, field.entry.get_text(), verb, answer, other, then)
+
+    sheet, box, width = _box(ui, height, close, again)
+    inside = width - 2 * MARGIN
+    ui.label(ui.rect(MARGIN, MARGIN - 6, inside, 28), title, box, "@title")
+    ui.label(ui.rect(MARGIN, MARGIN + 26, inside, 20), hint, box, "@muted")
+    field = ui.field(ui.rect(MARGIN, MARGIN + 52, inside, 34), text, lambda _: True, box, 400)
+    field.enter = take
+    note = TextBlock(ui, ui.rect(MARGIN, MARGIN + 94, inside, 50), "", box, 12.0, WARNING)
+    bottom = height - MARGIN - 34
+    ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="@primary")
+    ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), other[0] if other else "Cancel", do_other, box)
+    ui.focus_on(field.entry)
+
+
+def choose(
+    ui: Ui, title: str, text: str, choices: Sequence[Choice], columns: int = 1, *, is_question: bool = False
+) -> None:
+    """Offer choices, (label, what it does) each, the first of them marked; Escape or Cancel leaves all as it is.
+
+    is_question: it stays until it is answered, also where another screen comes.
+    """
+    rows = -(-len(choices) // columns)
+    lines = 1 + len(text) // LINE_CHARACTERS if text else 0
+    height = MARGIN * 2 + 38 + lines * LINE_HEIGHT + rows * 42 + 44
+
+    def close() -> None:
+        ui.close_sheet(sheet)
+
+    def do(action: Callable[[], object]) -> None:
+        close()
+        action()
+
+    def again(other_ui: Ui) -> None:
+        choose(other_ui, title, text, choices, columns, is_question=is_question)
+
+    sheet, box, width = _box(ui, height, close, again, is_question)
+    inside = width - 2 * MARGIN
+    ui.label(ui.rect(MARGIN, MARGIN - 6, inside, 28), title, box, "@title")
+    TextBlock(ui, ui.rect(MARGIN, MARGIN + 32, inside, lines * LINE_HEIGHT + 4), text, box, 13.0, TEXT)
+    top, buttons = MARGIN + 40 + lines * LINE_HEIGHT, []
+    wide = (inside - 10 * (columns - 1)) / columns
+    for index, (label, action) in enumerate(choices):
+        place = ui.rect(MARGIN + index % columns * (wide + 10), top + index // columns * 42, wide, 34)
+        style = "@primary" if index == 0 and columns == 1 else ""
+        buttons.append(ui.button(place, label, partial(do, action), box, style=style))
+    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="@quiet")
+    ui.focus_on(buttons[0])
+
+
+def choose_row(ui: Ui, title: str, rows: Sequence[Row], take: Callable[[int], object]) -> None:
+    """Offer a list of any length, which scrolls; take(index) is called once a row is chosen."""
+    tall = min(min(len(rows), MENU_ROWS) * ROW_HEIGHT, ui.units[1] - 20 - 2 * MARGIN - 84)
+    height = MARGIN * 2 + 84 + tall
+
+    def close() -> None:
+        ui.close_sheet(sheet)
+
+    def do(index: int) -> None:
+        close()
+        take(index)
+
+    def again(other_ui: Ui) -> None:
+        choose_row(other_ui, title, rows, take)
+
+    sheet, box, width = _box(ui, height, close, again)
+    ui.label(ui.rect(MARGIN, MARGIN - 6, width - 2 * MARGIN, 28), title, box, "@title")
+    listed = RowList(ui, ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN, tall), do, box, at_once=False)
+    listed.show_rows(rows, None)
+    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="@quiet")
+    ui.focus_on(listed)
+
+
+def fill_in(
+    ui: Ui,
+    title: str,
+    hint: str,
+    fields: Sequence[tuple[str, str]],
+    verb: str,
+    answer: Callable[[list[str]], str | None],
+) -> None:
+    """Ask for several lines, (label, text) each; answer gives None where they are taken, else what is wrong."""
+    height = MARGIN * 2 + 62 + len(fields) * 42 + 78
+
+    def close() -> None:
+        ui.close_sheet(sheet)
+
+    def accept(_: object = None) -> None:
+        fault = answer([entry.entry.get_text().strip() for entry in entries])
+        if fault is None:
+            close()
+        else:
+            note.show_text(fault)
+
+    def again(other_ui: Ui) -> None:
+        typed = [(label, entry.entry.get_text()) for (label, _), entry in zip(fields, entries, strict=True)]
+        fill_in(other_ui, title, hint, typed, verb, answer)
+
+    sheet, box, width = _box(ui, height, close, again)
+    inside = width - 2 * MARGIN
+    ui.label(ui.rect(MARGIN, MARGIN - 6, inside, 28), title, box, "@title")
+    ui.label(ui.rect(MARGIN, MARGIN + 26, inside, 20), hint, box, "@muted")
+    entries = []
+    for index, (label, text) in enumerate(fields):
+        top = MARGIN + 56 + index * 42
+        ui.label(ui.rect(MARGIN, top, inside * 0.5, 34), label, box)
+        entry = ui.field(ui.rect(MARGIN + inside * 0.5, top, inside * 0.5, 34), text, lambda _: True, box, 40)
+        entry.enter = accept
+        entries.append(entry)
+    note = TextBlock(ui, ui.rect(MARGIN, height - MARGIN - 74, inside, 34), "", box, 12.0, WARNING)
+    bottom = height - MARGIN - 34
+    ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="@primary")
+    ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), "Cancel", close, box)
+    ui.focus_on(entries[0].entry)

@@ -1,0 +1,90 @@
+"""Parts of the widgets that hold a state of their own: lines to type into, rows of buttons, modal pages."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from dataclasses import field as default
+from typing import TYPE_CHECKING
+
+from pygame_gui.core import UIElement
+from pygame_gui.elements import UIButton, UIPanel, UITextEntryLine
+
+if TYPE_CHECKING:
+    from sandbox.app.widgets.ui import Ui
+
+# Opens a modal page anew on other widgets, with what was typed so far.
+Again = Callable[["Ui"], object]
+
+
+@dataclass
+class Field:
+    """A line to type into; commit gets the text and says whether it is taken, else the old text comes back.
+
+    turn: what a notch of the wheel over it does, and an arrow key in it, +1 or -1; None = nothing.
+    """
+
+    entry: UITextEntryLine
+    commit: Callable[[str], bool]
+    text: str
+    focused: bool = False
+    enter: Callable[[str], object] | None = None
+    turn: Callable[[int], object] | None = None
+
+    def show(self, text: str) -> None:
+        """Show a value, unless the person is typing one."""
+        if text != self.text and not self.entry.is_focused:
+            self.text = text
+            self.entry.set_text(text)
+
+    def finish(self) -> None:
+        """Take what was typed, or bring the old text back; Enter goes to `enter` instead where there is one."""
+        typed = self.entry.get_text()
+        if typed == self.text:
+            return
+        before = self.text
+        self.text = typed
+        if not self.commit(typed):
+            self.text = before
+            self.entry.set_text(before)
+
+    def step(self, by: int) -> bool:
+        """Take what was typed, and change the value by a step; whether it has steps."""
+        if self.turn is None:
+            return False
+        self.finish()
+        self.turn(by)
+        return True
+
+    def revert(self) -> None:
+        """Forget what was typed."""
+        self.entry.set_text(self.text)
+
+
+@dataclass
+class Choice:
+    """A row of buttons of which one is chosen."""
+
+    buttons: dict[str, UIButton]
+    chosen: str = ""
+
+    def show(self, chosen: str) -> None:
+        """Mark the chosen one."""
+        if chosen == self.chosen:
+            return
+        self.chosen = chosen
+        for value, button in self.buttons.items():
+            (button.select if value == chosen else button.unselect)()
+
+
+@dataclass
+class Sheet:
+    """A modal page and the widgets on it; close: what Escape does; is_page: it is read, so no notices lie over it.
+
+    again: opens it anew in another layout; None = it ends with this one. is_question: it outlives the screen under it.
+    """
+
+    panel: UIPanel
+    close: Callable[[], None]
+    is_page: bool
+    again: Again | None
+    is_question: bool
+    widgets: list[UIElement] = default(default_factory=list)

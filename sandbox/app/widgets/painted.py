@@ -1,0 +1,90 @@
+"""Painted: widgets that paint themselves, for what pygame_gui has not."""
+
+from typing import TYPE_CHECKING, Any
+
+import pygame
+from pygame_gui.core import UIElement
+
+from sandbox.app.draw.colours import MUTED, Colour
+
+if TYPE_CHECKING:
+    from sandbox.app.widgets.ui import Ui
+
+
+class Painted(UIElement):
+    """A widget that paints itself; subclasses give `paint`, and what mouse and keys do."""
+
+    def __init__(self, ui: "Ui", rect: pygame.Rect, container: Any = None) -> None:
+        super().__init__(
+            rect, ui.manager, container or ui.root, starting_height=1, layer_thickness=1, element_id=["painted"]
+        )
+        self.ui = ui
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface:
+        """The picture of the widget as it is now, with straight alpha."""
+        raise NotImplementedError
+
+    def repaint(self) -> None:
+        """Show the widget as it is now."""
+        self._set_image(self.paint(self.rect.size).premul_alpha())
+
+    def press_key(self, event: pygame.event.Event) -> bool:
+        """React to a key while focused; True where the key is used."""
+        return False
+
+
+class Lit(Painted):
+    """A painted widget that looks otherwise while it is `hovered`, under the mouse."""
+
+    def on_hovered(self) -> None:
+        """Show that it can be used."""
+        self.repaint()
+
+    def on_unhovered(self) -> None:
+        """Back to how it was."""
+        self.repaint()
+
+
+def wrapped(text: str, font: pygame.font.Font, widest: int, most_lines: int) -> list[str]:
+    """The words of a text in lines no wider than `widest` [pixels]; what does not fit ends in an ellipsis."""
+    lines: list[str] = []
+    for word in text.split():
+        if lines and font.size(f"{lines[-1]} {word}")[0] <= widest:
+            lines[-1] += f" {word}"
+        elif len(lines) == most_lines:
+            while lines[-1] and font.size(f"{lines[-1]}…")[0] > widest:
+                lines[-1] = lines[-1][:-1]
+            lines[-1] += "…"
+            break
+        else:
+            lines.append(word)
+    return lines or [""]
+
+
+class TextBlock(Painted):
+    """Text that wraps; colour and size in layout units."""
+
+    def __init__(
+        self, ui: "Ui", rect: pygame.Rect, text: str, container: Any = None, size: float = 11.0, colour: Colour = MUTED
+    ) -> None:
+        super().__init__(ui, rect, container)
+        self.text, self.text_size, self.colour = text, size, colour
+        self.repaint()
+
+    def show_text(self, text: str) -> None:
+        """Show another text."""
+        if text != self.text:
+            self.text = text
+            self.repaint()
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface:
+        """As many lines as fit."""
+        surface = pygame.Surface(size, pygame.SRCALPHA)
+        font = self.ui.font(self.text_size)
+        height = round(font.get_linesize() * 0.95)
+        y = 0
+        for paragraph in self.text.split("\n"):
+            for line in wrapped(paragraph, font, size[0], max(1, (size[1] - y) // height)):
+                surface.blit(font.render(line, True, self.colour), (0, y))
+                y += height
+        return surface

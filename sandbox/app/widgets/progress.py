@@ -1,0 +1,39 @@
+"""Progress: a card with a bar while a run is played again, so that the window never looks dead."""
+
+import time
+from typing import TYPE_CHECKING
+
+import pygame
+
+from sandbox.app.play.status import draw_bar
+
+if TYPE_CHECKING:
+    from sandbox.app.app import App
+
+# What takes no longer than this [s] shows nothing; then the bar is drawn this often [s].
+PATIENCE = 0.3
+DRAWN_EVERY = 0.05
+# A pause between two reports longer than this [s] is the beginning of something new.
+NEW_AFTER = 1.0
+
+
+class Progress:
+    """Called with ticks done and ticks in all while a session steps again."""
+
+    def __init__(self, app: "App") -> None:
+        self._app = app
+        self._started = self._last = self._drawn = 0.0
+        self._done = 0
+
+    def show(self, done: int, total: int) -> None:
+        """Draw the bar, where it has taken long enough to wonder."""
+        now = time.perf_counter()
+        if done < self._done or now - self._last > NEW_AFTER:
+            self._started = now
+        self._last, self._done = now, done
+        if now - self._started < PATIENCE or now - self._drawn < DRAWN_EVERY:
+            return
+        self._drawn = now
+        pygame.event.pump()
+        draw_bar(self._app.display.surface, self._app.ui, done / max(total, 1), "Playing the run again")
+        self._app.display.flip()

@@ -1,0 +1,399 @@
+"""Ui: the widgets of the app. It, theme.py, fields.py and painted.py know pygame_gui; others get callbacks."""
+
+import html
+import warnings
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import pygame
+import pygame_gui
+from pygame_gui.core import ObjectID, UIContainer, UIElement
+from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITextEntryLine
+
+from sandbox.app.draw.colours import ACCENT
+from sandbox.app.widgets.fields import Again, Choice, Field, Sheet
+from sandbox.app.widgets.painted import Painted
+from sandbox.app.widgets.theme import Manager, plain_font, scaled_theme
+
+# It warns of every label that is a pixel lower than its font: only people who lay out can do something about that.
+warnings.filterwarnings("ignore", message="Label Rect is too small", module="pygame_gui")
+
+# Layers between the page and a modal sheet, and between one sheet and the next.
+SHEET_HEIGHT = 40
+# Delay and interval of a key that is held down [ms].
+KEY_REPEAT = (400, 40)
+ENTER_KEYS = (pygame.K_RETURN, pygame.K_KP_ENTER)
+ANSWERS = (
+    pygame_gui.UI_BUTTON_PRESSED,
+    pygame_gui.UI_DROP_DOWN_MENU_CHANGED,
+    pygame_gui.UI_TEXT_ENTRY_FINISHED,
+)
+
+
+class Ui:
+    """Widgets on a window of size [pixels]; positions and sizes given to it are layout units of `scale` pixels."""
+
+    def __init__(self, size: tuple[int, int], scale: float, pixel_ratio: tuple[float, float] = (1.0, 1.0)) -> None:
+        self.size = size
+        self.scale = scale
+        self.manager = Manager(size, scaled_theme(scale), enable_live_theme_updates=False)
+        self.manager.mouse_pos_scale_factor = list(pixel_ratio)
+        self.root = self.manager.get_root_container()
+        self._actions: dict[UIElement, Callable[[], None]] = {}
+        self._choosers: dict[UIDropDownMenu, Callable[[str], None]] = {}
+        self._fields: dict[UIElement, Field] = {}
+        self._sheets: list[Sheet] = []
+        self._page: list[UIElement] = []
+        pygame.key.set_repeat(*KEY_REPEAT)
+        self._focus: UIElement | None = None
+        # The line that Enter left: Tab goes on from there.
+        self._left: UIElement | None = None
+
+    def px(self, units: float) -> int:
+        """Layout units in pixels."""
+        return round(units * self.scale)
+
+    def rect(self, x: float, y: float, width: float, height: float) -> pygame.Rect:
+        """A rectangle of layout units in pixels."""
+        return pygame.Rect(self.px(x), self.px(y), self.px(width), self.px(height))
+
+    @property
+    def units(self) -> tuple[float, float]:
+        """Size of the window in layout units."""
+        return self.size[0] / self.scale, self.size[1] / self.scale
+
+    def panel(self, rect: pygame.Rect, container: Any = None, style: str = "") -> UIPanel:
+        """A background that holds other widgets."""
+        return UIPanel(rect, 1, self.manager, container=container, margins=_NO_MARGINS, object_id=_style(style))
+
+    def area(self, rect: pygame.Rect, container: Any = None) -> UIContainer:
+        """A part of the window that clips what it holds."""
+        return UIContainer(rect, self.manager, container=container)
+
+    def label(self, rect: pygame.Rect, text: str, container: Any = None, style: str = "") -> UILabel:
+        """One line of text."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return UILabel(rect, text, self.manager, container=container, object_id=_style(style))
+
+    def button(
+        self,
+        rect: pygame.Rect,
+        text: str,
+        action: Callable[[], None],
+        container: Any = None,
+        *,
+        style: str = "",
+        icon: pygame.Surface | None = None,
+        tip: str = "",
+    ) -> UIButton:
+        """A button with text or an icon."""
+        button = UIButton(
+            rect, text, self.manager, container=container, object_id=_style(style), tool_tip_text=_escaped(tip) or None
+        )
+        if icon is not None:
+            set_icon(button, icon)
+        self._actions[button] = action
+        self._add_focusable(button)
+        return button
+
+    def choice(
+        self,
+        rect: pygame.Rect,
+        options: Sequence[tuple[str, str, str]],
+        choose: Callable[[str], None],
+        container: Any = None,
+    ) -> Choice:
+        """A row of buttons, one per (value, text, tip), that share the rectangle."""
+        buttons, count, gap = {}, len(options), self.px(3)
+        width = (rect.width - gap * (count - 1)) / count
+        for index, (value, text, tip) in enumerate(options):
+            left, right = round(index * (width + gap)), round(index * (width + gap) + width)
+            place = pygame.Rect(rect.left + left, rect.top, right - left, rect.height)
+            buttons[value] = self.button(place, text, partial(choose, value), container, style="@segment", tip=tip)
+        return Choice(buttons)
+
+    def field(
+        self, rect: pygame.Rect, text: str, commit: Callable[[str], bool], container: Any = None, limit: int = 200
+    ) -> Field:
+        """A line to type into."""
+        entry = UITextEntryLine(rect, self.manager, container=container, initial_text=text)
+        entry.set_text_length_limit(limit)
+        self._fields[entry] = Field(entry, commit, text)
+        self._add_focusable(entry)
+        return self._fields[entry]
+
+    def menu(
+        self,
+        rect: pygame.Rect,
+        options: Sequence[str],
+        chosen: str,
+        choose: Callable[[str], None],
+        container: Any = None,
+    ) -> UIDropDownMenu:
+        """A menu that opens to a list."""
+        menu = UIDropDownMenu(list(options), chosen, rect, self.manager, container=container)
+        self._choosers[menu] = choose
+        self._add_focusable(menu)
+        return menu
+
+    def replace_menu(self, menu: UIDropDownMenu, chosen: str) -> None:
+        """Show another chosen option on a menu, which then keeps its place among the widgets."""
+        menu.selected_option = (chosen, chosen)
+        # The menu's state, closed or open, has a copy of the option and a button that shows it.
+        state: Any = menu.current_state
+        state.selected_option = menu.selected_option
+        state.selected_option_button.set_text(chosen)
+
+    def add(self, widget: Painted) -> None:
+        """Let a painted widget be reached by Tab."""
+        self._add_focusable(widget)
+
+    def _add_focusable(self, widget: UIElement) -> None:
+        (self._sheets[-1].widgets if self._sheets else self._page).append(widget)
+
+    def remove(self, widget: UIElement) -> None:
+        """Take a widget away; one that has the keyboard gives it back."""
+        self._forget(widget)
+        self._page = [other for other in self._page if other is not widget]
+        if self._focus is widget:
+            self._set_focus(None)
+        widget.kill()
+
+    def _forget(self, widget: UIElement) -> None:
+        self._actions.pop(widget, None)
+        self._fields.pop(widget, None)
+        if isinstance(widget, UIDropDownMenu):
+            self._choosers.pop(widget, None)
+
+    # Sheets: modal pages on top of all else.
+
+    @property
+    def shows_page(self) -> bool:
+        """Whether the topmost modal page is one to read."""
+        return bool(self._sheets) and self._sheets[-1].is_page
+
+    @property
+    def has_sheet(self) -> bool:
+        """Whether a modal page is open."""
+        return bool(self._sheets)
+
+    @property
+    def has_question(self) -> bool:
+        """Whether a question is open that outlives the screen."""
+        return any(sheet.is_question for sheet in self._sheets)
+
+    def open_sheet(
+        self,
+        close: Callable[[], None],
+        style: str = "@shade",
+        *,
+        is_page: bool = False,
+        again: Again | None = None,
+        is_question: bool = False,
+    ) -> UIPanel:
+        """Cover the window by a modal page; close is called when Escape asks for it; the others are those of Sheet."""
+        sheet = UIPanel(
+            pygame.Rect((0, 0), self.size),
+            SHEET_HEIGHT * (len(self._sheets) + 1),
+            self.manager,
+            margins=_NO_MARGINS,
+            object_id=_style(style),
+        )
+        self._sheets.append(Sheet(sheet, close, is_page, again, is_question))
+        self._set_focus(None)
+        return sheet
+
+    def close_sheet(self, sheet: UIPanel) -> None:
+        """Take a modal page away."""
+        for entry in [entry for entry in self._sheets if entry.panel is sheet]:
+            for widget in entry.widgets:
+                self._forget(widget)
+        self._sheets = [entry for entry in self._sheets if entry.panel is not sheet]
+        self._set_focus(None)
+        sheet.kill()
+
+    def take_over(self, before: "Ui", questions_alone: bool = False) -> None:
+        """Open the modal pages of an earlier layout, and end that; questions_alone: pages of its screen are left."""
+        for sheet in before._sheets:
+            if sheet.again is not None and (sheet.is_question or not questions_alone):
+                sheet.again(self)
+                if isinstance(self._focus, UITextEntryLine):
+                    # The next letter is added to what was typed; it does not replace it.
+                    self._focus.select_range = [0, 0]
+                    self._focus.edit_position = len(self._focus.get_text())
+        before.manager.clear_and_reset()
+
+    # Events and focus.
+
+    @property
+    def typing(self) -> bool:
+        """Whether keys go into a line of text."""
+        return any(field.entry.is_focused for field in self._fields.values())
+
+    @property
+    def focus(self) -> UIElement | None:
+        """The widget that the keyboard works on."""
+        return self._focus
+
+    def buttons(self) -> list[UIButton]:
+        """The buttons that Tab reaches now."""
+        return [widget for widget in self._ring() if isinstance(widget, UIButton)]
+
+    def process(self, event: pygame.event.Event) -> bool:
+        """Let the widgets have an event; True where they use it."""
+        if event.type == pygame.MOUSEMOTION:
+            # The wheel turns what it points at now, not what it pointed at when the last frame was drawn.
+            self.manager.mouse_position = self.manager.calculate_scaled_mouse_position(event.pos)
+        if event.type == pygame_gui.UI_BUTTON_PRESSED and event.ui_element in self._actions:
+            self._actions[event.ui_element]()
+            return True
+        if event.type == pygame_gui.UI_DROP_DOWN_MENU_CHANGED and event.ui_element in self._choosers:
+            self._choosers[event.ui_element](event.text)
+            return True
+        if event.type == pygame_gui.UI_TEXT_ENTRY_FINISHED and event.ui_element in self._fields:
+            field = self._fields[event.ui_element]
+            if field.enter is None:
+                field.finish()
+                self._set_focus(None)
+                self._left = event.ui_element
+            else:
+                field.enter(event.text)
+            return True
+        if event.type == pygame.KEYDOWN and self._press_key(event):
+            return True
+        if event.type == pygame.MOUSEWHEEL and self._turn_field(event.precise_y or event.y):
+            return True
+        if event.type == pygame.MOUSEBUTTONDOWN:
+            self._focus = self._left = None
+        used = bool(self.manager.process_events(event))
+        self._finish_left_fields()
+        # What a widget answers comes before what the person did next, which may be in the queue already.
+        for answer in pygame.event.get(ANSWERS, pump=False):
+            self.process(answer)
+        return used
+
+    def _turn_field(self, notches: float) -> bool:
+        """Step the value of the line under the mouse, where it has steps."""
+        at = self.manager.get_mouse_position()
+        under = (self._fields[widget] for widget in self._ring() if widget in self._fields and widget.hover_point(*at))
+        field = next(under, None)
+        return field is not None and field.step(1 if notches > 0.0 else -1)
+
+    def _finish_left_fields(self) -> None:
+        for field in list(self._fields.values()):
+            if field.focused and not field.entry.is_focused:
+                field.finish()
+                # A line of text that is left turns the repetition of keys off.
+                pygame.key.set_repeat(*KEY_REPEAT)
+            field.focused = field.entry.is_focused
+
+    def _press_key(self, event: pygame.event.Event) -> bool:
+        typed_into = next((field for field in self._fields.values() if field.entry.is_focused), None)
+        if event.key == pygame.K_TAB and not event.mod & (pygame.KMOD_CTRL | pygame.KMOD_ALT):
+            self._move_focus(-1 if event.mod & pygame.KMOD_SHIFT else 1)
+            return True
+        if event.key == pygame.K_ESCAPE:
+            return self._escape(typed_into)
+        if typed_into is not None:
+            by = {pygame.K_UP: 1, pygame.K_DOWN: -1}.get(event.key)
+            return by is not None and typed_into.step(by)
+        if self._focus is None:
+            return False
+        if isinstance(self._focus, Painted):
+            return self._focus.press_key(event)
+        if isinstance(self._focus, UIButton) and event.key in (*ENTER_KEYS, pygame.K_SPACE):
+            self._actions[self._focus]()
+            return True
+        if isinstance(self._focus, UIDropDownMenu) and event.key in (pygame.K_UP, pygame.K_DOWN):
+            self._turn_menu(self._focus, -1 if event.key == pygame.K_UP else 1)
+            return True
+        return False
+
+    def _escape(self, typed_into: Field | None) -> bool:
+        open_menus = [menu for menu in self._choosers if menu.current_state is menu.menu_states["expanded"]]
+        for menu in open_menus:
+            menu._close_dropdown_if_open()
+        if open_menus:
+            return True
+        if typed_into is not None:
+            typed_into.revert()
+        if typed_into is not None or self._focus is not None:
+            self._set_focus(None)
+            if not self._sheets:
+                return True
+        if self._sheets:
+            self._sheets[-1].close()
+            return True
+        return False
+
+    def _turn_menu(self, menu: UIDropDownMenu, by: int) -> None:
+        options = [option[0] if isinstance(option, tuple) else option for option in menu.options_list]
+        chosen = menu.selected_option[0] if isinstance(menu.selected_option, tuple) else menu.selected_option
+        self._choosers[menu](options[(options.index(chosen) + by) % len(options)])
+
+    def _move_focus(self, by: int) -> None:
+        ring = self._ring()
+        if not ring:
+            return
+        here = self._focus or self._left
+        start = ring.index(here) if here in ring else (-1 if by > 0 else 0)
+        self._set_focus(ring[(start + by) % len(ring)])
+
+    def _ring(self) -> list[UIElement]:
+        """What Tab goes through: the widgets of the topmost page."""
+        ring = self._sheets[-1].widgets if self._sheets else self._page
+        return [widget for widget in ring if widget.alive() and widget.visible and getattr(widget, "is_enabled", True)]
+
+    def focus_on(self, widget: UIElement) -> None:
+        """Give a widget the keyboard."""
+        self._set_focus(widget)
+
+    def _set_focus(self, widget: UIElement | None) -> None:
+        self._focus = widget
+        entry = widget if isinstance(widget, UITextEntryLine) else None
+        self.manager.set_focus_set(entry.get_focus_set() if entry is not None else None)
+        if entry is not None:
+            entry.select_range = [0, len(entry.get_text())]
+        self._finish_left_fields()
+
+    def blur(self) -> None:
+        """Give the keyboard back to the world."""
+        self._set_focus(None)
+
+    def update(self, frame_time: float) -> None:
+        """Let the widgets move on by frame_time [s]."""
+        self.manager.update(frame_time)
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """Draw all widgets, and the ring around the one that has the keyboard."""
+        self.manager.draw_ui(surface)
+        if self._focus is not None and self._focus.alive():
+            around = self._focus.rect.inflate(self.px(5), self.px(5))
+            pygame.draw.rect(surface, ACCENT, around, max(1, self.px(2)), self.px(8))
+
+    def font(self, size: float, bold: bool = False) -> pygame.font.Font:
+        """The widgets' font in a size of layout units, for what is painted."""
+        return plain_font(self.px(size), bold)
+
+
+_NO_MARGINS = {"left": 0, "right": 0, "top": 0, "bottom": 0}
+
+
+def set_icon(button: UIButton, icon: pygame.Surface) -> None:
+    """Show a picture on a button."""
+    images = [icon.premul_alpha()]
+    button.normal_images = button.hovered_images = button.selected_images = button.disabled_images = images
+    positions = [(0.5, 0.5)]
+    button.normal_image_positions = button.hovered_image_positions = positions
+    button.selected_image_positions = button.disabled_image_positions = positions
+    button.rebuild()
+
+
+def _style(style: str) -> ObjectID | None:
+    return ObjectID(class_id=style) if style else None
+
+
+def _escaped(text: str) -> str:
+    return html.escape(text, quote=False).replace("\n", "<br>")

@@ -1,0 +1,113 @@
+"""What a played world leaves in its level, where the maker wants to keep it: coefficients, pose, cuts, pins."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from sandbox.editor.document import Document, EditError, checked
+from sandbox.editor.edits.materials import set_material
+from sandbox.editor.edits.placing import repinned, without_springs
+from sandbox.editor.items import with_same
+from sandbox.editor.scene import Mask, Scene, Slots, make_scene
+from sandbox.level.format.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL
+from sandbox.level.format.model import NissenMaterial, ParticleDef, SpringDef
+from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.bodies import AnyBody
+from sandbox.level.kinds.shapes import Points
+from sandbox.physics.world import World
+
+_ANOTHER = "what was played is not the level as it is now"
+
+
+def keep_coefficients(document: Document, world: World) -> Document:
+    """Take over Cs and Cd of every material as the played world has them. Raises EditError."""
+    _slots(make_scene(document.level), world)
+    for number, name in enumerate(world.material_names):
+        springs = np.flatnonzero(world.material == number)
+        material = document.level.materials.get(name, NissenMaterial() if name == DEFAULT_MATERIAL else None)
+        if not len(springs) or not isinstance(material, NissenMaterial):
+            continue
+        stiffness, damping = float(world.stiffness[springs[0]]), float(world.damping[springs[0]])
+        played = replaced(material, stiffness=stiffness, damping=damping)
+        if played != material:
+            document = set_material(document, name, played)
+    return document
+
+
+def keep_pose(document: Document, world: World) -> Document:
+    """Let everything start where it is in the played world; all rest lengths stay. Raises EditError."""
+    level = document.level
+    scene = make_scene(level)
+    now = world.position[_slots(scene, world)]
+    if not np.all(np.abs(now) <= COORDINATE_LIMIT):
+        raise EditError("something has flown out of the world; go back to before it did")
+    moved = np.any(now != scene.position, axis=1)
+    firsts = np.cumsum([0, *scene.parts.bodies.counts]).tolist()
+
+    def posed(index: int, body: AnyBody) -> AnyBody:
+        mine = slice(firsts[index], firsts[index + 1])
+        return replaced(body, pose=_points(now[mine])) if np.any(moved[mine]) else body
+
+    def placed(index: int, particle: ParticleDef) -> ParticleDef:
+        slot = firsts[-1] + index
+        return replaced(particle, position=_points(now[slot : slot + 1])[0]) if moved[slot] else particle
+
+    def measured(index: int, spring: SpringDef) -> SpringDef:
+        slot = len(scene.rest_length) - len(level.springs) + index
+        ends = [scene.particle_a[slot], scene.particle_b[slot]]
+        if spring.rest_length is not None or not np.any(moved[ends]):
+            return spring
+        if scene.rest_length[slot] > COORDINATE_LIMIT:
+            raise EditError(f"the spring :{index} is too long to keep its rest length")
+        return replaced(spring, rest_length=float(scene.rest_length[slot]))
+
+    level = with_same(
+        level,
+        bodies=tuple(posed(index, body) for index, body in enumerate(level.bodies)),
+        particles=tuple(placed(index, particle) for index, particle in enumerate(level.particles)),
+        springs=tuple(measured(index, spring) for index, spring in enumerate(level.springs)),
+    )
+    return document if level is document.level else replace(document, level=checked(level))
+
+
+def keep_cuts(document: Document, world: World) -> Document:
+    """Leave out the springs that were cut while playing, once: springs are told by their numbers. Raises EditError."""
+    scene = make_scene(document.level)
+    _slots(scene, world)
+    springs = [scene.spring_name(spring) for spring in range(len(scene.rest_length))]
+    if world.spring_names[: len(springs)] != springs:
+        raise EditError(_ANOTHER)
+    cut: dict[str, set[int]] = {}
+    gone: set[int] = set()
+    for spring in np.flatnonzero(~world.spring_active[: len(scene.rest_length)]).tolist():
+        kind, key = scene.items[int(scene.spring_item[spring])]
+        (cut.setdefault(str(key), set()) if kind == "body" else gone).add(int(scene.number[spring]))
+    return without_springs(document, cut, gone) if cut or gone else document
+
+
+def keep_pins(document: Document, world: World) -> Document:
+    """Hold the particles that are held in the played world, and no others. Raises EditError."""
+    scene = make_scene(document.level)
+    held: Mask = world.inverse_mass[_slots(scene, world)] == 0.0
+    differs = held != scene.pinned
+    # Of welded particles the first is held for all of them; none may be where all are let go.
+    wanted = {
+        slot: bool(held[slot])
+        for slot in np.flatnonzero(differs).tolist()
+        if not held[slot] or scene.first_of_weld[slot] == slot
+    }
+    return replace(document, level=repinned(document.level, scene, wanted)) if wanted else document
+
+
+def _slots(scene: Scene, world: World) -> Slots:
+    """The world's particle for each of the scene (n,). Raises EditError for a world of another level."""
+    stays = scene.first_of_weld == np.arange(len(scene.mass))
+    names = [scene.names(slot) for slot in np.flatnonzero(stays).tolist()]
+    if world.particle_names[: len(names)] != names:
+        raise EditError(_ANOTHER)
+    slots: Slots = (np.cumsum(stays) - 1)[scene.first_of_weld]
+    return slots
+
+
+def _points(points: Points) -> tuple[tuple[float, float], ...]:
+    return tuple((x, y) for x, y in points.tolist())

@@ -1,0 +1,202 @@
+"""Copies of what is selected: as text, pasted, duplicated, in a row and in a circle.
+
+A fragment is a level of its own: selected bodies, loose particles and terrain, loose springs and welds between them,
+and the materials that they are made of.
+"""
+
+from collections.abc import Iterable
+
+from sandbox.editor.document import Document, EditError, checked
+from sandbox.editor.edits.collision_groups import without_lost_groups
+from sandbox.editor.edits.grouping import taken_groups
+from sandbox.editor.edits.moving import move, rotate
+from sandbox.editor.edits.names import free_ids, owner_of, renamed, rewired, taken_ids
+from sandbox.editor.items import Item, Selection, chosen_bodies, chosen_particles, chosen_terrain, items_of, keys
+from sandbox.editor.scene import make_scene
+from sandbox.level.faults.level_error import LevelError
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.limits import DEFAULT_MATERIAL, PARTICLE_LIMIT, SPRING_LIMIT
+from sandbox.level.format.model import Level, Material, NissenMaterial, ParticleDef, SpringDef
+from sandbox.level.format.parse import parse_level
+from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.bodies import AnyBody
+from sandbox.level.kinds.shapes import count as count_body
+
+Point = tuple[float, float]
+
+
+def copy_text(document: Document) -> str:
+    """What is selected as the text of a level. Raises EditError where that is nothing, or springs alone."""
+    return level_text(fragment(document))
+
+
+def paste(document: Document, text: str, at: Point | None = None) -> Document:
+    """Add what a text holds, a fragment or a whole level, and select it; at [m]: its middle, None = where it was.
+
+    Ids become free ones; materials of the same name and values are shared, others get a name of their own. Settings
+    and checks of a whole level are not taken. Raises EditError for a text that is no level, or is too large.
+    """
+    try:
+        found = parse_level(text.encode("utf-8", "replace"), "what was copied")
+    except LevelError as error:
+        raise EditError(error.faults[0]) from None
+    if not (found.bodies or found.particles or found.terrain):
+        raise EditError("what was copied is a level with nothing in it")
+    box = make_scene(found).bounds()
+    if at is not None and box is not None:
+        found = _shifted(found, at[0] - (box[0] + box[2]) / 2.0, at[1] - (box[1] + box[3]) / 2.0)
+    return Document(*_inserted(document.level, [found]))
+
+
+def duplicate(document: Document, dx: float, dy: float) -> Document:
+    """Add a copy of what is selected, moved by dx, dy [m], and select it. Raises EditError."""
+    return Document(*_inserted(document.level, [_shifted(fragment(document), dx, dy)]))
+
+
+def array_line(document: Document, count: int, dx: float, dy: float) -> Document:
+    """Make `count` in a row of what is selected, each dx, dy [m] from the one before, and select all of them."""
+    first = _repeated(document, count)
+    return _arrayed(document, [_shifted(first, k * dx, k * dy) for k in range(1, count)])
+
+
+def array_circle(document: Document, count: int, centre: Point, angle: float) -> Document:
+    """Make `count` in a circle of what is selected, each turned by angle [rad] from the one before, and select all."""
+    first = _repeated(document, count)
+    whole = frozenset(items_of(first))
+    return _arrayed(document, [rotate(Document(first, whole), k * angle, centre).level for k in range(1, count)])
+
+
+def fragment(document: Document) -> Level:
+    """What is selected as a level of its own. Raises EditError where that is nothing, or springs alone."""
+    level, selection = document.level, document.selection
+    bodies, particles = chosen_bodies(level, selection), chosen_particles(level, selection)
+    terrain = chosen_terrain(level, selection)
+    if not (bodies or particles or terrain):
+        raise EditError("select something to copy; of springs, what they join too")
+    owners = keys(selection, "body") | keys(selection, "particle")
+    inside = tuple(spring for spring in level.springs if _inside(owners, spring.a, spring.b))
+    used = _used([*bodies, *inside])
+    part = Level(
+        format=level.format,
+        version=level.version,
+        name=level.name,
+        materials={name: material for name, material in level.materials.items() if name in used},
+        terrain=tuple(terrain),
+        bodies=tuple(bodies),
+        particles=tuple(particles),
+        springs=inside,
+        welds=tuple(pair for pair in level.welds if _inside(owners, *pair)),
+    )
+    return without_lost_groups(part)
+
+
+def _inside(owners: frozenset[str | int], *references: str) -> bool:
+    return all(owner_of(reference) in owners for reference in references)
+
+
+def _used(parts: Iterable[AnyBody | SpringDef]) -> set[str]:
+    return {part.material for part in parts}
+
+
+def _shifted(level: Level, dx: float, dy: float) -> Level:
+    return move(Document(level, frozenset(items_of(level))), dx, dy).level
+
+
+def _repeated(document: Document, count: int) -> Level:
+    """The fragment to repeat. Raises EditError before anything is made that would be too much."""
+    if count < 2:
+        raise EditError("a row or circle has two or more")
+    first = fragment(document)
+    total = [_size(level, part) for level in (document.level, first) for part in (0, 1)]
+    for now, more, noun, limit in (
+        (total[0], total[2], "particles", PARTICLE_LIMIT),
+        (total[1], total[3], "springs", SPRING_LIMIT),
+    ):
+        if now + (count - 1) * more > limit:
+            raise EditError(f"{count} of them bring the level above {limit:,} {noun}; make fewer")
+    return first
+
+
+def _size(level: Level, part: int) -> int:
+    loose = (level.particles, level.springs)[part]
+    return len(loose) + sum(count_body(body)[part] for body in level.bodies)
+
+
+def _arrayed(document: Document, copies: list[Level]) -> Document:
+    level, selection = _inserted(document.level, copies)
+    return Document(level, selection | document.selection)
+
+
+def _inserted(level: Level, copies: Iterable[Level]) -> tuple[Level, Selection]:
+    """A level with the contents of others, sound by themselves, and which items these became."""
+    ids, groups = taken_ids(level), taken_groups(level)
+    bodies, particles, springs, welds = (
+        list(part) for part in (level.bodies, level.particles, level.springs, level.welds)
+    )
+    terrain = list(level.terrain)
+    materials = dict(level.materials)
+    selection: set[Item] = set()
+    for copy in copies:
+        copy = _renamed(copy, ids, groups, materials)
+        selection |= {Item("body", body.id) for body in copy.bodies}
+        selection |= {Item("particle", particle.id) for particle in copy.particles}
+        selection |= {Item("spring", len(springs) + index) for index in range(len(copy.springs))}
+        selection |= {Item("terrain", piece.id) for piece in copy.terrain}
+        terrain += copy.terrain
+        bodies += copy.bodies
+        particles += copy.particles
+        springs += copy.springs
+        welds += copy.welds
+    level = replaced(
+        level,
+        materials=materials,
+        terrain=tuple(terrain),
+        bodies=tuple(bodies),
+        particles=tuple(particles),
+        springs=tuple(springs),
+        welds=tuple(welds),
+    )
+    return checked(level), frozenset(selection)
+
+
+def _renamed(copy: Level, ids: set[str], groups: set[str], materials: dict[str, Material]) -> Level:
+    """A level with free ids and groups, made of `materials`; all three grow by what it brings."""
+    old = [part.id for part in (*copy.bodies, *copy.particles, *copy.terrain)]
+    names = dict(zip(old, free_ids(ids, old), strict=True))
+    parts = sorted(taken_groups(copy))
+    group_names: dict[str | None, str | None] = {None: None, **dict(zip(parts, free_ids(groups, parts), strict=True))}
+    used = {name: _material(copy, name, materials) for name in sorted(_used([*copy.bodies, *copy.springs]))}
+    copy, _ = rewired(replaced(copy, checks=()), renamed(names))
+
+    def particle(part: ParticleDef) -> ParticleDef:
+        return replaced(part, id=names[part.id], group=group_names[part.group])
+
+    return replaced(
+        copy,
+        terrain=tuple(replaced(piece, id=names[piece.id], group=group_names[piece.group]) for piece in copy.terrain),
+        bodies=tuple(
+            replaced(body, id=names[body.id], group=group_names[body.group], material=used[body.material])
+            for body in copy.bodies
+        ),
+        particles=tuple(map(particle, copy.particles)),
+        springs=tuple(
+            replaced(spring, group=group_names[spring.group], material=used[spring.material]) for spring in copy.springs
+        ),
+    )
+
+
+def _material(copy: Level, name: str, materials: dict[str, Material]) -> str:
+    """What the material of a copy is called among `materials`, which gets it where it has none of its values."""
+    built_in = {DEFAULT_MATERIAL: NissenMaterial()}
+    wanted = copy.materials.get(name, built_in.get(name))
+    assert wanted is not None
+    if (materials.get(name, built_in.get(name)) or wanted) == wanted:
+        if name != DEFAULT_MATERIAL or name in copy.materials:
+            materials.setdefault(name, wanted)
+        return name
+    for other, material in materials.items():
+        if material == wanted and other.rpartition(" ")[0] == name:
+            return other
+    free = free_ids(set(materials), [name])[0]
+    materials[free] = wanted
+    return free

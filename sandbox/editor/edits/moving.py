@@ -1,0 +1,241 @@
+"""Moving, turning, scaling, mirroring and lining up what is selected; loose springs follow their ends."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from sandbox.editor.document import Document, EditError, all_validated, check_places, check_terrain, subject, validated
+from sandbox.editor.edits.names import owner_of
+from sandbox.editor.edits.placement import (
+    Motion,
+    Placed,
+    can_stretch,
+    mapped_body,
+    mapped_particle,
+    mapped_terrain,
+    shifted,
+    stretch,
+)
+from sandbox.editor.edits.remap import rebuilt
+from sandbox.editor.items import (
+    Definition,
+    Item,
+    Selection,
+    changed,
+    chosen_bodies,
+    chosen_particles,
+    chosen_terrain,
+    exchanged,
+    keys,
+)
+from sandbox.editor.scene import Scene, make_scene, positions
+from sandbox.level.build.actuators import given_length
+from sandbox.level.format.limits import COORDINATE_LIMIT
+from sandbox.level.format.model import Level, SpringDef
+from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.shapes import Points
+
+Point = tuple[float, float]
+Edge = Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]
+Axis = Literal["x", "y"]
+
+
+def move(document: Document, dx: float, dy: float) -> Document:
+    """Move the selection by dx, dy [m]. Raises EditError where it would leave the world."""
+    _finite("a move", dx, dy)
+    return document if (dx, dy) == (0.0, 0.0) else _moved(document, lambda ids: np.full((len(ids), 2), (dx, dy)))
+
+
+def rotate(document: Document, angle: float, centre: Point) -> Document:
+    """Turn the selection by an angle [rad], counter-clockwise, about a centre [m]; start velocities turn with it."""
+    _finite("a turn", angle, *centre)
+    return _mapped(document, Motion(centre, angle=math.remainder(angle, 2.0 * math.pi)))
+
+
+def scale(document: Document, sx: float, sy: float, centre: Point) -> Document:
+    """Make the selection sx times as wide and sy times as high about a centre [m]. Raises EditError where it bends."""
+    _finite("a scale", sx, sy, *centre)
+    if min(sx, sy) <= 0.0:
+        raise EditError("a scale is a number above 0; to turn something over, mirror it")
+    return _mapped(document, Motion(centre, sx=sx, sy=sy))
+
+
+def can_scale_unevenly(document: Document) -> bool:
+    """Whether everything selected can be made longer without being made higher as much."""
+    return all(can_stretch(body) for body in chosen_bodies(document.level, document.selection))
+
+
+def mirror(document: Document, axis: Axis, centre: Point) -> Document:
+    """Turn the selection over, left to right ("x") or upside down ("y"), about a centre [m]."""
+    _finite("a centre", *centre)
+    return _mapped(document, Motion(centre, sx=-1.0) if axis == "x" else Motion(centre, sy=-1.0))
+
+
+def align(document: Document, edge: Edge) -> Document:
+    """Move every selected item, groups as one, so that an edge or middle lies where that of all of them does."""
+    parts, low, high = _boxes(document)
+    if not len(low):
+        return document
+    axis = 0 if edge in ("left", "right", "centre_x") else 1
+    share = {"left": 0.0, "bottom": 0.0, "right": 1.0, "top": 1.0}.get(edge, 0.5)
+    # Of each and of all: the low border, the high one, or the middle between them.
+    own = low[:, axis] + share * (high[:, axis] - low[:, axis])
+    whole = low[:, axis].min() + share * (high[:, axis].max() - low[:, axis].min())
+    return _moved_along(document, parts, whole - own, axis)
+
+
+def distribute(document: Document, axis: Axis) -> Document:
+    """Move every selected item, groups as one, so that the gaps between neighbours along an axis are the same."""
+    parts, lows, highs = _boxes(document)
+    if len(lows) < 3:
+        raise EditError("select three things or more to space them evenly")
+    along = 0 if axis == "x" else 1
+    low, high = lows[:, along], highs[:, along]
+    order = np.argsort(low + high, kind="stable")
+    size = (high - low)[order]
+    gap = (high[order[-1]] - low[order[0]] - size.sum()) / (len(order) - 1)
+    apart = np.zeros(len(order))
+    apart[order] = low[order[0]] + np.cumsum(size + gap) - (size + gap) - low[order]
+    return _moved_along(document, parts, apart, along)
+
+
+def _moved(document: Document, by: Callable[[list[str]], Points]) -> Document:
+    """Move each selected body, loose particle and piece of terrain by what is asked for their ids [m] (k, 2)."""
+    level = document.level
+    bodies = chosen_bodies(level, document.selection)
+    particles = chosen_particles(level, document.selection)
+    places = positions(particles) + by([particle.id for particle in particles])
+    outside = np.flatnonzero(np.any(np.abs(places) > COORDINATE_LIMIT, axis=1))
+    if len(outside):
+        raise _beyond(particles[outside[0]])
+    shifts = zip(bodies, by([body.id for body in bodies]).tolist(), strict=True)
+    moved = [_within(shifted(body, dx, dy)) for body, (dx, dy) in shifts]
+    terrain = chosen_terrain(level, document.selection)
+    ways = zip(terrain, by([piece.id for piece in terrain]).tolist(), strict=True)
+    ground = [_within(shifted(piece, dx, dy)) for piece, (dx, dy) in ways]
+    check_places(moved)
+    rows = zip(particles, zip(*places.T.tolist(), strict=True), strict=True)
+    placed = [replaced(particle, position=place) for particle, place in rows]
+    level = exchanged(level, document.selection, moved, placed, ground)
+    if ground:
+        check_terrain(level)
+    return replace(document, level=level)
+
+
+def _finite(what: str, *numbers: float) -> None:
+    if not all(map(math.isfinite, numbers)):
+        raise EditError(f"{what} needs finite numbers")
+
+
+def _beyond(part: Definition) -> EditError:
+    return EditError(f"{subject(part)} would lie beyond the limit {COORDINATE_LIMIT:.15g}")
+
+
+def _within(body: Placed) -> Placed:
+    """A body or piece of terrain whose points all lie inside the world. Raises EditError."""
+    for name in ("start", "end", "position"):
+        if max(map(abs, body.__dict__.get(name, (0.0,)))) > COORDINATE_LIMIT:
+            raise _beyond(body)
+    for name in ("particles", "pose", "polyline", "polygon"):
+        points = body.__dict__.get(name)
+        if points is not None and float(np.max(np.abs(np.array(points)))) > COORDINATE_LIMIT:
+            raise _beyond(body)
+    return body
+
+
+def _mapped(document: Document, motion: Motion) -> Document:
+    if (motion.angle, motion.sx, motion.sy) == (0.0, 1.0, 1.0):
+        return document
+    level, selection = document.level, document.selection
+    chosen = chosen_bodies(level, selection)
+    mapped = [mapped_body(body, motion) for body in chosen]
+    bodies = {body.id: body for body in all_validated([body for body, _ in mapped])}
+    images = {body.id: image for body, image in mapped}
+    particles = all_validated([mapped_particle(part, motion) for part in chosen_particles(level, selection)])
+    terrain = all_validated([mapped_terrain(piece, motion) for piece in chosen_terrain(level, selection)])
+    moved = exchanged(level, selection, chosen, particles, terrain)
+    if motion.factor != 1.0 or not motion.is_even:
+        moved = _stretched(level, moved, _placed(selection), motion)
+    if terrain:
+        check_terrain(moved)
+    return replace(document, level=rebuilt(moved, bodies, images) if bodies else moved)
+
+
+def _stretched(old: Level, new: Level, selection: Selection, motion: Motion) -> Level:
+    """The new level with what a motion makes of the given rest lengths between selected things of the old."""
+    springs = _inside_springs(old, selection)
+    scene = make_scene(old)
+
+    def part(spring: Definition) -> Definition:
+        if not isinstance(spring, SpringDef):
+            return spring
+        return validated(_scaled(spring, _spring_stretch(scene, spring, motion)))
+
+    return changed(new, springs, part)
+
+
+def _inside_springs(level: Level, selection: Selection) -> Selection:
+    """Loose springs of a given rest length, or hydraulics, between two selected things."""
+    owners = keys(selection, "body") | keys(selection, "particle")
+    return frozenset(
+        Item("spring", index)
+        for index, spring in enumerate(level.springs)
+        if given_length(spring) is not None and owner_of(spring.a) in owners and owner_of(spring.b) in owners
+    )
+
+
+def _scaled(spring: SpringDef, factor: float) -> SpringDef:
+    """A loose spring with the lengths that it is given times a factor."""
+    if spring.rest_length is not None:
+        spring = replaced(spring, rest_length=spring.rest_length * factor)
+    if spring.hydraulic is not None:
+        longest, shortest = spring.hydraulic.longest * factor, spring.hydraulic.shortest * factor
+        spring = replaced(spring, hydraulic=replaced(spring.hydraulic, shortest=shortest, longest=longest))
+    return spring
+
+
+def _spring_stretch(scene: Scene, spring: SpringDef, motion: Motion) -> float:
+    (ax, ay), (bx, by) = (scene.position[scene.slot(end)].tolist() for end in (spring.a, spring.b))
+    return stretch((ax, ay), (bx, by), motion)
+
+
+def _placed(selection: Selection) -> Selection:
+    return frozenset([item for item in selection if item[0] != "spring"])
+
+
+def _boxes(document: Document) -> tuple[dict[str, int], Points, Points]:
+    """What is lined up as one, by the ids in it: a group, or an item in none; lowest and highest corners [m] (k, 2)."""
+    placed = (chosen_bodies, chosen_particles, chosen_terrain)
+    chosen = [part for found in placed for part in found(document.level, document.selection)]
+    numbers: dict[tuple[bool, str], int] = {}
+    parts = {
+        part.id: numbers.setdefault((part.group is None, part.id if part.group is None else part.group), len(numbers))
+        for part in chosen
+    }
+    scene = make_scene(document.level)
+    part_of_item = np.array([parts.get(str(item.key), 0) for item in scene.items], dtype=np.int64)
+    mine = scene.particles_of(_placed(document.selection))
+    part = part_of_item[scene.particle_item[mine]]
+    low, high = np.full((len(numbers), 2), np.inf), np.full((len(numbers), 2), -np.inf)
+    np.minimum.at(low, part, scene.position[mine])
+    np.maximum.at(high, part, scene.position[mine])
+    mine = scene.chosen(document.selection)[scene.corner_item]
+    part = part_of_item[scene.corner_item[mine]]
+    np.minimum.at(low, part, scene.corner[mine])
+    np.maximum.at(high, part, scene.corner[mine])
+    return parts, low, high
+
+
+def _moved_along(document: Document, parts: dict[str, int], apart: Points, axis: int) -> Document:
+    if not np.any(apart):
+        return document
+
+    def by(ids: list[str]) -> Points:
+        shift = np.zeros((len(ids), 2))
+        shift[:, axis] = apart[[parts[name] for name in ids]]
+        return shift
+
+    return _moved(document, by)

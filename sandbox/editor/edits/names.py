@@ -1,0 +1,80 @@
+"""Names: free ids, and references to particles wherever a level holds them."""
+
+import re
+from collections.abc import Callable, Iterable
+
+from sandbox.level.format.limits import TEXT_LIMIT
+from sandbox.level.format.model import Level
+from sandbox.level.format.quantities import replaced
+
+# What a number at the end of an id looks like; a copy of "rope 2" is "rope 3".
+_NUMBERED = re.compile(r"(.*\S) ([1-9][0-9]{0,8})")
+
+# What becomes of a reference: another one, or None where what hangs on it goes.
+Rewire = Callable[[str], str | None]
+
+
+def taken_ids(level: Level) -> set[str]:
+    """Ids of a level's bodies, loose particles and terrain."""
+    return {part.id for part in (*level.bodies, *level.particles, *level.terrain)}
+
+
+def free_id(level: Level, base: str) -> str:
+    """The id itself where it is free, else with the lowest free number from 2: "rope 2"."""
+    return free_ids(taken_ids(level), [base])[0]
+
+
+def free_ids(taken: set[str], wanted: Iterable[str]) -> list[str]:
+    """A free id for each of those that are wanted, different from each other; `taken` grows by them."""
+    numbers: dict[str, int] = {}
+    found = []
+    for name in wanted:
+        if name in taken:
+            match = _NUMBERED.fullmatch(name)
+            base = match[1] if match else name
+            number = numbers.get(base, 2)
+            while (name := f"{base[: TEXT_LIMIT - 11]} {number}") in taken:
+                number += 1
+            numbers[base] = number + 1
+        taken.add(name)
+        found.append(name)
+    return found
+
+
+def owner_of(reference: str) -> str:
+    """Id of the body or loose particle that a reference speaks of."""
+    return reference.partition(".")[0]
+
+
+def with_owner(reference: str, owner: str) -> str:
+    """The reference as one to the same particle of another body, or to another loose particle."""
+    _, dot, part = reference.partition(".")
+    return owner + dot + part
+
+
+def renamed(ids: dict[str, str]) -> Rewire:
+    """References to bodies and loose particles by their new ids."""
+    return lambda reference: with_owner(reference, ids.get(owner_of(reference), owner_of(reference)))
+
+
+def rewired(level: Level, change: Rewire) -> tuple[Level, list[int]]:
+    """Change every reference of springs, welds and checks; also the indices of the springs that stay."""
+    springs, kept = [], []
+    for index, spring in enumerate(level.springs):
+        a, b = change(spring.a), change(spring.b)
+        if a is not None and b is not None:
+            springs.append(spring if (a, b) == (spring.a, spring.b) else replaced(spring, a=a, b=b))
+            kept.append(index)
+    welds = []
+    for first, second in level.welds:
+        a, b = change(first), change(second)
+        if a is not None and b is not None:
+            welds.append((a, b))
+    checks = []
+    for check in level.checks:
+        particle = None if check.particle is None else change(check.particle)
+        if particle == check.particle:
+            checks.append(check)
+        elif particle is not None:
+            checks.append(replaced(check, particle=particle))
+    return replaced(level, springs=tuple(springs), welds=tuple(welds), checks=tuple(checks)), kept

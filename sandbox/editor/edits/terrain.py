@@ -1,0 +1,101 @@
+"""Terrain and walls: putting them into a level, and changing outlines corner by corner."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Literal
+
+from sandbox.editor.document import Document, EditError, check_terrain, checked, validated
+from sandbox.editor.edits.names import free_id
+from sandbox.editor.items import Definition, Item, Selection, changed
+from sandbox.level.faults.level_error import shown
+from sandbox.level.format.model import Level, TerrainDef, WallsDef
+from sandbox.level.format.quantities import replaced
+
+Point = tuple[float, float]
+Corners = tuple[Point, ...]
+Form = Literal["line", "solid"]
+FORMS: tuple[Form, ...] = ("line", "solid")
+# Fewest corners of each.
+FEWEST = {"line": 2, "solid": 3}
+
+
+def form_of(piece: TerrainDef) -> Form:
+    """Whether a piece is a line with two sides or a solid shape."""
+    return "line" if piece.polygon is None else "solid"
+
+
+def corners_of(piece: TerrainDef) -> Corners:
+    """Corners [m] of a piece."""
+    return piece.polyline or piece.polygon or ()
+
+
+def with_corners(piece: TerrainDef, corners: Sequence[Point], form: Form | None = None) -> TerrainDef:
+    """A piece with other corners [m], of the same form unless another is given; NOT validated."""
+    is_line = (form or form_of(piece)) == "line"
+    points = tuple(corners)
+    return replaced(piece, polyline=points if is_line else None, polygon=None if is_line else points)
+
+
+def add_terrain(document: Document, piece: TerrainDef) -> Document:
+    """Add a piece of terrain, by a free id, and select it. Raises EditError."""
+    level = document.level
+    piece = validated(replaced(piece, id=free_id(level, piece.id)))
+    level = checked(replaced(level, terrain=(*level.terrain, piece)))
+    return Document(level, frozenset([Item("terrain", piece.id)]))
+
+
+def set_walls(document: Document, walls: WallsDef | None) -> Document:
+    """Put walls around the level, or none. Raises EditError."""
+    if walls == document.level.walls:
+        return document
+    return replace(document, level=checked(replaced(document.level, walls=walls)))
+
+
+def move_corner(document: Document, name: str, index: int, point: Point) -> Document:
+    """Move a corner of a piece, by its index, to a point [m]. Raises EditError."""
+    return _outlined(document, name, lambda corners: (*corners[:index], point, *corners[index + 1 :]))
+
+
+def insert_corner(document: Document, name: str, index: int, point: Point) -> Document:
+    """Put a corner at a point [m] before the one of that index, at the end for their number. Raises EditError."""
+    return _outlined(document, name, lambda corners: (*corners[:index], point, *corners[index:]))
+
+
+def delete_corner(document: Document, name: str, index: int) -> Document:
+    """Take a corner out of a piece. Raises EditError where too few would stay."""
+    piece = piece_of(document.level, name)
+    form = form_of(piece)
+    if len(corners_of(piece)) <= FEWEST[form]:
+        what = "line" if form == "line" else "solid shape"
+        raise EditError(f"a {what} has {FEWEST[form]} corners or more; delete the whole piece instead")
+    return _outlined(document, name, lambda corners: (*corners[:index], *corners[index + 1 :]))
+
+
+def piece_of(level: Level, name: str) -> TerrainDef:
+    """The piece of terrain of that id. Raises EditError."""
+    found = next((piece for piece in level.terrain if piece.id == name), None)
+    if found is None:
+        raise EditError(f"there is no terrain {shown(name)}")
+    return found
+
+
+def outlined(document: Document, pieces: Selection, change: Callable[[TerrainDef], TerrainDef]) -> Document:
+    """Change the outlines of pieces of terrain. Raises EditError."""
+
+    def with_outline(piece: Definition) -> Definition:
+        assert isinstance(piece, TerrainDef)
+        new = change(piece)
+        same = (new.polyline, new.polygon) == (piece.polyline, piece.polygon)
+        return piece if same else validated(new)
+
+    level = changed(document.level, pieces, with_outline)
+    if level is document.level:
+        return document
+    check_terrain(level)
+    return replace(document, level=level)
+
+
+def _outlined(document: Document, name: str, change: Callable[[Corners], Corners]) -> Document:
+    piece_of(document.level, name)
+    piece = frozenset([Item("terrain", name)])
+    return outlined(document, piece, lambda piece: with_corners(piece, change(corners_of(piece))))

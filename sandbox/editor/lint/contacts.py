@@ -1,0 +1,129 @@
+"""What starts inside something else, where things touch."""
+
+from collections.abc import Callable, Generator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.editor.document import Document, select
+from sandbox.editor.edits.moving import move
+from sandbox.editor.items import Item
+from sandbox.editor.lint.finding import Finding, Remedy, Rule, called, place_of
+from sandbox.editor.scene import Scene
+from sandbox.level.format.limits import BODY_RADIUS
+from sandbox.level.format.model import Level
+from sandbox.physics.collision.outline import TERRAIN_GROUP
+
+Floats = NDArray[np.float64]
+Slots = NDArray[np.int64]
+
+# A disc that reaches less than this part of its radius into something rests on it.
+DEEP = 0.5
+# What is moved out of something keeps this distance from it [m].
+ROOM = 1e-3
+# Edges of a polygon that are looked at before the window may draw.
+EDGES = 64
+# Discs larger than those of bodies that are held against all others, at most.
+DISCS = 2_000
+
+
+def buried_particles(level: Level, scene: Scene) -> Rule:
+    """Items that start inside solid terrain or beyond walls, which they touch."""
+    if not level.terrain and level.walls is None:
+        return
+    touches = scene.collision.touches & TERRAIN_GROUP != 0
+    free = np.flatnonzero(touches & ~scene.pinned)
+    yield None
+    for piece in level.terrain:
+        if piece.polygon is None:
+            continue
+        corners, place = np.array(piece.polygon), scene.position[free]
+        near = free[np.all((place > corners.min(axis=0)) & (place < corners.max(axis=0)), axis=1)]
+        out = yield from _ways_out(corners, scene.position[near])
+        depth = np.hypot(*out.T)
+        deep = depth > DEEP * scene.radius[near]
+        slots, out = near[deep], out[deep] * (1.0 + scene.radius[near] / np.maximum(depth, ROOM))[deep, None]
+        yield from _buried(scene, slots, out, f'inside "{piece.id}"')
+    if level.walls is not None:
+        left, bottom, right, top = level.walls.box
+        place = scene.position[free]
+        out = np.clip(place, (left, bottom), (right, top)) - place
+        slots = np.flatnonzero(np.hypot(*out.T) > DEEP * scene.radius[free])
+        out[slots] += np.sign(out[slots]) * scene.radius[free[slots], None]
+        yield from _buried(scene, free[slots], out[slots], "beyond the walls")
+
+
+def _ways_out(corners: Floats, points: Floats) -> Generator[None, None, Floats]:
+    """The shortest way [m] (k, 2) from each point out of a polygon with those corners (c, 2); none from outside."""
+    inside = np.zeros(len(points), dtype=np.bool_)
+    best, out = np.full(len(points), np.inf), np.zeros_like(points)
+    x, y = points.T
+    for number, (a, b) in enumerate(zip(corners, np.roll(corners, -1, axis=0), strict=True)):
+        along = b - a
+        share = np.clip((points - a) @ along / float(along @ along), 0.0, 1.0)
+        way = a + share[:, None] * along - points
+        distance = np.sum(way * way, axis=1)
+        nearer = distance < best
+        best, out = np.where(nearer, distance, best), np.where(nearer[:, None], way, out)
+        if a[1] != b[1]:
+            inside ^= ((a[1] > y) != (b[1] > y)) & (x < a[0] + along[0] * ((y - a[1]) / along[1]))
+        if number % EDGES == 0:
+            yield None
+    return np.where(inside[:, None], out, 0.0)
+
+
+def _buried(scene: Scene, slots: Slots, out: Floats, where: str) -> Rule:
+    """A finding for each item with particles in a place, slots (k,), and the way out for each [m] (k, 2)."""
+    owners = scene.particle_item[slots]
+    for index in np.unique(owners).tolist():
+        mine = np.flatnonzero(owners == index)
+        worst = mine[np.argmax(np.hypot(*out[mine].T))]
+        item, count = scene.items[index], int(np.sum(scene.particle_item == index))
+        some = "" if len(mine) == count else f" with {len(mine)} of {count} particles"
+        text = f"{called(item)} starts{some} {where}, and will be pushed out; move it"
+        x, y = (out[worst] + ROOM * np.sign(out[worst])).tolist()
+        remedy = Remedy("Move it out", _moved(item, x, y))
+        yield Finding("warning", text, frozenset([item]), place_of(scene, int(slots[worst])), remedy)
+        yield None
+
+
+def _moved(item: Item, dx: float, dy: float) -> Callable[[Document], Document]:
+    def out(document: Document) -> Document:
+        return move(select(document, frozenset([item])), dx, dy)
+
+    return out
+
+
+def overlapping_discs(level: Level, scene: Scene) -> Rule:
+    """Pairs of items whose discs lie in each other at the start, where they touch and nothing joins them."""
+    if not level.has_contacts:
+        return
+    first, count = scene.first_of_weld, len(scene.items)
+    large = np.flatnonzero(scene.radius > BODY_RADIUS)[:DISCS]
+    joined = _keys(first[scene.particle_a], first[scene.particle_b], len(first))
+    yield None
+    told: set[int] = set()
+    for slot in large.tolist():
+        apart = scene.position - scene.position[slot]
+        reach = scene.radius + scene.radius[slot]
+        into = reach - np.hypot(*apart.T) > DEEP * np.minimum(scene.radius, scene.radius[slot])
+        into &= (scene.particle_item != scene.particle_item[slot]) & ~(scene.pinned & scene.pinned[slot])
+        others = np.flatnonzero(into & (first != first[slot]))
+        others = others[scene.collision.meet(others, slot)]
+        others = others[~np.isin(_keys(first[others], first[slot], len(first)), joined)]
+        for other in others.tolist():
+            a, b = sorted((int(scene.particle_item[slot]), int(scene.particle_item[other])))
+            if a * count + b in told:
+                continue
+            told.add(a * count + b)
+            text = (
+                f'"{scene.names(slot)}" and "{scene.names(other)}" overlap at the start, and will be pushed apart; '
+                "move one away, or join them"
+            )
+            yield Finding("warning", text, frozenset([scene.items[a], scene.items[b]]), place_of(scene, slot))
+        yield None
+
+
+def _keys(a: Slots, b: Slots | int, count: int) -> Slots:
+    """One number for each pair of particles, the same in either order."""
+    return np.asarray(np.minimum(a, b) * count + np.maximum(a, b))

@@ -1,0 +1,141 @@
+"""Finding: one thing about a level that its maker may want to know; and rules, which look for them in slices."""
+
+from collections.abc import Callable, Generator, Iterator
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.editor.document import Document
+from sandbox.editor.items import Item, Selection
+from sandbox.editor.scene import Scene
+from sandbox.level.format.model import Level
+from sandbox.physics.collision.outline import TERRAIN_GROUP
+
+Severity = Literal["error", "warning", "hint"]
+Slots = NDArray[np.int64]
+# What a rule gives: findings, and None where it has worked for long enough to let the window draw.
+Rule = Iterator["Finding | None"]
+
+# Findings of one kind that are listed one by one; the rest is told in one line.
+LISTED = 20
+
+
+class Remedy(NamedTuple):
+    """An edit that mends what was found, and what its button says."""
+
+    label: str
+    edit: Callable[[Document], Document]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A sentence that says what is so and what to do, the items it is about, where [m], and what mends it."""
+
+    severity: Severity
+    text: str
+    items: Selection
+    place: tuple[float, float] | None
+    remedy: Remedy | None = None
+
+
+def listed(rule: Rule) -> Rule:
+    """The first findings of a rule, and one line for all others of it."""
+    count, rest = 0, 0
+    items: set[Item] = set()
+    last: Finding | None = None
+    for finding in rule:
+        if finding is not None:
+            count += 1
+            if count > LISTED:
+                rest += 1
+                items |= finding.items
+                last, finding = finding, None
+        yield finding
+    if last is not None:
+        yield Finding(last.severity, f"And {rest} more, such as: {last.text}", frozenset(items), last.place)
+
+
+def called(item: Item) -> str:
+    """An item as sentences name it."""
+    return f'"{item.key}"' if item.kind != "spring" else f'spring ":{item.key}"'
+
+
+def place_of(scene: Scene, slot: int) -> tuple[float, float]:
+    """Place [m] of a particle."""
+    x, y = scene.position[slot].tolist()
+    return x, y
+
+
+def middle_of(scene: Scene, spring: int) -> tuple[float, float]:
+    """Middle [m] of a spring."""
+    ends = scene.position[[scene.particle_a[spring], scene.particle_b[spring]]]
+    x, y = ends.mean(axis=0).tolist()
+    return x, y
+
+
+def connected_parts(scene: Scene) -> Generator[None, None, Slots]:
+    """The lowest slot of the part that each particle belongs to (n,): what springs and welds hold together.
+
+    Roots take over the lowest neighbour's label until no spring joins two labels, which takes few rounds.
+    """
+    label = scene.first_of_weld.copy()
+    a, b = scene.particle_a, scene.particle_b
+    while True:
+        a, b = label[a], label[b]
+        apart = a != b
+        a, b = a[apart], b[apart]
+        if not len(a):
+            return label
+        np.minimum.at(label, np.maximum(a, b), np.minimum(a, b))
+        yield None
+        while True:
+            lower = label[label]
+            if np.array_equal(lower, label):
+                break
+            label = lower
+        yield None
+
+
+def falling_particles(level: Level, scene: Scene) -> Generator[None, None, tuple[Slots, NDArray[np.bool_]]]:
+    """The part that each particle belongs to (n,), and whether it falls away (n,): nothing holds or catches it."""
+    part = yield from connected_parts(scene)
+    held = np.zeros(len(part), dtype=np.bool_)
+    held[part[scene.pinned]] = True
+    pulled = np.zeros(len(part), dtype=np.bool_)
+    pulled[part[_scales(level, scene) != 0.0]] = True
+    if level.settings.gravity == (0.0, 0.0):
+        pulled[:] = False
+    falls = pulled[part] & ~held[part]
+    if level.has_contacts and falls.any():
+        yield None
+        falls &= ~_caught(level, scene, part)[part]
+    return part, falls
+
+
+def _scales(level: Level, scene: Scene) -> NDArray[np.float64]:
+    """How many times gravity pulls at each particle (n,)."""
+    scales = [part.gravity_scale for part in (*level.bodies, *level.particles)]
+    return np.array(scales, dtype=np.float64)[scene.particle_item]
+
+
+def _caught(level: Level, scene: Scene, part: Slots) -> NDArray[np.bool_]:
+    """Whether each part, by its label (n,), has walls around it, or terrain somewhere below it."""
+    touches = scene.collision.touches & TERRAIN_GROUP != 0
+    caught = np.zeros(len(part), dtype=np.bool_)
+    if level.walls is not None:
+        caught[part[touches]] = True
+        return caught
+    fall = np.array(level.settings.gravity) / np.hypot(*level.settings.gravity)
+    # Along the fall, and across it.
+    turned = np.array([fall, (-fall[1], fall[0])])
+    places, corners = scene.position[touches] @ turned.T, scene.corner @ turned.T
+    low, high = np.full((len(part), 2), np.inf), np.full((len(part), 2), -np.inf)
+    np.minimum.at(low, part[touches], places)
+    np.maximum.at(high, part[touches], places)
+    for index in np.unique(scene.corner_item).tolist():
+        mine = corners[scene.corner_item == index]
+        least, most = mine.min(axis=0), mine.max(axis=0)
+        caught |= (low[:, 0] <= most[0]) & (low[:, 1] <= most[1]) & (high[:, 1] >= least[1])
+    return caught

@@ -1,0 +1,81 @@
+"""Lint: what the maker of a level may have overlooked, found a slice at a time while they draw.
+
+A document's level is sound, which every edit sees to; these are things that a sound level can have all the same.
+"""
+
+import itertools
+from collections.abc import Iterator
+
+import numpy as np
+
+from sandbox.editor.lint.checks import hopeless_checks
+from sandbox.editor.lint.contacts import buried_particles, overlapping_discs
+from sandbox.editor.lint.finding import Finding, Rule, called, falling_particles, listed, middle_of, place_of
+from sandbox.editor.lint.motors import idle_motors
+from sandbox.editor.lint.places import crossing_bodies, overlapping_particles
+from sandbox.editor.lint.solver import springs_past_limits
+from sandbox.editor.scene import Scene
+from sandbox.level.format.model import Level
+
+__all__ = ["Finding", "findings"]
+
+
+def findings(level: Level, scene: Scene) -> Iterator[Finding | None]:
+    """Everything found about a level, of which scene is the scene; None = a point at which to let the window draw."""
+    rules = (
+        hopeless_checks(level, scene),
+        springs_past_limits(level, scene),
+        falling_parts(level, scene),
+        idle_items(scene),
+        idle_motors(scene),
+        overlapping_particles(scene),
+        crossing_bodies(level, scene),
+        buried_particles(level, scene),
+        overlapping_discs(level, scene),
+    )
+    return itertools.chain.from_iterable(listed(rule) for rule in rules)
+
+
+def falling_parts(level: Level, scene: Scene) -> Rule:
+    """Parts that nothing holds, under gravity."""
+    part, is_falling = yield from falling_particles(level, scene)
+    falling = np.flatnonzero(is_falling)
+    yield None
+    # Particles part by part, parts in order of their first particle.
+    falling = falling[np.argsort(part[falling], kind="stable")]
+    yield None
+    starts = np.flatnonzero(np.diff(part[falling], prepend=-1, append=len(part))).tolist()
+    whole = np.bincount(scene.particle_item, minlength=len(scene.items))
+    for start, end in itertools.pairwise(starts):
+        slots = falling[start:end]
+        owners, counts = np.unique(scene.particle_item[slots], return_counts=True)
+        items = [scene.items[index] for index in owners.tolist()]
+        if len(items) == 1 and counts[0] < whole[owners[0]]:
+            subject = f'"{scene.names(int(slots[0]))}"' + (f" and {len(slots) - 1} more" if len(slots) > 1 else "")
+        else:
+            subject = called(items[0]) + (f" and what it is joined to, {len(items)} items," if len(items) > 1 else "")
+        text = f"{subject} will fall out of sight: nothing holds it; pin a particle of it or join it to something"
+        yield Finding("warning", text, frozenset(items), place_of(scene, int(slots[0])))
+        yield None
+
+
+def idle_items(scene: Scene) -> Rule:
+    """Loose springs between two pinned particles, and pinned loose particles that hold nothing and touch nothing."""
+    bodies = len(scene.level.bodies)
+    loose = np.flatnonzero(scene.spring_item >= bodies + len(scene.level.particles))
+    idle = loose[scene.pinned[scene.particle_a[loose]] & scene.pinned[scene.particle_b[loose]]]
+    for spring in idle.tolist():
+        item = scene.items[int(scene.spring_item[spring])]
+        text = f"{called(item)} does nothing: both its ends are pinned; unpin one or delete it"
+        yield Finding("hint", text, frozenset([item]), middle_of(scene, spring))
+    yield None
+    used = np.zeros(len(scene.position), dtype=np.bool_)
+    for slots in (scene.particle_a, scene.particle_b, scene.welds.ravel()):
+        used[slots] = True
+    if scene.level.has_contacts:
+        used |= scene.collision.touches != 0
+    for slot in np.flatnonzero(scene.pinned & ~used & (scene.particle_item >= bodies)).tolist():
+        item = scene.items[int(scene.particle_item[slot])]
+        text = f"{called(item)} is pinned and holds nothing; join something to it or delete it"
+        yield Finding("hint", text, frozenset([item]), place_of(scene, slot))
+    yield None

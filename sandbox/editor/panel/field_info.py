@@ -1,0 +1,157 @@
+"""Abouts: what the schema of the level format says of each field, for people who change it."""
+
+import re
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, Literal, get_args
+
+from pydantic import BaseModel
+
+from sandbox.editor.panel.typed import number_text
+
+Kind = Literal[
+    "number",
+    "integer",
+    "text",
+    "yes_no",
+    "choice",
+    "flags",
+    "point",
+    "material",
+    "list",
+    "pairs",
+    "words",
+    "form",
+    "part",
+    "key",
+    "touches",
+    "extras",
+]
+
+# What a description says of null.
+_EMPTY = re.compile(r"empty = ([^.;]+)")
+# Shorter words where the description's do not fit into a field.
+_SHORTER = {
+    "that of the level's contacts": "the level's",
+    "as placed, of a hydraulic its shortest": "as placed",
+    "the group default": "default",
+}
+_KEYS = ("key", "reverse_key")
+_TITLES = {
+    "a": "End a",
+    "b": "End b",
+    "id": "Name",
+    "pin": "Held ends",
+    "pinned": "Held",
+    "cut": "Cut springs",
+    "drive": "Muscle",
+    "area": "Keeps area",
+    "collision_group": "In group",
+    "collides": "Touches",
+    "particle_radius": "Disc radius",
+    "licence": "Licence",
+    "warm_start": "Warm start",
+}
+
+
+@dataclass(frozen=True)
+class About:
+    """A field: kind, title, unit, limits (both included but where `above`), tooltip, choices, whether null is a value.
+
+    empty: what null stands for. A `point` is of two numbers; `flags` are any number of the choices, `pairs`
+    lists of numbers in a list; a `form` has a table of its own; a `part` is an object, of that model, or null.
+    """
+
+    kind: Kind
+    title: str
+    unit: str = ""
+    low: float | None = None
+    high: float | None = None
+    above: bool = False
+    tooltip: str = ""
+    choices: tuple[str, ...] = ()
+    optional: bool = False
+    empty: str = ""
+    model: type[BaseModel] | None = None
+
+
+@cache
+def abouts(model: type[BaseModel]) -> dict[str, About]:
+    """What is known of every field of a model, by name, in its order."""
+    fields = model.model_json_schema()["properties"]
+    return {name: _about(name, fields[name], _part(field.annotation)) for name, field in model.model_fields.items()}
+
+
+def _part(annotation: Any) -> type[BaseModel] | None:
+    """The model of a field that is one object or null."""
+    kinds = [kind for kind in get_args(annotation) if kind is not type(None)]
+    is_one = len(kinds) == 1 and isinstance(kinds[0], type) and issubclass(kinds[0], BaseModel)
+    return kinds[0] if is_one else None
+
+
+def title_of(field: str) -> str:
+    """What a field is called."""
+    return _TITLES.get(field, field.replace("_", " ").capitalize())
+
+
+def _about(name: str, schema: dict[str, Any], part: type[BaseModel] | None) -> About:
+    variants = [each for each in schema.get("anyOf", []) if each.get("type") != "null"]
+    optional = any(each.get("type") == "null" for each in schema.get("anyOf", []))
+    # Of several alternatives, each of which is a value, the table of choices says all.
+    value = {**variants[0], **schema} if len(variants) == 1 else schema
+    numbers = value.get("prefixItems", [value])[0]
+    low = numbers.get("minimum", numbers.get("exclusiveMinimum"))
+    kind = "part" if part is not None else _kind(name, value)
+    text = schema.get("description", "").replace("null = ", "empty = ").replace("`", "")
+    empty = _EMPTY.search(text)
+    about = About(
+        kind=kind,
+        title="Held particles" if name == "pinned" and kind == "list" else title_of(name),
+        unit=value.get("unit", value.get("items", {}).get("unit", "")),
+        low=low,
+        high=numbers.get("maximum"),
+        above="exclusiveMinimum" in numbers,
+        choices=tuple(map(str, value.get("enum", value.get("items", {}).get("enum", _constant(value))))),
+        optional=optional,
+        empty=_SHORTER.get(empty[1], empty[1].replace("_", " ")) if empty and optional else "",
+        model=part,
+    )
+    return About(**{**about.__dict__, "tooltip": _tooltip(about, text)})
+
+
+def _constant(value: dict[str, Any]) -> tuple[str, ...]:
+    constant = value.get("items", {}).get("const")
+    return () if constant is None else (constant,)
+
+
+def _kind(name: str, value: dict[str, Any]) -> Kind:
+    items = value.get("items", {})
+    if name in _KEYS:
+        return "key"
+    if name == "collides":
+        return "touches"
+    if name in ("material", "shape", "extras"):
+        return {"material": "material", "shape": "form", "extras": "extras"}[name]  # type: ignore[return-value]
+    if "enum" in value:
+        return "choice"
+    if value.get("type") == "array":
+        if len(value.get("prefixItems", ())) == 2:
+            return "point"
+        if "enum" in items or "const" in items:
+            return "flags"
+        return {"string": "words", "array": "pairs"}.get(items.get("type"), "list")  # type: ignore[return-value]
+    kinds: dict[str, Kind] = {"number": "number", "integer": "integer", "boolean": "yes_no"}
+    return kinds.get(value.get("type", ""), "text")
+
+
+def _tooltip(about: About, description: str) -> str:
+    """The description, and the limits of a number."""
+    if about.kind not in ("number", "integer", "point") or (about.low is None and about.high is None):
+        return description
+    unit = f" {about.unit}" if about.unit else ""
+    low = "" if about.low is None else f"{'above ' if about.above else ''}{number_text(about.low)}"
+    if about.high is None:
+        limits = f"At least {low}{unit}."
+    else:
+        limits = f"{low[:1].upper()}{low[1:]} to {number_text(about.high)}{unit}."
+    return f"{description} {limits}"

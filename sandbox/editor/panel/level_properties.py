@@ -1,0 +1,131 @@
+"""Properties of the level itself, of how its time passes, and of its checks."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+from sandbox.editor.document import Document
+from sandbox.editor.edits.fields import set_level_field, set_setting
+from sandbox.editor.edits.materials import set_checks
+from sandbox.editor.items import chosen_bodies, chosen_particles
+from sandbox.editor.panel.field_info import abouts
+from sandbox.editor.panel.property import Property, Section, part_properties, with_axes
+from sandbox.editor.scene import make_scene
+from sandbox.level.checks import PARTICLE_METRICS, CheckDef
+from sandbox.level.format.model import Level, Settings
+from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.bodies import AnyBody
+from sandbox.level.kinds.shapes import count
+
+# Walls of a level in which nothing is yet [m]; around something they leave this share of its size, and of at least 1 m.
+FIRST_ROOM = (-6.0, 0.0, 6.0, 6.0)
+ROOM_SHARE, SMALLEST_ROOM = 0.25, 1.0
+ROOM_DECIMALS = 2
+_LEVEL_FIELDS = ("name", "description", "author", "licence", "tags", "view")
+
+
+def level_properties(document: Document) -> tuple[Section, ...]:
+    """What can be changed of the level itself and of how its time passes."""
+    level = document.level
+    about = abouts(Level)
+    of_level = [Property(name, about[name], getattr(level, name), partial(_set_level, name)) for name in _LEVEL_FIELDS]
+    if level.extras:
+        of_level.append(Property("extras", about["extras"], level.extras))
+    settings = []
+    for name, each in abouts(Settings).items():
+        value = getattr(level.settings, name)
+        settings.append(Property(name, each, str(value) if each.kind == "choice" else value, partial(_set_time, name)))
+    return (
+        Section("Level", tuple(of_level)),
+        Section("Time and solver", tuple(settings)),
+        Section("Contacts", tuple(_object(document, "contacts") + _object(document, "walls"))),
+    )
+
+
+def _object(document: Document, name: str) -> list[Property]:
+    """Properties of an object that a level may have."""
+
+    def change(document: Document, new: Callable[[Any], Any]) -> Document:
+        return set_level_field(document, name, new(getattr(document.level, name)))
+
+    def add(document: Document) -> Document:
+        return change(document, lambda old: _FIRST[name](document) if old is None else old)
+
+    return part_properties(name, abouts(Level)[name], [getattr(document.level, name)], change, add)
+
+
+def _first_walls(document: Document) -> dict[str, Any]:
+    """Walls around the level's view, or around everything with some room."""
+    level = document.level
+    around = make_scene(level).bounds()
+    box = level.view or around or FIRST_ROOM
+    room = 0.0
+    if level.view is None and around is not None:
+        room = ROOM_SHARE * max(box[2] - box[0], box[3] - box[1], SMALLEST_ROOM)
+    return {"box": tuple(round(c + s * room, ROOM_DECIMALS) for c, s in zip(box, (-1, -1, 1, 1), strict=True))}
+
+
+_FIRST: dict[str, Callable[[Document], dict[str, Any]]] = {"contacts": lambda _: {}, "walls": _first_walls}
+
+
+def _set_level(field: str, document: Document, value: Any) -> Document:
+    return set_level_field(document, field, value)
+
+
+def _set_time(field: str, document: Document, value: Any) -> Document:
+    old = getattr(document.level.settings, field)
+    if field in ("gravity", "wind"):
+        value = with_axes(value, old)
+    elif field == "substeps" and str(value).isdecimal():
+        value = int(value)
+    return set_setting(document, field, value)
+
+
+# Checks.
+
+
+def check_properties(document: Document, index: int) -> tuple[Section, ...]:
+    """What can be changed of a check of the level, by its index; () where there is none."""
+    if not 0 <= index < len(document.level.checks):
+        return ()
+    check = document.level.checks[index]
+    made = [
+        Property(name, about, getattr(check, name), partial(_set_check, index, name))
+        for name, about in abouts(CheckDef).items()
+        if name != "particle" or check.metric in PARTICLE_METRICS
+    ]
+    return (Section("Check", tuple(made)),)
+
+
+def _set_check(index: int, field: str, document: Document, value: Any) -> Document:
+    checks = list(document.level.checks)
+    check = replaced(checks[index], **{field: value})
+    if field == "metric" and value in PARTICLE_METRICS and check.particle is None:
+        check = replaced(check, particle=_some_particle(document))
+    elif field == "metric" and value not in PARTICLE_METRICS:
+        check = replaced(check, particle=None)
+    checks[index] = check
+    return set_checks(document, checks)
+
+
+def _some_particle(document: Document) -> str | None:
+    """A particle to measure: of what is selected, else of the level."""
+    level, selection = document.level, document.selection
+    loose = [*chosen_particles(level, selection), *(() if selection else level.particles)]
+    bodies: Sequence[AnyBody] = [*chosen_bodies(level, selection), *(() if selection else level.bodies)]
+    if loose:
+        return loose[0].id
+    return f"{bodies[0].id}.{count(bodies[0])[0] - 1}" if bodies else None
+
+
+def add_check(document: Document) -> Document:
+    """Add a check that holds of every sound level. Raises EditError where it has too many."""
+    taken = {check.name for check in document.level.checks}
+    number = next(k for k in range(1, len(taken) + 2) if f"check {k}" not in taken)
+    check = CheckDef(name=f"check {number}", metric="non_finite", at_most=0.0)
+    return set_checks(document, [*document.level.checks, check])
+
+
+def delete_check(document: Document, index: int) -> Document:
+    """Delete a check by its index."""
+    return set_checks(document, [check for k, check in enumerate(document.level.checks) if k != index])

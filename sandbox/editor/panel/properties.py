@@ -1,0 +1,246 @@
+"""Properties of the selection: what can be changed of the items, field by field."""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from sandbox.editor.document import Document
+from sandbox.editor.edits.additions import add_object
+from sandbox.editor.edits.fields import change_field, set_field, with_tuples
+from sandbox.editor.edits.names import owner_of
+from sandbox.editor.edits.terrain import FORMS, Form, Point, corners_of, form_of, outlined, with_corners
+from sandbox.editor.items import Definition, Item, Selection, chosen_definitions, chosen_items
+from sandbox.editor.panel.field_info import About, abouts
+from sandbox.editor.panel.property import MIXED, Property, Section, part_properties, same, with_axes
+from sandbox.level.format.model import Level, ParticleDef, SpringDef, TerrainDef
+from sandbox.level.format.schema import TITLES
+from sandbox.level.kinds.bodies import SHAPES, BoxShape, CircleShape, JellyDef, PolygonShape, Shape, file_order
+from sandbox.level.kinds.shapes import count
+
+# Fields of terrain of which one is null.
+_OUTLINES = ("polyline", "polygon")
+# Sections of the fields that are not of a body's form, in their order.
+_SECTIONS = {
+    "Mass": ("mass", "particle_mass", "end_mass", "hub_mass", "masses", "gravity_scale"),
+    "Springs": ("material", "rest_length", "cut"),
+    "Start": ("pin", "pinned", "velocity", "velocities", "pose"),
+    "Shape": ("area", "inflation", "bending"),
+    "Drive": ("drive", "hydraulic", "motor"),
+    "Contact": ("particle_radius", "friction", "restitution", "collides", "collision_group"),
+    "Other": ("group", "extras"),
+}
+
+
+def properties(document: Document) -> tuple[Section, ...]:
+    """What can be changed of the selected items: the fields that all of them have; () where nothing is selected.
+
+    What some of them can be given, such as a motor, is there for those.
+    """
+    level, selection = document.level, document.selection
+    parts = chosen_definitions(level, selection)
+    if not parts:
+        return ()
+    kinds = dict.fromkeys(map(type, parts))
+    made = [made for name, about in _common(kinds, len(parts)).items() for made in _made(selection, parts, name, about)]
+    objects = _objects(kinds)
+    if objects:
+        # Loose particles have none, and may be many.
+        items = chosen_items(level, frozenset(item for item in selection if item.kind != "particle"))
+        made += [made for name, about in objects.items() for made in _object_properties(items, name, about)]
+    if len(parts) == 1:
+        facts = _facts(level, next(iter(selection)), parts[0])
+        made = [*facts, *made] if isinstance(parts[0], SpringDef) else [*made, *facts]
+    if all(isinstance(part, TerrainDef) for part in parts):
+        made += _outline_properties(selection, [part for part in parts if isinstance(part, TerrainDef)])
+    by_section: dict[str, list[Property]] = {"": [], **{title: [] for title in _SECTIONS}}
+    for each in made:
+        by_section[_section_of(each.field)].append(each)
+    rest = (Section(title, tuple(by_section[title])) for title in _SECTIONS if by_section[title])
+    return (Section(_summary(kinds, parts), tuple(by_section[""])), *rest)
+
+
+def _section_of(field: str) -> str:
+    name = field.partition(".")[0]
+    return next((title for title, fields in _SECTIONS.items() if name in fields), "")
+
+
+def _summary(kinds: Iterable[type], parts: Sequence[Definition]) -> str:
+    """What is selected, in words."""
+    counts = Counter(map(type, parts))
+    words = []
+    for kind, number in counts.items():
+        noun = TITLES[kind.__name__]
+        plural = f"{noun[:-1]}ies" if noun.endswith("y") else f"{noun}es" if noun.endswith("sh") else f"{noun}s"
+        words.append(noun if len(parts) == 1 else f"{number:,} {(noun if number == 1 else plural).lower()}")
+    return ", ".join(words)
+
+
+def _common(kinds: Iterable[Any], number: int) -> dict[str, About]:
+    """The fields that all kinds have alike, with the limits that hold for all."""
+    first, *others = (abouts(kind) for kind in kinds)
+    found = {}
+    for name in file_order(first):
+        if name in ("type", *_OUTLINES) or (name == "id" and number > 1) or first[name].kind == "part":
+            continue
+        same = [other[name] for other in others if name in other and _alike(other[name], first[name])]
+        if len(same) == len(others):
+            found[name] = first[name]
+    return found
+
+
+def _objects(kinds: Iterable[Any]) -> dict[str, About]:
+    """The fields of any of the kinds that hold an object or none."""
+    known = (about for kind in kinds for about in abouts(kind).items())
+    return {name: about for name, about in known if about.kind == "part"}
+
+
+def _object_properties(items: dict[Item, Definition], name: str, about: About) -> list[Property]:
+    """The properties of an object that some items may have."""
+    holders = {item: part for item, part in items.items() if name in part.__dict__}
+    chosen = frozenset(holders)
+
+    def change(document: Document, new: Any) -> Document:
+        return change_field(document, chosen, name, new)
+
+    def add(document: Document) -> Document:
+        return add_object(document, chosen, name)
+
+    return part_properties(name, about, [part.__dict__[name] for part in holders.values()], change, add)
+
+
+def _alike(one: About, other: About) -> bool:
+    return (one.kind, one.unit, one.choices, one.optional) == (other.kind, other.unit, other.choices, other.optional)
+
+
+def _made(selection: Selection, parts: Sequence[Definition], name: str, about: About) -> list[Property]:
+    """The properties of a field: more than one of a shape."""
+    if about.kind == "form":
+        return _shape_properties(selection, [part.shape for part in parts if isinstance(part, JellyDef)])
+    if about.kind == "point":
+        value: Any = tuple(map(same, zip(*[part.__dict__[name] for part in parts], strict=True)))
+        return [Property(name, about, value, partial(_set_axes, selection, name))]
+    if about.kind == "flags":
+        lists = [part.__dict__[name] for part in parts]
+        states = {choice: same(choice in chosen for chosen in lists) for choice in about.choices}
+        return [Property(name, about, states, partial(_set_flags, selection, name, about.choices))]
+    value = same([part.__dict__[name] for part in parts])
+    if about.kind == "extras":
+        return [Property(name, about, value)] if value else []
+
+    def write(document: Document, value: Any) -> Document:
+        return set_field(document, selection, name, value)
+
+    return [Property(name, about, value, write)]
+
+
+def _set_axes(selection: Selection, field: str, document: Document, value: Any) -> Document:
+    return change_field(document, selection, field, partial(with_axes, value))
+
+
+def _set_flags(
+    selection: Selection, field: str, choices: Sequence[str], document: Document, value: dict[str, bool]
+) -> Document:
+    def change(old: Sequence[str]) -> list[str]:
+        return [choice for choice in choices if value.get(choice, choice in old)]
+
+    return change_field(document, selection, field, change)
+
+
+def _facts(level: Level, item: Item, part: Definition) -> list[Property]:
+    """What a single item is that its fields do not say."""
+    facts = []
+    if isinstance(part, SpringDef):
+        facts.append(("name", "Name", f":{item.key}", "Name of the spring."))
+    elif not isinstance(part, ParticleDef | TerrainDef):
+        particles, springs = count(part)
+        facts.append(
+            (
+                "size",
+                "Made of",
+                f"{_counted(particles, 'particle')}, {_counted(springs, 'spring')}",
+                "What it expands to.",
+            )
+        )
+    joints = [f"{a} = {b}" for a, b in level.welds if item.key in (owner_of(a), owner_of(b))]
+    if joints and item.kind != "spring":
+        facts.append(("welds", "Joined", ", ".join(joints), "Particles that are one with another's."))
+    return [Property(name, About("text", title, tooltip=tip), text) for name, title, text, tip in facts]
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
+
+
+# The outline of terrain.
+
+
+def _outline_properties(selection: Selection, pieces: Sequence[TerrainDef]) -> list[Property]:
+    """Whether it is a line or solid, and its corners."""
+    kind = About("choice", "Kind", tooltip="A line with two sides, or solid inside.", choices=FORMS)
+
+    def choose(document: Document, wanted: Form) -> Document:
+        return outlined(document, selection, lambda piece: with_corners(piece, corners_of(piece), wanted))
+
+    def write(document: Document, corners: Sequence[Point]) -> Document:
+        points = with_tuples(corners)
+        return outlined(document, selection, lambda piece: with_corners(piece, points))
+
+    about = replace(abouts(TerrainDef)["polygon"], title="Corners", optional=False, tooltip="Corners in order.")
+    return [
+        Property("form", kind, same(form_of(piece) for piece in pieces), choose),
+        Property("corners", about, same(corners_of(piece) for piece in pieces), write),
+    ]
+
+
+# The shape of a jelly.
+
+
+def _shape_properties(selection: Selection, shapes: Sequence[Shape]) -> list[Property]:
+    kind = same(_shape_kind(shape) for shape in shapes)
+    about = About("choice", "Shape", tooltip="The outline that is filled.", choices=SHAPES)
+
+    def choose(document: Document, wanted: str) -> Document:
+        return change_field(document, selection, "shape", partial(_as_shape, wanted))
+
+    found = [Property("shape", about, kind, choose)]
+    if kind is MIXED:
+        return found
+    about = abouts(type(shapes[0]))[kind]
+    if kind == "box":
+        pairs = [shape.box for shape in shapes if isinstance(shape, BoxShape)]
+
+        def write_box(document: Document, value: Any) -> Document:
+            return change_field(
+                document, selection, "shape", lambda old: {"box": with_axes(value, old.__dict__["box"])}
+            )
+
+        value: Any = tuple(same(pair[axis] for pair in pairs) for axis in (0, 1))
+        about = replace(about, title="Size")
+        return [*found, Property("shape.box", about, value, write_box, ("width", "height"))]
+
+    def write(document: Document, value: Any) -> Document:
+        return set_field(document, selection, "shape", {kind: value})
+
+    about = replace(about, title="Radius" if kind == "circle" else "Corners")
+    return [*found, Property(f"shape.{kind}", about, same(shape.__dict__[kind] for shape in shapes), write)]
+
+
+def _shape_kind(shape: Shape) -> str:
+    return next(name for name in SHAPES if hasattr(shape, name))
+
+
+def _as_shape(kind: str, shape: Shape) -> dict[str, Any]:
+    """A shape of another kind, as large."""
+    if kind == _shape_kind(shape):
+        return dict(shape.__dict__)
+    if isinstance(shape, PolygonShape):
+        x, y = (2.0 * max(abs(corner[axis]) for corner in shape.polygon) for axis in (0, 1))
+    else:
+        x, y = shape.box if isinstance(shape, BoxShape) else (2.0 * shape.circle, 2.0 * shape.circle)
+    if kind == "circle":
+        return {"circle": max(x, y) / 2.0 if isinstance(shape, CircleShape) else min(x, y) / 2.0}
+    if kind == "box":
+        return {"box": (x, y)}
+    return {"polygon": tuple((a * x / 2.0, b * y / 2.0) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1)))}

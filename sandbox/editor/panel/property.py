@@ -1,0 +1,155 @@
+"""Property: a field that a panel shows and changes, of the selected items, of the level or of its checks."""
+
+import json
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from functools import partial
+from typing import Any, Final
+
+from sandbox.editor.document import Document, EditError
+from sandbox.editor.panel.field_info import About, abouts
+from sandbox.editor.panel.typed import (
+    line_text,
+    list_text,
+    number_text,
+    read_integer,
+    read_line,
+    read_list,
+    read_number,
+    read_pairs,
+    read_touched,
+    read_words,
+    stepped,
+    touched_text,
+)
+from sandbox.level.format.quantities import Description
+
+# Makes a document in which a field is what the function makes of its value.
+Change = Callable[[Document, Callable[[Any], Any]], Document]
+
+
+class Mixed(Enum):
+    """What stands for a value where the items differ."""
+
+    MIXED = "mixed"
+
+
+MIXED: Final = Mixed.MIXED
+# Axes of a pair of numbers.
+_AXES = ("x", "y")
+
+
+@dataclass(frozen=True)
+class Property:
+    """A field with the value that all items have, or MIXED; of a `point`, of each axis; of `flags`, of each by name.
+
+    write: makes a document with another value; None where it is only shown. axes: names of the numbers of a point.
+    """
+
+    field: str
+    about: About
+    value: Any
+    write: Callable[[Document, Any], Document] | None = None
+    axes: tuple[str, str] = _AXES
+
+    @property
+    def editable(self) -> bool:
+        """Whether it can be changed here."""
+        return self.write is not None
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The value as text to change: of a point two, else one; "" for null."""
+        if self.about.kind == "point":
+            return tuple(MIXED.value if part is MIXED else number_text(part) for part in self.value)
+        return (MIXED.value if self.value is MIXED else _text(self.about, self.value),)
+
+    def set(self, document: Document, value: Any) -> Document:
+        """The document with another value; an axis that is None and a flag that is not given stay. Raises EditError."""
+        if self.write is None:
+            raise EditError(f"{self.about.title} cannot be changed here")
+        return self.write(document, value)
+
+    def typed(self, text: str, axis: int = 0) -> Any:
+        """The value that a typed text stands for. Raises EditError with one line."""
+        about = self.about
+        if about.kind == "point":
+            number = read_number(f"{about.title} {self.axes[axis]}", text)
+            return (number, None) if axis == 0 else (None, number)
+        if about.optional and not text.strip():
+            return None
+        read: dict[str, Callable[[str, str], Any]] = {
+            "number": read_number, "integer": read_integer, "list": read_list, "pairs": read_pairs,
+            "words": read_words, "touches": read_touched,
+        }  # fmt: skip
+        if about.kind in read:
+            return read[about.kind](about.title, text)
+        return read_line(text)
+
+    def stepped(self, steps: int) -> float | None:
+        """The value so many steps up or down, within its limits; None where it is no number, or not the same of all."""
+        about = self.about
+        if about.kind not in ("number", "integer") or self.value is None or self.value is MIXED:
+            return None
+        value = stepped(self.value, steps, about.low, about.high, whole=about.kind == "integer")
+        return self.value if about.above and value == about.low else value
+
+
+@dataclass(frozen=True)
+class Section:
+    """Properties that belong together."""
+
+    title: str
+    properties: tuple[Property, ...]
+
+
+def _text(about: About, value: Any) -> str:
+    if value is None:
+        return ""
+    if about.kind in ("number", "integer"):
+        return number_text(value)
+    if about.kind in ("list", "pairs", "words"):
+        return list_text(value)
+    if about.kind == "touches":
+        return touched_text(value)
+    if about.kind == "extras":
+        return json.dumps(value, ensure_ascii=False)
+    return line_text(str(value))
+
+
+def same(values: Iterable[Any]) -> Any:
+    """The value that all of them are, else MIXED."""
+    found = list(values)
+    return found[0] if found.count(found[0]) == len(found) else MIXED
+
+
+def with_axes(value: Sequence[float | None], old: Sequence[float]) -> tuple[float, ...]:
+    """A pair of numbers with those of a value that are given."""
+    return tuple(before if new is None else new for new, before in zip(value, old, strict=True))
+
+
+def part_properties(
+    name: str, about: About, values: Sequence[Description | None], change: Change, add: Callable[[Document], Document]
+) -> list[Property]:
+    """Whether there is an object that a field may hold, and where all have one the fields of that.
+
+    add: makes a document in which those have one that had none.
+    """
+
+    def write(document: Document, wanted: bool) -> Document:
+        return add(document) if wanted else change(document, lambda _: None)
+
+    is_there = same(value is not None for value in values)
+    found = [Property(name, about, is_there, write)]
+    objects = [value.__dict__ for value in values if value is not None]
+    if is_there is True and about.model is not None:
+        found += [
+            Property(f"{name}.{field}", each, same(o[field] for o in objects), partial(_set_inside, change, field))
+            for field, each in abouts(about.model).items()
+        ]
+    return found
+
+
+def _set_inside(change: Change, field: str, document: Document, value: Any) -> Document:
+    return change(document, lambda old: {**old.__dict__, field: value})

@@ -1,0 +1,202 @@
+"""Drawing: a pointer gesture that adds something to a level, with a ghost of what it would become.
+
+The app hands every pointer event on as a Snap, shows `ghost` and `hint`, and takes what `done` gives. A gesture of two
+points is a drag, or a click at each; Enter takes the pointer for the second, Escape gives up.
+"""
+
+import math
+from dataclasses import replace
+from typing import Any, ClassVar, Generic, cast
+
+from sandbox.editor.document import Document, EditError
+from sandbox.editor.tools.drawing_options import AnyOptions, Options, changed, described
+from sandbox.editor.tools.snap import Point, Snap
+from sandbox.level.format.model import ParticleDef
+from sandbox.level.format.quantities import replaced
+
+
+class Drawing(Generic[AnyOptions]):
+    """One gesture at a time of a tool; `options` and what else is set stay for the next.
+
+    reach [m]: a press that moves no farther is a click. The app sets it with the zoom. points: those of the gesture so
+    far; pointer: where it goes next.
+    """
+
+    defaults: ClassVar[Options]
+    needs: ClassVar[int] = 2  # points of a whole gesture
+    start_hint: ClassVar[str] = ""
+    end_hint: ClassVar[str] = ""
+    # The option that `adjust` counts up and down.
+    counted: ClassVar[str | None] = None
+
+    def __init__(self, options: AnyOptions | None = None, reach: float = 0.0) -> None:
+        self.options: AnyOptions = cast(AnyOptions, self.defaults) if options is None else options
+        self.reach = reach
+        self.points: list[Snap] = []
+        self.pointer: Snap | None = None
+        self._pressed = False
+        self._began = False
+        self._complete = False
+        # Why the gesture could not end, until the next press; and why there is no ghost at the pointer.
+        self._fault = ""
+        self._ghost_fault = ""
+
+    # ---- what the app asks
+
+    @property
+    def under_way(self) -> bool:
+        """Whether a gesture has begun."""
+        return bool(self.points)
+
+    @property
+    def anchor(self) -> Point | None:
+        """The point [m] that directions are measured from, for `snap`; None before the first."""
+        return self.points[-1].point if self.points else None
+
+    @property
+    def outline(self) -> list[Point]:
+        """Corners [m] of an outline so far, to be shown as they are; none of other gestures."""
+        return []
+
+    @property
+    def hint(self) -> str:
+        """One line for the person: why it cannot be done so, or what to do next and what it would join."""
+        fault = self._fault or self._ghost_fault
+        if fault:
+            return fault
+        hint = self.end_hint if self.points else self.start_hint
+        joined = [point.name for index, point in enumerate(self._so_far()) if point.name and self.joins(index)]
+        return f"{hint}; joins {' and '.join(joined)}" if joined else hint
+
+    @property
+    def measure(self) -> str:
+        """Sizes and counts of what is drawn right now, in a few words; empty before the first point."""
+        points = self._so_far()
+        return self.sizes(points) if self.points and self._sound(points) else ""
+
+    def ghost(self, document: Document) -> Document | None:
+        """What the gesture would add if it ended at the pointer, selected; None where it cannot end there.
+
+        It is alone in its document, but for stand-ins of the particles that it joins: large levels need no longer.
+        """
+        points = self._so_far()
+        self._ghost_fault = ""
+        if not self._sound(points):
+            return None
+        try:
+            return self.placed(*staged(document, points))
+        except EditError as error:
+            self._ghost_fault = str(error)
+            return None
+
+    def done(self, document: Document) -> Document | None:
+        """The document with what was drawn, once, when the gesture is complete; None before. Raises EditError."""
+        if not self._complete:
+            return None
+        points = list(self.points)
+        self.cancel()
+        return self.placed(document, points)
+
+    # ---- what the person does
+
+    def down(self, snap: Snap) -> None:
+        """The pointer is pressed."""
+        self.pointer, self._pressed, self._fault = snap, True, ""
+        self._began = not self.points
+        if self._began:
+            self.points = [snap]
+
+    def move(self, snap: Snap) -> None:
+        """The pointer moves, pressed or not."""
+        self.pointer = snap
+
+    def up(self, snap: Snap) -> None:
+        """The pointer is released."""
+        self.pointer = snap
+        if not self._pressed:
+            return
+        self._pressed = False
+        is_click = self._began and math.dist(self.points[0].raw, snap.raw) <= self.reach
+        if self.needs == 1:
+            self.points, self._complete = [snap], True
+        elif not is_click:
+            self._end_at(snap)
+
+    def finish(self) -> None:
+        """End the gesture at the pointer, as Enter asks."""
+        if self.pointer is not None and (self.points or self.needs == 1):
+            self._end_at(self.pointer)
+
+    def back(self) -> None:
+        """Take the last point back, as Backspace asks."""
+        self._fault = ""
+        del self.points[-1:]
+
+    def cancel(self) -> None:
+        """Give up what is under way, as Escape asks."""
+        self.points, self._pressed, self._complete = [], False, False
+        self._fault = self._ghost_fault = ""
+
+    def set_option(self, name: str, value: Any) -> None:
+        """Give an option another value. Raises EditError with a line for the person."""
+        self.options = changed(self.options, name, value)
+
+    def adjust(self, steps: int) -> None:
+        """Count the number of parts up or down, within its limits; from the fitting one where none is set."""
+        if self.counted is None:
+            return
+        about = described(self.options)[self.counted]
+        present = getattr(self.options, self.counted)
+        if present is None:
+            present = self.fitting(self._so_far())
+        self.set_option(self.counted, int(min(max(present + steps, about.least), about.most)))
+
+    # ---- what each kind of drawing says
+
+    def placed(self, document: Document, points: list[Snap]) -> Document:
+        """The document with what the points describe. Raises EditError."""
+        raise NotImplementedError
+
+    def sizes(self, points: list[Snap]) -> str:
+        """Sizes and counts in a few words."""
+        return ""
+
+    def fitting(self, points: list[Snap]) -> int:
+        """The number of parts that fits the size drawn."""
+        raise NotImplementedError
+
+    def joins(self, index: int) -> bool:
+        """Whether the particle that the point of that index is on becomes one with what is drawn."""
+        return True
+
+    # ---- between them
+
+    def _so_far(self) -> list[Snap]:
+        """The points of the gesture with the pointer for the one that is still missing."""
+        missing = self.pointer is not None and not self._complete and len(self.points) < self.needs
+        return [*self.points, self.pointer] if missing and self.pointer is not None else list(self.points)
+
+    def _sound(self, points: list[Snap]) -> bool:
+        return len(points) == self.needs and (self.needs == 1 or self._apart(*points) > 0.0)
+
+    def _end_at(self, snap: Snap) -> None:
+        points = [snap] if self.needs == 1 else [*self.points, snap]
+        if self._sound(points):
+            self.points, self._complete = points, True
+        else:
+            self._fault = "The end is where the start is; move it away"
+
+    @staticmethod
+    def _apart(a: Snap, b: Snap) -> float:
+        return math.dist(a.point, b.point)
+
+
+def staged(document: Document, points: list[Snap]) -> tuple[Document, list[Snap]]:
+    """A document with nothing of the level but its materials, settings and stand-ins of the particles points are on."""
+    names = list(dict.fromkeys(point.name for point in points if point.name is not None))
+    stand_ins = {name: f"stand-in {index}" for index, name in enumerate(names)}
+    places = {point.name: point.point for point in points}
+    particles = tuple(ParticleDef(id=stand_in, position=places[name]) for name, stand_in in stand_ins.items())
+    level = replaced(document.level, bodies=(), particles=particles, springs=(), welds=(), checks=())
+    level = replaced(level, terrain=(), walls=None, extras={})
+    return Document(level), [replace(point, name=stand_ins.get(point.name or "")) for point in points]

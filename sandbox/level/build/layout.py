@@ -1,0 +1,73 @@
+"""Layout: which slots the bodies, loose particles and loose springs of a level get, and who has which name."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
+from typing import NamedTuple
+
+from sandbox.level.build.expansion import named_particles
+from sandbox.level.faults.level_error import shown, suggestion
+from sandbox.level.format.model import Level
+
+_INDEX = re.compile(r"0|[1-9][0-9]{0,8}")
+
+
+class Owner(NamedTuple):
+    """The slots of one body or loose particle: first, how many, and the indices of those with a name of their own."""
+
+    first: int
+    size: int
+    named: Mapping[str, int] = MappingProxyType({})
+    loose: bool = False
+
+
+class Layout:
+    """Slots by name, as they are before welds: particles of bodies in file order, then loose particles.
+
+    counts: particles of each body. Names that are taken twice keep their first owner; `repeated` lists the others.
+    """
+
+    def __init__(self, level: Level, counts: Sequence[int]) -> None:
+        self.owners: dict[str, Owner] = {}
+        self.repeated: list[tuple[str, str]] = []
+        first = 0
+        for index, (body, count) in enumerate(zip(level.bodies, counts, strict=True)):
+            self._add("bodies", index, body.id, Owner(first, count, named_particles(body)))
+            first += count
+        for index, particle in enumerate(level.particles):
+            self._add("particles", index, particle.id, Owner(first, 1, loose=True))
+            first += 1
+        self.particle_count = first
+
+    def _add(self, part: str, index: int, name: str, owner: Owner) -> None:
+        if name in self.owners:
+            self.repeated.append((f"{part}.{index}.id", name))
+        else:
+            self.owners[name] = owner
+
+    def second_names(self) -> Iterator[tuple[str, int]]:
+        """Names such as `id.start` of particles that have a number too, with their slots."""
+        for name, owner in self.owners.items():
+            for part, index in owner.named.items():
+                yield f"{name}.{part}", owner.first + index
+
+    def slot(self, reference: str) -> int:
+        """Slot of the particle that `id`, `id.k` or a name such as `id.start` refers to. Raises LookupError."""
+        owner = self.owners.get(reference)
+        if owner is not None and owner.loose:
+            return owner.first
+        name, _, part = reference.partition(".")
+        owner = self.owners.get(name)
+        if owner is None:
+            raise LookupError(f"there is no body or particle {shown(name)}" + suggestion(name, self.owners))
+        if owner.loose:
+            raise LookupError(f'"{name}" is a single particle; write "{name}"')
+        if part in owner.named:
+            return owner.first + owner.named[part]
+        if _INDEX.fullmatch(part):
+            if int(part) < owner.size:
+                return owner.first + int(part)
+            raise LookupError(f'"{name}" has the particles {name}.0 to {name}.{owner.size - 1}')
+        choices = [f"{name}.0 to {name}.{owner.size - 1}", *(f"{name}.{part}" for part in owner.named)]
+        listed = choices[0] if len(choices) == 1 else ", ".join(choices[:-1]) + " or " + choices[-1]
+        raise LookupError(f'"{name}" is a body; name one of its particles: {listed}')

@@ -1,0 +1,38 @@
+"""What no single field tells of driven parts: lengths that do not fit each other, keys that say two things."""
+
+from collections.abc import Iterator
+
+from sandbox.level.build.actuators import parts
+from sandbox.level.faults.level_error import Fault, shown
+from sandbox.level.format.drives import HydraulicDef
+from sandbox.level.format.limits import MOTOR_LIMIT
+from sandbox.level.format.model import Level, SpringDef
+
+
+def driven_faults(level: Level) -> Iterator[Fault]:
+    """Every fault of a level's muscles, hydraulics and motors that their fields alone do not show."""
+    for index, spring in enumerate(level.springs):
+        if spring.hydraulic is not None:
+            yield from _hydraulic(f"springs.{index}", spring, spring.hydraulic)
+    motors = 0
+    for part in parts(level):
+        is_spring = isinstance(part.drive, HydraulicDef)
+        path = f"springs.{part.owner}.hydraulic" if is_spring else f"bodies.{part.owner}.motor"
+        if part.drive.key is not None and part.drive.key == part.drive.reverse_key:
+            yield f"{path}.reverse_key", f"{shown(part.drive.key)} is the key as well; name another"
+        motors += not is_spring
+        if motors == MOTOR_LIMIT + 1 and not is_spring:
+            yield path, f"brings the level above {MOTOR_LIMIT} motors; take some out"
+
+
+def _hydraulic(path: str, spring: SpringDef, hydraulic: HydraulicDef) -> Iterator[Fault]:
+    if spring.drive is not None:
+        yield f"{path}.drive", "is a muscle where a hydraulic is; keep one of them"
+    if hydraulic.shortest > hydraulic.longest:
+        yield f"{path}.hydraulic.shortest", f"{shown(hydraulic.shortest)} is above longest, {shown(hydraulic.longest)}"
+    elif spring.rest_length is not None and not hydraulic.shortest <= spring.rest_length <= hydraulic.longest:
+        yield (
+            f"{path}.rest_length",
+            f"{shown(spring.rest_length)} is not from {shown(hydraulic.shortest)} to {shown(hydraulic.longest)}, "
+            "between which the hydraulic goes",
+        )

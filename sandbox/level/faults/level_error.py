@@ -1,0 +1,68 @@
+"""LevelError: all faults of a level at once, each one line that says where it is and what to do."""
+
+import difflib
+import itertools
+import json
+from collections.abc import Collection, Iterable
+from typing import Any
+
+from sandbox.level.format.limits import FAULT_LIMIT
+
+# Where a fault is (a JSON path such as materials.steel.stiffness, or "line 3, column 5"; "" = the whole) and what.
+Fault = tuple[str, str]
+
+# A message shows at most this much of a value [characters], so that hostile values cannot flood a terminal.
+_SHOWN = 60
+# Looking for similar words among more than this is slow, and a guess is then worth little.
+_CHOICES = 200
+
+
+class LevelError(ValueError):
+    """A level that is refused; `faults` holds one line per fault, at most 50, with file, place and what to do."""
+
+    def __init__(self, source: str, faults: Iterable[Fault]) -> None:
+        first = list(itertools.islice(faults, FAULT_LIMIT + 1))
+        if len(first) > FAULT_LIMIT:
+            first[FAULT_LIMIT - 1 :] = [("", "there are more faults than these")]
+        where = one_line(source)
+        self.faults = [": ".join(part for part in (where, place, text) if part) for place, text in first]
+        super().__init__("\n".join(self.faults))
+
+
+def one_line(text: str) -> str:
+    """Text as it is where every character can be printed on one line, else with escapes."""
+    return text if text.isprintable() else json.dumps(text)[1:-1]
+
+
+def shown(value: Any) -> str:
+    """A value as it would stand in the file, cut short; of lists and objects only what they are."""
+    if isinstance(value, list | tuple):
+        return "a list"
+    if isinstance(value, dict):
+        return "an object"
+    if isinstance(value, int) and not isinstance(value, bool) and value.bit_length() > 64:
+        return "an integer of too many digits"
+    text = json.dumps(value, ensure_ascii=False)
+    if not text.isprintable():
+        text = json.dumps(value)
+    return text if len(text) <= _SHOWN else text[: _SHOWN - 4] + ('..."' if isinstance(value, str) else "...")
+
+
+def suggestion(word: str, choices: Collection[str]) -> str:
+    """`; did you mean "..."?` where one of few choices resembles the word, else nothing."""
+    if len(choices) > _CHOICES or len(word) > _SHOWN:
+        return ""
+    close = difflib.get_close_matches(word, choices, n=1)
+    return f"; did you mean {shown(close[0])}?" if close else ""
+
+
+def json_path(parts: Iterable[Any]) -> str:
+    """Keys and indices joined by dots; keys that could not be read so in quotes."""
+    return ".".join(_part(part) for part in parts)
+
+
+def _part(part: Any) -> str:
+    if isinstance(part, int):
+        return str(part)
+    plain = part and part.isprintable() and len(part) <= _SHOWN and not set(part) & set('." ')
+    return part if plain else shown(part)

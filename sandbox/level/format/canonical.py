@@ -1,0 +1,68 @@
+"""The one way a level is written: defaults left out, keys in the order of the models, kind to line-by-line diffs."""
+
+import json
+from typing import Any
+
+from sandbox.level.format.model import Level, Settings
+from sandbox.level.kinds.bodies import file_order
+
+# A value goes on one line where it fits into this many columns; otherwise its items go one to a line.
+_WIDTH = 100
+# Parts of a level whose items always go one to a line, so that adding one changes one line.
+_LISTED = ("materials", "terrain", "bodies", "particles", "springs", "welds", "checks")
+
+
+def level_data(level: Level) -> dict[str, Any]:
+    """A level as JSON data in canonical form: defaults left out, but for the solver, whose default may change."""
+    data = level.model_dump(mode="json", exclude_defaults=True)
+    settings = data.get("settings", {}) | {"solver": level.settings.solver}
+    data["settings"] = {name: settings[name] for name in Settings.model_fields if name in settings}
+    if "bodies" in data:
+        data["bodies"] = [{name: body[name] for name in file_order(body)} for body in data["bodies"]]
+    return {name: data[name] for name in Level.model_fields if name in data}
+
+
+def level_text(level: Level) -> str:
+    """A level as the text of its file."""
+    lines = [f"  {json.dumps(key)}: {_part(key, value)}" for key, value in level_data(level).items()]
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def _part(key: str, value: Any) -> str:
+    if key not in _LISTED:
+        return _fitted(value, 2, len(key) + 6)
+    if key == "bodies":
+        return _broken(value, 2, [_broken_body(body, 4) for body in value])
+    if isinstance(value, dict):
+        return _broken(value, 2, [_fitted(item, 4, len(_dump(name)) + 6) for name, item in value.items()])
+    return _broken(value, 2, [_fitted(item, 4, 4) for item in value])
+
+
+def _broken_body(body: dict[str, Any], indent: int) -> str:
+    return _broken(body, indent, [_fitted(value, indent + 2, indent + len(key) + 6) for key, value in body.items()])
+
+
+def _fitted(value: Any, indent: int, column: int) -> str:
+    """Text of a value that begins at a column, on one line if it fits."""
+    line = _dump(value)
+    if not isinstance(value, list | dict) or not value or column + len(line) < _WIDTH:
+        return line
+    if isinstance(value, dict):
+        items = [_fitted(item, indent + 2, indent + len(_dump(key)) + 4) for key, item in value.items()]
+    else:
+        items = [_fitted(item, indent + 2, indent + 2) for item in value]
+    return _broken(value, indent, items)
+
+
+def _broken(value: list[Any] | dict[str, Any], indent: int, items: list[str]) -> str:
+    if isinstance(value, dict):
+        items = [f"{_dump(key)}: {item}" for key, item in zip(value, items, strict=True)]
+    if not items:
+        return "{}" if isinstance(value, dict) else "[]"
+    opening, closing = "{}" if isinstance(value, dict) else "[]"
+    margin = "\n" + " " * (indent + 2)
+    return opening + margin + ("," + margin).join(items) + "\n" + " " * indent + closing
+
+
+def _dump(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False)

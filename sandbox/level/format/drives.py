@@ -1,0 +1,35 @@
+"""Models of what is driven: muscles, hydraulics and motors."""
+
+from pydantic import Field
+
+from sandbox.level.format.quantities import Amplitude, Description, Key, Period, Phase, Rate, Size, Torque, TurnRate
+
+
+class MuscleDef(Description):
+    """A wave of the rest length: two parabolas a period, one up and one down, much like a sine."""
+
+    amplitude: Amplitude = Field(description="How far the rest length swings either way, as a share of it.")
+    period: Period = Field(description="Ticks from one swing to the next; it repeats exactly.")
+    phase: Phase = Field(default=0.0, description="Part of a period that the wave is ahead; 0 = begins to lengthen.")
+
+
+class _KeyedDef(Description):
+    """What can be driven by keys or commands."""
+
+    key: Key | None = Field(default=None, description="Key that drives it while held down, a letter or digit.")
+    reverse_key: Key | None = Field(default=None, description="Key that drives it the other way.")
+
+
+class HydraulicDef(_KeyedDef):
+    """A rest length that goes from one length to another at a rate, while a key or command drives it."""
+
+    shortest: Size = Field(description="Least rest length; where it begins, if the spring has no `rest_length`.")
+    longest: Size = Field(description="Largest rest length.")
+    rate: Rate = Field(description="How fast the rest length grows while driven forward.")
+
+
+class MotorDef(_KeyedDef):
+    """Turns a wheel about its hub; what springs join to the hub takes the reaction."""
+
+    speed: TurnRate = Field(description="Turning rate against what the hub is fixed to, counter-clockwise.")
+    torque: Torque = Field(description="Largest torque; it gives less where less is needed.")

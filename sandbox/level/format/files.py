@@ -1,0 +1,93 @@
+"""Level files: read with limits first, write so that no level is lost, find what is shipped."""
+
+import os
+import stat
+from pathlib import Path
+
+from sandbox.level.faults.level_error import LevelError, suggestion
+from sandbox.level.faults.validate import check_level
+from sandbox.level.format.canonical import level_data, level_text
+from sandbox.level.format.limits import FILE_LIMIT
+from sandbox.level.format.model import Level
+from sandbox.level.format.parse import parse_level
+from sandbox.level.format.writing import refusal_of, write_over
+
+__all__ = [
+    "LevelError",
+    "level_data",
+    "load_level",
+    "parse_level",
+    "read_bytes",
+    "read_level",
+    "shipped_folder",
+    "shipped_levels",
+    "write_level",
+]
+
+_PACKAGE = Path(__file__).resolve().parents[2]
+
+
+def read_level(path: str | os.PathLike[str]) -> Level:
+    """Read a level file. Raises LevelError with one line per fault, also where the file itself cannot be read."""
+    source = os.fspath(path)
+    return parse_level(read_bytes(source), source)
+
+
+def read_bytes(path: str | os.PathLike[str]) -> bytes:
+    """Read the bytes of a level file, of one beyond the limit no more than shows it. Raises LevelError."""
+    source = os.fspath(path)
+    try:
+        if not stat.S_ISREG(os.stat(source).st_mode):
+            kind = "a folder" if os.path.isdir(source) else "no regular file"
+            raise LevelError(source, [("", f"is {kind}; name a level file")])
+        with open(source, "rb") as file:
+            return file.read(FILE_LIMIT + 1)
+    except FileNotFoundError:
+        raise LevelError(source, [("", "there is no such file")]) from None
+    except LevelError:
+        raise
+    except (OSError, ValueError) as error:
+        raise LevelError(source, [("", f"cannot be read: {refusal_of(error)}")]) from None
+
+
+def load_level(name: str | os.PathLike[str]) -> Level:
+    """Read a level file, or the shipped level of that bare name (`rope`). Raises LevelError."""
+    text = os.fspath(name)
+    if "\0" in text or Path(text).name != text or os.path.isfile(text):
+        return read_level(text)
+    shipped = {path.stem: path for path in shipped_levels()}
+    found = shipped.get(text) or shipped.get(text.removesuffix(".json"))
+    if found is not None or os.path.lexists(text):
+        return read_level(found or text)
+    hint = suggestion(text, shipped) or "; shipped are " + ", ".join(shipped)
+    raise LevelError(text, [("", "there is no such file and no shipped level of that name" + hint)])
+
+
+def write_level(level: Level, path: str | os.PathLike[str], backups: Path | None = None) -> str | None:
+    """Write a level in canonical form, whole or not at all. Raises LevelError where it could not be read back.
+
+    Where the place cannot replace a file in one step, a copy of the old one is kept first (beside it, or in the
+    folder `backups`): the warning that says so, else None.
+    """
+    source = os.fspath(path)
+    check_level(level, source)
+    data = level_text(level).encode()
+    if len(data) > FILE_LIMIT:
+        raise LevelError(source, [("", f"would be larger than {FILE_LIMIT // 1024 // 1024} MiB; make it smaller")])
+    try:
+        return write_over(Path(os.path.realpath(source)), data, backups)
+    except (OSError, ValueError) as error:
+        raise LevelError(source, [("", f"cannot be written: {refusal_of(error)}")]) from None
+
+
+def shipped_folder(kind: str) -> Path:
+    """Folder of the shipped "levels" or "assets": the checkout's own where there is one, else the wheel's."""
+    checkout = _PACKAGE.parent
+    if (checkout / "pyproject.toml").is_file() and (checkout / kind).is_dir():
+        return checkout / kind
+    return _PACKAGE / "_shipped" / kind
+
+
+def shipped_levels() -> list[Path]:
+    """Files of the shipped levels, in order of their names."""
+    return sorted(shipped_folder("levels").glob("*.json"))

@@ -1,0 +1,136 @@
+"""What the validation library found, in the words of a level maker."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from pydantic import BaseModel
+
+from sandbox.level.checks import CheckDef
+from sandbox.level.faults.level_error import Fault, json_path, shown, suggestion
+from sandbox.level.format.drives import HydraulicDef, MotorDef, MuscleDef
+from sandbox.level.format.model import HookeMaterial, Level, NissenMaterial, ParticleDef, Settings, SpringDef
+from sandbox.level.format.quantities import ID_PATTERN, KEY_PATTERN
+from sandbox.level.kinds.bodies import KINDS, BoxShape, CircleShape, PolygonShape
+
+Location = tuple[Any, ...]
+
+_SHAPES: dict[str, type[BaseModel]] = {"box": BoxShape, "circle": CircleShape, "polygon": PolygonShape}
+_MATERIALS: dict[str, type[BaseModel]] = {"nissen": NissenMaterial, "hooke": HookeMaterial}
+_MODELS: dict[str, type[BaseModel]] = {
+    "settings": Settings,
+    "particles": ParticleDef,
+    "springs": SpringDef,
+    "checks": CheckDef,
+}
+# Objects inside an item, by the field that holds them.
+_NESTED: dict[str, type[BaseModel]] = {"drive": MuscleDef, "hydraulic": HydraulicDef, "motor": MotorDef}
+_KINDS = "use {} or {}".format(", ".join([*KINDS][:-1]), [*KINDS][-1])
+_SHAPE_FORMS = 'a shape is {"box": [width, height]}, {"circle": radius} or {"polygon": [[x, y], ...]}'
+
+
+def worded(errors: list[dict[str, Any]]) -> Iterator[Fault]:
+    """Faults of the errors that the library lists, in its order, each place and text once."""
+    seen = set()
+    for error in errors:
+        if error["type"] == "too_short" and len(error["input"]) >= error["ctx"]["min_length"]:
+            # The library counts the sound items alone, and has named the others already.
+            continue
+        fault = _fault(error)
+        if fault not in seen:
+            seen.add(fault)
+            yield fault
+
+
+def place(location: Location) -> list[Any]:
+    """A location without the names of the chosen alternatives that the library puts in."""
+    parts = list(location)
+    if parts[:1] in (["bodies"], ["materials"]) and len(parts) > 2:
+        del parts[2]
+        if parts[0] == "bodies" and parts[2:3] == ["shape"] and len(parts) > 3:
+            del parts[3]
+    return [part for part in parts if part != "[key]"]
+
+
+def _fault(error: dict[str, Any]) -> Fault:
+    location, kind, value = error["loc"], error["type"], error["input"]
+    parts, context = place(location), error.get("ctx", {})
+    if kind == "missing":
+        if isinstance(location[-1], int):
+            needed = "4 numbers" if location[0] == "view" else "2 names" if location[0] == "welds" else "2 numbers"
+            return json_path(parts[:-1]), f"needs {needed}, has {len(value)}"
+        return json_path(parts), "is missing; it has no default"
+    if kind.startswith("union_tag") or (kind == "dict_type" and len(parts) == 2 and parts[0] == "bodies"):
+        return _kind_fault(parts, kind, value)
+    if kind == "extra_forbidden":
+        keys = list(_model(location).model_fields)
+        known = suggestion(parts[-1], keys) or "; the keys here are " + ", ".join(keys)
+        return json_path(parts), "unknown key" + known
+    if kind in _WORDS:
+        return json_path(parts), _WORDS[kind](value, context)
+    if kind in _NOUNS:
+        text = f"{shown(value)} is text, not" if isinstance(value, str) else f"{shown(value)} is not"
+        return json_path(parts), f"{text} {_NOUNS[kind]}"
+    return json_path(parts), f"{shown(value)} cannot be used here"
+
+
+def _kind_fault(parts: list[Any], kind: str, value: Any) -> Fault:
+    if parts[-1:] == ["shape"]:
+        return json_path(parts), _SHAPE_FORMS
+    if not isinstance(value, dict):
+        return json_path(parts), f"{shown(value)} is not an object {{...}} that describes a body"
+    if "type" not in value:
+        return json_path([*parts, "type"]), f"is missing; {_KINDS}"
+    return json_path([*parts, "type"]), f"{shown(value['type'])} is not a kind of body; {_KINDS}"
+
+
+def _model(location: Location) -> type[BaseModel]:
+    if len(location) == 1:
+        return Level
+    # Where two parts follow, the kind of body or the item's number goes before.
+    if len(location) > 3 and location[0] in ("bodies", "springs") and location[-2] in _NESTED:
+        return _NESTED[location[-2]]
+    if location[0] == "bodies":
+        return _SHAPES[location[4]] if len(location) > 5 else KINDS[location[2]]
+    return _MATERIALS[location[2]] if location[0] == "materials" else _MODELS[location[0]]
+
+
+_NOUNS = {
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "float_type": "a number",
+    "string_type": "text in quotes",
+    "bool_type": "true or false",
+    "tuple_type": "a list [...]",
+    "dict_type": "an object {...}",
+    "model_type": "an object {...}",
+}
+
+
+def _literal(value: Any, context: dict[str, Any]) -> str:
+    expected = context["expected"].replace("'", '"')
+    return f"{shown(value)} is not {expected}"
+
+
+def _pattern(value: Any, context: dict[str, Any]) -> str:
+    if context["pattern"] == ID_PATTERN:
+        return f"{shown(value)} holds one of . : , or a control character, or begins with +; an id may not"
+    if context["pattern"] == KEY_PATTERN:
+        return f"{shown(value)} is no key; use a small letter or a digit"
+    return f"{shown(value)} holds control characters; take them out"
+
+
+_WORDS: dict[str, Callable[[Any, dict[str, Any]], str]] = {
+    "less_than_equal": lambda value, context: f"{shown(value)} is above the limit {context['le']:.15g}",
+    "greater_than_equal": lambda value, context: f"{shown(value)} is below the limit {context['ge']:.15g}",
+    "greater_than": lambda value, context: f"{shown(value)} is not above {context['gt']:.15g}",
+    "finite_number": lambda value, context: f"{shown(value)} is not a finite number",
+    "too_long": lambda value, context: f"has {len(value)} items; at most {context['max_length']} are possible",
+    "too_short": lambda value, context: f"has {len(value)} items; at least {context['min_length']} are needed",
+    "string_too_long": lambda value, context: (
+        f"has {len(value)} characters; at most {context['max_length']} are allowed"
+    ),
+    "string_too_short": lambda value, context: "is empty; at least one character is needed",
+    "string_pattern_mismatch": _pattern,
+    "literal_error": _literal,
+    "value_error": lambda value, context: f"{shown(value)}: {context['error']}",
+}

@@ -1,0 +1,284 @@
+"""format_reference(): the reference of the level format for level makers, generated from the schema.
+
+`python -m sandbox.level.format.reference > docs/level-format.md` writes it anew.
+"""
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from sandbox.level.faults.level_error import LevelError
+from sandbox.level.format import limits
+from sandbox.level.format.parse import parse_level
+from sandbox.level.format.schema import TITLES, schema
+
+EXAMPLE = """\
+{
+  "format": "spring-sandbox/level",
+  "version": 1,
+  "name": "A ball under a bridge",
+  "settings": {"solver": "iterative", "iterations": 20, "substeps": 4},
+  "materials": {"steel": {"stiffness": 1.0, "damping": 1.0}},
+  "bodies": [
+    {
+      "type": "bridge",
+      "id": "deck",
+      "start": [-5, 2],
+      "end": [5, 2],
+      "segments": 20,
+      "height": 0.5,
+      "pin": ["start", "end"],
+      "material": "steel"
+    }
+  ],
+  "particles": [{"id": "ball", "position": [0, 0], "mass": 20, "radius": 0.3}],
+  "springs": [{"a": "ball", "b": "deck.31", "material": "steel"}],
+  "checks": [
+    {"name": "the ball hangs", "metric": "y", "particle": "ball", "after": 5, "at_least": -1}
+  ]
+}
+"""
+
+_INTRO = f"""\
+# Level format, version {limits.VERSION}
+
+A level is one JSON file. It describes bodies (ropes, bridges, girders, webs, wheels, rings, jellies, meshes), loose
+particles and loose springs; the program expands them into particles and springs. Lengths are in metres, masses in
+kilograms, times in seconds, angles in radians; y points up. Everything has a default but `format`, `version`, `name`
+and what a body cannot do without. Keys that are not listed here are refused, so a misspelt key is noticed; `extras`
+is the place for other tools' data.
+
+```json
+{EXAMPLE}```
+
+`sandbox check FILE` says what is wrong with a level and runs its checks, `sandbox format FILE` rewrites it in
+canonical form, `sandbox schema` prints the JSON Schema for an editor that completes keys.
+"""
+
+_NAMES = """\
+## Names and references
+
+- An id is 1 to 256 characters without `.` `:` `,` and control characters, and does not begin with `+`. Bodies and
+  loose particles share one set of ids.
+- `deck.7` is particle 7 of the body `deck`, counted from 0 in generation order; `deck.start` and `deck.end` are the
+  ends of a rope, of a bridge's top row, or of a girder's first row; `net.centre` is the middle of a web, `cart.hub`
+  that of a wheel; a loose particle goes by its id alone. Springs, welds and checks refer so.
+- `deck:7` is spring 7 of `deck`, `:7` the loose spring 7: replays use these. Springs that are `cut` leave their
+  numbers unused.
+- A body's `material` names an entry of `materials`, or is `default`, which exists even where the level has none of
+  that name.
+
+## Generation order
+
+- Particles: those of the bodies in file order, then the loose ones. Springs: likewise.
+- Rope: from start to end, evenly, whatever its rest length.
+- Bridge: the top row from start to end, then the bottom row, `height` straight below it. Springs: top chords, bottom
+  chords, verticals, then per cell the diagonal that falls towards the end and the one that rises.
+- Girder: the first row from start to end, then the second, each particle half a cell further and `height` to the
+  right of the way from start to end. Springs: first chords, second chords, then per cell the diagonal that leaves the
+  first row and the one that comes back. It can stand at any angle; a bridge's bottom row lies straight below.
+- Web: the particle in the centre, then ring by ring from the inside, each counter-clockwise from the first spoke.
+  Springs: the threads along the spokes in the order of their outer particles, then those of the rings.
+- Wheel: the hub, the inner ring, the outer ring, each counter-clockwise from the first spoke. Springs: hub to inner
+  ring, inner ring, outer ring, between the rings, then per cell both diagonals.
+- Ring: counter-clockwise from the first particle. Springs: each to the next, the last back to the first.
+- Jelly, box: `round(width / spacing) + 1` columns, rows alike, stretched to fit the box; row by row from the bottom
+  left. Where that leaves one column or row, it stands in the middle.
+- Jelly, circle and polygon: the whole multiples of `spacing` on either side of the centre, the shape's own [0, 0],
+  that lie inside the shape or on its border; row by row from the bottom left.
+- Springs of a jelly: all to the right, all upward, then per cell the diagonal that rises to the right and the other;
+  where both ends exist. The shape is turned by `angle` afterwards.
+- A pinned particle starts at rest, whatever its velocity.
+
+## Touching
+
+- Things touch where the level has `contacts`, `walls` or `terrain`. A contact pushes and never pulls. Contacts are
+  found anew in every step, along the way that each particle goes in it, so that what is fast does not pass.
+- A particle is a disc; the edge of a body is as thick as the particles at its ends. Discs do not turn: they slide, and
+  do not roll; a `wheel` or a jelly circle rolls.
+- Friction between two surfaces is the geometric mean of theirs, restitution the larger one; below 0.5 m/s nothing
+  bounces.
+- A particle whose centre gets inside solid terrain is out after at most 20 ticks and another 20 for each metre of
+  depth, at 60 Hz; one inside a jelly is pushed out too. Weight up to a thousand times that on Earth is held.
+- Momentum is kept to rounding. Where no material has Cs above Cd, nothing is driven and nothing overlaps at the start,
+  the direct solver keeps the energy of what touches at or below its start.
+- Towers buckle under their own weight, as real ones do: eight cubes of 10 by 10 particles on each other stand with
+  Cs 0.99 and Cd 0.999, and fold with 0.9 and 0.99.
+
+## Areas and angles
+
+- Areas and angles obey the equation of the springs, with their own error in place of a length's: Cs is the part of it
+  that is corrected in a tick, Cd the part of its change that is removed.
+- A jelly keeps the signed area of its triangles: two of each cell of its grid, the diagonals between them laid like
+  the colours of a chessboard, one where three corners exist. They take Cs and Cd of its material, on sliders too. A
+  jelly that is crushed, laid on a line or turned inside out comes back; of one set in a single point or mirrored, only
+  the shape is sure to come back, not which way it looks.
+- A ring keeps the area inside it as a whole, times its `inflation`. Of Cs and Cd above 0.99 that area takes 0.99: where
+  springs and area ask for what cannot both be, the area gives way.
+- While a triangle of a jelly is turned over, or its triangles wind round an inner particle more than once, the jelly is
+  tangled: it is also drawn to its form as a whole, with Cs and Cd of its material, and does not touch itself. That
+  adds no energy that it has not lost before, and keeps its momentum, but not its spin.
+- `bending` puts an angular spring on every particle where just two springs of the body meet, of a rope, a ring, or a
+  mesh. At rest the angle is that of the body's form, also where `pose` places it otherwise. It pulls hardest at a fold
+  of 180 degrees from there. Its Cs and Cd are its own.
+- A triangle, a ring or an angle of which a spring along a side is cut is gone.
+
+## Pins, cuts, poses and welds
+
+- `pinned` and `cut` of a body name particles and springs by number, beside what its `pin` holds. A body stays a rope
+  or a wheel with them.
+- `pose` places every particle of a body anew and leaves its rest lengths as they are: a rope saved as it hangs.
+- The two particles of a weld are one, and so are all that welds join to each other. It stands where the first of them
+  in generation order stands, under all their names. Masses add, up to the limit of one particle; the velocity is that
+  of the common centre of mass; the radius is the largest; it is held where one of them is. Rest lengths stay as they
+  are. A spring that would lose its length so is refused.
+"""
+
+_DRIVEN = """\
+## What breaks, yields and is driven
+
+- Strain is `(length - rest length) / rest length`, of every spring with a rest length above 0, taken once, at the end
+  of a tick. First a spring yields: beyond `yield_strain` its rest length follows, so that the strain is `yield_strain`
+  again, until it has changed by the share `yield_limit`. Then it breaks, if the strain is still beyond
+  `tension_limit` or below minus `compression_limit`. A broken spring is gone for the rest of the run; undo brings it
+  back. Both take energy out and never put any in. A stiff material strains little: Cs = Cd = 1 in the direct solver
+  hardly at all, so limits need a softer one, such as Cs 0.9 and Cd 0.99.
+- A muscle's rest length is `L (1 + amplitude wave)`, where the wave of a tick is made of two parabolas: with
+  `u = tick / period + phase`, without its whole part, it is `16 u (1/2 - u)` while `u < 1/2` and
+  `-16 (u - 1/2) (1 - u)` after. It repeats exactly. A body's `drive` makes muscles of all its springs. What is driven
+  does not yield, but breaks.
+- A hydraulic and a motor are driven by a value of -1..1: 1 while the `key` is held down, -1 while the `reverse_key`
+  is, 0 otherwise; the command `set_drive` gives any value between. A hydraulic's rest length changes by `rate` times
+  the value a second, within `shortest` and `longest`. A motor without keys has the value 1 from the start.
+- A motor brings the wheel's turning rate, against that of its mount, to `speed` times the value, with at most `torque`;
+  at the value 0 the wheel turns freely. The mount is the hub with everything that springs join to it from outside the
+  wheel; it gets the reaction, so that momentum and angular momentum are kept. Where the hub or part of its mount is
+  pinned, the reaction goes to the ground. A wheel whose hub nothing holds has no mount, and its motor does nothing.
+- `wind` and `drag`: in a step of h seconds a free particle's velocity becomes `(v + drag h wind) / (1 + drag h)`, which
+  never overshoots. Drag is a rate for every mass, so heavy and light particles slow down alike.
+- `gravity_scale` of welded particles is their mean by mass.
+"""
+
+# Each is one mistake in the example above; the reference shows what the program says to it.
+_MISTAKES = [
+    ('"stiffness": 1.0', '"stiffness": 1.3'),
+    ('"stiffness": 1.0', '"stifness": 1.0'),
+    ('"segments": 20', '"segments": true'),
+    ('"segments": 20', '"segments": 1000000000000'),
+    ('"b": "deck.31"', '"b": "dek.31"'),
+    ('"b": "deck.31"', '"b": "deck"'),
+    ('"height": 0.5', '"height": 0.5, "cut": [101]'),
+    ('"mass": 20', '"mass": -20'),
+    ('"mass": 20', '"mass": 20, "mass": 30'),
+    ('"mass": 20,', '"mass": 20'),
+]
+
+
+def format_reference() -> str:
+    """The reference as Markdown."""
+    return "\n".join([_INTRO, *_tables(), _NAMES, _DRIVEN, _limits(), _errors()])
+
+
+def _tables() -> Iterator[str]:
+    whole = schema()
+    for title, model in [("Level", whole), *((title, whole["$defs"][name]) for name, title in TITLES.items())]:
+        required = model.get("required", [])
+        rows = [
+            f"| `{name}` | {_type(field, whole)} | {_unit(field)} | {_range(field)} | "
+            f"{'required' if name in required else _default(field)} | {field.get('description', '')} |"
+            for name, field in model["properties"].items()
+        ]
+        head = "| field | type | unit | range | default | meaning |\n|---|---|---|---|---|---|"
+        yield "\n".join([f"## {title}\n", f"{model['description']}\n", head, *rows, ""])
+
+
+def _type(field: dict[str, Any], whole: dict[str, Any]) -> str:
+    choices = field.get("anyOf") or field.get("oneOf")
+    if choices:
+        return " or ".join(_type(choice, whole) for choice in choices)
+    if "$ref" in field:
+        return str(whole["$defs"][field["$ref"].rsplit("/", 1)[1]]["title"]).lower()
+    if "const" in field:
+        return f"`{json.dumps(field['const'])}`"
+    if "enum" in field:
+        return " or ".join(f"`{json.dumps(value)}`" for value in field["enum"])
+    if "prefixItems" in field:
+        return "[" + ", ".join(_type(item, whole) for item in field["prefixItems"]) + "]"
+    if field["type"] == "array":
+        return f"list of {_type(field['items'], whole)}"
+    if "patternProperties" in field:
+        return "object of " + " or ".join(_type(item, whole) for item in field["patternProperties"].values())
+    return {"integer": "whole number", "string": "text", "boolean": "true or false"}.get(field["type"], field["type"])
+
+
+def _unit(field: dict[str, Any]) -> str:
+    if "unit" in field:
+        return str(field["unit"])
+    inner = [*field.get("anyOf", []), *([field["items"]] if isinstance(field.get("items"), dict) else [])]
+    return next((unit for unit in map(_unit, inner) if unit), "")
+
+
+def _range(field: dict[str, Any]) -> str:
+    if "minimum" in field and "maximum" in field:
+        return f"{field['minimum']:g}..{field['maximum']:g}"
+    if "exclusiveMinimum" in field:
+        return f"above 0, up to {field['maximum']:g}"
+    if "minimum" in field:
+        return f"{field['minimum']:g} or more"
+    if field.get("type") == "string" and "maxLength" in field:
+        return f"{field.get('minLength', 0)}..{field['maxLength']} characters"
+    inner = [*field.get("anyOf", []), *field.get("prefixItems", [])[:1]]
+    if isinstance(field.get("items"), dict):
+        inner.append(field["items"])
+    each = next((text for text in map(_range, inner) if text), "")
+    counts = {"minItems": "at least", "maxItems": "at most", "maxProperties": "at most"}
+    sizes = [f"{word} {field[key]:,}" for key, word in counts.items() if key in field and "prefixItems" not in field]
+    return "; ".join(part for part in (" ".join(sizes), each) if part)
+
+
+def _default(field: dict[str, Any]) -> str:
+    value = field["default"]
+    return "as below" if isinstance(value, dict) and value else f"`{json.dumps(value)}`"
+
+
+def _limits() -> str:
+    return f"""\
+## Limits
+
+A file beyond one of these is refused before anything is built; nothing is ever clamped.
+
+| what | limit |
+|---|---|
+| file | {limits.FILE_LIMIT // 1024 // 1024} MiB, UTF-8 without a byte order mark |
+| nesting of lists and objects | {limits.DEPTH_LIMIT} |
+| lists and objects in a file | {limits.CONTAINER_LIMIT:,} |
+| particles and springs, after expansion | {limits.PARTICLE_LIMIT:,} and {limits.SPRING_LIMIT:,} |
+| corners of all polygons of a level | {limits.CORNER_LIMIT:,} |
+| coordinates, of what bodies expand to as well | {limits.COORDINATE_LIMIT:g} m either way |
+| velocities, a mesh's own added to the body's | {limits.SPEED_LIMIT:g} m/s each way |
+| text, in `extras` as well | {limits.TEXT_LIMIT} characters |
+| motors | {limits.MOTOR_LIMIT} |
+| numbers | finite: no NaN, Infinity, 1e999; true and "1" are no numbers, 1.0 is no whole number |
+| keys | no key twice in one object |
+"""
+
+
+def _errors() -> str:
+    lines = []
+    for right, wrong in _MISTAKES:
+        try:
+            parse_level(EXAMPLE.replace(right, wrong, 1).encode(), "levels/x.json")
+        except LevelError as error:
+            lines += [f"- `{wrong}`", "", "  ```", *(f"  {fault}" for fault in error.faults), "  ```"]
+    return f"""\
+## When something is wrong
+
+All faults are listed at once, at most {limits.FAULT_LIMIT}, each on a line with the file, the place and what to do.
+Mistakes in the example above, and what the program says to them:
+
+{chr(10).join(lines)}
+"""
+
+
+if __name__ == "__main__":
+    print(format_reference(), end="")

@@ -1,0 +1,47 @@
+"""JSON Schema of the level format, from the models."""
+
+from typing import Any
+
+from sandbox.level.format.model import Level
+from sandbox.level.kinds.bodies import KINDS, file_order
+
+# Titles of the definitions, in the order in which the reference explains them.
+TITLES = {
+    "Settings": "Settings",
+    "NissenMaterial": "Material",
+    "HookeMaterial": "Hooke material",
+    "ContactsDef": "Contacts",
+    "WallsDef": "Walls",
+    "TerrainDef": "Terrain",
+    "RopeDef": "Rope",
+    "BridgeDef": "Bridge",
+    "GirderDef": "Girder",
+    "WebDef": "Web",
+    "WheelDef": "Wheel",
+    "RingDef": "Ring",
+    "JellyDef": "Jelly",
+    "BoxShape": "Box",
+    "CircleShape": "Circle",
+    "PolygonShape": "Polygon",
+    "MeshDef": "Mesh",
+    "BendingDef": "Bending",
+    "ParticleDef": "Loose particle",
+    "SpringDef": "Loose spring",
+    "MuscleDef": "Muscle",
+    "HydraulicDef": "Hydraulic",
+    "MotorDef": "Motor",
+    "CheckDef": "Acceptance check",
+}
+
+
+def schema() -> dict[str, Any]:
+    """JSON Schema (2020-12) of a level file; `unit` on a property is its unit. References and counts are beyond it."""
+    result = Level.model_json_schema()
+    for name, definition in result["$defs"].items():
+        definition["title"] = TITLES[name]
+    for kind in KINDS.values():
+        definition = result["$defs"][kind.__name__]
+        definition["properties"] = {
+            name: definition["properties"][name] for name in file_order(definition["properties"])
+        }
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **result, "title": "Spring Sandbox level"}

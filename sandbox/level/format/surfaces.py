@@ -1,0 +1,151 @@
+"""Surfaces: the terrain of a level, what touches what, and how."""
+
+import itertools
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.level.faults.level_error import Fault, shown, suggestion
+from sandbox.level.format.limits import BODY_RADIUS, COLLISION_GROUP_LIMIT, CORNER_LIMIT
+from sandbox.level.format.model import ContactsDef, Level, ParticleDef, TerrainDef
+from sandbox.level.kinds.bodies import BodyDef
+from sandbox.level.kinds.polygon import is_simple
+from sandbox.physics.actuators import Surface
+from sandbox.physics.collision.outline import ALL_GROUPS, TERRAIN_GROUP
+from sandbox.physics.terrain import NO_TERRAIN, Chain, Terrain, make_terrain
+
+# Names of the groups that exist in every level: that of terrain and walls, and that of bodies which name none.
+TERRAIN_NAME, DEFAULT_GROUP = "terrain", "default"
+
+Item = BodyDef | ParticleDef
+
+
+def _items(level: Level) -> Iterator[tuple[str, Item]]:
+    """Every body and loose particle with its place in the file."""
+    for part in ("bodies", "particles"):
+        for index, item in enumerate(getattr(level, part)):
+            yield f"{part}.{index}", item
+
+
+def group_bits(level: Level) -> dict[str, int]:
+    """The bit of every collision group of a level, by its name, in the order of the file."""
+    named = (item.collision_group for _, item in _items(level) if item.collision_group is not None)
+    names = dict.fromkeys([TERRAIN_NAME, DEFAULT_GROUP, *named])
+    return {name: TERRAIN_GROUP << number for number, name in enumerate(names)}
+
+
+def surface_faults(level: Level) -> Iterator[Fault]:
+    """Faults of terrain, walls and collision groups."""
+    taken: set[str] = {item.id for _, item in _items(level)}
+    corners = 0
+    for index, piece in enumerate(level.terrain):
+        path = f"terrain.{index}"
+        if piece.id in taken:
+            yield f"{path}.id", f"{shown(piece.id)} is taken; every piece of terrain needs an id of its own"
+        taken.add(piece.id)
+        corners += len(piece.polyline or piece.polygon or ())
+        if corners > CORNER_LIMIT:
+            yield path, f"brings the corners of all terrain above {CORNER_LIMIT:,}; use fewer"
+            break
+        yield from _shape_faults(path, piece)
+    walls = level.walls
+    if walls is not None and not (walls.box[0] < walls.box[2] and walls.box[1] < walls.box[3]):
+        yield "walls.box", "left and bottom come first and must be below right and top"
+    groups = group_bits(level)
+    for path, item in _items(level):
+        if item.collision_group == TERRAIN_NAME:
+            yield f"{path}.collision_group", f'"{TERRAIN_NAME}" is the group of terrain and walls; take another name'
+        for number, name in enumerate(item.collides if isinstance(item.collides, tuple) else ()):
+            if name not in groups:
+                yield f"{path}.collides.{number}", f"there is no group {shown(name)}" + suggestion(name, groups)
+    if len(groups) > COLLISION_GROUP_LIMIT:
+        yield "bodies", f"name {len(groups) - 2} collision groups; at most {COLLISION_GROUP_LIMIT - 2} are allowed"
+
+
+def _shape_faults(path: str, piece: TerrainDef) -> Iterator[Fault]:
+    if (piece.polyline is None) == (piece.polygon is None):
+        yield path, "needs one of polyline and polygon"
+    elif piece.polygon is not None:
+        if len(piece.polygon) < 3:
+            yield f"{path}.polygon", f"has {len(piece.polygon)} corners; a polygon has at least 3"
+        elif not is_simple(piece.polygon):
+            yield f"{path}.polygon", "its sides touch or cross, or a corner comes twice; draw it without"
+    elif any(a == b for a, b in itertools.pairwise(piece.polyline or ())):
+        yield f"{path}.polyline", "a corner comes twice in a row; take one out"
+
+
+def terrain_of(level: Level) -> Terrain:
+    """The terrain of a level: its pieces in file order, then the walls."""
+    usual = level.contacts or ContactsDef()
+
+    def surface(given: float | None, otherwise: float) -> float:
+        return otherwise if given is None else given + 0.0
+
+    chains = [
+        Chain(
+            piece.polyline or piece.polygon or (),
+            "line" if piece.polyline is not None else "solid",
+            surface(piece.friction, usual.friction),
+            surface(piece.restitution, usual.restitution),
+        )
+        for piece in level.terrain
+    ]
+    if level.walls is not None:
+        left, bottom, right, top = level.walls.box
+        friction = surface(level.walls.friction, usual.friction)
+        restitution = surface(level.walls.restitution, usual.restitution)
+        corners = ((left, bottom), (right, bottom), (right, top), (left, top))
+        chains.append(Chain(corners, "hollow", friction, restitution))
+    return make_terrain(chains) if chains else NO_TERRAIN
+
+
+def surfaces_of(level: Level, counts: Sequence[int]) -> dict[str, NDArray[Any]]:
+    """Radius, friction, restitution, owner, group and collides of every particle (n,), by argument of add_particles.
+
+    counts: particles of each body. Where the level has no contacts, nothing collides.
+    """
+    usual, bits = level.contacts or ContactsDef(), group_bits(level)
+    sizes = [*counts, *([1] * len(level.particles))]
+    rows = []
+    for index, (_, item) in enumerate(_items(level)):
+        if isinstance(item, ParticleDef):
+            radius = item.radius
+        else:
+            radius = BODY_RADIUS if item.particle_radius is None else item.particle_radius
+        rows.append(
+            (
+                radius + 0.0,
+                usual.friction if item.friction is None else item.friction,
+                usual.restitution if item.restitution is None else item.restitution,
+                index,
+                bits[item.collision_group or DEFAULT_GROUP],
+                _touched(item, bits) if level.has_contacts else 0,
+            )
+        )
+    columns = list(zip(*rows, strict=True)) if rows else [()] * 6
+    names = ("radius", "friction", "restitution", "owner", "group", "collides")
+    kinds = (np.float64, np.float64, np.float64, np.int32, np.int64, np.int64)
+    return {
+        name: np.repeat(np.array(column, dtype=kind), sizes)
+        for name, column, kind in zip(names, columns, kinds, strict=True)
+    }
+
+
+def surface_of(level: Level) -> Surface:
+    """What a particle that joins the level while it runs is like to the touch: like one that says nothing else."""
+    if not level.has_contacts:
+        return Surface()
+    usual = level.contacts or ContactsDef()
+    return Surface(usual.friction, usual.restitution, group_bits(level)[DEFAULT_GROUP], ALL_GROUPS)
+
+
+def _touched(item: Item, bits: dict[str, int]) -> int:
+    """Bits of the groups that a body or particle touches."""
+    if isinstance(item.collides, bool):
+        return ALL_GROUPS if item.collides else 0
+    touched = 0
+    for name in item.collides:
+        touched |= bits[name]
+    return touched

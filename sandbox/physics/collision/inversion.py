@@ -1,0 +1,126 @@
+"""Tangles: which jellies are so out of shape that springs and areas alone may not find back.
+
+A jelly is a group of triangles that share sides. It is tangled while a triangle of it is turned over, or while the
+triangles about one of its inner particles do not wind round that particle just once.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.physics.components import label_bodies
+from sandbox.physics.constraints import AREA
+from sandbox.physics.jit import inlined_kernel, kernel
+from sandbox.physics.world import Slots, World
+
+
+class Jellies(NamedTuple):
+    """Jellies of t triangles: g of them, with k particles in all.
+
+    Of triangles: group (t,) and member (t, 3) = their corners among the k. first (g,): a triangle of each jelly; start
+    (g+1,): where its particles begin; particle (k,); corner (k,): one of the 3 t corners that stands there; inner (k,):
+    whether triangles are all round it.
+    """
+
+    group: Slots
+    member: Slots
+    first: Slots
+    start: Slots
+    particle: Slots
+    corner: Slots
+    inner: NDArray[np.bool_]
+
+
+def group_triangles(corners: Slots) -> Jellies:
+    """The jellies that triangles of these particles (t, 3) make, in the order of their first triangles."""
+    sides = np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 2)
+    keys = sides.min(axis=1) << 32 | sides.max(axis=1)
+    order = np.argsort(keys, kind="stable")
+    shared = np.flatnonzero(keys[order][1:] == keys[order][:-1])
+    label = np.arange(len(corners))
+    label_bodies(order[shared] // 3, order[shared + 1] // 3, label)
+    first, group = np.unique(label, return_inverse=True)
+    particles, corner, member = np.unique(group[:, None] << 32 | corners, return_index=True, return_inverse=True)
+    member = member.reshape(-1, 3)
+    # Once round: as many triangles as neighbours.
+    pairs = np.stack([member, np.roll(member, -1, axis=1)], axis=-1).reshape(-1, 2)
+    pairs = np.unique(np.concatenate([pairs, pairs[:, ::-1]]), axis=0)
+    neighbours, triangles = (np.bincount(ends, minlength=len(particles)) for ends in (pairs[:, 0], member.reshape(-1)))
+    start = np.searchsorted(particles >> 32, np.arange(len(first) + 1))
+    return Jellies(group, member, first, start, particles & 0xFFFFFFFF, corner, neighbours == triangles)
+
+
+@inlined_kernel
+def _crossing(px, py, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+    # +1 where the corner at p, from a to b, sweeps over the direction (1, 0) counter-clockwise, -1 clockwise.
+    crossing = 0
+    below = ay < py
+    if below != (by < py):
+        side = (ax - px) * (by - py) - (ay - py) * (bx - px)
+        if below and side > 0.0:
+            crossing = 1
+        elif not below and side < 0.0:
+            crossing = -1
+    return crossing
+
+
+@inlined_kernel
+def wind(place, a, b, c, member, at, turns):  # type: ignore[no-untyped-def]
+    """Count the turns of triangle a b c, whose corners are member[at], round each of them; its area, doubled."""
+    ax = place[a, 0]
+    ay = place[a, 1]
+    bx = place[b, 0]
+    by = place[b, 1]
+    cx = place[c, 0]
+    cy = place[c, 1]
+    turns[member[at, 0]] += _crossing(ax, ay, bx, by, cx, cy)
+    turns[member[at, 1]] += _crossing(bx, by, cx, cy, ax, ay)
+    turns[member[at, 2]] += _crossing(cx, cy, ax, ay, bx, by)
+    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+
+
+@kernel
+def _find(position, rest, element, corners, jellies, turns, is_tangled, tangled):  # type: ignore[no-untyped-def]
+    for t in range(corners.shape[0]):
+        area = wind(position, corners[t, 0], corners[t, 1], corners[t, 2], jellies.member, t, turns)
+        wanted = rest[element[t], 0]
+        if wanted * rest[element[t], 1] > 0.0 and not area * wanted > 0.0:
+            is_tangled[jellies.group[t]] = True
+    for g in range(is_tangled.shape[0]):
+        once = 1 if rest[element[jellies.first[g]], 1] > 0.0 else -1
+        for i in range(jellies.start[g], jellies.start[g + 1]):
+            if jellies.inner[i] and turns[i] != once:
+                is_tangled[g] = True
+        if is_tangled[g]:
+            for i in range(jellies.start[g], jellies.start[g + 1]):
+                tangled[jellies.particle[i]] = True
+
+
+class Triangles(NamedTuple):
+    """The triangles of a world that keep their areas, t of them: element (t,), corners (t, 3), and their jellies."""
+
+    element: Slots
+    corners: Slots
+    jellies: Jellies
+
+
+def triangles_of(world: World) -> Triangles:
+    """The triangles of a world, as its elements are now."""
+    kept = (world.element_kind == AREA) & (world.element_corners == 3) & world.element_active
+    element = np.flatnonzero(kept)
+    corners = world.corner_particle[world.element_first[element, None] + np.arange(3)].astype(np.int64)
+    return Triangles(element, corners, group_triangles(corners))
+
+
+def tangled_particles(world: World, triangles: Triangles, count: int) -> NDArray[np.bool_]:
+    """Which of `count` vertices, the particles first, belong to a tangled jelly."""
+    tangled = np.zeros(count, dtype=np.bool_)
+    if len(triangles.element):
+        jellies = triangles.jellies
+        turns, is_tangled = np.zeros(len(jellies.particle), np.int64), np.zeros(len(jellies.first), np.bool_)
+        _find(
+            world.position, world.element_rest, triangles.element, triangles.corners, jellies, turns, is_tangled,
+            tangled,
+        )  # fmt: skip
+    return tangled

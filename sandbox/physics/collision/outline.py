@@ -1,0 +1,152 @@
+"""What can touch: the edges that springs are, and terrain, as topology alone decides; kept while that stays."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.physics.collision.inversion import Triangles, tangled_particles, triangles_of
+from sandbox.physics.collision.types import Shapes
+from sandbox.physics.terrain import Terrain
+from sandbox.physics.world import HAND_MATERIAL, Slots, World
+
+# The group of terrain, and the bits of every group.
+TERRAIN_GROUP = 1
+ALL_GROUPS = (1 << 62) - 1
+# Owner of the first chain of terrain, the others below it; particles and bodies are above.
+TERRAIN_OWNER = -2_000_000_000
+# Kinds of edge of a spring: none, a line with two sides, an outline with what is solid on its left, or right.
+NO_EDGE, LINE, SOLID_LEFT, SOLID_RIGHT = 0, 1, 2, 3
+
+
+@dataclass(frozen=True)
+class Outline:
+    """What the edges of a world's springs are, which topology alone decides; signature: what it was made for.
+
+    shielded: particles inside a solid body that no torn spring lays bare; discs do not meet them.
+    solid (k, 2): first edge and one past the last of each owner's edges where any is solid, terrain included.
+    """
+
+    signature: tuple[NDArray[np.generic], ...]
+    edge_a: Slots
+    edge_b: Slots
+    side: Slots
+    number: Slots
+    edge_start: Slots
+    edge_of: Slots
+    near_start: Slots
+    near_of: Slots
+    solid: Slots
+    owner: Slots
+    shielded: NDArray[np.bool_]
+    dynamic: int
+    triangles: Triangles
+
+
+def outline_of(world: World) -> Outline:
+    """The outline of a world's bodies, made anew where springs have changed."""
+    signature = (
+        world.spring_active, world.edge, world.particle_a, world.particle_b, world.owner, world.element_active,
+        world.corner_particle,
+    )  # fmt: skip
+    kept: Outline | None = world.contact_cache
+    if kept is None or not all(map(np.array_equal, kept.signature, signature)):
+        kept = world.contact_cache = _make_outline(world, tuple(array.copy() for array in signature))
+    return kept
+
+
+def _make_outline(world: World, signature: tuple[NDArray[np.generic], ...]) -> Outline:
+    terrain, count = world.terrain, world.particle_count
+    chosen = np.flatnonzero(world.spring_active & (world.edge != NO_EDGE))
+    # Edges of one owner lie together, so that a whole outline can be walked through.
+    chosen = chosen[np.argsort(world.owner[world.particle_a[chosen]], kind="stable")]
+    a, b = world.particle_a[chosen].astype(np.int64), world.particle_b[chosen].astype(np.int64)
+    swapped = world.edge[chosen] == SOLID_RIGHT
+    a, b = np.where(swapped, b, a), np.where(swapped, a, b)
+    edge_a, edge_b = np.append(a, count + terrain.edge_a), np.append(b, count + terrain.edge_b)
+    owner = np.append(world.owner.astype(np.int64), _owners(terrain))
+    side = np.append(_sides(world.edge[chosen] != LINE, a, b, owner), terrain.solid)
+    joined = np.flatnonzero(world.spring_active)
+    ends = world.particle_a[joined].astype(np.int64), world.particle_b[joined].astype(np.int64)
+    edges = np.arange(len(edge_a))
+    return Outline(
+        signature,
+        edge_a,
+        edge_b,
+        side,
+        np.append(chosen, np.arange(len(terrain.edge_a))),
+        *_listed(np.append(edge_a, edge_b), np.append(edges, edges), len(owner)),
+        *_listed(np.append(*ends), np.append(*ends[::-1]), count),
+        _solid(owner[edge_a] if len(edge_a) else edge_a, side),
+        owner,
+        _shielded(world, chosen),
+        len(chosen),
+        triangles_of(world),
+    )
+
+
+def _sides(solid: NDArray[np.bool_], a: Slots, b: Slots, owner: Slots) -> Slots:
+    """Side of each edge a to b: an outline that is torn open encloses nothing, so all its edges have two sides."""
+    ways = np.bincount(a[solid], minlength=len(owner)) != np.bincount(b[solid], minlength=len(owner))
+    return (solid & ~np.isin(owner[a], owner[ways])).astype(np.int64)
+
+
+def _shielded(world: World, edges: Slots) -> NDArray[np.bool_]:
+    solid = edges[world.edge[edges] != LINE]
+    shielded = np.isin(world.owner, world.owner[world.particle_a[solid]])
+    for bare in (edges, np.flatnonzero(~world.spring_active)):
+        # A hand that holds nothing tears nothing.
+        bare = bare[world.material[bare] != HAND_MATERIAL]
+        shielded[world.particle_a[bare]] = shielded[world.particle_b[bare]] = False
+    return shielded
+
+
+def _owners(terrain: Terrain) -> Slots:
+    owner = np.zeros(len(terrain.vertex), dtype=np.int64)
+    owner[terrain.edge_a] = TERRAIN_OWNER - terrain.chain
+    owner[terrain.edge_b] = TERRAIN_OWNER - terrain.chain
+    return owner
+
+
+def _listed(keys: Slots, values: Slots, count: int) -> tuple[Slots, Slots]:
+    """Where the values of each of `count` keys begin, and the values by key."""
+    order = np.lexsort((values, keys))
+    return np.append(0, np.cumsum(np.bincount(keys, minlength=count))).astype(np.int64), values[order]
+
+
+def _solid(owner: Slots, side: Slots) -> Slots:
+    starts = np.flatnonzero(np.diff(owner, prepend=owner[:1] - 1))
+    spans = np.stack([starts, np.append(starts[1:], len(owner))], axis=1) if len(owner) else np.zeros((0, 2), np.int64)
+    return spans[[bool(side[first:last].any()) for first, last in spans.tolist()]] if len(spans) else spans
+
+
+def shapes_of(world: World, outline: Outline) -> Shapes:
+    """The shapes of a step: what topology has decided, where it is now and how it moves."""
+    terrain = world.terrain
+    size = len(terrain.vertex)
+    friction, restitution = np.zeros((2, size))
+    friction[terrain.edge_a], restitution[terrain.edge_a] = terrain.friction, terrain.restitution
+    friction[terrain.edge_b], restitution[terrain.edge_b] = terrain.friction, terrain.restitution
+    still = np.zeros((size, 2))
+    return Shapes(
+        np.concatenate([world.position, terrain.vertex]),
+        np.concatenate([world.velocity, still]),
+        np.concatenate([world.origin, terrain.vertex]),
+        np.append(world.radius, np.zeros(size)),
+        np.append(world.friction, friction),
+        np.append(world.restitution, restitution),
+        outline.owner,
+        np.append(world.group, np.full(size, TERRAIN_GROUP)),
+        np.append(np.where(world.particle_active, world.collides, 0), np.full(size, ALL_GROUPS)),
+        np.append(world.inverse_mass, np.zeros(size)),
+        outline.edge_a,
+        outline.edge_b,
+        outline.side,
+        outline.number,
+        outline.edge_start,
+        outline.edge_of,
+        outline.near_start,
+        outline.near_of,
+        outline.shielded,
+        tangled_particles(world, outline.triangles, world.particle_count + size),
+    )

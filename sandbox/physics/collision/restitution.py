@@ -1,0 +1,39 @@
+"""Restitution: the velocity with which what meets fast enough leaves again."""
+
+import math
+
+from sandbox.physics.collision.types import weight_of
+from sandbox.physics.jit import inner_kernel, kernel
+
+# Bodies that meet more slowly [m/s] do not bounce. Lower makes what rests tremble, higher cuts off a last bounce.
+SLOWEST_BOUNCE = 0.5
+
+
+@kernel
+def load_bounces(contacts, start, velocity, inverse_mass, h):  # type: ignore[no-untyped-def]
+    """The bounce [m/s] of every contact, from the velocities before and after gravity and all else from outside."""
+    for c in range(contacts.particle.shape[0]):
+        contacts.bounce[c] = -1.0
+        if contacts.restitution[c] == 0.0:
+            continue
+        nx = contacts.normal[c, 0]
+        ny = contacts.normal[c, 1]
+        before = 0.0
+        after = 0.0
+        for end in range(3):
+            p, weight = weight_of(contacts, c, end)
+            if p >= 0:
+                before += weight * (start[p, 0] * nx + start[p, 1] * ny)
+                after += weight * (velocity[p, 0] * nx + velocity[p, 1] * ny)
+        gap = contacts.gap[c]
+        if after < -SLOWEST_BOUNCE and gap + h * after < 0.0:
+            contacts.bounce[c] = _bounce(contacts.restitution[c], -before, (before - after) / h, gap, h)
+
+
+@inner_kernel
+def _bounce(restitution, speed, fall, gap, h):  # type: ignore[no-untyped-def]
+    # The velocity after a step in which what approaches at `speed` bounces off at the height of the surface, not where
+    # the step begins: symplectic Euler keeps v^2/2 + g x - g h v/2 in free fall, and restitution^2 is left.
+    energy = 0.5 * speed * speed + fall * gap + 0.5 * fall * h * speed
+    left = 2.0 * (restitution * restitution * energy - fall * gap) + 0.25 * fall * fall * h * h
+    return max(0.0, math.sqrt(max(0.0, left)) - 0.5 * fall * h)

@@ -1,0 +1,101 @@
+"""Last of all in a step: whatever the solver has left, no particle's centre crosses terrain in the step."""
+
+import math
+
+from sandbox.physics.collision.contacts import span
+from sandbox.physics.collision.outline import TERRAIN_GROUP
+from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.world import Floats, World
+
+# A particle that would cross a line of terrain is stopped this far in front of it, in units of its distance, and at
+# least SKIN [m], so that rounding never carries it across. More would be seen, less could not be told from rounding.
+STOP_SHARE = 0.01
+SKIN = 1e-6
+STOPS = 3
+
+
+@kernel
+def _stop(position, velocity, ahead, collides, active, inverse_mass, terrain, h):  # type: ignore[no-untyped-def]
+    for p in range(position.shape[0]):
+        if not active[p] or inverse_mass[p] == 0.0 or not collides[p] & TERRAIN_GROUP:
+            continue
+        wx = h * velocity[p, 0] + ahead[p, 0]
+        wy = h * velocity[p, 1] + ahead[p, 1]
+        stops, x, y = stopped(position[p, 0], position[p, 1], wx, wy, terrain)
+        if stops > STOPS:
+            velocity[p, 0] = 0.0
+            velocity[p, 1] = 0.0
+            ahead[p, 0] = 0.0
+            ahead[p, 1] = 0.0
+        elif stops > 0:
+            velocity[p, 0] += (x - wx) / h
+            velocity[p, 1] += (y - wy) / h
+
+
+@inner_kernel
+def stopped(x, y, wx, wy, terrain):  # type: ignore[no-untyped-def]
+    """The way w [m] of a particle's centre, cut towards each edge of terrain that it would cross, and how often it was.
+
+    More often than STOPS: it stays where it is.
+    """
+    for stop in range(STOPS + 1):
+        e, signed, nx, ny = _crossing(x, y, wx, wy, terrain)
+        if e < 0:
+            return stop, wx, wy
+        missing = max(STOP_SHARE * signed, SKIN) - (signed + wx * nx + wy * ny)
+        wx += missing * nx
+        wy += missing * ny
+    return STOPS + 1, 0.0, 0.0
+
+
+@inner_kernel
+def _crossing(x, y, wx, wy, terrain):  # type: ignore[no-untyped-def]
+    # The first edge that the way w of a particle's centre crosses (-1: none), distance from it, normal towards it.
+    cell = terrain.cell[0]
+    left, right = span(x + min(0.0, wx) - SKIN, x + max(0.0, wx) + SKIN, terrain.corner[0], cell, terrain.size[0])
+    bottom, top = span(y + min(0.0, wy) - SKIN, y + max(0.0, wy) + SKIN, terrain.corner[1], cell, terrain.size[1])
+    soonest = 2.0
+    found = -1
+    distance = 0.0
+    nx = 0.0
+    ny = 0.0
+    for row in range(bottom, top + 1):
+        for column in range(left, right + 1):
+            at = row * terrain.size[0] + column
+            for entry in range(terrain.cell_start[at], terrain.cell_start[at + 1]):
+                e = terrain.cell_edge[entry]
+                a = terrain.edge_a[e]
+                dx = terrain.vertex[terrain.edge_b[e], 0] - terrain.vertex[a, 0]
+                dy = terrain.vertex[terrain.edge_b[e], 1] - terrain.vertex[a, 1]
+                px = x - terrain.vertex[a, 0]
+                py = y - terrain.vertex[a, 1]
+                # Signed area, above 0 on the right of the edge; it changes by `change` on the way.
+                before = px * dy - py * dx
+                change = wx * dy - wy * dx
+                if before < 0.0 and terrain.solid[e] == 0:
+                    before, change, dx, dy = -before, -change, -dx, -dy
+                    px = x - terrain.vertex[terrain.edge_b[e], 0]
+                    py = y - terrain.vertex[terrain.edge_b[e], 1]
+                squared = dx * dx + dy * dy
+                skin = SKIN * math.sqrt(squared)
+                if not (change < 0.0 and before > -skin and before + change < 0.5 * skin):
+                    continue
+                when = max(0.0, before / -change)
+                share = ((px + when * wx) * dx + (py + when * wy) * dy) / squared
+                if when < soonest and -1e-9 <= share <= 1.0 + 1e-9:
+                    length = math.sqrt(squared)
+                    soonest = when
+                    found = e
+                    distance = before / length
+                    nx = dy / length
+                    ny = -dx / length
+    return found, distance, nx, ny
+
+
+def stop_at_terrain(world: World, ahead: Floats, h: float) -> None:
+    """Cut the velocities [m/s] of particles that would cross terrain in the coming h [s], on ways h v + ahead [m]."""
+    if len(world.terrain.edge_a):
+        _stop(
+            world.position, world.velocity, ahead, world.collides, world.particle_active, world.inverse_mass,
+            world.terrain, h,
+        )  # fmt: skip

@@ -1,0 +1,333 @@
+"""Dense fronts: L D L^T of a large body's matrix, scalar by scalar, in the order that `dissection` gives.
+
+A front holds the upper triangle, by rows, of what its particles and their border have become when they are eliminated:
+its own rows stay in `numbers`, the others wait in `remainder` for its parent. Rows are long, so that the inner loops,
+which run along them, use the full width of the machine; each number is still the same sum in the same order.
+Source: Duff and Reid 1983; George 1973.
+"""
+
+from typing import NamedTuple
+
+from sandbox.physics.jit import inner_kernel, unsigned
+from sandbox.physics.solvers.linear.sparse_ldl import inverse_pivot
+from sandbox.physics.world import Floats, Slots
+
+ZERO, ONE, TWO, THREE, FOUR = unsigned(0), unsigned(1), unsigned(2), unsigned(3), unsigned(4)
+# Scalars eliminated at once: a row that waits is read and written once for all of them.
+PANEL = unsigned(8)
+
+
+class Scratch(NamedTuple):
+    """Room for one thread's work on a front."""
+
+    panel: Floats
+    inverse: Floats
+    vector: Floats
+
+
+class Fronts(NamedTuple):
+    """The fronts of all large bodies, children before parents.
+
+    of_row (n,): the front that eliminates a row, -1 for a row of a small body; diagonal, row_width (n,): its place in
+    numbers and the width of its front.
+    first, last, child, border_start, border, to_parent: see Dissection, rows counted over all bodies. width (f,):
+    scalars in a row of the front; base and remains (f,): its places in numbers and remainder. inverses (2n,): 1 / d.
+    fork (f, 2): at the last front of a body, where its second half begins, and where that ends; equal: it has none.
+    here and aside are the scratch of the two halves, apart (n, 2) is the second's right side, call is their talk.
+    """
+
+    of_row: Slots
+    diagonal: Slots
+    row_width: Slots
+    first: Slots
+    last: Slots
+    child: Slots
+    border_start: Slots
+    border: Slots
+    to_parent: Slots
+    width: Slots
+    base: Slots
+    remains: Slots
+    numbers: Floats
+    remainder: Floats
+    inverses: Floats
+    fork: Slots
+    here: Scratch
+    aside: Scratch
+    apart: Floats
+    call: Slots
+
+
+@inner_kernel
+def subtract_pair(target, row, source, upper, lower, a, b, begin, end):  # type: ignore[no-untyped-def]
+    """target[row + j] -= a source[upper + j] + b source[lower + j] for begin <= j < end, all unsigned."""
+    for j in range(begin, end):
+        target[row + j] -= a * source[upper + j] + b * source[lower + j]
+
+
+@inner_kernel
+def _subtract_panel(target, row, next_row, panel, stride, inverse, i, width):  # type: ignore[no-untyped-def]
+    # Rows i and i + 1 of a front, which lie at row and next_row of target, less what eight pivots make of them.
+    p1 = stride
+    p2 = p1 + stride
+    p3 = p2 + stride
+    p4 = p3 + stride
+    p5 = p4 + stride
+    p6 = p5 + stride
+    p7 = p6 + stride
+    k = i + ONE
+    a0 = panel[i] * inverse[0]
+    a1 = panel[p1 + i] * inverse[1]
+    a2 = panel[p2 + i] * inverse[2]
+    a3 = panel[p3 + i] * inverse[3]
+    a4 = panel[p4 + i] * inverse[4]
+    a5 = panel[p5 + i] * inverse[5]
+    a6 = panel[p6 + i] * inverse[6]
+    a7 = panel[p7 + i] * inverse[7]
+    b0 = panel[k] * inverse[0]
+    b1 = panel[p1 + k] * inverse[1]
+    b2 = panel[p2 + k] * inverse[2]
+    b3 = panel[p3 + k] * inverse[3]
+    b4 = panel[p4 + k] * inverse[4]
+    b5 = panel[p5 + k] * inverse[5]
+    b6 = panel[p6 + k] * inverse[6]
+    b7 = panel[p7 + k] * inverse[7]
+    for j in range(i, width):
+        c0 = panel[j]
+        c1 = panel[p1 + j]
+        c2 = panel[p2 + j]
+        c3 = panel[p3 + j]
+        c4 = panel[p4 + j]
+        c5 = panel[p5 + j]
+        c6 = panel[p6 + j]
+        c7 = panel[p7 + j]
+        target[row + j] -= a0 * c0 + a1 * c1 + a2 * c2 + a3 * c3 + a4 * c4 + a5 * c5 + a6 * c6 + a7 * c7
+        target[next_row + j] -= b0 * c0 + b1 * c1 + b2 * c2 + b3 * c3 + b4 * c4 + b5 * c5 + b6 * c6 + b7 * c7
+
+
+@inner_kernel
+def _eliminate_panel(numbers, base, width, begin, end, panel, stride, inverse):  # type: ignore[no-untyped-def]
+    # Rows begin..end of a front become those of its factor, times their pivot; the panel is a copy of them, filled up
+    # with rows that do nothing.
+    for p in range(begin, end, TWO):
+        row = base + p * width
+        lower = row + width
+        q = p - begin
+        xx = numbers[row + p]
+        inverse_x = inverse_pivot(xx, xx)
+        before = numbers[lower + p + ONE]
+        slant = numbers[row + p + ONE] * inverse_x
+        for j in range(p + ONE, width):
+            numbers[lower + j] -= slant * numbers[row + j]
+        inverse_y = inverse_pivot(numbers[lower + p + ONE], before)
+        inverse[q] = inverse_x
+        inverse[q + ONE] = inverse_y
+        for i in range(p + TWO, end):
+            a = numbers[row + i] * inverse_x
+            b = numbers[lower + i] * inverse_y
+            subtract_pair(numbers, base + i * width, numbers, row, lower, a, b, i, width)
+    for q in range(PANEL):
+        if begin + q < end:
+            row = base + (begin + q) * width
+            for j in range(begin, width):
+                panel[q * stride + j] = numbers[row + j]
+        else:
+            inverse[q] = 0.0
+            for j in range(begin, width):
+                panel[q * stride + j] = 0.0
+
+
+@inner_kernel
+def _eliminate_front(numbers, base, remainder, place, pivots, width, panel, stride, inverse, inverses, first_inverse):  # type: ignore[no-untyped-def]
+    border = width - pivots
+    for begin in range(ZERO, pivots, PANEL):
+        end = min(begin + PANEL, pivots)
+        _eliminate_panel(numbers, base, width, begin, end, panel, stride, inverse)
+        for p in range(begin, end):
+            inverses[first_inverse + p] = inverse[p - begin]
+        for i in range(end, pivots, TWO):
+            row = base + i * width
+            _subtract_panel(numbers, row, row + width, panel, stride, inverse, i, width)
+        for i in range(pivots, width, TWO):
+            # Columns of the remainder count from the first border row; no place in it is below the widest front.
+            row = place + (i - pivots) * border - pivots
+            _subtract_panel(remainder, row, row + border, panel, stride, inverse, i, width)
+
+
+@inner_kernel
+def _add_child(numbers, base, remainder, place, pivots, width, child_place, places, begin, end):  # type: ignore[no-untyped-def]
+    # What waits of a child, into the rows of its parent.
+    border = width - pivots
+    child_border = TWO * (end - begin)
+    for p in range(begin, end):
+        i = TWO * unsigned(places[p])
+        source = child_place + TWO * (p - begin) * child_border
+        if i < pivots:
+            for q in range(p, end):
+                at = base + i * width + TWO * unsigned(places[q])
+                back = source + TWO * (q - begin)
+                numbers[at] += remainder[back]
+                numbers[at + ONE] += remainder[back + ONE]
+                numbers[at + width] += remainder[back + child_border]
+                numbers[at + width + ONE] += remainder[back + child_border + ONE]
+        else:
+            for q in range(p, end):
+                at = place + (i - pivots) * border + (TWO * unsigned(places[q]) - pivots)
+                back = source + TWO * (q - begin)
+                remainder[at] += remainder[back]
+                remainder[at + ONE] += remainder[back + ONE]
+                remainder[at + border] += remainder[back + child_border]
+                remainder[at + border + ONE] += remainder[back + child_border + ONE]
+
+
+@inner_kernel
+def add_block(numbers, at, width, sign, xx, xy, yy):  # type: ignore[no-untyped-def]
+    """Add a symmetric block, times a sign, to the one that begins at `at` in rows of `width`."""
+    numbers[at] += sign * xx
+    numbers[at + 1] += sign * xy
+    numbers[at + width] += sign * xy
+    numbers[at + width + 1] += sign * yy
+
+
+@inner_kernel
+def clear_fronts(first_row, last_row, mass, fronts):  # type: ignore[no-untyped-def]
+    """Begin the matrix of one body: its masses [kg], all else 0."""
+    first_front = fronts.of_row[first_row]
+    last = fronts.of_row[last_row - 1]
+    rows = 2 * (fronts.last[last] - fronts.first[last])
+    for at in range(unsigned(fronts.base[first_front]), unsigned(fronts.base[last] + rows * fronts.width[last])):
+        fronts.numbers[at] = 0.0
+    for row in range(first_row, last_row):
+        at = fronts.diagonal[row]
+        fronts.numbers[at] = mass[row]
+        fronts.numbers[at + fronts.row_width[row] + 1] = mass[row]
+
+
+@inner_kernel
+def factorise_fronts(first_front, last_front, fronts, scratch, change):  # type: ignore[no-untyped-def]
+    """Factor the fronts first_front..last_front in place, and begin to solve for their rows of change (n, 2)."""
+    stride = unsigned(scratch.vector.shape[0])
+    for front in range(first_front, last_front):
+        pivots = TWO * unsigned(fronts.last[front] - fronts.first[front])
+        width = unsigned(fronts.width[front])
+        base = unsigned(fronts.base[front])
+        place = unsigned(fronts.remains[front])
+        border = width - pivots
+        for at in range(place, place + border * border):
+            fronts.remainder[at] = 0.0
+        for side in range(2):
+            below = fronts.child[front, side]
+            if below >= 0:
+                _add_child(
+                    fronts.numbers, base, fronts.remainder, place, pivots, width, unsigned(fronts.remains[below]),
+                    fronts.to_parent, unsigned(fronts.border_start[below]), unsigned(fronts.border_start[below + 1]),
+                )  # fmt: skip
+        _eliminate_front(
+            fronts.numbers, base, fronts.remainder, place, pivots, width, scratch.panel, stride, scratch.inverse,
+            fronts.inverses, TWO * unsigned(fronts.first[front]),
+        )  # fmt: skip
+        _eliminate_rows(front, fronts, scratch.vector, change)
+
+
+@inner_kernel
+def _gather(front, fronts, vector, change):  # type: ignore[no-untyped-def]
+    k = 0
+    for row in range(fronts.first[front], fronts.last[front]):
+        vector[k] = change[row, 0]
+        vector[k + 1] = change[row, 1]
+        k += 2
+    for at in range(fronts.border_start[front], fronts.border_start[front + 1]):
+        row = fronts.border[at]
+        vector[k] = change[row, 0]
+        vector[k + 1] = change[row, 1]
+        k += 2
+
+
+@inner_kernel
+def _scatter(front, fronts, vector, change):  # type: ignore[no-untyped-def]
+    k = 0
+    for row in range(fronts.first[front], fronts.last[front]):
+        change[row, 0] = vector[k]
+        change[row, 1] = vector[k + 1]
+        k += 2
+    for at in range(fronts.border_start[front], fronts.border_start[front + 1]):
+        row = fronts.border[at]
+        change[row, 0] = vector[k]
+        change[row, 1] = vector[k + 1]
+        k += 2
+
+
+@inner_kernel
+def _substitute_forward(numbers, base, pivots, width, inverses, first_inverse, vector):  # type: ignore[no-untyped-def]
+    for p in range(ZERO, pivots, TWO):
+        row = base + p * width
+        x = vector[p] * inverses[first_inverse + p]
+        vector[p + ONE] -= x * numbers[row + p + ONE]
+        y = vector[p + ONE] * inverses[first_inverse + p + ONE]
+        subtract_pair(vector, ZERO, numbers, row, row + width, x, y, p + TWO, width)
+
+
+@inner_kernel
+def _substitute_back(numbers, base, pivots, width, inverses, first_inverse, vector):  # type: ignore[no-untyped-def]
+    # Two rows at once, in four sums each: the order of a sum is part of the result.
+    for back in range(ZERO, pivots, TWO):
+        p = pivots - TWO - back
+        row = base + p * width
+        lower = row + width
+        x0 = x1 = x2 = x3 = 0.0
+        y0 = y1 = y2 = y3 = 0.0
+        whole = (width - p - TWO) // FOUR * FOUR + p + TWO
+        for j in range(p + TWO, whole, FOUR):
+            v0 = vector[j]
+            v1 = vector[j + ONE]
+            v2 = vector[j + TWO]
+            v3 = vector[j + THREE]
+            x0 += numbers[row + j] * v0
+            x1 += numbers[row + j + ONE] * v1
+            x2 += numbers[row + j + TWO] * v2
+            x3 += numbers[row + j + THREE] * v3
+            y0 += numbers[lower + j] * v0
+            y1 += numbers[lower + j + ONE] * v1
+            y2 += numbers[lower + j + TWO] * v2
+            y3 += numbers[lower + j + THREE] * v3
+        for j in range(whole, width):
+            x0 += numbers[row + j] * vector[j]
+            y0 += numbers[lower + j] * vector[j]
+        y = (vector[p + ONE] - ((y0 + y1) + (y2 + y3))) * inverses[first_inverse + p + ONE]
+        vector[p + ONE] = y
+        x = vector[p] - ((x0 + x1) + (x2 + x3)) - numbers[row + p + ONE] * y
+        vector[p] = x * inverses[first_inverse + p]
+
+
+@inner_kernel
+def _eliminate_rows(front, fronts, vector, change):  # type: ignore[no-untyped-def]
+    _gather(front, fronts, vector, change)
+    _substitute_forward(
+        fronts.numbers, unsigned(fronts.base[front]), TWO * unsigned(fronts.last[front] - fronts.first[front]),
+        unsigned(fronts.width[front]), fronts.inverses, TWO * unsigned(fronts.first[front]), vector,
+    )  # fmt: skip
+    _scatter(front, fronts, vector, change)
+
+
+@inner_kernel
+def eliminate_rows(first_front, last_front, fronts, scratch, change):  # type: ignore[no-untyped-def]
+    """Begin to solve for the rows of the factored fronts first_front..last_front of change (n, 2)."""
+    for front in range(first_front, last_front):
+        _eliminate_rows(front, fronts, scratch.vector, change)
+
+
+@inner_kernel
+def substitute_fronts(first_front, last_front, fronts, scratch, change):  # type: ignore[no-untyped-def]
+    """Finish solving for the rows of the fronts first_front..last_front of change (n, 2), in place."""
+    for back in range(last_front - first_front):
+        front = last_front - 1 - back
+        _gather(front, fronts, scratch.vector, change)
+        _substitute_back(
+            fronts.numbers, unsigned(fronts.base[front]), TWO * unsigned(fronts.last[front] - fronts.first[front]),
+            unsigned(fronts.width[front]), fronts.inverses, TWO * unsigned(fronts.first[front]), scratch.vector,
+        )  # fmt: skip
+        k = 0
+        for row in range(fronts.first[front], fronts.last[front]):
+            change[row, 0] = scratch.vector[k]
+            change[row, 1] = scratch.vector[k + 1]
+            k += 2

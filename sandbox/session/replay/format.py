@@ -1,0 +1,137 @@
+"""The replay file, version 1: JSON Lines, each line sealed by a chain of hashes over everything before it.
+
+    {"format": "spring-sandbox/replay", "version": 1, "physics_version": ..., "level": {...}, ..., "chain": "..."}
+    {"tick": 12, "gesture": 3, "command": {...}, "chain": "..."}       applied at tick 12, before its step
+    {"tick": 13, "hash": "...", "arrays": {...}, "chain": "..."}       the state after 13 steps, for every tick from 0
+    {"tick": 60, "state": {...}, "settings": {...}, "chain": "..."}    every bit of it, every 60 ticks
+    {"end": true, "tick": 600, "hash": "...", "chain": "..."}
+
+chain = blake2b over the previous line's chain and this line's bytes up to its own chain.
+"""
+
+import base64
+import binascii
+import hashlib
+import json
+import zlib
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from sandbox.level.format.files import level_data
+from sandbox.level.format.model import Level
+from sandbox.physics.constraints import AREA
+from sandbox.physics.snapshot import Snapshot, canonical_bytes
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.state import FAMILIES, KINDS, STATE_ARRAYS, VECTOR_ARRAYS
+from sandbox.physics.terrain import NO_TERRAIN
+from sandbox.physics.world import HAND_COUNT, HAND_MATERIAL, World, WorldSettings
+
+FORMAT = "spring-sandbox/replay"
+VERSION = 1
+STATE_TICKS = 60
+# The longest line [bytes] and the largest array [bytes] that a reader accepts; ten times what the level limits allow.
+LINE_LIMIT = 256 * 2**20
+# The longest first line [bytes]: a level of 8 MiB with every number written out and every character escaped.
+HEADER_LIMIT = 64 * 2**20
+ARRAY_LIMIT = 64 * 2**20
+
+_CHAIN_MARK = b', "chain": "'
+_CHAIN_DIGITS = 32
+
+
+def seal(values: dict[str, Any], previous: str) -> tuple[bytes, str]:
+    """A line's bytes, newline included, and its chain."""
+    body = json.dumps(values, allow_nan=False, ensure_ascii=True)[:-1].encode()
+    chain = _chain(body, previous)
+    return body + _CHAIN_MARK + chain.encode() + b'"}\n', chain
+
+
+def unseal(line: bytes, previous: str) -> str | None:
+    """The chain of a line, or None where a byte of it, or of anything before it, has changed."""
+    body, mark, tail = line.rpartition(_CHAIN_MARK)
+    chain = _chain(body, previous)
+    return chain if mark and tail == chain.encode() + b'"}\n' else None
+
+
+def _chain(body: bytes, previous: str) -> str:
+    return hashlib.blake2b(previous.encode() + body, digest_size=_CHAIN_DIGITS // 2).hexdigest()
+
+
+def level_digest(data: dict[str, Any]) -> str:
+    """sha256 of a level's JSON, keys sorted, without white space."""
+    return hashlib.sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+
+
+def header(level: Level, physics_version: int, sandbox_version: str) -> dict[str, Any]:
+    """The first line's values."""
+    data = level_data(level)
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "physics_version": physics_version,
+        "sandbox_version": sandbox_version,
+        "level_sha256": level_digest(data),
+        "level": data,
+    }
+
+
+def encode_state(world: World) -> dict[str, Any]:
+    """Every state array as base64 of zlib of its little-endian bytes, and the settings."""
+    arrays = {
+        name: base64.b64encode(zlib.compress(canonical_bytes(getattr(world, name)), 6)).decode()
+        for name in STATE_ARRAYS
+    }
+    return {"state": arrays, "settings": asdict(world.settings)}
+
+
+def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> Snapshot:
+    """The snapshot of a state line. Raises ValueError, one line."""
+    if set(state) != set(STATE_ARRAYS):
+        raise ValueError(f"state: the arrays are {', '.join(STATE_ARRAYS)}")
+    arrays = {name: _decode_array(name, text) for name, text in state.items()}
+    for group in FAMILIES:
+        if len({len(arrays[name]) for name in group}) != 1:
+            raise ValueError(f"state: {', '.join(group)} are not equally long")
+    for name in ("particle_a", "particle_b", "corner_particle", "contact_particle"):
+        if np.any((arrays[name] < 0) | (arrays[name] >= len(arrays["mass"]))):
+            raise ValueError(f"state.{name}: names a particle that does not exist")
+    ends = np.cumsum(arrays["element_corners"], dtype=np.int64)
+    if np.any(arrays["element_corners"] < 3) or (int(ends[-1]) if len(ends) else 0) != len(arrays["corner_particle"]):
+        raise ValueError("state.element_corners: do not add up to the corners that there are")
+    if np.any(arrays["element_first"] != ends - arrays["element_corners"]):
+        raise ValueError("state.element_first: corners do not lie one element after another")
+    if not np.all((arrays["element_kind"] == AREA) | (arrays["element_corners"] == 3)):
+        raise ValueError("state.element_kind: a bend has three corners")
+    hands = np.flatnonzero(arrays["material"] == HAND_MATERIAL)
+    if len(hands) not in (0, HAND_COUNT) or np.any(np.diff(hands) != 1):
+        raise ValueError(f"state.material: there are {HAND_COUNT} hands in a row, or none")
+    hand_spring = int(hands[0]) if len(hands) else -1
+    hand_particle = int(arrays["particle_a"][hand_spring]) if len(hands) else -1
+    if len(hands) and hand_particle + HAND_COUNT > len(arrays["mass"]):
+        raise ValueError("state.particle_a: a hand has no particle of its own")
+    if settings.solver not in SOLVERS:
+        raise ValueError(f"settings.solver: there is no solver {settings.solver!r}")
+    return Snapshot(
+        **arrays,
+        settings=settings,
+        tick=tick,
+        hand_particle=hand_particle,
+        hand_spring=hand_spring,
+        terrain=NO_TERRAIN,
+    )
+
+
+def _decode_array(name: str, text: str) -> Any:
+    kind = np.dtype(KINDS[name])
+    try:
+        inflater = zlib.decompressobj()
+        data = inflater.decompress(base64.b64decode(text, validate=True), ARRAY_LIMIT)
+    except (binascii.Error, zlib.error, ValueError) as error:
+        raise ValueError(f"state.{name}: not base64 of zlib data: {error}") from None
+    width = 2 if name in VECTOR_ARRAYS else 1
+    if not inflater.eof or len(data) % (kind.itemsize * width):
+        raise ValueError(f"state.{name}: cut off, or longer than {ARRAY_LIMIT} bytes")
+    array = np.frombuffer(data, dtype=kind.newbyteorder("<")).astype(kind)
+    return array.reshape(-1, 2) if width == 2 else array

@@ -1,0 +1,216 @@
+"""Replay: a recorded run read back, and verify, which runs it again and names the first bit that differs."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.level.build.actuators import parts
+from sandbox.level.format.model import Level
+from sandbox.physics.settings import WorldSettings
+from sandbox.physics.snapshot import Snapshot, canonical_bytes, hash_by_array, state_hash
+from sandbox.physics.state import STATE_ARRAYS
+from sandbox.physics.world import World
+from sandbox.session.commands import CommandError
+from sandbox.session.records import ScriptLine
+from sandbox.session.replay.format import decode_state
+from sandbox.session.session import Session
+
+# Ticks between two calls of verify's `progress`.
+PROGRESS_TICKS = 60
+
+
+class ReplayError(ValueError):
+    """A replay or script that cannot be used; faults: one line each."""
+
+    def __init__(self, *faults: str) -> None:
+        super().__init__("\n".join(faults))
+        self.faults = list(faults)
+
+
+@dataclass(frozen=True, slots=True)
+class TickHashes:
+    """What a replay says of the state after a tick: the hash of all, and of each array in the order of STATE_ARRAYS."""
+
+    whole: str
+    arrays: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class StoredState:
+    """A state line: arrays as text, see replay_format.decode_state; line: where it stands in its file."""
+
+    arrays: dict[str, str]
+    settings: WorldSettings
+    line: int
+
+
+@dataclass(frozen=True)
+class Replay:
+    """A recorded run: hashes[t] is the state after t ticks; end_hash is None where the file is cut off."""
+
+    source: str
+    level: Level
+    script: tuple[ScriptLine, ...]
+    hashes: tuple[TickHashes, ...]
+    states: dict[int, StoredState]
+    end_hash: str | None
+
+    @property
+    def ticks(self) -> int:
+        """Ticks recorded."""
+        return len(self.hashes) - 1
+
+    def state(self, tick: int) -> Snapshot:
+        """The stored state of a tick. Raises ReplayError where there is none, or one that its own hash belies."""
+        stored = self.states.get(tick)
+        if stored is None:
+            raise ReplayError(f"{self.source}: no state is stored at tick {tick}")
+        try:
+            snapshot = decode_state(tick, stored.arrays, stored.settings)
+        except ValueError as error:
+            raise ReplayError(f"{self.source}: line {stored.line}: {error}") from None
+        driven = len(parts(self.level))
+        if len(snapshot.part_value) != driven:
+            raise ReplayError(
+                f"{self.source}: line {stored.line}: state.part_value: has {len(snapshot.part_value)} values, "
+                f"where the level has {driven} driven parts"
+            )
+        if state_hash(snapshot) != self.hashes[tick].whole:
+            raise ReplayError(
+                f"{self.source}: line {stored.line}: state: is not the one whose hash stands at tick {tick}"
+            )
+        return snapshot
+
+
+@dataclass(frozen=True)
+class Divergence:
+    """The first difference between a recording and its verification.
+
+    array: a state array, or `settings`; index: into that array, an int or (slot, component), None where the array's
+    length differs; name: of the particle or spring; note: where the difference was found, if not at `tick` itself.
+    """
+
+    tick: int
+    array: str
+    index: int | tuple[int, int] | None
+    expected: Any
+    actual: Any
+    name: str = ""
+    note: str = ""
+
+    def __str__(self) -> str:
+        index = "" if self.index is None else str(list(np.atleast_1d(self.index).tolist()))
+        name = f" ({self.name})" if self.name else ""
+        note = f"; {self.note}" if self.note else ""
+        return f"tick {self.tick}: {self.array}{index}{name}: expected {self.expected!r}, got {self.actual!r}{note}"
+
+
+def verify(
+    replay: Replay,
+    *,
+    start: int = 0,
+    on_tick: Callable[[World], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Divergence | None:
+    """Run a replay again and compare every tick; None where all bits are equal.
+
+    start: the tick of a stored state to begin from instead of the level. on_tick: called with the world after every
+    step, before it is compared. progress: called with ticks done and ticks in all. Raises ReplayError where the
+    recording holds a command that cannot be carried out.
+    """
+    session = _session(replay, start)
+    while True:
+        difference = _compare(replay, session.world)
+        if difference:
+            return _locate(replay, session.tick, difference, session.world)
+        if session.tick == replay.ticks:
+            break
+        _advance(replay, session)
+        if on_tick is not None:
+            on_tick(session.world)
+        if progress is not None and session.tick % PROGRESS_TICKS == 0:
+            progress(session.tick - start, replay.ticks - start)
+    _guard(replay, session.apply_pending)
+    if replay.end_hash is not None and state_hash(session.world) != replay.end_hash:
+        return Divergence(
+            session.tick, "hash", None, replay.end_hash, state_hash(session.world), note="at the end line"
+        )
+    return None
+
+
+def _session(replay: Replay, start: int) -> Session:
+    if start == 0:
+        return Session(replay.level, script=replay.script)
+    return Session(replay.level, script=replay.script, start=replay.state(start))
+
+
+def _guard(replay: Replay, act: Callable[[], None]) -> None:
+    try:
+        act()
+    except CommandError as error:
+        raise ReplayError(f"{replay.source}: {error}") from None
+
+
+def _advance(replay: Replay, session: Session) -> None:
+    _guard(replay, session.advance)
+
+
+def _compare(replay: Replay, world: World) -> str | None:
+    """The first array in hashing order that differs from the recording, or None."""
+    recorded, present = replay.hashes[world.tick], hash_by_array(world)
+    if state_hash(world, present) == recorded.whole:
+        return None
+    pairs = zip(STATE_ARRAYS, recorded.arrays, strict=True)
+    return next((name for name, expected in pairs if present[name] != expected), "settings")
+
+
+def _locate(replay: Replay, tick: int, array: str, world: World) -> Divergence:
+    """Find index and values by stepping again, undisturbed, from the last stored state that was verified."""
+    if array == "settings":
+        return Divergence(tick, array, None, replay.hashes[tick].whole, state_hash(world))
+    clean = _clean_session(replay, verified=tick - 1, tick=tick)
+    if hash_by_array(clean.world)[array] == replay.hashes[tick].arrays[STATE_ARRAYS.index(array)]:
+        return _first_difference(tick, array, getattr(clean.world, array), world)
+    later = min((stored for stored in replay.states if stored >= tick), default=None)
+    if later is None:
+        note = "this build steps differently, and no later state is stored to show the values"
+        return Divergence(tick, array, None, "unknown", "unknown", note=note)
+    clean = _clean_session(replay, verified=tick - 1, tick=later)
+    recorded = replay.state(later)
+    found = _first_difference(tick, array, getattr(recorded, array), clean.world)
+    note = f"this build steps differently; the values are those of the next stored state, tick {later}"
+    return Divergence(tick, array, found.index, found.expected, found.actual, found.name, note)
+
+
+def _clean_session(replay: Replay, verified: int, tick: int) -> Session:
+    """A fresh session at a tick, begun from the last state stored up to the verified tick.
+
+    It begins from the level where an undo reaches back behind that state.
+    """
+    for start in (max((stored for stored in replay.states if stored <= verified), default=0), 0):
+        try:
+            session = _session(replay, start)
+            while session.tick < tick:
+                _advance(replay, session)
+        except ReplayError:
+            continue
+        return session
+    raise ReplayError(f"{replay.source}: tick {tick} cannot be reached")
+
+
+def _first_difference(tick: int, array: str, expected: NDArray[Any], world: World) -> Divergence:
+    actual: NDArray[Any] = getattr(world, array)
+    if len(expected) != len(actual):
+        return Divergence(tick, array, None, f"{len(expected)} values", f"{len(actual)} values")
+    size = actual.dtype.itemsize
+    pairs = [np.frombuffer(canonical_bytes(side), dtype=f"V{size}") for side in (expected, actual)]
+    flat = next((place for place, pair in enumerate(zip(*pairs, strict=True)) if pair[0] != pair[1]), None)
+    if flat is None:
+        return Divergence(tick, array, None, "equal", "equal", note="the two runs agree here")
+    place = tuple(int(part) for part in np.unravel_index(flat, actual.shape))
+    index = place[0] if len(place) == 1 else (place[0], place[1])
+    name = world.slot_name(array, place[0])
+    return Divergence(tick, array, index, expected[place].item(), actual[place].item(), name)
