@@ -244,3 +244,22 @@ def test_every_benchmark_program_that_is_named_exists():
     named = re.findall(r"python -m tests\.bench\.(\w+)", BENCHMARKS)
     assert len(set(named)) > 5
     assert [name for name in named if not (ROOT / "tests" / "bench" / f"{name}.py").is_file()] == []
+
+
+def glossary():
+    """Term, meaning, the window's word and file of every row of the glossary."""
+    lines = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8").splitlines()
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("| ")]
+    return [(*row[:3], row[3].strip("`")) for row in cells if row[0] != "term"]
+
+
+def test_the_glossary_has_each_word_once():
+    terms = [term.lower() for term, *_ in glossary()]
+    assert len(terms) > 40
+    assert sorted(terms) == sorted(set(terms))
+
+
+@pytest.mark.parametrize(("term", "file"), [(row[0], row[3]) for row in glossary()], ids=[row[0] for row in glossary()])
+def test_a_search_for_a_word_of_the_glossary_leads_to_its_file(term, file):
+    text = " ".join((ROOT / file).read_text(encoding="utf-8").lower().replace("_", " ").split())
+    assert term.lower() in text
