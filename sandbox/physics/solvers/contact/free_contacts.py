@@ -1,6 +1,6 @@
-"""Contacts of loose particles among themselves and with what cannot move: small steps, alike in every solver.
+"""Contacts of free particles among themselves and with what cannot move: small steps, alike in every solver.
 
-No spring joins a loose particle, so a step of a heap can be taken in many small ones whose cost is a sweep over its
+No spring joins a free particle, so a step of a heap can be taken in many small ones whose cost is a sweep over its
 contacts: overlap falls with the square of their number. In each, a first sweep pushes apart what overlaps, the
 particles move, and a second sweep, which leaves overlap alone, takes back the speed that pushing has given
 (soft contacts that relax: Catto 2023, "Solver2D"; small steps: Macklin and others 2019).
