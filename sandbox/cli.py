@@ -340,7 +340,7 @@ def _check(options: argparse.Namespace) -> int:
 def _check_level(name: str) -> int:
     from sandbox.level.build.build_world import build_world
     from sandbox.physics.stability import report
-    from sandbox.session.checking import run_checks
+    from sandbox.session.summary import run_checks
 
     level = _level(name)
     world = build_world(level)
