@@ -13,8 +13,10 @@ from sandbox.terminal import (
     count,
     give_up_output,
     interrupted_between_ticks,
+    missing_folder,
     prepare_streams,
     progress,
+    refusal_of,
     scale,
     seconds,
     size,
@@ -45,6 +47,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code: 0, 1 a check failed or a replay diverged, 2 refused."""
     prepare_streams()
     options = _parser().parse_args(arguments)
+    gone = missing_folder()
+    if gone:
+        return _refuse([gone])
     try:
         code: int = options.action(options)
         sys.stdout.flush()
@@ -56,8 +61,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return EXIT_FAILED
     except OSError as error:
         give_up_output()
-        # Every file that is written here is named in its error; the stream is what has no name.
-        return _refuse([f"{error.filename or 'standard output'}: {error.strerror or error}"])
+        return _refuse([refusal_of(error)])
     except KeyboardInterrupt:
         give_up_output()
         return EXIT_INTERRUPTED

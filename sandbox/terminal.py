@@ -7,7 +7,7 @@ import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, cast
 
 # Longest run [s] and picture side [pixels] that a person can mean; more is a slip of the finger.
 SECONDS_LIMIT = 1e6
@@ -60,14 +60,67 @@ def size(text: str) -> tuple[int, int]:
     return int(width), int(height)
 
 
+class _NamedFile(io.FileIO):
+    """What a stream writes to; an error in writing carries the stream's name, as those of other files do theirs."""
+
+    def __init__(self, stream: io.TextIOWrapper, name: str) -> None:
+        super().__init__(stream.fileno(), "w", closefd=False)
+        # A stream that nobody holds closes its file.
+        self._stream = stream
+        self._name = name
+
+    def write(self, data: Any) -> int:
+        try:
+            return super().write(data)
+        except OSError as error:
+            error.filename = self._name
+            raise
+
+
 def prepare_streams() -> None:
-    """Make printing safe: a stream that was closed swallows, a character that it cannot say is spelled out."""
+    """Make printing safe: a stream that was closed swallows, a character that it cannot say is spelled out.
+
+    An error in writing to standard output is told with that name.
+    """
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
         elif isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+    sys.stdout = _named(sys.stdout, "standard output")
+
+
+def _named(stream: Any, name: str) -> Any:
+    buffer = getattr(stream, "buffer", None)
+    raw = getattr(buffer, "raw", buffer)
+    if type(raw) is not io.FileIO:
+        return stream
+    file = _NamedFile(stream, name)
+    return io.TextIOWrapper(
+        cast(Any, file if raw is buffer else io.BufferedWriter(file)),
+        encoding=stream.encoding,
+        errors=stream.errors,
+        line_buffering=stream.line_buffering,
+        write_through=stream.write_through,
+    )
+
+
+def missing_folder() -> str | None:
+    """What to say where the folder that this was started in is gone; no relative path, no compiler works in one."""
+    try:
+        os.getcwd()
+    except OSError as error:
+        return (
+            f"the folder that this was started in cannot be used ({error.strerror}): change into another and try again"
+        )
+    return None
+
+
+def refusal_of(error: OSError) -> str:
+    """What the system refuses, in one line."""
+    # An error without a file's name is of no file: memory, processes, or whatever else the system runs out of.
+    return f"{error.filename or 'the system refuses'}: {error.strerror or error}"
 
 
 def give_up_output() -> None:

@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "sandbox"
 ROOMS = ("physics", "level", "session", "tools", "editor", "app", "terminal", "cli", "__main__")
 LIBRARIES = {
-    "physics": {"numpy", "numba"},
+    "physics": {"numpy", "numba", "llvmlite"},
     "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},
     "session": {"numpy", "pydantic", "filelock"},
     "tools": {"numpy"},
@@ -22,8 +22,9 @@ LIBRARIES = {
     "cli": set(),
     "__main__": set(),
 }
-LONGEST_FILE = 400
+LONGEST_FILE = 600
 LONGEST_FUNCTION = 60
+MOST_FILES = 25
 
 
 @functools.cache
@@ -109,7 +110,7 @@ def test_only_app_imports_pygame_and_only_jit_imports_numba():
         libraries = {other.partition(".")[0] for other in imported(name)}
         if room(name) != "app":
             assert not libraries & {"pygame", "pygame_gui"}, name
-        if name != "sandbox.physics.jit":
+        if not name.startswith("sandbox.physics.jit"):
             assert "numba" not in libraries, name
 
 
@@ -152,9 +153,15 @@ def test_help_loads_neither_pygame_nor_numba_nor_numpy(arguments):
     assert not loaded & {"pygame", "pygame_gui", "numba", "numpy", "pydantic"}
 
 
-def test_no_file_is_longer_than_400_lines():
+def test_no_file_is_longer_than_600_lines():
     lengths = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in PACKAGE.rglob("*.py")}
     assert {str(path.relative_to(ROOT)): length for path, length in lengths.items() if length > LONGEST_FILE} == {}
+
+
+def test_no_folder_holds_more_than_25_files():
+    counts = {folder: len(list(folder.glob("*.py"))) for folder in [PACKAGE, *PACKAGE.rglob("*")] if folder.is_dir()}
+    crowded = {str(folder.relative_to(ROOT)): count for folder, count in counts.items() if count > MOST_FILES}
+    assert crowded == {}
 
 
 def test_no_function_is_longer_than_60_lines():

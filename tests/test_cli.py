@@ -1,5 +1,6 @@
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -257,6 +258,48 @@ def test_a_standard_output_that_is_full_is_told_in_one_line(rope):
     with open("/dev/full", "w") as full:
         run = _sandbox(["run", rope, "--ticks", "3", "--json"], stdout=full)
     assert (run.returncode, run.stderr) == (2, b"standard output: No space left on device\n")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+def test_a_standard_output_that_is_full_is_told_where_more_is_printed_than_a_buffer_holds():
+    with open("/dev/full", "w") as full:
+        run = _sandbox(["schema"], stdout=full)
+    assert (run.returncode, run.stderr) == (2, b"standard output: No space left on device\n")
+
+
+def test_an_error_without_a_file_is_not_blamed_on_standard_output(rope, monkeypatch, capsys):
+    def refuse(*_):
+        raise OSError(12, "Cannot allocate memory")
+
+    monkeypatch.setattr("sandbox.session.summary.run", refuse)
+    assert main(["run", rope]) == 2
+    assert _lines(capsys) == ([], ["the system refuses: Cannot allocate memory"])
+
+
+COMMANDS = {
+    "play": ["rope"], "run": ["rope", "--ticks", "1"], "replay": ["x.jsonl"], "check": ["rope"],
+    "render": ["rope", "-o", "x.png"], "format": ["x.json"], "edit": [], "schema": [],
+}  # fmt: skip
+
+
+def test_every_command_is_tried_in_a_folder_that_is_gone(capsys):
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    listed = capsys.readouterr().out.partition("COMMAND\n")[2]
+    assert re.findall(r"^    (\w+)", listed, re.MULTILINE) == list(COMMANDS)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="only there a folder in use can be removed")
+@pytest.mark.parametrize("command", [None, *COMMANDS])
+def test_a_start_in_a_folder_that_is_gone_is_refused_in_one_line(command, tmp_path, monkeypatch, capsys):
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    assert main([command, *COMMANDS[command]] if command else []) == 2
+    out, err = _lines(capsys)
+    assert out == []
+    assert len(err) == 1 and err[0].startswith("the folder that this was started in cannot be used"), err
 
 
 def test_a_recording_that_breaks_off_on_a_full_disk_is_told_and_the_run_goes_on(rope, tmp_path, capsys, monkeypatch):

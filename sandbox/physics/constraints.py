@@ -1,11 +1,11 @@
-"""Elements: constraints of several corners, areas of polygons and angles between two links, in the same equation.
+"""Constraints of several corners (elements): areas of polygons and angles between two links, in the same equation.
 
 Any scalar constraint C(x) of gradient g has the effective mass 1 / (sum of w |g|^2); with C for the distance error and
 dC/dt for the velocity error, Cs and Cd mean what they mean for a spring (Nissen 2019). The mass is that of the rest
 shape: that of the present one is infinite where a triangle lies flat.
 
-    area   C = A - A0 [m^2], A signed and counter-clockwise, of a polygon of three corners or more
-    bend   C = 4 sin(phi / 4), phi = the angle at the middle corner less its angle at rest
+    area constraint      C = A - A0 [m^2], A signed and counter-clockwise, of a polygon of three corners or more
+    bending constraint   C = 4 sin(phi / 4), phi = the angle at the middle corner less its angle at rest
 
 The bend's torque is that of 2 sin(phi / 2): most for a link that is folded back, where sin(phi) would let go.
 """

@@ -347,7 +347,7 @@ class World(ElementSlots):
         self.good["rest_length"][springs] = lengths
 
     def hold(self, hand: int, particle: int, target: tuple[float, float]) -> None:
-        """Join a particle to a hand's cursor at target [m] by a spring of rest length 0."""
+        """Join a particle to a hand's cursor at target [m] by a spring of rest length 0: a mouse joint."""
         self.reserve_hands()
         cursor, spring = self.hand_particle + hand, self.hand_spring + hand
         self.particle_active[cursor] = True

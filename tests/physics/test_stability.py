@@ -1,12 +1,13 @@
 """What is proven about stability, held against dense eigenvalues and against runs."""
 
 import dataclasses
+import time
 
 import numpy as np
 import pytest
 
 from sandbox.physics.energy import reduced_masses
-from sandbox.physics.stability import coefficient_limits, effective_count, largest_eigenvalue, report
+from sandbox.physics.stability import POWER_ITERATIONS, coefficient_limits, effective_count, largest_eigenvalue, report
 from sandbox.physics.step import substep_coefficients, substep_time
 from sandbox.physics.world import LAW_HOOKE, World
 from tests.support.physics_scenes import (
@@ -247,3 +248,17 @@ def test_a_world_that_blew_up_can_still_be_reported(place):
     world = rope(links=3)
     world.position[2] = place
     assert report(world).n_eff == 2.0
+
+
+def test_the_report_of_a_large_mesh_costs_no_more_than_the_sums_it_is_made_of():
+    world = grid_with_diagonals(columns=60, rows=60)
+    line = report(world)
+    ends, weights = np.concatenate([world.particle_a, world.particle_b]), np.ones(2 * world.spring_count)
+    began = time.process_time()
+    for _ in range(3 * POWER_ITERATIONS):
+        np.bincount(ends, weights, world.particle_count)
+    sums = time.process_time() - began
+    began = time.process_time()
+    assert report(world) == line
+    # Of all threads: a norm by the library of linear algebra wakes one for each core, at 10 times the cost in all.
+    assert time.process_time() - began < 20.0 * sums

@@ -1,29 +1,18 @@
 """What the validation library found, in the words of a level maker."""
 
+import types
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Annotated, Any, Union, get_args, get_origin
 
-from pydantic import BaseModel
+from pydantic import BaseModel, Tag
 
-from sandbox.level.checks import CheckDef
 from sandbox.level.faults.level_error import Fault, json_path, shown, suggestion
-from sandbox.level.format.drives import HydraulicDef, MotorDef, MuscleDef
-from sandbox.level.format.model import HookeMaterial, Level, NissenMaterial, ParticleDef, Settings, SpringDef
+from sandbox.level.format.model import Level
 from sandbox.level.format.quantities import ID_PATTERN, KEY_PATTERN
-from sandbox.level.kinds.bodies import KINDS, BoxShape, CircleShape, PolygonShape
+from sandbox.level.kinds.bodies import KINDS
 
 Location = tuple[Any, ...]
 
-_SHAPES: dict[str, type[BaseModel]] = {"box": BoxShape, "circle": CircleShape, "polygon": PolygonShape}
-_MATERIALS: dict[str, type[BaseModel]] = {"nissen": NissenMaterial, "hooke": HookeMaterial}
-_MODELS: dict[str, type[BaseModel]] = {
-    "settings": Settings,
-    "particles": ParticleDef,
-    "springs": SpringDef,
-    "checks": CheckDef,
-}
-# Objects inside an item, by the field that holds them.
-_NESTED: dict[str, type[BaseModel]] = {"drive": MuscleDef, "hydraulic": HydraulicDef, "motor": MotorDef}
 _KINDS = "use {} or {}".format(", ".join([*KINDS][:-1]), [*KINDS][-1])
 _SHAPE_FORMS = 'a shape is {"box": [width, height]}, {"circle": radius} or {"polygon": [[x, y], ...]}'
 
@@ -62,7 +51,7 @@ def _fault(error: dict[str, Any]) -> Fault:
     if kind.startswith("union_tag") or (kind == "dict_type" and len(parts) == 2 and parts[0] == "bodies"):
         return _kind_fault(parts, kind, value)
     if kind == "extra_forbidden":
-        keys = list(_model(location).model_fields)
+        keys = [key for model in _models(Level, location[:-1]) for key in model.model_fields]
         known = suggestion(parts[-1], keys) or "; the keys here are " + ", ".join(keys)
         return json_path(parts), "unknown key" + known
     if kind in _WORDS:
@@ -83,15 +72,31 @@ def _kind_fault(parts: list[Any], kind: str, value: Any) -> Fault:
     return json_path([*parts, "type"]), f"{shown(value['type'])} is not a kind of body; {_KINDS}"
 
 
-def _model(location: Location) -> type[BaseModel]:
-    if len(location) == 1:
-        return Level
-    # Where two parts follow, the kind of body or the item's number goes before.
-    if len(location) > 3 and location[0] in ("bodies", "springs") and location[-2] in _NESTED:
-        return _NESTED[location[-2]]
-    if location[0] == "bodies":
-        return _SHAPES[location[4]] if len(location) > 5 else KINDS[location[2]]
-    return _MATERIALS[location[2]] if location[0] == "materials" else _MODELS[location[0]]
+def _models(declared: Any, location: Location) -> Iterator[type[BaseModel]]:
+    """Models of the object that stands at a location inside what a type declares; more where nothing chooses."""
+    origin = get_origin(declared)
+    if origin is Annotated:
+        yield from _models(get_args(declared)[0], location)
+    elif origin in (Union, types.UnionType):
+        choices = get_args(declared)
+        chosen = [choice for choice in choices if location and _tag(choice) == location[0]]
+        for choice in chosen or choices:
+            yield from _models(choice, location[1:] if chosen else location)
+    elif isinstance(declared, type) and issubclass(declared, BaseModel):
+        if not location:
+            yield declared
+        elif location[0] in declared.model_fields:
+            yield from _models(declared.model_fields[location[0]].annotation, location[1:])
+    elif origin in (tuple, list, dict) and location:
+        # A key or an index says nothing of its own: every item is declared alike.
+        yield from _models(get_args(declared)[1 if origin is dict else 0], location[1:])
+
+
+def _tag(choice: Any) -> str | None:
+    """The name by which the library lists an alternative: its tag, or the `type` that a body gives."""
+    if get_origin(choice) is Annotated:
+        return next((extra.tag for extra in choice.__metadata__ if isinstance(extra, Tag)), None)
+    return next((name for name, kind in KINDS.items() if kind is choice), None)
 
 
 _NOUNS = {

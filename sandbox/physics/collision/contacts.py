@@ -1,7 +1,8 @@
 """Contacts of a step: what touches, or would touch in it, found anew in every step, in a fixed order.
 
 Found are pairs of a particle and a disc, an edge of a body, or an edge of terrain, in ascending order of the particle;
-the order within a particle is one of positions. The impulses of the last step are carried over by feature.
+the order within a particle is one of positions. The impulses of the last step are carried over by feature. There is no
+manifold: two points at which two bodies touch are two contacts.
 """
 
 import math

@@ -59,8 +59,8 @@ class Contacts(NamedTuple):
     """Contacts in ascending order of particle: particle, feature = 3 number + kind, the particles it pushes against.
 
     end_a, end_b: the other disc and -1, or the ends of an edge; -1, -1: terrain. share: place along the edge. normal:
-    towards the particle. gap [m]; bounce [m/s]: the velocity along the normal that is left where it bounces, below 0:
-    it does not; impulse [N s] (k, 2) along normal and tangent.
+    towards the particle. gap [m], below 0: penetration; bounce [m/s]: the velocity along the normal that is left where
+    it bounces, below 0: it does not; impulse [N s] (k, 2) along normal and tangent.
     """
 
     particle: Slots

@@ -1,4 +1,4 @@
-"""Which bodies and loose particles contacts touch, and which of them touch each other."""
+"""Contact islands: which bodies and loose particles contacts touch, and which of them touch each other."""
 
 from typing import NamedTuple
 
