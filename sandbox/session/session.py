@@ -8,7 +8,6 @@ from typing import Any
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import Level
 from sandbox.physics.snapshot import Snapshot, restore, take
-from sandbox.physics.state import STATE_ARRAYS
 from sandbox.physics.step import step
 from sandbox.session.breaks import break_lines
 from sandbox.session.commands import Command, CommandError, Grab, Redo, Release, SetDrive, Undo, apply, name_added
@@ -336,7 +335,7 @@ class Session:
 
     def _keep_keyframe(self) -> None:
         self._keyframes.append(take(self.world))
-        size = sum(getattr(self._keyframes[-1], name).nbytes for name in STATE_ARRAYS)
+        size = sum(array.nbytes for array in self._keyframes[-1].arrays.values())
         if size * len(self._keyframes) > KEYFRAME_BUDGET and len(self._keyframes) > 2:
             del self._keyframes[1::2]
 

@@ -255,8 +255,7 @@ def test_what_nothing_touches_moves_as_in_a_world_without_contacts():
     alone, beside = world(), world(FLOOR)
     for w in (alone, beside):
         add_jelly(w, (0.0, 20.0), angle=0.3)
-    alone.collides[:] = 0
-    alone.see_what_touches()
+    alone.change("collides", 0)
     add_discs(beside, [(30.0, 0.1)])
     for _ in range(30):
         step(alone)

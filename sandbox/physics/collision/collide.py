@@ -143,10 +143,7 @@ def _detect(
         return NO_ROOM
     room.counts[PAIRS] = find_pairs(room.boxes, cell, room.grid, larges, room.pairs)
     room.counts[TERRAIN_PAIRS] = find_terrain(room.boxes, terrain, room.terrain_pairs)
-    if (
-        room.counts[PAIRS] > room.pairs.other.shape[0]
-        or room.counts[TERRAIN_PAIRS] > room.terrain_pairs.other.shape[0]
-    ):
+    if room.counts[PAIRS] > room.pairs.other.shape[0] or room.counts[TERRAIN_PAIRS] > room.terrain_pairs.other.shape[0]:
         return NO_ROOM
     bound_solids(colliders, outline, 0, outline.dynamic[1], room.bounds)
     count = find_contacts(

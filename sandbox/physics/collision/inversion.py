@@ -1,8 +1,4 @@
-<<<<<<< HEAD
 """Inversion: which jellies are so out of shape that springs and areas alone may not find back.
-=======
-"""Inverted triangles, tangles: which jellies are so out of shape that springs and areas alone may not find back.
->>>>>>> main
 
 A jelly is a group of triangles that share sides. It is inverted while a triangle of it is turned over, or while the
 triangles about one of its inner particles do not wind round that particle just once.
