@@ -4,16 +4,19 @@ import time
 from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
-from statistics import mean
 
 PARTS = ("events", "commands", "ticks", "springs", "particles", "ui", "flip", "frame")
 
 
 class Profile:
-    """Collects the wall time of each part of each frame."""
+    """Collects the wall time of each part of each frame, and when things came about for the first time."""
 
     def __init__(self) -> None:
         self.milliseconds: dict[str, list[float]] = defaultdict(list)
+        # Wall time from one picture in the window to the next [s]: what a person sees stand still.
+        self.longest_stop = 0.0
+        self.first_times: dict[str, float] = {}
+        self._shown: float | None = None
 
     @contextmanager
     def part(self, name: str) -> Iterator[None]:
@@ -24,14 +27,28 @@ class Profile:
         finally:
             self.milliseconds[name].append(1e3 * (time.perf_counter() - start))
 
-    def table(self, seconds: float) -> str:
-        """Mean, 95th percentile and worst [ms] of every part, and the frames per second over so many seconds."""
+    def shown(self) -> None:
+        """Note that the window shows a new picture now."""
+        now = time.perf_counter()
+        if self._shown is not None:
+            self.longest_stop = max(self.longest_stop, now - self._shown)
+        self._shown = now
+
+    def reached(self, what: str) -> None:
+        """Note when something came about, the first time that it does."""
+        self.first_times.setdefault(what, time.perf_counter())
+
+    def table(self, began: float) -> str:
+        """Mean, 95th percentile and worst [ms] of every part; then what came when after began [s of perf_counter]."""
+        seconds = time.perf_counter() - began
         frames = len(self.milliseconds["frame"])
         lines = [f"{'part':<12}{'mean':>8}{'p95':>8}{'worst':>8}   ms"]
         for name in PARTS:
             times = sorted(self.milliseconds[name])
             if times:
                 p95 = times[min(len(times) - 1, int(0.95 * len(times)))]
-                lines.append(f"{name:<12}{mean(times):8.2f}{p95:8.2f}{times[-1]:8.2f}")
+                lines.append(f"{name:<12}{sum(times) / len(times):8.2f}{p95:8.2f}{times[-1]:8.2f}")
         lines.append(f"{frames} frames in {seconds:.1f} s: {frames / max(seconds, 1e-9):.1f} frames a second")
+        lines.append(f"longest time without a new picture: {self.longest_stop:.3f} s")
+        lines += [f"{what}: after {when - began:.2f} s" for what, when in self.first_times.items()]
         return "\n".join(lines)
