@@ -13,10 +13,11 @@ class Profile:
 
     def __init__(self) -> None:
         self.milliseconds: dict[str, list[float]] = defaultdict(list)
-        # Wall time from one picture in the window to the next [s]: what a person sees stand still.
-        self.longest_stop = 0.0
+        # From one picture in the window to the next, what a person sees stand still: wall time [s], and how much of it
+        # this thread itself was busy, which other programs do not lengthen.
+        self.longest_stop = (0.0, 0.0)
         self.first_times: dict[str, float] = {}
-        self._shown: float | None = None
+        self._shown: tuple[float, float] | None = None
 
     @contextmanager
     def part(self, name: str) -> Iterator[None]:
@@ -29,9 +30,9 @@ class Profile:
 
     def shown(self) -> None:
         """Note that the window shows a new picture now."""
-        now = time.perf_counter()
+        now = time.perf_counter(), time.thread_time()
         if self._shown is not None:
-            self.longest_stop = max(self.longest_stop, now - self._shown)
+            self.longest_stop = max(self.longest_stop, (now[0] - self._shown[0], now[1] - self._shown[1]))
         self._shown = now
 
     def reached(self, what: str) -> None:
@@ -49,6 +50,7 @@ class Profile:
                 p95 = times[min(len(times) - 1, int(0.95 * len(times)))]
                 lines.append(f"{name:<12}{sum(times) / len(times):8.2f}{p95:8.2f}{times[-1]:8.2f}")
         lines.append(f"{frames} frames in {seconds:.1f} s: {frames / max(seconds, 1e-9):.1f} frames a second")
-        lines.append(f"longest time without a new picture: {self.longest_stop:.3f} s")
+        wall, busy = self.longest_stop
+        lines.append(f"longest time without a new picture: {wall:.3f} s, {busy:.3f} s of it at work")
         lines += [f"{what}: after {when - began:.2f} s" for what, when in self.first_times.items()]
         return "\n".join(lines)
