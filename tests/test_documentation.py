@@ -17,10 +17,10 @@ from sandbox.physics.stability import report
 from sandbox.physics.step import step
 from sandbox.physics.substeps import halve
 from sandbox.physics.world import World
-from sandbox.session.checking import run_checks
-from sandbox.session.records import COMMAND_TYPES
+from sandbox.session.commands import COMMAND_TYPES
 from sandbox.session.replay.reader import read_script
 from sandbox.session.session import Session
+from sandbox.session.summary import run_checks
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

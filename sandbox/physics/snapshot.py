@@ -1,8 +1,8 @@
 """Snapshot: a read-only copy of every bit of a world's state; hashes of that state."""
 
 import hashlib
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import Field, dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -88,16 +88,16 @@ def state_hash(world: World | Snapshot, arrays: Mapping[str, str] | None = None)
     arrays: the result of `hash_by_array` for this state, where the caller has it already.
     """
     by_array = hash_by_array(world) if arrays is None else arrays
-    state = world.settings
-    settings = (
-        *((component + 0.0).hex() for component in state.gravity),
-        str(state.tick_rate),
-        str(state.substeps),
-        state.solver,
-        str(state.iterations),
-        float(state.warm_start).hex(),
-        *((component + 0.0).hex() for component in state.wind),
-        float(state.drag).hex(),
-    )
+    settings = (text for setting in fields(world.settings) for text in _canonical(setting, world.settings))
     text = "\n".join([*(by_array[column.stored] for column in COLUMNS), str(world.tick), *settings])
     return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()
+
+
+def _canonical(setting: Field[Any], settings: WorldSettings) -> Iterator[str]:
+    """A setting as the texts that are hashed: by its type, so that 1 and 1.0 are the same number."""
+    value = getattr(settings, setting.name)
+    if setting.type in (float, tuple[float, float]):
+        for number in value if isinstance(value, tuple) else (value,):
+            yield (number + 0.0).hex()
+    else:
+        yield str(value)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from sandbox.physics.query import strain
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
-from sandbox.physics.strain import strain
 from sandbox.physics.world import LAW_HOOKE
 from tests.support.physics_scenes import grid, grid_with_diagonals, lengths, network, random_graph, run, scaled
 

@@ -14,7 +14,7 @@ from sandbox.physics.snapshot import Snapshot, canonical_bytes, hash_by_array, s
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.world import World
 from sandbox.session.commands import CommandError
-from sandbox.session.records import ScriptLine
+from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import decode_state
 from sandbox.session.session import Session
 
