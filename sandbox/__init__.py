@@ -15,7 +15,7 @@ _HOME = {
     "World": "sandbox.physics.world",
     "step": "sandbox.physics.step",
     "Session": "sandbox.session.session",
-    "Replay": "sandbox.session.replay.verify",
+    "Replay": "sandbox.session.replay.recording",
 }
 __all__ = ["Level", "Replay", "Session", "World", "__version__", "build_world", "load_level", "step"]
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from sandbox.level.format.model import Level
     from sandbox.physics.step import step
     from sandbox.physics.world import World
-    from sandbox.session.replay.verify import Replay
+    from sandbox.session.replay.recording import Replay
     from sandbox.session.session import Session
 
 

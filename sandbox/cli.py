@@ -27,7 +27,7 @@ from sandbox.terminal import (
 if TYPE_CHECKING:
     from sandbox.level.format.model import Level
     from sandbox.physics.world import World
-    from sandbox.session.replay.verify import Replay
+    from sandbox.session.replay.recording import Replay
     from sandbox.session.session import Session
 
 EXIT_OK, EXIT_FAILED, EXIT_REFUSED, EXIT_INTERRUPTED = 0, 1, 2, 130
@@ -140,7 +140,7 @@ def _level(name: str) -> "Level":
 
 def _recording(name: str, partial: bool = False) -> "Replay":
     from sandbox.session.replay.reader import read_replay
-    from sandbox.session.replay.verify import ReplayError
+    from sandbox.session.replay.recording import ReplayError
 
     try:
         return read_replay(name, partial)
@@ -255,7 +255,7 @@ def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
 
 def _scripted_session(level: "Level", commands: Path | None) -> "Session":
     from sandbox.session.replay.reader import read_script
-    from sandbox.session.replay.verify import ReplayError
+    from sandbox.session.replay.recording import ReplayError
     from sandbox.session.session import Session
 
     try:
@@ -322,7 +322,8 @@ def _replay(options: argparse.Namespace) -> int:
 
 def _verify(name: str, partial: bool) -> tuple[int, dict[str, Any]]:
     from sandbox.session.probe import finite
-    from sandbox.session.replay.verify import ReplayError, verify
+    from sandbox.session.replay.recording import ReplayError
+    from sandbox.session.replay.verify import verify
 
     try:
         replay = _recording(name, partial)

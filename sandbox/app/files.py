@@ -11,7 +11,7 @@ from sandbox.level.faults.level_error import LevelError, one_line
 from sandbox.level.format.files import load_level, read_level
 from sandbox.level.format.writing import refusal_of
 from sandbox.session.replay.reader import begins_as_replay, read_replay
-from sandbox.session.replay.verify import ReplayError
+from sandbox.session.replay.recording import ReplayError
 
 if TYPE_CHECKING:
     from sandbox.app.app import App
