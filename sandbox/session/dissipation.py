@@ -16,15 +16,21 @@ class Dissipation:
     def __init__(self) -> None:
         self.energy = 0.0
         self._before: float | None = None
+        self._after: float | None = None
 
-    def before(self, world: World) -> None:
-        """Look at a world that is about to make a tick."""
-        self._before = None if _is_worked_on(world) else total_energy(world)
+    def before(self, world: World, changed: bool = True) -> None:
+        """Look at a world that is about to make a tick; changed: whether it may differ from the last look `after`."""
+        if _is_worked_on(world):
+            self._before = None
+        else:
+            self._before = total_energy(world) if changed or self._after is None else self._after
 
     def after(self, world: World) -> None:
         """Look at it again after the tick."""
+        self._after = None
         if self._before is not None:
-            self.energy += self._before - total_energy(world)
+            self._after = total_energy(world)
+            self.energy += self._before - self._after
 
 
 def _is_worked_on(world: World) -> bool:
