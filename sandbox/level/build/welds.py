@@ -1,4 +1,4 @@
-"""Welds: which particles of a level are one, and what that makes impossible."""
+"""Welds, the rigid joints: which particles of a level are one, and what that makes impossible."""
 
 from collections.abc import Iterable, Iterator
 

@@ -5,33 +5,13 @@ does not work with this Python or numpy.
 """
 
 import functools
-import hashlib
 import os
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numpy as np
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-
-
-def _cache_folder() -> str:
-    """A folder for the kernels of this very source, next to it; empty, numba's own choice, where none can be written.
-
-    numba looks for changes only in the file of the kernel itself: after a change in one that it calls it would go on
-    using the old machine code.
-    """
-    room = Path(__file__).parent
-    digest = hashlib.blake2b(digest_size=8)
-    for file in sorted(room.rglob("*.py")):
-        digest.update(file.read_bytes())
-    folder = room / "__pycache__" / f"kernels-{digest.hexdigest()}"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return ""
-    return str(folder) if os.access(folder, os.W_OK) else ""
 
 
 def _import_numba() -> Any:
@@ -46,7 +26,8 @@ def _import_numba() -> Any:
 
 _numba = _import_numba()
 COMPILED = _numba is not None
-_CACHE_FOLDER = _cache_folder() if COMPILED else ""
+if COMPILED:
+    from sandbox.physics.jit import cache, linking
 
 # Turns an index that is never negative into one that loops are vectorised for: of a signed one numba first asks whether
 # it counts from the end. Never mix the two in one sum: that makes a float.
@@ -78,17 +59,20 @@ def _interpreted(function: Function) -> Function:
     return cast(Function, call)
 
 
-def _compiled(function: Function, **options: Any) -> Function:
+def _dispatcher(function: Function, **options: Any) -> Any:
     # Determinism: never fastmath, never parallel. Kernels guard every divisor, so the error model decides nothing.
-    # The folder is set for this one function: the kernels of others in the same process stay where they are.
-    chosen = _numba.config.CACHE_DIR
-    _numba.config.CACHE_DIR = chosen or _CACHE_FOLDER
-    try:
-        return cast(Function, _numba.njit(cache=True, error_model="numpy", **options)(function))
-    except RuntimeError:  # no folder can hold the cache
-        return cast(Function, _numba.njit(error_model="numpy", **options)(function))
-    finally:
-        _numba.config.CACHE_DIR = chosen
+    return _numba.njit(error_model="numpy", **options)(function)
+
+
+def _entry(function: Function, **options: Any) -> Function:
+    dispatcher = _dispatcher(function, pipeline_class=linking.EntryCompiler, **options)
+    dispatcher._cache = cache.KernelCache(dispatcher)
+    return cast(Function, dispatcher)
+
+
+def _part(function: Function, **options: Any) -> Function:
+    unwrapped = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    return cast(Function, _dispatcher(function, pipeline_class=linking.PartCompiler, **unwrapped, **options))
 
 
 # Kernels hold no array longer than their call, so numba need not count who holds which: some 800 counts, 4 us, in a
@@ -98,32 +82,32 @@ _UNCOUNTED = {"_nrt": False}
 
 def kernel(function: Function) -> Function:
     """Make `function` a kernel: scalars, contiguous arrays and named tuples of arrays in; same bits both ways."""
-    return _compiled(function, **_UNCOUNTED) if COMPILED else _interpreted(function)
+    return _entry(function, **_UNCOUNTED) if COMPILED else _interpreted(function)
 
 
 def bundle_kernel(function: Function) -> Function:
     """Make `function` a kernel that takes bundles too."""
-    return _compiled(function) if COMPILED else _interpreted(function)
+    return _entry(function) if COMPILED else _interpreted(function)
 
 
 def inner_kernel(function: Function) -> Function:
     """Make `function` a part of kernels, which alone may call it: compiled sooner, with no entry for Python."""
-    return _compiled(function, no_cpython_wrapper=True, no_cfunc_wrapper=True, **_UNCOUNTED) if COMPILED else function
+    return _part(function, **_UNCOUNTED) if COMPILED else function
 
 
 def inlined_kernel(function: Function) -> Function:
     """Make `function` a part of kernels that is written into them: no call, which copies every array's shape."""
-    return _compiled(function, inline="always", **_UNCOUNTED) if COMPILED else function
+    return _part(function, inline="always", **_UNCOUNTED) if COMPILED else function
 
 
 def scalar_kernel(function: Function) -> Function:
     """Make `function` a kernel that takes and gives scalars alone, to be called from other kernels."""
-    return _compiled(function) if COMPILED else function
+    return _entry(function) if COMPILED else function
 
 
 def waiting_kernel(function: Function) -> Function:
     """Make `function` a kernel for a thread of its own: others run meanwhile, and may be waited for."""
-    return _compiled(function, nogil=True, **_UNCOUNTED) if COMPILED else _interpreted(function)
+    return _entry(function, nogil=True, **_UNCOUNTED) if COMPILED else _interpreted(function)
 
 
 if COMPILED:
