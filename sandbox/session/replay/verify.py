@@ -80,7 +80,7 @@ def _session(replay: Replay, start: int) -> Session:
     return Session(replay.level, script=replay.script, start=replay.state(start))
 
 
-def _guard(replay: Replay, act: Callable[[], None]) -> None:
+def _guard(replay: Replay, act: Callable[[], object]) -> None:
     try:
         act()
     except CommandError as error:
