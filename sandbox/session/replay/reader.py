@@ -260,7 +260,11 @@ def _gather(gathered: _Gathered, line: _Sealed, number: int, where: str) -> None
         gathered.script.append(ScriptLine(line.tick, line.gesture, line.command, number))
     elif isinstance(line, _StateLine):
         arrays = {gathered.once(name): gathered.once(text) for name, text in line.state.items()}
-        gathered.states[tick] = StoredState(arrays, WorldSettings(**line.settings.model_dump()), number)
+        try:
+            settings = WorldSettings(**line.settings.model_dump())
+        except ValueError as error:
+            raise ReplayError(f"{where}: settings: {error}") from None
+        gathered.states[tick] = StoredState(arrays, settings, number)
     elif isinstance(line, _EndLine):
         gathered.end_hash = line.hash
 
