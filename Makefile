@@ -13,9 +13,10 @@ test: $(VENV)/installed-dev
 	$(BIN)/python -m pytest -n $(WORKERS)
 
 lint: $(VENV)/installed-dev
-	$(BIN)/ruff check sandbox tests
-	$(BIN)/ruff format --check sandbox tests
+	$(BIN)/ruff check sandbox tests examples
+	$(BIN)/ruff format --check sandbox tests examples
 	$(BIN)/mypy
+	$(BIN)/mypy --strict --follow-imports=silent examples
 
 bench: $(VENV)/installed-dev
 	for bench in tests/bench/*.py; do echo "## $$bench"; PYTHONPATH=. $(BIN)/python "$$bench" || exit 1; done
