@@ -20,7 +20,7 @@ _HOME = {
     "state_hash": "sandbox.physics.snapshot",
     "step": "sandbox.physics.step",
     "Session": "sandbox.session.session",
-    "run_checks": "sandbox.session.checking",
+    "run_checks": "sandbox.session.summary",
     "Replay": "sandbox.session.replay.verify",
 }
 __all__ = [
@@ -48,9 +48,9 @@ if TYPE_CHECKING:
     from sandbox.physics.snapshot import Snapshot, state_hash
     from sandbox.physics.step import step
     from sandbox.physics.world import World
-    from sandbox.session.checking import run_checks
     from sandbox.session.replay.verify import Replay
     from sandbox.session.session import Session
+    from sandbox.session.summary import run_checks
 
 
 def __getattr__(name: str) -> Any:

@@ -159,16 +159,27 @@ def _is_replay(name: str) -> bool:
 
 
 def _play(options: argparse.Namespace) -> int:
-    replay = _recording(options.level) if options.level and _is_replay(options.level) else None
-    level = _level(options.level) if options.level and replay is None else None
     from sandbox.app.display import has_display
 
     if not has_display():
-        return _play_headless(level or (replay.level if replay else _level("rope_bridge_jelly")), replay)
-    from sandbox.app.app import run_app
+        level, replay = _level_or_replay(options.level or "rope_bridge_jelly")
+        return _play_headless(level, replay)
+    from sandbox.app.opening import Wanted, open_app
 
-    source = Path(options.level) if level and Path(options.level).is_file() else None
-    return run_app(level, replay, source, profile=options.profile, seconds=options.seconds, scale=options.scale)
+    def find() -> Wanted:
+        if options.level is None:
+            return Wanted()
+        level, replay = _level_or_replay(options.level)
+        source = Path(options.level) if not replay and Path(options.level).is_file() else None
+        return Wanted(None if replay else level, replay, source)
+
+    return open_app(find, profile=options.profile, seconds=options.seconds, scale=options.scale)
+
+
+def _level_or_replay(name: str) -> "tuple[Level, Replay | None]":
+    """What a file holds: a level, or a replay and the level that it is of."""
+    replay = _recording(name) if _is_replay(name) else None
+    return (replay.level if replay else _level(name)), replay
 
 
 def _play_headless(level: "Level", replay: "Replay | None") -> int:
@@ -340,7 +351,7 @@ def _check(options: argparse.Namespace) -> int:
 def _check_level(name: str) -> int:
     from sandbox.level.build.build_world import build_world
     from sandbox.physics.stability import report
-    from sandbox.session.checking import run_checks
+    from sandbox.session.summary import run_checks
 
     level = _level(name)
     world = build_world(level)
@@ -362,8 +373,7 @@ def _render(options: argparse.Namespace) -> int:
 
     if options.output.suffix.lower() != ".png":
         raise Refused(f"{options.output}: this version draws PNG pictures; end the name in .png")
-    replay = _recording(options.level) if _is_replay(options.level) else None
-    level = replay.level if replay else _level(options.level)
+    level, replay = _level_or_replay(options.level)
     session = Session(level, replay.script if replay else ())
     ticks = round(options.seconds * level.settings.tick_rate)
     if replay and ticks > replay.ticks:
@@ -380,9 +390,9 @@ def _edit(options: argparse.Namespace) -> int:
 
     if not has_display():
         raise Refused("the editor needs a display; without one, edit the level's JSON and try `sandbox check`")
-    from sandbox.app.app import run_app
+    from sandbox.app.opening import Wanted, open_app
 
-    return run_app(edit=options.level or "", scale=options.scale)
+    return open_app(lambda: Wanted(edit=options.level or ""), scale=options.scale)
 
 
 def _format(options: argparse.Namespace) -> int:

@@ -4,6 +4,7 @@
 """
 
 from sandbox.session.commands import (
+    COMMAND_TYPES,
     AddParticle,
     AddSpring,
     Command,
@@ -24,7 +25,7 @@ from sandbox.session.commands import (
     Unpin,
     apply,
 )
-from sandbox.session.records import COMMAND_TYPES, ScriptLine, from_record, to_record
+from sandbox.session.commands.records import ScriptLine, from_record, to_record
 from sandbox.session.replay.reader import read_script
 
 __all__ = [

@@ -175,6 +175,12 @@ def test_help_loads_neither_pygame_nor_numba_nor_numpy(arguments):
     assert not loaded & {"pygame", "pygame_gui", "numba", "numpy", "pydantic"}
 
 
+def test_the_window_needs_none_of_the_libraries_that_take_long_to_import():
+    loaded = loaded_after("from sandbox.app.opening import open_app")
+    assert "pygame" in loaded
+    assert not loaded & {"pygame_gui", "numba", "numpy", "pydantic", "platformdirs", "sandbox.physics.jit"}
+
+
 def test_no_file_is_longer_than_600_lines():
     lengths = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in PACKAGE.rglob("*.py")}
     assert {str(path.relative_to(ROOT)): length for path, length in lengths.items() if length > LONGEST_FILE} == {}

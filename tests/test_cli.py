@@ -383,10 +383,21 @@ def test_edit_without_a_display_is_refused_in_one_line(monkeypatch, capsys):
 
 
 def test_edit_hands_the_level_on_to_the_app(monkeypatch, rope):
-    asked = {}
+    asked = []
     monkeypatch.setattr("sandbox.app.display.has_display", lambda: True)
-    monkeypatch.setattr("sandbox.app.app.run_app", lambda **given: asked.update(given) or 0)
+    monkeypatch.setattr("sandbox.app.opening.open_app", lambda find, **_: asked.append(find()) or 0)
     assert main(["edit", rope]) == 0
-    assert asked["edit"] == rope
     assert main(["edit"]) == 0
-    assert asked["edit"] == ""
+    assert [wanted.edit for wanted in asked] == [rope, ""]
+
+
+def test_play_opens_the_window_before_it_reads_what_was_asked_for(monkeypatch, rope):
+    found = []
+    monkeypatch.setattr("sandbox.app.display.has_display", lambda: True)
+    monkeypatch.setattr("sandbox.app.opening.open_app", lambda find, **_: found.append(find()) or 0)
+    assert main(["play", rope]) == main(["play", "rope"]) == main(["play"]) == 0
+    of_file, shipped, nothing = found
+    assert of_file.source == Path(rope) and shipped.source is None
+    assert of_file.level.name != shipped.level.name == "Rope"
+    assert nothing.level is nothing.replay is None
+    assert main(["play", "no such level"]) == 2

@@ -1,4 +1,4 @@
-"""Energy of a world [J]: what the panel and the checks show; no tick depends on it."""
+"""Energy of a world [J] and what ticks take out of it: for the panel and the checks; no tick depends on it."""
 
 import numpy as np
 
@@ -78,3 +78,30 @@ def gravity_energy(world: World) -> float:
 def total_energy(world: World) -> float:
     """Kinetic energy and that of springs and gravity [J]."""
     return kinetic_energy(world) + spring_energy(world) + gravity_energy(world)
+
+
+class Dissipation:
+    """Energy [J] lost in ticks: `before` each, then `after` it; energy that a tick gained counts against it.
+
+    What commands change between ticks is not counted, nor is a tick in which something works on the world: a hand that
+    holds a particle, a muscle, a hydraulic or motor that is driven, the wind.
+    """
+
+    def __init__(self) -> None:
+        self.energy = 0.0
+        self._before: float | None = None
+
+    def before(self, world: World) -> None:
+        """Look at a world that is about to make a tick."""
+        self._before = None if _is_worked_on(world) else total_energy(world)
+
+    def after(self, world: World) -> None:
+        """Look at it again after the tick."""
+        if self._before is not None:
+            self.energy += self._before - total_energy(world)
+
+
+def _is_worked_on(world: World) -> bool:
+    settings = world.settings
+    blows = settings.drag > 0.0 and any(settings.wind)
+    return world.hands_in_use() or bool(len(world.driven.muscles.spring)) or bool(np.any(world.part_value)) or blows

@@ -5,32 +5,19 @@ pinned where it was, until somebody unpins it. An absurd constant of a spring or
 back. Positions and velocities are good as the last tick ended with them, masses and constants as they were last set.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.events import Containment
 from sandbox.physics.jit import kernel
-from sandbox.physics.state import GUARDED_CONSTANTS, GUARDED_ELEMENTS, VECTOR_ARRAYS
+from sandbox.physics.state import GUARDED, Family
 from sandbox.physics.world import World
 
 # Larger than anything that a level or a command can ask for (1e6 m, 1e9 m/s, 1e9 kg, 1e15 N/m), and small enough that
 # energies stay finite; a mistuned spring that passes it is frozen there.
 ABSURD = 1e18
-
-
-@dataclass(frozen=True)
-class Containment:
-    """What was taken back: at a tick, in the array `array` of the particle, spring or element `name`."""
-
-    tick: int
-    array: str
-    name: str
-    frozen: bool
-
-    def __str__(self) -> str:
-        text = f"tick {self.tick}: {self.name}: an impossible {self.array.replace('_', ' ')} was taken back"
-        return text + ("; it is frozen where it last was, unpin it to let it go" if self.frozen else "")
+# What is guarded of springs and elements.
+_CONSTANTS = [(column.name, column.width) for column in GUARDED if column.family is not Family.PARTICLE]
 
 
 @kernel
@@ -116,12 +103,12 @@ def contain_inputs(world: World) -> None:
         lowest = -ABSURD if values.ndim == 2 else 0.0
         bad = _outside(values, lowest) | ((values == 0.0) if name == "mass" else False)
         _freeze(world, bad, name)
-    for name in (*GUARDED_CONSTANTS, *GUARDED_ELEMENTS):
+    for name, width in _CONSTANTS:
         values = getattr(world, name)
-        lowest = -ABSURD if name in VECTOR_ARRAYS else 0.0
+        lowest = -ABSURD if width > 1 else 0.0
         highest = 1.0 if name.endswith(("stiffness", "damping")) and "hooke" not in name else ABSURD
         for slot in np.flatnonzero(_outside(values, lowest, highest)).tolist():
-            values[slot] = world.good[name][slot]
+            world.change(name, world.good[name][slot], slot)
             owner = world.slot_name(name, slot)
             world.contained.append(Containment(world.tick, name, owner, frozen=False))
 

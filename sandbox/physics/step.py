@@ -6,12 +6,12 @@ import numpy as np
 
 from sandbox.physics.actuators import Driven, Hydraulics, Motors, Muscles, StrainLimits
 from sandbox.physics.breaking import yield_and_break
-from sandbox.physics.collision.collide import leave, meet
+from sandbox.physics.collision.collide import begin_collisions, collide, end_collisions, finish
 from sandbox.physics.collision.outline import TERRAIN_GROUP
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_springs
 from sandbox.physics.forces import Before, apply_forces
-from sandbox.physics.jit import kernel
+from sandbox.physics.integrate import integrate
 from sandbox.physics.sanitise import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
@@ -24,15 +24,6 @@ from sandbox.physics.world import Floats, World
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
 PHYSICS_VERSION = 1
-
-
-@kernel
-def _integrate(position, velocity, active, h):  # type: ignore[no-untyped-def]
-    # Symplectic Euler: x += v h with the NEW velocity; the equation is derived for it.
-    for p in range(active.shape[0]):
-        if active[p]:
-            position[p, 0] += velocity[p, 0] * h
-            position[p, 1] += velocity[p, 1] * h
 
 
 def substep_time(settings: WorldSettings, parts: int | None = None) -> float:
@@ -73,15 +64,20 @@ def step(world: World) -> None:
     # What a solver keeps is an impulse of one step: exact, as parts are a power of two.
     world.scale_impulses(settings.fewest_substeps / parts)
     world.contacts = None
+    collision = begin_collisions(world) if world.has_contacts else None
     for _ in range(parts):
         before = Before(world.velocity.copy(), rest_length)
         apply_forces(world, h)
-        meeting = meet(world, before.velocity, h) if world.has_contacts else None
+        if collision is not None:
+            world.contacts = collide(collision, before.velocity, world.tick, h)
         solver.solve(world, springs, elements, h, before)
-        if meeting is not None:
-            leave(world, meeting, h)
-        _integrate(world.position, world.velocity, world.particle_active, h)
+        if collision is not None:
+            finish(collision, h)
+        else:
+            integrate(world.position, world.velocity, world.particle_active, h)
         rest_length = world.rest_length
+    if collision is not None:
+        end_collisions(world, collision)
     world.scale_impulses(parts / settings.fewest_substeps)
     world.rest_hands()
     world.tick += 1

@@ -8,13 +8,13 @@ from statistics import median
 
 import numpy as np
 
-from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
-from sandbox.physics.query import shown_particles, shown_springs
+from sandbox.level.checks import CheckDef, CheckResult, check_ticks, evaluate
+from sandbox.level.format.model import Level
+from sandbox.physics.energy import Dissipation, gravity_energy, kinetic_energy, spring_energy
+from sandbox.physics.query import load_bearing, shown_particles, shown_springs, strain
 from sandbox.physics.settings import Substeps
 from sandbox.physics.snapshot import state_hash
-from sandbox.physics.strain import load_bearing, strain
 from sandbox.physics.world import World
-from sandbox.session.dissipation import Dissipation
 from sandbox.session.session import Session
 
 # Strain is measured over this last part of a run [s].
@@ -128,3 +128,20 @@ def particle_metric(world: World, particle: str, metric: str) -> float:
     slot = world.particle_slot(particle)
     x, y = world.position[slot].tolist()
     return {"x": x, "y": y, "speed": float(np.hypot(*world.velocity[slot]))}[metric]
+
+
+def run_checks(level: Level) -> list[CheckResult]:
+    """Run the level by itself as long as each check asks for, and judge; in the order of the file."""
+    measured: dict[int, tuple[Session, Summary]] = {}
+
+    def measure(check: CheckDef) -> float:
+        ticks = check_ticks(check, level.settings.tick_rate)
+        if ticks not in measured:
+            session = Session(level)
+            measured[ticks] = session, run(session, ticks)
+        session, summary = measured[ticks]
+        if check.particle is not None:
+            return particle_metric(session.world, check.particle, check.metric)
+        return float(getattr(summary, check.metric))
+
+    return evaluate(level.checks, measure)

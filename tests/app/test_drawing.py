@@ -209,7 +209,7 @@ def draw(level, change=None):
     if change is not None:
         position = snapshot.position.copy()
         change(position)
-        snapshot = replace(snapshot, position=position)
+        snapshot = replace(snapshot, arrays={**snapshot.arrays, "position": position})
     surface = pygame.Surface((400, 300), 0, 32)
     camera = Camera(viewport=(0, 0, 400, 300))
     camera.fit((-1.0, -3.0, 7.0, 3.0))

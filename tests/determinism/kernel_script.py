@@ -66,7 +66,7 @@ def busy_world(solver: str, substeps: int):
     names = [f"net:{k}" for k in range(len(pairs))]
     first, second = zip(*pairs, strict=True)
     world.add_springs(names, first, second, stiffness=0.09, damping=0.13)
-    world.law[5:9] = LAW_HOOKE
+    world.change("law", LAW_HOOKE, slice(5, 9))
     world.hooke_stiffness[5:9], world.hooke_damping[5:9] = 40.0, 0.3
     pair = world.add_particles(["a", "b", "free"], [(4, 4), (4, 4), (5, 5)], velocity=[(0, 0), (0.1, -0.2), (1, 2)])
     world.add_springs([":0", ":1"], [pair, pair], [pair + 1, pair + 1], rest_length=[0.3, 0.0], stiffness=0.2)
@@ -90,8 +90,9 @@ def touching_world(solver: str, substeps: int):
     from sandbox.physics.terrain import Chain, make_terrain
 
     world = busy_world(solver, substeps)
-    world.edge[:] = LINE
-    world.group[:36], world.collides[:36], world.owner[:36] = 2, ALL_GROUPS, 1
+    world.change("edge", LINE)
+    for name, value in (("group", 2), ("collides", ALL_GROUPS), ("owner", 1)):
+        world.change(name, value, slice(36))
     names, points = [f"disc.{k}" for k in range(6)], [(0.3 + 0.41 * k, 2.9 + 0.2 * (k % 2)) for k in range(6)]
     world.add_particles(
         names, points, radius=0.15, friction=0.4, restitution=[0.6, 0.0] * 3, group=2, collides=ALL_GROUPS,

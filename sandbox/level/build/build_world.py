@@ -19,8 +19,7 @@ from sandbox.physics.actuators import NEVER, Driven, Hydraulics, Motors, Muscles
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.driving import drive_muscles
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.slots import OWN_MATERIAL
-from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, World
+from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, OWN_MATERIAL, World
 
 Slots = NDArray[np.int64]
 

@@ -11,10 +11,10 @@ from sandbox.level.build.actuators import parts
 from sandbox.level.format.model import Level
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, canonical_bytes, hash_by_array, state_hash
-from sandbox.physics.state import STATE_ARRAYS
+from sandbox.physics.state import BY_STORED
 from sandbox.physics.world import World
 from sandbox.session.commands import CommandError
-from sandbox.session.records import ScriptLine
+from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import decode_state
 from sandbox.session.session import Session
 
@@ -32,7 +32,7 @@ class ReplayError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class TickHashes:
-    """What a replay says of the state after a tick: the hash of all, and of each array in the order of STATE_ARRAYS."""
+    """What a replay says of the state after a tick: the hash of all, and of each array in the order of the table."""
 
     whole: str
     arrays: tuple[str, ...]
@@ -163,7 +163,7 @@ def _compare(replay: Replay, world: World) -> str | None:
     recorded, present = replay.hashes[world.tick], hash_by_array(world)
     if state_hash(world, present) == recorded.whole:
         return None
-    pairs = zip(STATE_ARRAYS, recorded.arrays, strict=True)
+    pairs = zip(BY_STORED, recorded.arrays, strict=True)
     return next((name for name, expected in pairs if present[name] != expected), "settings")
 
 
@@ -172,15 +172,15 @@ def _locate(replay: Replay, tick: int, array: str, world: World) -> Divergence:
     if array == "settings":
         return Divergence(tick, array, None, replay.hashes[tick].whole, state_hash(world))
     clean = _clean_session(replay, verified=tick - 1, tick=tick)
-    if hash_by_array(clean.world)[array] == replay.hashes[tick].arrays[STATE_ARRAYS.index(array)]:
-        return _first_difference(tick, array, getattr(clean.world, array), world)
+    if hash_by_array(clean.world)[array] == replay.hashes[tick].arrays[list(BY_STORED).index(array)]:
+        return _first_difference(tick, array, getattr(clean.world, BY_STORED[array].name), world)
     later = min((stored for stored in replay.states if stored >= tick), default=None)
     if later is None:
         note = "this build steps differently, and no later state is stored to show the values"
         return Divergence(tick, array, None, "unknown", "unknown", note=note)
     clean = _clean_session(replay, verified=tick - 1, tick=later)
     recorded = replay.state(later)
-    found = _first_difference(tick, array, getattr(recorded, array), clean.world)
+    found = _first_difference(tick, array, getattr(recorded, BY_STORED[array].name), clean.world)
     note = f"this build steps differently; the values are those of the next stored state, tick {later}"
     return Divergence(tick, array, found.index, found.expected, found.actual, found.name, note)
 
@@ -202,7 +202,7 @@ def _clean_session(replay: Replay, verified: int, tick: int) -> Session:
 
 
 def _first_difference(tick: int, array: str, expected: NDArray[Any], world: World) -> Divergence:
-    actual: NDArray[Any] = getattr(world, array)
+    actual: NDArray[Any] = getattr(world, BY_STORED[array].name)
     if len(expected) != len(actual):
         return Divergence(tick, array, None, f"{len(expected)} values", f"{len(actual)} values")
     size = actual.dtype.itemsize

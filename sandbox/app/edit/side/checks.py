@@ -15,7 +15,7 @@ from sandbox.level.checks import CheckDef, CheckResult, check_ticks
 from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format.model import Level
 from sandbox.level.format.quantities import replaced
-from sandbox.session.checking import run_checks
+from sandbox.session.summary import run_checks
 
 if TYPE_CHECKING:
     from sandbox.app.edit.edit_screen import EditScreen
