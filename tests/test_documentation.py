@@ -255,6 +255,16 @@ def glossary():
     return [(*row[:3], row[3].strip("`")) for row in cells if row[0] != "term"]
 
 
+FIELDS_WORDS = (
+    "collision", "contact", "manifold", "island", "constraint", "joint", "motor", "substep", "restitution",
+    "penetration", "Gauss-Seidel", "multifrontal", "shape matching", "projected Newton", "mouse joint",
+)  # fmt: skip
+
+
+def test_the_glossary_has_the_words_that_people_know_from_other_engines():
+    assert {term.lower() for term in FIELDS_WORDS} <= {term.lower() for term, *_ in glossary()}
+
+
 def test_the_glossary_has_each_word_once():
     terms = [term.lower() for term, *_ in glossary()]
     assert len(terms) > 40
