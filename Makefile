@@ -14,9 +14,10 @@ test: $(VENV)/installed-dev
 	$(BIN)/python -m pytest -n $(WORKERS)
 
 lint: $(VENV)/installed-dev
-	$(BIN)/ruff check sandbox tests
-	$(BIN)/ruff format --check sandbox tests
+	$(BIN)/ruff check sandbox tests examples
+	$(BIN)/ruff format --check sandbox tests examples
 	$(BIN)/mypy
+	$(BIN)/mypy --strict --follow-imports=silent examples
 
 pictures: $(VENV)/installed
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.picture_cache

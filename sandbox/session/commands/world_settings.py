@@ -5,10 +5,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from sandbox.level.format.limits import SUBSTEPS
 from sandbox.level.format.quantities import Drag, Gravity, Share, Velocity
-from sandbox.physics.settings import AUTO, Substeps
-from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.settings import Substeps
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 
@@ -19,7 +17,10 @@ class SettingsCommand(Command):
 
     def carry_out(self, world: World) -> None:
         given = {name: value for name, value in asdict(self).items() if value is not None}
-        world.settings = replace(world.settings, **given)
+        try:
+            world.settings = replace(world.settings, **given)
+        except ValueError as error:
+            raise CommandError(str(error)) from None
 
 
 @dataclass(frozen=True)
@@ -48,10 +49,3 @@ class SetSolver(SettingsCommand):
     iterations: Annotated[int, Field(ge=1, le=1000)] | None = None
     substeps: Substeps | None = None
     warm_start: Share | None = None
-
-    def carry_out(self, world: World) -> None:
-        if self.solver is not None and self.solver not in SOLVERS:
-            raise CommandError(f"there is no solver {self.solver!r}; there are {', '.join(SOLVERS)}")
-        if self.substeps is not None and self.substeps not in (*SUBSTEPS, AUTO):
-            raise CommandError(f'substeps is a power of two from 1 to 64 or "{AUTO}", not {self.substeps}')
-        super().carry_out(world)

@@ -23,7 +23,6 @@ from sandbox.level.format.files import level_data
 from sandbox.level.format.model import Level
 from sandbox.physics.constraints import AREA
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
-from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.state import BY_STORED, COLUMNS, Column, Family, family_of
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.world import HAND_COUNT, HAND_MATERIAL, World, WorldSettings
@@ -112,8 +111,6 @@ def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> S
     hand_particle = int(arrays["particle_a"][hand_spring]) if len(hands) else -1
     if len(hands) and hand_particle + HAND_COUNT > len(arrays["mass"]):
         raise ValueError("state.particle_a: a hand has no particle of its own")
-    if settings.solver not in SOLVERS:
-        raise ValueError(f"settings.solver: there is no solver {settings.solver!r}")
     return Snapshot(
         {BY_STORED[name].name: array for name, array in arrays.items()},
         settings=settings,
