@@ -21,7 +21,7 @@ _HOME = {
     "step": "sandbox.physics.step",
     "Session": "sandbox.session.session",
     "run_checks": "sandbox.session.summary",
-    "Replay": "sandbox.session.replay.verify",
+    "Replay": "sandbox.session.replay.recording",
 }
 __all__ = [
     "Level",
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from sandbox.physics.snapshot import Snapshot, state_hash
     from sandbox.physics.step import step
     from sandbox.physics.world import World
-    from sandbox.session.replay.verify import Replay
+    from sandbox.session.replay.recording import Replay
     from sandbox.session.session import Session
     from sandbox.session.summary import run_checks
 

@@ -2,20 +2,23 @@
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sandbox import __version__
 from sandbox.terminal import (
+    Progress,
     count,
     give_up_output,
     interrupted_between_ticks,
     missing_folder,
     prepare_streams,
-    progress,
+    processes,
     refusal_of,
     scale,
     seconds,
@@ -27,12 +30,14 @@ from sandbox.terminal import (
 if TYPE_CHECKING:
     from sandbox.level.format.model import Level
     from sandbox.physics.world import World
-    from sandbox.session.replay.verify import Replay
+    from sandbox.session.replay.recording import Replay
     from sandbox.session.session import Session
 
 EXIT_OK, EXIT_FAILED, EXIT_REFUSED, EXIT_INTERRUPTED = 0, 1, 2, 130
 # What `play` does where there is no display [s].
 HEADLESS_SECONDS = 10.0
+# A process that checks levels takes as long to start as a few levels take; fewer for each are not worth one.
+LEVELS_PER_PROCESS = 4
 
 
 class Refused(Exception):
@@ -113,6 +118,9 @@ def _parser() -> argparse.ArgumentParser:
 
     check = command("check", _check, "validate levels, report their stability, run the checks they carry")
     check.add_argument("levels", nargs="+", metavar="LEVEL")
+    check.add_argument(
+        "--processes", type=processes, metavar="N", help="check so many at a time; default: by cores and levels"
+    )
 
     render = command("render", _render, "draw a level or a replay into a PNG picture, off screen")
     render.add_argument("level", metavar="LEVEL|REPLAY")
@@ -140,7 +148,7 @@ def _level(name: str) -> "Level":
 
 def _recording(name: str, partial: bool = False) -> "Replay":
     from sandbox.session.replay.reader import read_replay
-    from sandbox.session.replay.verify import ReplayError
+    from sandbox.session.replay.recording import ReplayError
 
     try:
         return read_replay(name, partial)
@@ -254,12 +262,15 @@ def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
 
 
 def _scripted_session(level: "Level", commands: Path | None) -> "Session":
-    from sandbox.session.replay.reader import read_script
-    from sandbox.session.replay.verify import ReplayError
     from sandbox.session.session import Session
 
+    if commands is None:
+        return Session(level)
+    from sandbox.session.replay.reader import read_script
+    from sandbox.session.replay.recording import ReplayError
+
     try:
-        return Session(level, read_script(commands) if commands else ())
+        return Session(level, read_script(commands))
     except ReplayError as error:
         raise Refused(*error.faults) from None
 
@@ -268,12 +279,10 @@ def _run_with_bar(
     session: "Session", ticks: int, source: object, on_tick: "Callable[[World], None] | None" = None
 ) -> Any:
     """Run a session with a progress bar; source: the file that its commands come from."""
-    from sandbox.physics.step import warm_up
     from sandbox.session.commands import CommandError
     from sandbox.session.summary import run
 
-    warm_up((session.world.settings.solver,), session.world.has_contacts)
-    with interrupted_between_ticks() as look_up, progress(ticks) as bar:
+    with interrupted_between_ticks() as look_up, Progress(ticks) as bar:
 
         def after(world: "World") -> None:
             bar.update()
@@ -322,12 +331,13 @@ def _replay(options: argparse.Namespace) -> int:
 
 def _verify(name: str, partial: bool) -> tuple[int, dict[str, Any]]:
     from sandbox.session.probe import finite
-    from sandbox.session.replay.verify import ReplayError, verify
+    from sandbox.session.replay.recording import ReplayError
+    from sandbox.session.replay.verify import verify
 
     try:
         replay = _recording(name, partial)
-        with progress(replay.ticks) as bar:
-            divergence = verify(replay, progress=lambda done, total: bar.update(done - bar.n))
+        with Progress(replay.ticks) as bar:
+            divergence = verify(replay, progress=lambda done, total: bar.update(done - bar.done))
     except (Refused, ReplayError) as error:
         return EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)}
     if divergence is None:
@@ -339,33 +349,26 @@ def _verify(name: str, partial: bool) -> tuple[int, dict[str, Any]]:
 
 
 def _check(options: argparse.Namespace) -> int:
+    from sandbox.session.checking import check_levels
+
     worst = EXIT_OK
-    for name in options.levels:
-        try:
-            worst = max(worst, _check_level(name))
-        except Refused as refusal:
-            worst = max(worst, _refuse(refusal.faults))
+    names = options.levels
+    processes = min(options.processes or max(1, min(_cores(), len(names) // LEVELS_PER_PROCESS)), len(names))
+    with Progress(len(names), "level") as bar, closing(check_levels(names, processes)) as reports:
+        for found in reports:
+            with bar.aside():
+                for line in found.lines:
+                    print(line)
+                sys.stdout.flush()
+                tell(found.faults)
+            worst = max(worst, EXIT_REFUSED if found.faults else EXIT_OK if found.passed else EXIT_FAILED)
+            bar.update()
     return worst
 
 
-def _check_level(name: str) -> int:
-    from sandbox.level.build.build_world import build_world
-    from sandbox.physics.stability import report
-    from sandbox.session.summary import run_checks
-
-    level = _level(name)
-    world = build_world(level)
-    print(f"{name}: valid: {level.name}")
-    stability = report(world)
-    print(f"  stability  {stability.text}")
-    print(
-        f"  in a single pass Cs = Cd would be stable up to {stability.proven_limit:.3g} proven, "
-        f"{stability.estimated_limit:.3g} estimated, {stability.article_limit:.3g} by the article's 1/(n+1)"
-    )
-    results = run_checks(level)
-    for result in results:
-        print(f"  check      {result.text}")
-    return EXIT_OK if all(result.passed for result in results) else EXIT_FAILED
+def _cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _render(options: argparse.Namespace) -> int:
@@ -381,7 +384,9 @@ def _render(options: argparse.Namespace) -> int:
     _run_with_bar(session, ticks, options.level)
     from sandbox.app.draw.picture import save_picture
 
-    save_picture(session, options.output, options.size)
+    with Progress(1, "picture") as bar:
+        save_picture(session, options.output, options.size)
+        bar.update()
     return EXIT_OK
 
 

@@ -4,6 +4,7 @@
 """
 
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import Divergence, Replay, ReplayError, verify
+from sandbox.session.replay.recording import Replay, ReplayError
+from sandbox.session.replay.verify import Divergence, verify
 
 __all__ = ["Divergence", "Replay", "ReplayError", "read_replay", "verify"]

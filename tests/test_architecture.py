@@ -44,19 +44,11 @@ def sources():
     return trees
 
 
-def nodes(tree, *, with_types):
-    """Every node below one of a syntax tree, with or without what only a type checker reads."""
-    for child in ast.iter_child_nodes(tree):
-        if with_types or not (isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING"):
-            yield child
-            yield from nodes(child, with_types=with_types)
-
-
 @functools.cache
-def imported(name, *, with_types=True):
+def imported(name):
     """Dotted names that a module imports, anywhere in it; what it names of our own are modules, not their contents."""
     found = set()
-    for node in nodes(sources()[name], with_types=with_types):
+    for node in ast.walk(sources()[name]):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -72,12 +64,12 @@ def room(name):
     return name.split(".")[1] if "." in name else None
 
 
-def own_imports(*, with_types=True):
+def own_imports():
     """Pairs of our modules, importer and imported, without those of the package itself."""
     return [
         (name, other)
         for name in sources()
-        for other in sorted(imported(name, with_types=with_types))
+        for other in sorted(imported(name))
         if room(name) and other in sources() and room(other)
     ]
 
@@ -103,7 +95,7 @@ def test_of_the_package_itself_only_the_version_is_imported():
 
 def test_no_modules_import_each_other_in_a_circle():
     graph = TopologicalSorter()
-    for name, other in own_imports(with_types=False):
+    for name, other in own_imports():
         graph.add(name, other)
     try:
         graph.prepare()

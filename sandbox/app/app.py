@@ -22,10 +22,10 @@ from sandbox.app.play.playback import Playback
 from sandbox.app.play.status import NOTICES, Notice, StatusLine, draw_spinner
 from sandbox.app.preparing import Preparation
 from sandbox.app.profile import Profile
+from sandbox.app.progress import Progress
 from sandbox.app.screen import Screen
 from sandbox.app.shortcuts import Mode
 from sandbox.app.widgets.dialogs import show_lines
-from sandbox.app.widgets.progress import Progress
 from sandbox.app.widgets.ui import Ui
 
 # How often the status figures and the window title change [s].
@@ -48,7 +48,7 @@ class App:
         self.input = Input(self)
         self.files = FileActions(self)
         self.documents = Documents(self)
-        self.guide = Guide(self)
+        self.guide = Guide(self, self.documents)
         self._progress = Progress(self)
         self._own_actions = self._actions()
         self._figures = (0.0, 0.0)
@@ -98,6 +98,14 @@ class App:
         """Show a line to the person for some seconds."""
         self.status.say(text)
 
+    def take_back(self, text: str) -> None:
+        """Take away a line that no longer holds."""
+        self.status.take_back(text)
+
+    def offer_tour(self) -> None:
+        """Offer the tour of the editor to who has not seen it."""
+        self.guide.offer()
+
     def show_faults(self, title: str, faults: list[str]) -> None:
         """Show lines in a box; the app goes on with what it had."""
         show_lines(self.ui, title, faults)
@@ -138,7 +146,7 @@ class App:
         """Choose a level or a recording."""
         self.close_gallery()
         self._describe("")
-        self.gallery = Gallery(self.ui, self.files, section, self.close_gallery)
+        self.gallery = Gallery(self.ui, self, section, self.close_gallery)
 
     def close_gallery(self) -> None:
         """Back to the screen, where there is one."""

@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pygame
 
+from sandbox.app.application import Application
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT
 from sandbox.app.picture_cache import (
     SECONDS,
@@ -28,9 +29,6 @@ from sandbox.editor.storage.recent import recent_levels
 from sandbox.level.faults.level_error import LevelError, one_line
 from sandbox.level.format.files import parse_level, read_bytes, shipped_levels
 from sandbox.physics.jit import COMPILED
-
-if TYPE_CHECKING:
-    from sandbox.app.files import FileActions
 
 # Sizes in layout units.
 CARD_WIDTH = 250.0
@@ -124,8 +122,8 @@ class Card(Lit):
 class Gallery:
     """The page of levels or recordings."""
 
-    def __init__(self, ui: Ui, files: "FileActions", section: str, close: Callable[[], None]) -> None:
-        self._ui, self._files = ui, files
+    def __init__(self, ui: Ui, app: Application, section: str, close: Callable[[], None]) -> None:
+        self._ui, self._app = ui, app
         self.cards: list[Card] = []
         self.section = section
         # What is still to be found out or drawn for cards: each goes on by a slice, False where it has to wait.
@@ -134,16 +132,16 @@ class Gallery:
         self._scroll = 0.0
         self._columns = 1
         self.title = {name: text for name, text, _ in SECTIONS}[section]
-        self._open = partial(files.open_level, shipped=section == "levels")
-        end = close if files.app.screen is not None else lambda: None
-        self.sheet = ui.open_sheet(end, "@cover", again=lambda _: files.app.open_gallery(section))
+        self._open = partial(app.files.open_level, shipped=section == "levels")
+        end = close if app.screen is not None else lambda: None
+        self.sheet = ui.open_sheet(end, "@cover", again=lambda _: app.open_gallery(section))
         width, height = ui.units
-        editing = files.app.mode == "edit"
+        editing = app.mode == "edit"
         ui.label(ui.rect(MARGIN, 26, 300, 40), "Edit a level" if editing else "Spring Sandbox", self.sheet, "@display")
-        tabs = ui.choice(ui.rect(width - MARGIN - 424, 32, 252, 32), SECTIONS, self._files.app.open_gallery, self.sheet)
+        tabs = ui.choice(ui.rect(width - MARGIN - 424, 32, 252, 32), SECTIONS, self._app.open_gallery, self.sheet)
         tabs.show(section)
-        ui.button(ui.rect(width - MARGIN - 162, 32, 58, 32), "New", files.app.documents.new, self.sheet, tip=NEW_TIP)
-        ui.button(ui.rect(width - MARGIN - 98, 32, 98, 32), "Open file", files.ask_to_open, self.sheet)
+        ui.button(ui.rect(width - MARGIN - 162, 32, 58, 32), "New", app.documents.new, self.sheet, tip=NEW_TIP)
+        ui.button(ui.rect(width - MARGIN - 98, 32, 98, 32), "Open file", app.files.ask_to_open, self.sheet)
         place = ui.rect(MARGIN - 6, TOP, width - 2 * MARGIN + 12, height - TOP)
         self.area = ui.area(place, self.sheet)
         if section == "recordings":
@@ -156,7 +154,7 @@ class Gallery:
         self._ui.close_sheet(self.sheet)
 
     def _shipped(self) -> list[Path]:
-        if self._files.app.ready:
+        if self._app.ready:
             return shipped_levels()
         place = {name: index for index, name in enumerate(LIGHT_LEVELS)}
         return sorted(shipped_levels(), key=lambda path: place.get(path.stem, len(place)))
@@ -232,7 +230,7 @@ class Gallery:
             rect = ui.rect(6, 6 + index * (ROW_HEIGHT + 10), width, ROW_HEIGHT)
             card = Card(
                 ui, rect, one_line(path.name), f"{when}, {stat.st_size / 1024:,.0f} KiB",
-                partial(self._files.open_replay, path), self.area,
+                partial(self._app.files.open_replay, path), self.area,
             )  # fmt: skip
             card.has_picture = False
             card.repaint()

@@ -21,7 +21,7 @@ from sandbox.app.profile import Profile
 
 if TYPE_CHECKING:
     from sandbox.level.format.model import Level
-    from sandbox.session.replay.verify import Replay
+    from sandbox.session.replay.recording import Replay
 
 FRAME_RATE = 60
 CLOSING = (pygame.QUIT, pygame.WINDOWCLOSE)

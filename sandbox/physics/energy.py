@@ -39,7 +39,7 @@ def spring_energy(world: World) -> float:
     """
     h = substep_time(world.settings)
     stiffness, damping = substep_coefficients(world)
-    nissen = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, reduced_masses(world), h)
+    nissen = SOLVERS[world.settings.solver].schedule.spring_constant(stiffness, damping, reduced_masses(world), h)
     constant = np.where(world.law == LAW_HOOKE, world.hooke_stiffness, nissen)
     error = spring_lengths(world) - world.rest_length
     springs = np.sum((constant * error * error)[world.spring_active & (world.material != HAND_MATERIAL)])
@@ -50,7 +50,7 @@ def spring_energy(world: World) -> float:
 def element_energies(world: World) -> Floats:
     """Energy [J] of every element (t,), k C^2 / 2 with the k that the world's solver gives it; 0 where inactive."""
     value, mass, _ = measure_elements(world)
-    constant = SOLVERS[world.settings.solver].spring_constant(
+    constant = SOLVERS[world.settings.solver].schedule.spring_constant(
         *element_coefficients(world), mass, substep_time(world.settings)
     )
     return np.asarray(0.5 * constant * value * value)
@@ -60,7 +60,8 @@ def measure_elements(world: World) -> tuple[Floats, Floats, Floats]:
     """C (t,) and effective mass (t,) of every element, 0 where inactive; and the gradient at each corner (q, 2)."""
     value, mass = np.zeros((2, world.element_count))
     place, slope = np.zeros((2, len(world.corner_particle), 2))
-    element_values(world.position, world.inverse_mass, world.elements, place, value, mass, slope)
+    if world.element_count:
+        element_values(world.position, world.inverse_mass, world.elements, place, value, mass, slope)
     return value, mass, slope
 
 
@@ -90,15 +91,21 @@ class Dissipation:
     def __init__(self) -> None:
         self.energy = 0.0
         self._before: float | None = None
+        self._after: float | None = None
 
-    def before(self, world: World) -> None:
-        """Look at a world that is about to make a tick."""
-        self._before = None if _is_worked_on(world) else total_energy(world)
+    def before(self, world: World, changed: bool = True) -> None:
+        """Look at a world that is about to make a tick; changed: whether it may differ from the last look `after`."""
+        if _is_worked_on(world):
+            self._before = None
+        else:
+            self._before = total_energy(world) if changed or self._after is None else self._after
 
     def after(self, world: World) -> None:
         """Look at it again after the tick."""
+        self._after = None
         if self._before is not None:
-            self.energy += self._before - total_energy(world)
+            self._after = total_energy(world)
+            self.energy += self._before - self._after
 
 
 def _is_worked_on(world: World) -> bool:

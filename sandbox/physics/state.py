@@ -123,7 +123,7 @@ class StateArrays:
     element_active = _array("element_active", E, BOOL, "", "whether it holds; it goes with any of the springs along its sides", topology=True)
 
     corner_particle = _array("corner_particle", C, I32, "slot", "the particle there", topology=True)
-    corner_weight = _array("corner_weight", C, F64, "m^2 or 1/m^2", "|g|^2 at rest", guarded=True)
+    corner_weight = _array("corner_weight", C, F64, "m^2 or 1/m^2", "square of the gradient there, at rest", guarded=True)
     corner_form = _array("corner_form", C, F64, "m", "where it stands at rest", width=2, guarded=True, topology=True)
 
     part_value = _array("part_value", A, F64, "1", "how it is driven, -1..1")
@@ -144,3 +144,23 @@ GUARDED: tuple[Column, ...] = tuple(column for column in COLUMNS if column.guard
 def family_of(family: Family) -> tuple[Column, ...]:
     """The arrays of one family, in order."""
     return tuple(column for column in COLUMNS if column.family is family)
+
+
+def reference() -> str:
+    """The table as a page of Markdown."""
+    lines = [
+        "# State arrays",
+        "",
+        "Every array of a world's state, in the order in which it is hashed and stored. Names are those of files and",
+        "messages. Made by `python -m sandbox.physics.state > docs/state.md`.",
+    ]
+    for family in Family:
+        lines += ["", f"## One row for each {family.value}", "", "| name | type | unit | is |", "|---|---|---|---|"]
+        for column in family_of(family):
+            kind = np.dtype(column.dtype).name + (f", {column.width} a row" if column.width > 1 else "")
+            lines.append(f"| `{column.stored}` | {kind} | {column.unit} | {column.meaning} |")
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    print(reference(), end="")

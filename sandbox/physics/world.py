@@ -117,11 +117,11 @@ class World(StateArrays):
         self.good = {column.name: getattr(self, column.name).copy() for column in GUARDED}
 
     def _append(self, family: Family, count: int, **arrays: ArrayLike) -> None:
-        """Append a row for each of `count` to the arrays of a family, each given by one value or (count, ...)."""
+        """Append `count` rows to the arrays of a family: (count, ...) or one value for all; 0 where none is given."""
         for column in COLUMNS:
             if column.family is family:
-                present = getattr(self, column.name)
-                added = np.broadcast_to(np.asarray(arrays.pop(column.name), present.dtype), (count, *present.shape[1:]))
+                present, given = getattr(self, column.name), arrays.pop(column.name, 0)
+                added = np.broadcast_to(np.asarray(given, present.dtype), (count, *present.shape[1:]))
                 setattr(self, column.name, np.concatenate([present, added]))
                 if column.guarded:
                     self.good[column.name] = np.concatenate([self.good[column.name], added])
@@ -344,8 +344,6 @@ class World(StateArrays):
             hooke_damping=hooke_damping,
             material=material,
             spring_active=True,
-            impulse=0.0,
-            tension=0.0,
             edge=edge,
         )
         self._disturb(a, b)

@@ -119,9 +119,14 @@ class Session:
         """Queue the redoing of the gesture undone last."""
         self.submit(Redo())
 
-    def apply_pending(self) -> None:
-        """Apply what is due at this tick boundary without stepping: the script's commands, then those submitted."""
+    def apply_pending(self) -> bool:
+        """Apply what is due at this tick boundary without stepping: the script's commands, then those submitted.
+
+        Whether anything was due.
+        """
+        due = bool(self._pending)
         while self._scripted is not None and self._scripted.tick == self.tick == self._last_tick:
+            due = True
             line, self._scripted = self._scripted, next(self._script, None)
             try:
                 self._apply(from_record(line.record, self.world), line.gesture)
@@ -135,6 +140,7 @@ class Session:
                 self.messages.append(str(error))
             else:
                 self._scripted = None
+        return due
 
     def advance(self) -> None:
         """One tick: apply what is due, then step. In the past that `seek` reached, the logged commands follow again."""

@@ -1,7 +1,6 @@
 """Summary: what a headless run measures, for `sandbox run --json` and for the checks that a level carries."""
 
 import time
-from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from statistics import median
@@ -67,18 +66,20 @@ class Summary:
 def run(session: Session, ticks: int, on_tick: Callable[[World], None] | None = None) -> Summary:
     """Advance a session by a number of ticks and measure; on_tick: called with the world after every step."""
     world = session.world
-    window = deque[tuple[float, float, int]](maxlen=max(1, round(STRAIN_WINDOW * world.settings.tick_rate)))
+    samples = max(1, round(STRAIN_WINDOW * world.settings.tick_rate))
+    window: list[tuple[float, float, int]] = []
     times: list[float] = []
     dissipation = Dissipation()
     with np.errstate(over="ignore", invalid="ignore"):
-        for _ in range(ticks):
-            session.apply_pending()
-            dissipation.before(world)
+        for done in range(ticks):
+            changed = session.apply_pending()
+            dissipation.before(world, changed)
             start = time.perf_counter()
             session.advance()
             times.append(time.perf_counter() - start)
             dissipation.after(world)
-            window.append(_strain_sample(world))
+            if ticks - done <= samples:
+                window.append(_strain_sample(world))
             if on_tick is not None:
                 on_tick(world)
         session.apply_pending()
@@ -92,7 +93,7 @@ def _strain_sample(world: World) -> tuple[float, float, int]:
 
 
 def _summary(
-    world: World, ticks: int, window: deque[tuple[float, float, int]], times: list[float], dissipated: float
+    world: World, ticks: int, window: list[tuple[float, float, int]], times: list[float], dissipated: float
 ) -> Summary:
     shown = shown_particles(world)
     speed = np.sqrt(np.sum(world.velocity[shown] ** 2, axis=1))

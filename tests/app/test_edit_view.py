@@ -104,7 +104,7 @@ def test_the_window_can_be_resized_and_the_panel_hidden(driver):
     assert driver.editor.camera.viewport[2] < 400 and driver.editor.camera.centre == middle
     driver.key(pygame.K_h)
     assert driver.editor.camera.viewport[0] + driver.editor.camera.viewport[2] == 700
-    assert set(driver.editor.palette.tools) == set(driver.editor.hands)
+    assert set(driver.editor.palette.tools) == set(driver.editor.pointer_tools)
 
 
 def test_handles_lie_around_the_box_and_only_where_they_mean_something():

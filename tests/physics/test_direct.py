@@ -278,7 +278,7 @@ def energy_and_work(world: World) -> tuple[float, float]:
     inverse = world.inverse_mass[world.particle_a] + world.inverse_mass[world.particle_b]
     # A hand's spring has the mass of the whole body that it holds; here there is one.
     mass = np.where(world.material == -1, world.mass[free].sum(), 1.0 / np.where(inverse > 0.0, inverse, np.inf))
-    constant = SOLVERS["direct"].spring_constant(world.stiffness, world.damping, mass, h) * world.spring_active
+    constant = SOLVERS["direct"].schedule.spring_constant(world.stiffness, world.damping, mass, h) * world.spring_active
 
     def energy(velocity, position) -> float:
         error = np.sqrt(np.sum((position[world.particle_b] - position[world.particle_a]) ** 2, axis=1))

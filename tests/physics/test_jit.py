@@ -34,13 +34,13 @@ def test_a_compiled_kernel_gives_the_same_bits_as_its_source():
 
 def test_a_bundle_hands_kernels_the_very_arrays_that_went_into_it():
     def add(items, factor):
-        values, active, total = items.items
+        values, active, total = jit.contents(items)
         for k in range(active.shape[0]):
             if active[k]:
                 total[k, 0] += factor * values[k]
 
     values, total = np.linspace(0.1, 7.7, 9), np.zeros((9, 2))
-    bundle, function = jit.bundle((values, np.arange(9) % 3 > 0, total)), jit.bundle_kernel(add)
+    bundle, function = jit.bundle((values, np.arange(9) % 3 > 0, total)), jit.kernel(add)
     first = values.tolist()
     function(bundle, 2.0)
     values[:] = 1.0

@@ -2,6 +2,7 @@
 
 import copy
 import itertools
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from sandbox.physics.collision.outline import outline_of
 from sandbox.physics.constraints import AREA
 from sandbox.physics.snapshot import restore, take
-from sandbox.physics.state import BY_NAME, BY_STORED, COLUMNS
+from sandbox.physics.state import BY_NAME, BY_STORED, COLUMNS, reference
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain, make_terrain
 from tests.support.physics_scenes import network, rope
@@ -31,6 +32,11 @@ def made_of(world):
 
 def test_names_and_order_of_arrays_in_files_are_those_of_the_first_version():
     assert list(BY_STORED) == STORED.split()
+
+
+def test_the_page_of_arrays_is_what_the_table_says():
+    page = Path(__file__).resolve().parents[2] / "docs" / "state.md"
+    assert page.read_text(encoding="utf-8") == reference(), "python -m sandbox.physics.state > docs/state.md"
 
 
 def test_each_array_says_what_it_means_and_stands_beside_its_family():

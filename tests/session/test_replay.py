@@ -9,7 +9,8 @@ import pytest
 from sandbox.physics.state import BY_STORED, Family, family_of
 from sandbox.session.commands import AddParticle, AddSpring, CutSprings, Grab, MoveGrab, Pin, Release
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import Divergence, ReplayError, verify
+from sandbox.session.replay.recording import ReplayError
+from sandbox.session.replay.verify import Divergence, verify
 from sandbox.session.session import Session
 from tests.support.play import play
 from tests.support.rope_level import rope_level

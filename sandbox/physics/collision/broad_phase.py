@@ -37,19 +37,19 @@ class Boxes(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """Objects by bucket: object and cell of each entry, entries of bucket k at start[k]:start[k + 1]; large ones apart.
+    """Objects by bucket: those of bucket k at start[k]:start[k + 1], with the cell in which they lie there.
 
-    low (o, 2): the cell of each box's corner. at: how many entries of a bucket are filled in. object, column, row have
-    room for more than there are.
+    cells (o, 4): first column and row, last column and row of each box; of a large one the last is before the first.
+    large: those, of them that others look for. at: how many entries of a bucket are filled in. object = 4 times its
+    number, + 1 in the first column of its cells, + 2 in their first row; object and cell have room for more.
     """
 
-    low: Slots
+    cells: Slots
     large: Slots
     start: Slots
     at: Slots
     object: Slots
-    column: Slots
-    row: Slots
+    cell: Slots
 
 
 class Pairs(NamedTuple):
@@ -88,51 +88,64 @@ def cell_size(box: Floats) -> float:
 
 
 @inner_kernel
-def _count(boxes: Boxes, cell: float, grid: Grid) -> int:
-    # Where the entries of each bucket begin; how many objects are large.
+def _cell_number(column: int, row: int) -> int:
+    # One number of a cell: both are within FARTHEST.
+    return column * 0x100000000 + row
+
+
+@inner_kernel
+def _find_cells(boxes: Boxes, cell: float, grid: Grid) -> int:
+    # The cells of every box that takes part; how many of those that others look for are large.
     box = boxes.box
-    start = grid.start
-    buckets = start.shape[0] - 1
-    for bucket in range(buckets + 1):
-        start[bucket] = 0
     larges = 0
     for k in range(box.shape[0]):
-        if not boxes.is_target[k] or not box[k, 0] <= box[k, 2]:
+        if not box[k, 0] <= box[k, 2]:
             continue
         if is_large(box[k, 0], box[k, 1], box[k, 2], box[k, 3], cell):
-            grid.large[larges] = k
-            larges += 1
+            grid.cells[k, 0] = 0
+            grid.cells[k, 2] = -1
+            if boxes.is_target[k]:
+                grid.large[larges] = k
+                larges += 1
             continue
-        left = math.floor(box[k, 0] / cell)
-        bottom = math.floor(box[k, 1] / cell)
-        grid.low[k, 0] = left
-        grid.low[k, 1] = bottom
-        for column in range(left, math.floor(box[k, 2] / cell) + 1):
-            for row in range(bottom, math.floor(box[k, 3] / cell) + 1):
-                start[bucket_of(column, row, buckets) + 1] += 1
-    for bucket in range(buckets):
-        start[bucket + 1] += start[bucket]
-        grid.at[bucket] = start[bucket]
+        for side in range(4):
+            grid.cells[k, side] = math.floor(box[k, side] / cell)
     return larges
 
 
 @inner_kernel
-def _fill(boxes: Boxes, cell: float, grid: Grid) -> None:
-    box = boxes.box
+def _count(boxes: Boxes, grid: Grid) -> int:
+    # Where the entries of each bucket begin; how many there are in all.
+    cells = grid.cells
+    start = grid.start
+    buckets = start.shape[0] - 1
+    for bucket in range(buckets + 1):
+        start[bucket] = 0
+    for k in range(boxes.is_target.shape[0]):
+        if boxes.is_target[k]:
+            for column in range(cells[k, 0], cells[k, 2] + 1):
+                for row in range(cells[k, 1], cells[k, 3] + 1):
+                    start[bucket_of(column, row, buckets) + 1] += 1
+    for bucket in range(buckets):
+        grid.at[bucket] = start[bucket]
+        start[bucket + 1] += start[bucket]
+    return start[buckets]
+
+
+@inner_kernel
+def _fill(boxes: Boxes, grid: Grid) -> None:
+    cells = grid.cells
     buckets = grid.start.shape[0] - 1
-    for k in range(box.shape[0]):
-        if not boxes.is_target[k] or not box[k, 0] <= box[k, 2]:
-            continue
-        if is_large(box[k, 0], box[k, 1], box[k, 2], box[k, 3], cell):
-            continue
-        for column in range(grid.low[k, 0], math.floor(box[k, 2] / cell) + 1):
-            for row in range(grid.low[k, 1], math.floor(box[k, 3] / cell) + 1):
-                bucket = bucket_of(column, row, buckets)
-                entry = grid.at[bucket]
-                grid.at[bucket] = entry + 1
-                grid.object[entry] = k
-                grid.column[entry] = column
-                grid.row[entry] = row
+    for k in range(boxes.is_target.shape[0]):
+        if boxes.is_target[k]:
+            for column in range(cells[k, 0], cells[k, 2] + 1):
+                for row in range(cells[k, 1], cells[k, 3] + 1):
+                    bucket = bucket_of(column, row, buckets)
+                    entry = grid.at[bucket]
+                    grid.at[bucket] = entry + 1
+                    first = (1 if column == cells[k, 0] else 0) + (2 if row == cells[k, 1] else 0)
+                    grid.object[entry] = 4 * k + first
+                    grid.cell[entry] = _cell_number(column, row)
 
 
 @inner_kernel
@@ -141,10 +154,10 @@ def fill_grid(boxes: Boxes, cell: float, grid: Grid) -> tuple[int, int]:
 
     Where these are more than there is room for, none is filled in.
     """
-    larges = _count(boxes, cell, grid)
-    entries = grid.start[grid.start.shape[0] - 1]
+    larges = _find_cells(boxes, cell, grid)
+    entries = _count(boxes, grid)
     if entries <= grid.object.shape[0]:
-        _fill(boxes, cell, grid)
+        _fill(boxes, grid)
     return larges, entries
 
 
@@ -156,28 +169,37 @@ def _overlap(box: Floats, p: int, k: int) -> bool:
 
 
 @inner_kernel
-def find_pairs(boxes: Boxes, cell: float, grid: Grid, larges: int, pairs: Pairs) -> int:
+def _pair_with_all(boxes: Boxes, p: int, past_discs: int, other: Slots, count: int) -> int:
+    # The objects that a particle with a large box may touch.
+    particles = boxes.filter.shape[0]
+    for k in range(boxes.is_target.shape[0]):
+        if boxes.is_target[k] and k != p and (k >= particles or k < past_discs) and _overlap(boxes.box, p, k):
+            if count < other.shape[0]:
+                other[count] = k
+            count += 1
+    return count
+
+
+@inner_kernel
+def find_pairs(boxes: Boxes, grid: Grid, larges: int, pairs: Pairs) -> int:
     """The objects whose boxes overlap that of each particle; their number, counted on where there is no room."""
     count = 0
-    start = pairs.start
     other = pairs.other
     room = other.shape[0]
     box = boxes.box
-    is_target = boxes.is_target
+    cells = grid.cells
     particles = boxes.filter.shape[0]
     buckets = grid.start.shape[0] - 1
     for p in range(particles):
-        start[p] = count
+        pairs.start[p] = count
         if boxes.filter[p] == WITH_NOTHING:
             continue
         # Two discs that both look for others are found once.
-        past_discs = 0 if boxes.filter[p] == WITH_EDGES else p if is_target[p] else particles
-        if is_large(box[p, 0], box[p, 1], box[p, 2], box[p, 3], cell):
-            for k in range(box.shape[0]):
-                if is_target[k] and k != p and (k >= particles or k < past_discs) and _overlap(box, p, k):
-                    if count < room:
-                        other[count] = k
-                    count += 1
+        past_discs = 0 if boxes.filter[p] == WITH_EDGES else p if boxes.is_target[p] else particles
+        left = cells[p, 0]
+        bottom = cells[p, 1]
+        if cells[p, 2] < left:
+            count = _pair_with_all(boxes, p, past_discs, other, count)
             continue
         for at in range(larges):
             k = grid.large[at]
@@ -185,29 +207,25 @@ def find_pairs(boxes: Boxes, cell: float, grid: Grid, larges: int, pairs: Pairs)
                 if count < room:
                     other[count] = k
                 count += 1
-        left = math.floor(box[p, 0] / cell)
-        bottom = math.floor(box[p, 1] / cell)
-        right = math.floor(box[p, 2] / cell)
-        top = math.floor(box[p, 3] / cell)
-        for column in range(left, right + 1):
-            for row in range(bottom, top + 1):
+        for column in range(left, cells[p, 2] + 1):
+            for row in range(bottom, cells[p, 3] + 1):
                 bucket = bucket_of(column, row, buckets)
+                here = _cell_number(column, row)
+                # Boxes that share many cells are found in the first of them alone.
+                seen = (0 if column == left else 1) + (0 if row == bottom else 2)
                 for entry in range(grid.start[bucket], grid.start[bucket + 1]):
-                    k = grid.object[entry]
-                    # Boxes that share many cells meet in the first of them alone.
+                    k = grid.object[entry] >> 2
                     if (
-                        k != p
-                        and (k >= particles or k < past_discs)
-                        and grid.column[entry] == column
-                        and grid.row[entry] == row
-                        and column == max(left, grid.low[k, 0])
-                        and row == max(bottom, grid.low[k, 1])
+                        (k >= particles or k < past_discs)
+                        and k != p
+                        and grid.object[entry] & seen == seen
+                        and grid.cell[entry] == here
                         and _overlap(box, p, k)
                     ):
                         if count < room:
                             other[count] = k
                         count += 1
-    start[particles] = count
+    pairs.start[particles] = count
     return count
 
 
@@ -222,8 +240,8 @@ def new_grid(objects: int, entries: int) -> Grid:
     while buckets < 2 * objects:
         buckets *= 2
     return Grid(
-        np.zeros((objects, 2), np.int64), np.zeros(objects, np.int64), np.zeros(buckets + 1, np.int64),
-        np.zeros(buckets, np.int64), *np.zeros((3, entries), dtype=np.int64),
+        np.zeros((objects, 4), np.int64), np.zeros(objects, np.int64), np.zeros(buckets + 1, np.int64),
+        np.zeros(buckets, np.int64), np.zeros(entries, np.int64), np.zeros(entries, np.int64),
     )  # fmt: skip
 
 

@@ -141,7 +141,7 @@ def _detect(
     room.counts[ENTRIES] = entries
     if entries > room.grid.object.shape[0]:
         return NO_ROOM
-    room.counts[PAIRS] = find_pairs(room.boxes, cell, room.grid, larges, room.pairs)
+    room.counts[PAIRS] = find_pairs(room.boxes, room.grid, larges, room.pairs)
     room.counts[TERRAIN_PAIRS] = find_terrain(room.boxes, terrain, room.terrain_pairs)
     if room.counts[PAIRS] > room.pairs.other.shape[0] or room.counts[TERRAIN_PAIRS] > room.terrain_pairs.other.shape[0]:
         return NO_ROOM

@@ -5,6 +5,7 @@ does not work with this Python or numpy.
 """
 
 import functools
+import importlib
 import os
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
@@ -26,8 +27,19 @@ def _import_numba() -> Any:
 
 _numba = _import_numba()
 COMPILED = _numba is not None
-if COMPILED:
-    from sandbox.physics.jit import cache, linking
+
+
+def _using_numba(name: str) -> Any:
+    """One of the modules of this folder that use inner parts of numba; None where this numba has others."""
+    if not COMPILED:
+        return None
+    try:
+        return importlib.import_module(f"{__name__}.{name}")
+    except (ImportError, AttributeError):
+        return None
+
+
+_cache, _lending, _linking = map(_using_numba, ("cache", "lending", "linking"))
 
 # Turns an index that is never negative into one that loops are vectorised for: of a signed one numba first asks whether
 # it counts from the end. Never mix the two in one sum: that makes a float.
@@ -65,14 +77,21 @@ def _dispatcher(function: Function, **options: Any) -> Any:
 
 
 def _entry(function: Function, **options: Any) -> Function:
-    dispatcher = _dispatcher(function, pipeline_class=linking.EntryCompiler, **options)
-    dispatcher._cache = cache.KernelCache(dispatcher)
+    if _linking is not None:
+        options["pipeline_class"] = _linking.EntryCompiler
+    dispatcher = _dispatcher(function, **options)
+    if _cache is not None:
+        _cache.keep(dispatcher)
     return cast(Function, dispatcher)
 
 
 def _part(function: Function, **options: Any) -> Function:
-    unwrapped = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    return cast(Function, _dispatcher(function, pipeline_class=linking.PartCompiler, **unwrapped, **options))
+    if _linking is not None:
+        options["pipeline_class"] = _linking.PartCompiler
+    dispatcher = _dispatcher(function, no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)
+    if _lending is not None and "inline" not in options:
+        _lending.lend_to(dispatcher)
+    return cast(Function, dispatcher)
 
 
 # Kernels hold no array longer than their call, so numba need not count who holds which: some 800 counts, 4 us, in a
@@ -81,13 +100,8 @@ _UNCOUNTED = {"_nrt": False}
 
 
 def kernel(function: Function) -> Function:
-    """Make `function` a kernel: scalars, contiguous arrays and named tuples of arrays in; same bits both ways."""
+    """Make `function` a kernel: scalars, contiguous arrays, named tuples of arrays, bundles in; same bits both ways."""
     return _entry(function, **_UNCOUNTED) if COMPILED else _interpreted(function)
-
-
-def bundle_kernel(function: Function) -> Function:
-    """Make `function` a kernel that takes bundles too."""
-    return _entry(function) if COMPILED else _interpreted(function)
 
 
 def inner_kernel(function: Function) -> Function:
@@ -110,49 +124,23 @@ def waiting_kernel(function: Function) -> Function:
     return _entry(function, nogil=True, **_UNCOUNTED) if COMPILED else _interpreted(function)
 
 
-if COMPILED:
-    from numba.core import cgutils
-    from numba.core.runtime.context import NRTContext
-    from numba.experimental import structref
-
-    @structref.register
-    class _BundleType(structref.types.StructRef):
-        pass
-
-    class _Bundle(structref.StructRefProxy):
-        pass
-
-    structref.define_proxy(_Bundle, _BundleType, ["items"])
-
-    @_numba.extending.intrinsic
-    def contents(typing_context: Any, bundle_type: Any) -> Any:
-        """The items of a bundle, lent: a kernel that counts who holds them takes 25 ns for each array."""
-
-        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            holder = cgutils.create_struct_proxy(bundle_type)(context, builder, value=arguments[0])
-            data_type = bundle_type.get_data_type()
-            data = NRTContext(context, True).meminfo_data(builder, holder.meminfo)
-            kind = context.data_model_manager[data_type].get_value_type()
-            data = builder.bitcast(data, kind.as_pointer())
-            return cgutils.create_struct_proxy(data_type)(context, builder, ref=data).items
-
-        return bundle_type.field_dict["items"](bundle_type), generate
-
-else:
-
-    class _Bundle:  # type: ignore[no-redef]
-        def __init__(self, items: tuple[Any, ...]) -> None:
-            self.items = tuple(map(_viewed, items))
-
-    def contents(bundle: Any) -> Any:
-        return bundle.items
-
-
-@bundle_kernel
 def bundle(items: tuple[Any, ...]) -> Any:
-    """One argument for kernels in place of many that stay: arrays and named tuples, there the bundle's `items`.
+    """One argument for kernels in place of many that stay: arrays, and named tuples of them, there its `contents`.
 
-    Otherwise a kernel unwraps each array at every call: 60 of them take 8 us, as long as 80 links of a rope. The types
-    of named tuples belong to this room, since the cache of kernels refers to them.
+    Otherwise a kernel unwraps each array at every call: 60 of them take 8 us, as long as 80 links of a rope. The bundle
+    holds what it was made of.
+
+    Raises:
+        TypeError: for what is neither array nor tuple, and for arrays that are not contiguous.
     """
-    return _Bundle(items)
+    if _lending is not None:
+        return _lending.bundle(items)
+    return items if COMPILED else _viewed(items)
+
+
+def _contents(bundle: Any) -> Any:
+    return bundle
+
+
+# In kernels: the items of a bundle, as they were given to it.
+contents: Any = _lending.contents if _lending is not None else inner_kernel(_contents)

@@ -59,8 +59,6 @@ def _type_text(kind: Any) -> str:
         return f"{class_text(kind.instance_class)}{list(map(_type_text, kind.types))}"
     if isinstance(kind, types.BaseTuple):
         return repr(list(map(_type_text, kind)))
-    if isinstance(kind, types.StructRef):
-        return f"{type(kind).__name__}{[_type_text(field) for _, field in kind._fields]}"
     return str(kind)
 
 
@@ -80,8 +78,6 @@ def _unsealed(sealed: bytes) -> bytes | None:
 class KernelCache(caching.NullCache):
     """Loads and saves what is compiled of one kernel."""
 
-    _wanted = True
-
     def __init__(self, kernel: Any) -> None:
         self._kernel = kernel
 
@@ -96,6 +92,25 @@ class KernelCache(caching.NullCache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """What was compiled for these types of arguments, by any process; None where nothing of it can be used."""
+        try:
+            return self._find(sig, target_context)
+        except Exception:  # inner parts of numba are others than those below
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep what was compiled in the first folder that takes it; where none does, say so once."""
+        try:
+            if any(not lifted.can_cache for lifted in data.lifted) or data.library.has_dynamic_globals:
+                return
+            # Types of variables, with paths of sources: text that nobody reads.
+            content = serialize.dumps(data._replace(type_annotation="")._reduce())
+            begin, end = self._file_names(sig, data.codegen.magic_tuple())
+        except Exception as fault:
+            _say_once(f"compiled kernels of this numba cannot be kept: {fault!r}")
+        else:
+            _keep(begin, begin + end, content)
+
+    def _find(self, sig: Any, target_context: Any) -> Any:
         target_context.refresh()
         own = target_context.codegen().magic_tuple()
         # Shipped kernels are for any processor of the platform.
@@ -107,29 +122,33 @@ class KernelCache(caching.NullCache):
                     return result
         return None
 
-    def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep what was compiled in the first folder that takes it; where none does, say so once."""
-        if any(not lifted.can_cache for lifted in data.lifted) or data.library.has_dynamic_globals:
+
+def keep(kernel: Any) -> None:
+    """Let a dispatcher of numba load and save what is compiled of it."""
+    if hasattr(kernel, "_cache"):
+        kernel._cache = KernelCache(kernel)
+
+
+_said: list[str] = []
+
+
+def _say_once(text: str) -> None:
+    if not _said:
+        _said.append(text)
+        warnings.warn(text, RuntimeWarning, stacklevel=2)
+
+
+def _keep(begin: str, name: str, content: bytes) -> None:
+    refusal: OSError | None = None
+    for folder in cache_folders():
+        try:
+            _write(folder / name, _sealed(content))
+        except OSError as error:
+            refusal = refusal or error
+        else:
+            _tidy(folder, begin)
             return
-        # Types of variables, with paths of sources: text that nobody reads.
-        content = serialize.dumps(data._replace(type_annotation="")._reduce())
-        begin, end = self._file_names(sig, data.codegen.magic_tuple())
-        refusals = []
-        for folder in cache_folders():
-            try:
-                _write(folder / (begin + end), _sealed(content))
-            except OSError as refusal:
-                refusals.append(refusal)
-            else:
-                _tidy(folder, begin)
-                return
-        if KernelCache._wanted:
-            KernelCache._wanted = False
-            warnings.warn(
-                f"compiled kernels cannot be kept, and will be compiled again at the next start: {refusals[0]}",
-                RuntimeWarning,
-                stacklevel=2,
-            )
+    _say_once(f"compiled kernels cannot be kept, and will be compiled again at the next start: {refusal}")
 
 
 def _load(path: Path, target_context: Any) -> Any:

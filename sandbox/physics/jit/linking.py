@@ -17,6 +17,8 @@ from numba.core import compiler
 from numba.core.codegen import JITCodeLibrary
 from numba.core.environment import lookup_environment
 
+from sandbox.physics.jit.lending import mark_arguments
+
 _ENVIRONMENT = "_ZN08NumbaEnv"
 
 
@@ -38,6 +40,10 @@ class _PartLibrary(JITCodeLibrary):
     def codegen(self) -> Any:
         return _WithoutEnvironments(self._codegen)
 
+    def add_ir_module(self, ir_module: Any) -> None:
+        mark_arguments(ir_module)
+        super().add_ir_module(ir_module)
+
     def finalize(self) -> None:
         self._raise_if_finalized()
         self._finalized = True
@@ -51,7 +57,8 @@ class _EntryLibrary(JITCodeLibrary):
         self._raise_if_finalized()
         self._codegen._check_llvm_bugs()
         for library in self._below():
-            self._reload_init.update(library._reload_init)
+            if hasattr(self, "_reload_init"):  # from numba 0.62 on
+                self._reload_init.update(library._reload_init)
             self._final_module.link_in(library._get_module_for_linking(), preserve=True)
         # Nobody else calls them: arguments that are not used go, and what is called once is inlined.
         for function in self._final_module.functions:

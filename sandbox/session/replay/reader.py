@@ -19,7 +19,7 @@ from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands.command import plain_fault
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import FORMAT, HEADER_LIMIT, LINE_LIMIT, VERSION, level_digest, unseal
-from sandbox.session.replay.verify import Replay, ReplayError, StoredState, TickHashes
+from sandbox.session.replay.recording import Replay, ReplayError, StoredState, TickHashes
 
 GZIP_MAGIC = b"\x1f\x8b"
 # The header that a Recorder writes: no flags, no time, no name; another one is a changed byte.

@@ -13,7 +13,7 @@ import numpy as np
 
 from sandbox.physics.collision.restitution import SLOWEST_BOUNCE
 from sandbox.physics.collision.types import Contacts
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inlined_kernel, inner_kernel, unsigned
 from sandbox.physics.solvers.contact.free_islands import Islands
 from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH
 from sandbox.physics.state import Floats, Slots
@@ -42,19 +42,30 @@ GAIN_X, GAIN_Y, PUSHED_X, PUSHED_Y = range(4)
 
 
 class Work(NamedTuple):
-    """Free contacts in the order of their islands, and their particles; what cannot move has a place for each contact.
+    """Free contacts island by island, in the order in which they are solved; and their particles.
 
-    By contact: constraint (k, COLUMNS); end (k, 2) = places of its particles (-1: none). By place: particle, weight
-    [1/kg], motion (m, 4) and push (m, 4), see the columns. local (n,): the place of a particle, -1: none. ahead [m]
-    (n, 2): how much further than h v' each particle has gone in the step. There is room for more.
+    Contacts that share no particle that can move are solved in any order with the same result. So those of an island
+    are sorted by level, one above the highest before it at the same particles: what lies side by side in a level does
+    not wait for each other's velocities, which makes an iteration twice as fast.
+
+    By contact: constraint (k, COLUMNS); end (k, 2) = places of its particles (-1: none); contact. place (k, 2), level:
+    the ends and the level before they are sorted; at (k + 1,): where each level begins. By place of a particle:
+    particle, weight [1/kg], motion (m, 4) and push (m, 4), see the columns, highest = level so far; what cannot move
+    has a place for each contact. local (n,): the place of a particle, -1: none. ahead [m] (n, 2): how much further than
+    h v' each particle has gone in the step. There is room for more.
     """
 
     constraint: Floats
     end: Slots
+    contact: Slots
+    place: Slots
+    level: Slots
+    at: Slots
     particle: Slots
     weight: Floats
     motion: Floats
     push: Floats
+    highest: Slots
     local: Slots
     ahead: Floats
 
@@ -67,6 +78,7 @@ def _place_of(p: int, inverse_mass: Floats, start: Floats, velocity: Floats, wor
     work.local[p] = count
     work.particle[count] = p
     work.weight[count] = inverse_mass[p]
+    work.highest[count] = 0
     for axis in range(2):
         work.motion[count, VX + axis] = start[p, axis]
         work.motion[count, WX + axis] = 0.0
@@ -76,45 +88,78 @@ def _place_of(p: int, inverse_mass: Floats, start: Floats, velocity: Floats, wor
 
 
 @inner_kernel
-def _gather(
-    contacts: Contacts, islands: Islands, first: int, last: int, inverse_mass: Floats, radius: Floats, start: Floats,
-    velocity: Floats, work: Work, count: int,
+def _place_contacts(
+    contacts: Contacts, islands: Islands, first: int, last: int, inverse_mass: Floats, start: Floats, velocity: Floats,
+    work: Work, count: int,
 ) -> int:  # fmt: skip
-    # Fill in what an island works on; the number of places then.
-    row = work.constraint
+    # The places and levels of an island's contacts, and where each level begins; the number of places then.
+    for level in range(last - first + 1):
+        work.at[level] = 0
     for i in range(first, last):
         c = islands.contact[i]
-        p = contacts.particle[c]
+        q = -1
+        level = 0
+        if contacts.end_b[c] < 0 and contacts.end_a[c] >= 0:
+            q, count = _place_of(contacts.end_a[c], inverse_mass, start, velocity, work, count)
+            level = work.highest[q]
+        p, count = _place_of(contacts.particle[c], inverse_mass, start, velocity, work, count)
+        level = max(level, work.highest[p])
+        if work.weight[p] > 0.0:
+            work.highest[p] = level + 1
+        if q >= 0 and work.weight[q] > 0.0:
+            work.highest[q] = level + 1
+        work.place[i, 0] = p
+        work.place[i, 1] = q
+        work.level[i] = level
+        work.at[level + 1] += 1
+    for level in range(last - first):
+        work.at[level + 1] += work.at[level]
+    return count
+
+
+@inner_kernel
+def _fill_constraints(
+    contacts: Contacts, islands: Islands, first: int, last: int, radius: Floats, start: Floats, work: Work
+) -> None:
+    # The constraints of an island's contacts, level by level.
+    row = work.constraint
+    for i in range(first, last):
+        level = work.level[i]
+        k = first + work.at[level]
+        work.at[level] += 1
+        c = islands.contact[i]
+        p = work.place[i, 0]
+        q = work.place[i, 1]
+        work.contact[k] = c
+        work.end[k, 0] = p
+        work.end[k, 1] = q
+        weight = work.weight[p]
+        mass = weight
+        smaller = radius[contacts.particle[c]]
+        row[k, WEIGHT_P] = weight
+        row[k, WEIGHT_Q] = 0.0
+        row[k, DRIFT_X] = 0.0
+        row[k, DRIFT_Y] = 0.0
         a = contacts.end_a[c]
         b = contacts.end_b[c]
-        mass = inverse_mass[p]
-        smaller = radius[p]
-        work.end[i, 1] = -1
-        row[i, WEIGHT_Q] = 0.0
-        row[i, DRIFT_X] = 0.0
-        row[i, DRIFT_Y] = 0.0
         if b >= 0:
             share = contacts.share[c]
             for axis in range(2):
-                row[i, DRIFT_X + axis] = (1.0 - share) * start[a, axis] + share * start[b, axis]
+                row[k, DRIFT_X + axis] = (1.0 - share) * start[a, axis] + share * start[b, axis]
         elif a >= 0:
-            mass += inverse_mass[a]
+            mass += work.weight[q]
             smaller = min(smaller, radius[a])
-            work.end[i, 1], count = _place_of(a, inverse_mass, start, velocity, work, count)
-            row[i, WEIGHT_Q] = inverse_mass[a]
-        work.end[i, 0], count = _place_of(p, inverse_mass, start, velocity, work, count)
-        row[i, WEIGHT_P] = inverse_mass[p]
-        row[i, MASS] = 1.0 / mass
-        row[i, DEPTH] = DEEPEST * smaller
-        row[i, NX] = contacts.normal[c, 0]
-        row[i, NY] = contacts.normal[c, 1]
-        row[i, GAP] = contacts.gap[c]
-        row[i, FRICTION] = contacts.friction[c]
-        row[i, BOUNCE] = contacts.bounce[c]
-        row[i, RESTITUTION] = contacts.restitution[c]
-        row[i, ALONG] = contacts.impulse[c, 0]
-        row[i, ACROSS] = contacts.impulse[c, 1]
-    return count
+            row[k, WEIGHT_Q] = work.weight[q]
+        row[k, MASS] = 1.0 / mass
+        row[k, DEPTH] = DEEPEST * smaller
+        row[k, NX] = contacts.normal[c, 0]
+        row[k, NY] = contacts.normal[c, 1]
+        row[k, GAP] = contacts.gap[c]
+        row[k, FRICTION] = contacts.friction[c]
+        row[k, BOUNCE] = contacts.bounce[c]
+        row[k, RESTITUTION] = contacts.restitution[c]
+        row[k, ALONG] = contacts.impulse[c, 0]
+        row[k, ACROSS] = contacts.impulse[c, 1]
 
 
 @inner_kernel
@@ -158,45 +203,58 @@ def _begin(work: Work, first: int, last: int, scale: float) -> None:
             push[q, PUSHED_Y] -= jy * row[i, WEIGHT_Q]
 
 
-@inner_kernel
+@inlined_kernel
 def _iterate(
-    row: Floats, end: Slots, motion: Floats, first: int, last: int, small: float, passed: float, softness: float,
-    is_last: bool,
-) -> None:  # fmt: skip
-    # One Gauss-Seidel iteration in order, after the time `passed`; softness 0: what overlaps is not pushed apart.
+    work: Work, first: int, last: int, small: float, passed: float, softness: float, pushes: bool, is_last: bool
+) -> None:
+    # One Gauss-Seidel iteration, after the time `passed`. pushes: what overlaps is pushed apart, with that softness.
     # is_last: whether the step ends with it; what would meet in the first small step of the next one, and bounce there,
     # is not slowed before.
     # J = max(0, J - ((u + b) m + soft J) / (1 + soft));  |J_t| <= friction J
-    for i in range(first, last):
-        p = end[i, 0]
-        q = end[i, 1]
+    row = work.constraint
+    end = work.end
+    motion = work.motion
+    for c in range(first, last):
+        i = unsigned(c)
+        p = unsigned(end[i, 0])
         nx = row[i, NX]
         ny = row[i, NY]
-        ux = motion[p, VX] - row[i, DRIFT_X]
-        uy = motion[p, VY] - row[i, DRIFT_Y]
-        wx = motion[p, WX] - passed * row[i, DRIFT_X]
-        wy = motion[p, WY] - passed * row[i, DRIFT_Y]
-        if q >= 0:
+        ux = motion[p, VX]
+        uy = motion[p, VY]
+        wx = motion[p, WX]
+        wy = motion[p, WY]
+        moves = end[i, 1] >= 0
+        if moves:
+            q = unsigned(end[i, 1])
             ux -= motion[q, VX]
             uy -= motion[q, VY]
             wx -= motion[q, WX]
             wy -= motion[q, WY]
+        else:
+            ux -= row[i, DRIFT_X]
+            uy -= row[i, DRIFT_Y]
+            wx -= passed * row[i, DRIFT_X]
+            wy -= passed * row[i, DRIFT_Y]
         gap = row[i, GAP] + nx * wx + ny * wy
         along = nx * ux + ny * uy
         mass = row[i, MASS]
         old = row[i, ALONG]
-        if row[i, BOUNCE] < 0.0 and not gap > 0.0 and softness > 0.0:
+        soft = 0.0
+        if row[i, BOUNCE] >= 0.0:
+            bias = -row[i, BOUNCE]
+        elif gap > 0.0:
+            if is_last and row[i, RESTITUTION] > 0.0 and along < -SLOWEST_BOUNCE:
+                continue
+            bias = gap / small
+        elif pushes:
             bias = max(OVERLAP_SHARE * gap / small, -FASTEST_PUSH)
-            new = max(0.0, old - ((along + bias) * mass + softness * old) / (1.0 + softness))
+            soft = softness
         else:
             bias = 0.0
-            if row[i, BOUNCE] >= 0.0:
-                bias = -row[i, BOUNCE]
-            elif gap > 0.0:
-                if is_last and row[i, RESTITUTION] > 0.0 and along < -SLOWEST_BOUNCE:
-                    continue
-                bias = gap / small
-            new = max(0.0, old - (along + bias) * mass)
+        change = (along + bias) * mass
+        if pushes:
+            change = (change + soft * old) / (1.0 + soft)
+        new = max(0.0, old - change)
         most = row[i, FRICTION] * new
         held = row[i, ACROSS]
         across = min(most, max(-most, held - (nx * uy - ny * ux) * mass))
@@ -206,7 +264,8 @@ def _iterate(
         jy = (new - old) * ny + (across - held) * nx
         motion[p, VX] += jx * row[i, WEIGHT_P]
         motion[p, VY] += jy * row[i, WEIGHT_P]
-        if q >= 0:
+        if moves:
+            q = unsigned(end[i, 1])
             motion[q, VX] -= jx * row[i, WEIGHT_Q]
             motion[q, VY] -= jy * row[i, WEIGHT_Q]
 
@@ -274,11 +333,11 @@ def _take_small_steps(work: Work, first: int, last: int, begin: int, end: int, h
                 free = motion[k, VX + axis] + push[k, GAIN_X + axis] * scale
                 motion[k, VX + axis] = free + push[k, PUSHED_X + axis]
                 push[k, PUSHED_X + axis] = free
-        _iterate(work.constraint, work.end, motion, first, last, small, small * step, softness, False)
+        _iterate(work, first, last, small, small * step, softness, True, False)
         for k in range(begin, end):
             motion[k, WX] += small * motion[k, VX]
             motion[k, WY] += small * motion[k, VY]
-        _iterate(work.constraint, work.end, motion, first, last, small, small * (step + 1), 0.0, step == count - 1)
+        _iterate(work, first, last, small, small * (step + 1), 0.0, False, step == count - 1)
         for k in range(begin, end):
             push[k, PUSHED_X] = motion[k, VX] - push[k, PUSHED_X]
             push[k, PUSHED_Y] = motion[k, VY] - push[k, PUSHED_Y]
@@ -303,12 +362,13 @@ def solve_free_contacts(
         first = islands.first[g]
         last = islands.first[g + 1]
         begin = end
-        end = _gather(contacts, islands, first, last, inverse_mass, radius, start, velocity, work, end)
+        end = _place_contacts(contacts, islands, first, last, inverse_mass, start, velocity, work, end)
+        _fill_constraints(contacts, islands, first, last, radius, start, work)
         allowed = _energy(work, begin, end, 1.0)
         count = _take_small_steps(work, first, last, begin, end, h)
         _restrain(work, first, last, begin, end, allowed)
         for i in range(first, last):
-            c = islands.contact[i]
+            c = work.contact[i]
             contacts.impulse[c, 0] = work.constraint[i, ALONG] * count
             contacts.impulse[c, 1] = work.constraint[i, ACROSS] * count
     for k in range(end):
@@ -323,6 +383,8 @@ def new_work(particles: int, contacts: int) -> Work:
     """Work to be filled in, with room for so many contacts."""
     places = 2 * contacts
     return Work(
-        np.zeros((contacts, COLUMNS)), np.zeros((contacts, 2), np.int64), np.zeros(places, np.int64), np.zeros(places),
-        np.zeros((places, 4)), np.zeros((places, 4)), np.zeros(particles, np.int64), np.zeros((particles, 2)),
+        np.zeros((contacts, COLUMNS)), np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64),
+        np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64), np.zeros(contacts + 1, np.int64),
+        np.zeros(places, np.int64), np.zeros(places), np.zeros((places, 4)), np.zeros((places, 4)),
+        np.zeros(places, np.int64), np.zeros(particles, np.int64), np.zeros((particles, 2)),
     )  # fmt: skip
