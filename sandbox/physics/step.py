@@ -62,20 +62,20 @@ def step(world: World) -> None:
     # What a solver keeps is an impulse of one step: exact, as parts are a power of two.
     world.scale_impulses(settings.fewest_substeps / parts)
     world.contacts = None
-    collision = begin_collisions(world) if world.has_contacts else None
+    collisions = begin_collisions(world)
     for _ in range(parts):
         before = Before(world.velocity.copy(), rest_length)
         apply_forces(world, h)
-        if collision is not None:
-            world.contacts = collide(collision, before.velocity, world.tick, h)
+        if collisions is not None:
+            world.contacts = collide(collisions, before.velocity, world.tick, h)
         solver.solve(world, springs, elements, h, before)
-        if collision is not None:
-            finish(collision, h)
+        if collisions is not None:
+            finish(collisions, h)
         else:
             integrate(world.position, world.velocity, world.particle_active, h)
         rest_length = world.rest_length
-    if collision is not None:
-        end_collisions(world, collision)
+    if collisions is not None:
+        end_collisions(world, collisions)
     world.scale_impulses(parts / settings.fewest_substeps)
     world.rest_hands()
     world.tick += 1

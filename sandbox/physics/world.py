@@ -114,7 +114,14 @@ class World(StateArrays):
 
     def trust(self) -> None:
         """Take everything as it is now for good."""
-        self.good = {column.name: getattr(self, column.name).copy() for column in GUARDED}
+        for column in GUARDED:
+            values = getattr(self, column.name)
+            good = self.good.get(column.name)
+            # In place where it can be: what was derived points to them.
+            if good is not None and len(good) == len(values):
+                good[:] = values
+            else:
+                self.good[column.name] = values.copy()
 
     def _append(self, family: Family, count: int, **arrays: ArrayLike) -> None:
         """Append `count` rows to the arrays of a family: (count, ...) or one value for all; 0 where none is given."""

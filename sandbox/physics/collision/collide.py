@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sandbox.physics.collision.broad_phase import (
     Boxes,
@@ -29,6 +28,7 @@ from sandbox.physics.collision.restitution import find_bounces
 from sandbox.physics.collision.terrain_clamp import clamp_at_terrain
 from sandbox.physics.collision.types import (
     NO_CONTACTS,
+    NOTHING_KEPT,
     Colliders,
     Contacts,
     Flags,
@@ -91,9 +91,10 @@ class CollisionRoom(NamedTuple):
 
 @inner_kernel
 def _load_particles(particles: CollidingParticles, colliders: Colliders) -> None:
-    # What stays as it is in a tick.
     for p in range(particles.radius.shape[0]):
         for axis in range(2):
+            colliders.position[p, axis] = particles.position[p, axis]
+            colliders.velocity[p, axis] = particles.velocity[p, axis]
             colliders.origin[p, axis] = particles.origin[p, axis]
         colliders.radius[p] = particles.radius[p]
         colliders.friction[p] = particles.friction[p]
@@ -104,21 +105,10 @@ def _load_particles(particles: CollidingParticles, colliders: Colliders) -> None
 
 
 @kernel
-def _begin(items: Any, particle: NDArray[np.int32], feature: Slots, impulse: Floats) -> bool:
-    # Load what stays in a tick, and the contacts kept from the last one; whether there is room.
-    particles, outline, _, _, colliders, room = contents(items)
-    _load_particles(particles, colliders)
+def _bound_terrain(items: Any) -> None:
+    # What is solid of terrain stays where it is.
+    _, outline, _, _, colliders, room = contents(items)
     bound_solids(colliders, outline, outline.dynamic[1], outline.solid.shape[0], room.bounds)
-    room.counts[KEPT] = particle.shape[0]
-    if particle.shape[0] > room.kept.particle.shape[0]:
-        room.counts[CONTACTS] = particle.shape[0]
-        return False
-    for c in range(particle.shape[0]):
-        room.kept.particle[c] = particle[c]
-        room.kept.feature[c] = feature[c]
-        room.kept.impulse[c, 0] = impulse[c, 0]
-        room.kept.impulse[c, 1] = impulse[c, 1]
-    return True
 
 
 @inner_kernel
@@ -127,10 +117,7 @@ def _detect(
     room: CollisionRoom, tick: int, h: float,
 ) -> int:  # fmt: skip
     # Broad and narrow phase: the contacts of the step, but for bounces and impulses; their number, or NO_ROOM.
-    for p in range(particles.radius.shape[0]):
-        for axis in range(2):
-            colliders.position[p, axis] = particles.position[p, axis]
-            colliders.velocity[p, axis] = particles.velocity[p, axis]
+    _load_particles(particles, colliders)
     if triangles.element.shape[0] > 0:
         find_inverted(
             particles.position, particles.element_rest, triangles, room.inversions, colliders.inverted
@@ -196,7 +183,8 @@ def _collide(items: Any, start: Floats, tick: int, h: float) -> int:
 
 
 @kernel
-def _finish(items: Any, h: float) -> None:
+def _finish(items: Any, h: float) -> int:
+    # Everything after the solver; how many contacts there are.
     particles, _, terrain, _, _, room = contents(items)
     contacts = room.contacts
     count = room.counts[CONTACTS]
@@ -220,23 +208,15 @@ def _finish(items: Any, h: float) -> None:
         particles.position[p, 0] += ahead[p, 0]
         particles.position[p, 1] += ahead[p, 1]
     advance(particles.position, particles.velocity, particles.particle_active, h)
-
-
-@kernel
-def _end(items: Any, particle: NDArray[np.int32], feature: Slots, impulse: Floats) -> None:
-    _, _, _, _, _, room = contents(items)
-    for c in range(particle.shape[0]):
-        particle[c] = room.kept.particle[c]
-        feature[c] = room.kept.feature[c]
-        impulse[c, 0] = room.kept.impulse[c, 0]
-        impulse[c, 1] = room.kept.impulse[c, 1]
+    return count
 
 
 @dataclass(eq=False)
-class Collision:
+class Collisions:
     """The scratch of a world's collisions: what topology decides, what a step fills in, and all as one argument.
 
-    wanted: the largest counts so far. solved: the contacts that the last step left to a solver.
+    wanted: the largest counts so far. solved: the contacts that the last step left to a solver. kept: the contacts of
+    the last tick, the first of those in room; they are the world's own, which so has them without a copy.
     """
 
     particles: CollidingParticles
@@ -247,29 +227,29 @@ class Collision:
     room: CollisionRoom
     wanted: Slots
     items: Any
-    solved: Contacts
+    solved: Contacts = NO_CONTACTS
+    kept: KeptContacts = NOTHING_KEPT
+    count: int = 0
 
 
-def collision_of(world: World) -> Collision:
-    """The scratch of a world's collisions, made anew where topology has changed."""
-    return world.derived(_make_collision)
+def collisions_of(world: World) -> Collisions | None:
+    """The scratch of a world's collisions, made anew where topology has changed; None: nothing can touch anything."""
+    return world.derived(_make_collisions)
 
 
-def _make_collision(world: World) -> Collision:
+def _make_collisions(world: World) -> Collisions | None:
+    if not world.has_contacts:
+        return None
     outline, triangles = outline_of(world), triangles_of(world)
     particles = CollidingParticles._make([getattr(world, name) for name in CollidingParticles._fields])
     wanted = np.full(5, len(world.contact_particle))
     wanted[ENTRIES] = world.particle_count
-    room = _make_room(outline, triangles, wanted)
-    made = Collision(
-        particles, outline, world.terrain, triangles, colliders_of(world, outline), room, wanted, None, NO_CONTACTS
-    )
-    made.items = _bundled(made)
+    made = Collisions(
+        particles, outline, world.terrain, triangles, colliders_of(world, outline),
+        _make_room(outline, triangles, wanted), wanted, None,
+    )  # fmt: skip
+    _bundle_up(made)
     return made
-
-
-def _bundled(of: Collision) -> Any:
-    return bundle((of.particles, of.outline, of.terrain, of.triangles, of.colliders, of.room))
 
 
 def _make_room(outline: Outline, triangles: Triangles, wanted: Slots) -> CollisionRoom:
@@ -285,54 +265,74 @@ def _make_room(outline: Outline, triangles: Triangles, wanted: Slots) -> Collisi
     )  # fmt: skip
 
 
-def _grow(collision: Collision) -> None:
+def _bundle_up(made: Collisions) -> None:
+    made.items = bundle((made.particles, made.outline, made.terrain, made.triangles, made.colliders, made.room))
+    _bound_terrain(made.items)
+
+
+def _grow(collisions: Collisions) -> None:
     """Give a step the room that it has found to be too little; the contacts kept of the last step stay."""
-    old = collision.room
-    collision.wanted = np.maximum(collision.wanted, old.counts)
-    collision.room = _make_room(collision.outline, collision.triangles, collision.wanted)
-    collision.room.counts[:] = old.counts
-    for new, kept in zip(collision.room.kept, old.kept, strict=True):
-        new[: len(kept)] = kept
-    collision.solved = NO_CONTACTS
-    collision.items = _bundled(collision)
+    old = collisions.room
+    collisions.wanted = np.maximum(collisions.wanted, old.counts)
+    collisions.room = _make_room(collisions.outline, collisions.triangles, collisions.wanted)
+    collisions.room.counts[:] = old.counts
+    count = len(old.kept.particle)
+    new = collisions.room.kept
+    new.particle[:count], new.feature[:count], new.impulse[:count] = old.kept
+    collisions.solved, collisions.kept = NO_CONTACTS, NOTHING_KEPT
+    _bundle_up(collisions)
 
 
-def begin_collisions(world: World) -> Collision:
-    """Load what a tick's collisions need of the world: its particles, and the contacts of its last step."""
-    collision = collision_of(world)
-    while not _begin(collision.items, world.contact_particle, world.contact_feature, world.contact_impulse):
-        _grow(collision)
-    return collision
+def begin_collisions(world: World) -> Collisions | None:
+    """The scratch of the coming tick's collisions, with the contacts of the world's last step."""
+    collisions = collisions_of(world)
+    if collisions is not None and world.contact_impulse is not collisions.kept.impulse:
+        counts, count = collisions.room.counts, len(world.contact_particle)
+        counts[KEPT] = collisions.count = count
+        if count > len(collisions.room.kept.particle):
+            _grow(collisions)
+        room = collisions.room.kept
+        room.particle[:count] = world.contact_particle
+        room.feature[:count], room.impulse[:count] = world.contact_feature, world.contact_impulse
+        _share_kept(world, collisions)
+    return collisions
 
 
-def collide(collision: Collision, start: Floats, tick: int, h: float) -> Contacts:
+def _share_kept(world: World, collisions: Collisions) -> None:
+    count = collisions.count
+    collisions.kept = KeptContacts._make([array[:count] for array in collisions.room.kept])
+    world.keep_contacts(*collisions.kept)
+
+
+def collide(collisions: Collisions, start: Floats, tick: int, h: float) -> Contacts:
     """Find the contacts of a step of h [s] and solve those of free particles; the others, returned, are a solver's.
 
     start [m/s] (n, 2): the velocities before gravity and all else from outside.
     """
-    count = _collide(collision.items, start, tick, h)
+    count = _collide(collisions.items, start, tick, h)
     while count == NO_ROOM:
-        _grow(collision)
-        count = _collide(collision.items, start, tick, h)
-    if count != len(collision.solved.particle):
-        collision.solved = Contacts._make([array[:count] for array in collision.room.bound]) if count else NO_CONTACTS
-    return collision.solved
+        _grow(collisions)
+        count = _collide(collisions.items, start, tick, h)
+    if count != len(collisions.solved.particle):
+        room = collisions.room.bound
+        collisions.solved = Contacts._make([array[:count] for array in room]) if count else NO_CONTACTS
+    return collisions.solved
 
 
-def finish(collision: Collision, h: float) -> None:
+def finish(collisions: Collisions, h: float) -> None:
     """Keep a step's contacts with their impulses, stop what would cross terrain, and move particles over h [s]."""
-    _finish(collision.items, h)
+    collisions.count = _finish(collisions.items, h)
 
 
-def end_collisions(world: World, collision: Collision) -> None:
-    """Make the contacts of a tick's last step a part of the world's state."""
-    count = int(collision.room.counts[KEPT])
-    if count != len(world.contact_particle):
-        world.keep_contacts(np.zeros(count, np.int32), np.zeros(count, np.int64), np.zeros((count, 2)))
-    _end(collision.items, world.contact_particle, world.contact_feature, world.contact_impulse)
+def end_collisions(world: World, collisions: Collisions) -> None:
+    """Make the contacts of a tick's last step those of the world's state."""
+    if collisions.count != len(collisions.kept.particle) or collisions.kept is NOTHING_KEPT:
+        _share_kept(world, collisions)
 
 
 def last_contacts(world: World) -> Contacts:
     """A copy of the contacts of the world's last step; none where topology has changed since."""
-    room = collision_of(world).room
-    return Contacts._make([array[: room.counts[CONTACTS]].copy() for array in room.contacts])
+    collisions = collisions_of(world)
+    if collisions is None:
+        return NO_CONTACTS
+    return Contacts._make([array[: collisions.room.counts[CONTACTS]].copy() for array in collisions.room.contacts])

@@ -79,7 +79,7 @@ class Contacts(NamedTuple):
 class KeptContacts(NamedTuple):
     """What the next step gets to know of a step's contacts: see Contacts."""
 
-    particle: Slots
+    particle: NDArray[np.int32]
     feature: Slots
     impulse: Floats
 
@@ -105,7 +105,7 @@ def room_for(count: int) -> Contacts:
 
 def room_to_keep(count: int) -> KeptContacts:
     """What is kept of contacts, to be filled in."""
-    return KeptContacts(np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros((count, 2)))
+    return KeptContacts(np.zeros(count, np.int32), np.zeros(count, np.int64), np.zeros((count, 2)))
 
 
 def room_near() -> Near:
@@ -115,3 +115,4 @@ def room_near() -> Near:
 
 
 NO_CONTACTS = room_for(0)
+NOTHING_KEPT = room_to_keep(0)
