@@ -62,7 +62,7 @@ def step(world: World) -> None:
     # What a solver keeps is an impulse of one step: exact, as parts are a power of two.
     world.scale_impulses(settings.fewest_substeps / parts)
     world.contacts = None
-    collisions = begin_collisions(world)
+    collisions = begin_collisions(world) if world.has_contacts else None
     for _ in range(parts):
         before = Before(world.velocity.copy(), rest_length)
         apply_forces(world, h)
