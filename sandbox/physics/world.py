@@ -72,6 +72,10 @@ class World(ElementSlots):
         """What a copy starts from: all but what solvers derive, which may hold a thread."""
         return self.__dict__ | {"solver_cache": None}
 
+    def drop_caches(self) -> None:
+        """Forget what solvers and contacts derive, which holds for interpreted kernels or for compiled ones alone."""
+        self.solver_cache = self.contact_cache = self.contacts = None
+
     @property
     def settings(self) -> WorldSettings:
         """Settings of a tick, replaced as a whole; another solver begins anew what solvers keep, auto the banks."""
