@@ -172,7 +172,8 @@ def _play(options: argparse.Namespace) -> int:
     if not has_display():
         level, replay = _level_or_replay(options.level or "rope_bridge_jelly")
         return _play_headless(level, replay)
-    from sandbox.app.opening import Wanted, open_app
+    from sandbox.app.opening import open_app
+    from sandbox.app.wanted import Wanted
 
     def find() -> Wanted:
         if options.level is None:
@@ -395,7 +396,8 @@ def _edit(options: argparse.Namespace) -> int:
 
     if not has_display():
         raise Refused("the editor needs a display; without one, edit the level's JSON and try `sandbox check`")
-    from sandbox.app.opening import Wanted, open_app
+    from sandbox.app.opening import open_app
+    from sandbox.app.wanted import Wanted
 
     return open_app(lambda: Wanted(edit=options.level or ""), scale=options.scale)
 

@@ -16,7 +16,7 @@ from sandbox.app.gallery import Gallery
 from sandbox.app.help import show_help
 from sandbox.app.idle import IdleCollector
 from sandbox.app.input import Input
-from sandbox.app.opening import FRAME_RATE, Wanted
+from sandbox.app.loop import FRAME_RATE
 from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.status import NOTICES, Notice, StatusLine, draw_spinner
@@ -25,6 +25,7 @@ from sandbox.app.profile import Profile
 from sandbox.app.progress import Progress
 from sandbox.app.screen import Screen
 from sandbox.app.shortcuts import Mode
+from sandbox.app.wanted import Wanted
 from sandbox.app.widgets.dialogs import show_lines
 from sandbox.app.widgets.ui import Ui
 

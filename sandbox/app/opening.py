@@ -8,35 +8,20 @@ import math
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pygame
 
 from sandbox.app.display import Display
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, MUTED, TEXT, mixed
+from sandbox.app.loop import FRAME_RATE
 from sandbox.app.profile import Profile
+from sandbox.app.wanted import Wanted
 
-if TYPE_CHECKING:
-    from sandbox.level.format.model import Level
-    from sandbox.session.replay.recording import Replay
-
-FRAME_RATE = 60
 CLOSING = (pygame.QUIT, pygame.WINDOWCLOSE)
 # Sizes in layout units.
 TITLE_SIZE, LINE_SIZE = 30, 14
-
-
-@dataclass(frozen=True)
-class Wanted:
-    """What the app is to show first: a level (source: its file), a replay, or a file to edit, "" = an empty sheet."""
-
-    level: "Level | None" = None
-    replay: "Replay | None" = None
-    source: Path | None = None
-    edit: str | None = None
 
 
 class _Work(threading.Thread):

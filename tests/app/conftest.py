@@ -12,7 +12,7 @@ import pytest
 
 from sandbox.app.app import App
 from sandbox.app.display import Display
-from sandbox.app.opening import Wanted
+from sandbox.app.wanted import Wanted
 from sandbox.level.format.files import parse_level
 from tests.support.person import VirtualScreen
 

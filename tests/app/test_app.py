@@ -11,9 +11,10 @@ import pygame
 import pytest
 
 from sandbox.app.display import has_display
-from sandbox.app.opening import Wanted, open_app
+from sandbox.app.opening import open_app
 from sandbox.app.play.playback import Playback
 from sandbox.app.shortcuts import action_of, shortcuts
+from sandbox.app.wanted import Wanted
 from sandbox.editor.storage.recent import remember
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import shipped_levels

@@ -5,7 +5,8 @@ import pytest
 
 from sandbox.app.display import Display
 from sandbox.app.draw.colours import BACKGROUND, TEXT
-from sandbox.app.opening import Wanted, open_app
+from sandbox.app.opening import open_app
+from sandbox.app.wanted import Wanted
 from tests.app.conftest import small_level
 
 

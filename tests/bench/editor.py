@@ -18,7 +18,7 @@ import pygame
 from sandbox.app.app import App
 from sandbox.app.display import Display
 from sandbox.app.edit.edit_screen import EditScreen
-from sandbox.app.opening import Wanted
+from sandbox.app.wanted import Wanted
 from sandbox.editor.document import empty_level
 from sandbox.level.format.model import Level, ParticleDef, SpringDef
 from sandbox.level.kinds.bodies import BoxShape, JellyDef
