@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from sandbox.editor.scene import Scene
 from sandbox.editor.tools.drawing_options import Options, ParticleOptions, RopeOptions
-from sandbox.level.kinds.bodies import RopeDef
+from sandbox.level.kinds.rope import RopeDef
 
 Point = tuple[float, float]
 

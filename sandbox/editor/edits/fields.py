@@ -14,7 +14,9 @@ from sandbox.level.faults.level_error import shown
 from sandbox.level.format.limits import VERSION
 from sandbox.level.format.model import Level, ParticleDef, TerrainDef
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.bodies import AnyBody, BodyDef, RopeDef
+from sandbox.level.kinds.bodies import AnyBody
+from sandbox.level.kinds.body_def import BodyDef
+from sandbox.level.kinds.rope import RopeDef
 
 # Fields of bodies that their form does not depend on; a change of any other may take pins, cuts and references along.
 _FORMLESS = frozenset(BodyDef.model_fields) | {"particle_mass", "end_mass", "hub_mass", "masses", "velocities"}
@@ -148,7 +150,7 @@ def _with_field(part: Definition, field: str, value: Any) -> Definition:
 
 def _named_part(level: Level, item: Item) -> AnyBody | ParticleDef | TerrainDef:
     selection: Selection = frozenset([item])
-    parts = [
+    parts: list[AnyBody | ParticleDef | TerrainDef] = [
         *chosen_bodies(level, selection), *chosen_particles(level, selection), *chosen_terrain(level, selection),
     ]  # fmt: skip
     if not parts:

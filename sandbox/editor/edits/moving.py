@@ -32,11 +32,10 @@ from sandbox.editor.items import (
     keys,
 )
 from sandbox.editor.scene import Scene, make_scene, positions
-from sandbox.level.build.actuators import given_length
 from sandbox.level.format.limits import COORDINATE_LIMIT
 from sandbox.level.format.model import Level, SpringDef
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.shapes import Points
+from sandbox.level.kinds.geometry import Points
 
 Point = tuple[float, float]
 Edge = Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]
@@ -183,7 +182,7 @@ def _inside_springs(level: Level, selection: Selection) -> Selection:
     return frozenset(
         Item("spring", index)
         for index, spring in enumerate(level.springs)
-        if given_length(spring) is not None and owner_of(spring.a) in owners and owner_of(spring.b) in owners
+        if spring.given_length is not None and owner_of(spring.a) in owners and owner_of(spring.b) in owners
     )
 
 

@@ -3,9 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.build.expansion import expansion
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.bodies import AnyBody
+from sandbox.level.kinds.bodies import AnyBody, expansion
 
 Mask = NDArray[np.bool_]
 

@@ -10,21 +10,16 @@ import numpy as np
 from sandbox.editor.document import EditError, subject
 from sandbox.level.format.model import ParticleDef, TerrainDef
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.bodies import (
-    AnyBody,
-    BoxShape,
-    BridgeDef,
-    CircleShape,
-    GirderDef,
-    JellyDef,
-    MeshDef,
-    PolygonShape,
-    RingDef,
-    RopeDef,
-    WebDef,
-    WheelDef,
-)
-from sandbox.level.kinds.shapes import Points, expand, turn
+from sandbox.level.kinds.bodies import AnyBody, expansion
+from sandbox.level.kinds.bridge import BridgeDef
+from sandbox.level.kinds.geometry import Points, turn
+from sandbox.level.kinds.girder import GirderDef
+from sandbox.level.kinds.jelly import BoxShape, CircleShape, JellyDef, PolygonShape
+from sandbox.level.kinds.mesh import MeshDef
+from sandbox.level.kinds.ring import RingDef
+from sandbox.level.kinds.rope import RopeDef
+from sandbox.level.kinds.web import WebDef
+from sandbox.level.kinds.wheel import WheelDef
 
 Point = tuple[float, float]
 
@@ -118,7 +113,7 @@ def mapped_body(body: AnyBody, motion: Motion) -> tuple[AnyBody, Points]:
     Where the parameters of its kind cannot say what becomes of it, its pose does. Raises EditError for a stretch that
     bends it.
     """
-    form = expand(body)[0]
+    form = expansion(body).form
     image = np.array(motion.points(map(tuple, form.tolist())))
     pose = None if body.pose is None else motion.points(body.pose)
     if isinstance(body, BridgeDef) and motion.angle != 0.0:
@@ -127,7 +122,7 @@ def mapped_body(body: AnyBody, motion: Motion) -> tuple[AnyBody, Points]:
         goes = motion.point(middle)
         aside = shifted(replaced(body, pose=None), goes[0] - middle[0], goes[1] - middle[1])
         start = pose if pose is not None else tuple(map(tuple, image.tolist()))
-        return replaced(aside, pose=start, velocity=_velocity(body.velocity, motion)), expand(aside)[0]
+        return replaced(aside, pose=start, velocity=_velocity(body.velocity, motion)), expansion(aside).form
     changes = _changes(body, motion)
     if pose is not None:
         changes["pose"] = pose
@@ -186,6 +181,7 @@ def _changes(body: AnyBody, motion: Motion) -> dict[str, Any]:
         case MeshDef():
             velocities = body.velocities and tuple(_velocity(velocity, motion) for velocity in body.velocities)
             return {"particles": motion.points(body.particles), "velocities": velocities}
+    return {}
 
 
 _KINDS = {"jelly": "jelly that is round or turned", "girder": "slanting girder"}

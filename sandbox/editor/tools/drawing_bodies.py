@@ -20,12 +20,10 @@ from sandbox.editor.tools.drawing_options import (
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.sizing import links, ring_parts, rings, truss_cells, wheel_spokes
 from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap
-from sandbox.level.build.expansion import named_particles
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.messages import worded
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.bodies import KINDS, AnyBody
-from sandbox.level.kinds.shapes import expand
+from sandbox.level.kinds.bodies import KINDS, AnyBody, expansion
 
 BodyOptions = TypeVar(
     "BodyOptions", bound=RopeOptions | TrussOptions | WebOptions | WheelOptions | RingOptions | JellyOptions
@@ -78,8 +76,9 @@ def joined(document: Document, points: Sequence[Snap]) -> Document:
         return document
     level, body = document.level, document.level.bodies[-1]
     welds = []
-    names = {index: name for name, index in named_particles(body).items()}
-    places = expand(body)[0]
+    made = expansion(body)
+    names = {index: name for name, index in made.named_particles.items()}
+    places = made.form
     for point in points:
         x, y = (places - point.point).T
         distance = x * x + y * y

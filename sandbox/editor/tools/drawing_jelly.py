@@ -8,7 +8,7 @@ from sandbox.editor.tools.drawing_options import JellyOptions
 from sandbox.editor.tools.drawing_outline import OutlineDrawing
 from sandbox.editor.tools.sizing import CELLS_ACROSS, jelly_spacing
 from sandbox.editor.tools.snap import Snap
-from sandbox.level.kinds.bodies import BoxShape, CircleShape, PolygonShape
+from sandbox.level.kinds.jelly import BoxShape, CircleShape, PolygonShape
 
 
 class JellyDrawing(BodyDrawing[JellyOptions]):
