@@ -1,10 +1,11 @@
 # make play: install into .venv and run the app.    make test: install into .venv and run every test.
+# make pictures: draw the gallery's pictures of shipped levels anew, after one was changed.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 WORKERS ?= 2
 
-.PHONY: play test lint bench clean
+.PHONY: play test lint pictures bench clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
@@ -13,9 +14,13 @@ test: $(VENV)/installed-dev
 	$(BIN)/python -m pytest -n $(WORKERS)
 
 lint: $(VENV)/installed-dev
-	$(BIN)/ruff check sandbox tests
-	$(BIN)/ruff format --check sandbox tests
+	$(BIN)/ruff check sandbox tests examples
+	$(BIN)/ruff format --check sandbox tests examples
 	$(BIN)/mypy
+	$(BIN)/mypy --strict --follow-imports=silent examples
+
+pictures: $(VENV)/installed
+	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.picture_cache
 
 bench: $(VENV)/installed-dev
 	for bench in tests/bench/*.py; do echo "## $$bench"; PYTHONPATH=. $(BIN)/python "$$bench" || exit 1; done

@@ -1,6 +1,7 @@
 """Spring Sandbox: particles and damped springs in 2D, to play, to build and to replay bit for bit.
 
-The public names load on first use, so `import sandbox` and `sandbox --help` stay cheap.
+The public names load on first use, so `import sandbox` and `sandbox --help` stay cheap. `sandbox.commands`,
+`sandbox.replay` and `sandbox.bodies` hold the rest of what programs use; nothing deeper is promised to stay.
 """
 
 from importlib import import_module
@@ -10,23 +11,46 @@ __version__ = "0.1.0"
 
 _HOME = {
     "Level": "sandbox.level.format.model",
+    "LevelError": "sandbox.level.faults.level_error",
     "load_level": "sandbox.level.format.files",
     "build_world": "sandbox.level.build.build_world",
+    "Snapshot": "sandbox.physics.snapshot",
     "World": "sandbox.physics.world",
+    "WorldSettings": "sandbox.physics.settings",
+    "state_hash": "sandbox.physics.snapshot",
     "step": "sandbox.physics.step",
     "Session": "sandbox.session.session",
-    "Replay": "sandbox.session.replay.verify",
+    "run_checks": "sandbox.session.summary",
+    "Replay": "sandbox.session.replay.recording",
 }
-__all__ = ["Level", "Replay", "Session", "World", "__version__", "build_world", "load_level", "step"]
+__all__ = [
+    "Level",
+    "LevelError",
+    "Replay",
+    "Session",
+    "Snapshot",
+    "World",
+    "WorldSettings",
+    "__version__",
+    "build_world",
+    "load_level",
+    "run_checks",
+    "state_hash",
+    "step",
+]
 
 if TYPE_CHECKING:
     from sandbox.level.build.build_world import build_world
+    from sandbox.level.faults.level_error import LevelError
     from sandbox.level.format.files import load_level
     from sandbox.level.format.model import Level
+    from sandbox.physics.settings import WorldSettings
+    from sandbox.physics.snapshot import Snapshot, state_hash
     from sandbox.physics.step import step
     from sandbox.physics.world import World
-    from sandbox.session.replay.verify import Replay
+    from sandbox.session.replay.recording import Replay
     from sandbox.session.session import Session
+    from sandbox.session.summary import run_checks
 
 
 def __getattr__(name: str) -> Any:

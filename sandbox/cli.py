@@ -2,20 +2,23 @@
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sandbox import __version__
 from sandbox.terminal import (
+    Progress,
     count,
     give_up_output,
     interrupted_between_ticks,
     missing_folder,
     prepare_streams,
-    progress,
+    processes,
     refusal_of,
     scale,
     seconds,
@@ -27,12 +30,14 @@ from sandbox.terminal import (
 if TYPE_CHECKING:
     from sandbox.level.format.model import Level
     from sandbox.physics.world import World
-    from sandbox.session.replay.verify import Replay
+    from sandbox.session.replay.recording import Replay
     from sandbox.session.session import Session
 
 EXIT_OK, EXIT_FAILED, EXIT_REFUSED, EXIT_INTERRUPTED = 0, 1, 2, 130
 # What `play` does where there is no display [s].
 HEADLESS_SECONDS = 10.0
+# A process that checks levels takes as long to start as a few levels take; fewer for each are not worth one.
+LEVELS_PER_PROCESS = 4
 
 
 class Refused(Exception):
@@ -113,6 +118,9 @@ def _parser() -> argparse.ArgumentParser:
 
     check = command("check", _check, "validate levels, report their stability, run the checks they carry")
     check.add_argument("levels", nargs="+", metavar="LEVEL")
+    check.add_argument(
+        "--processes", type=processes, metavar="N", help="check so many at a time; default: by cores and levels"
+    )
 
     render = command("render", _render, "draw a level or a replay into a PNG picture, off screen")
     render.add_argument("level", metavar="LEVEL|REPLAY")
@@ -140,7 +148,7 @@ def _level(name: str) -> "Level":
 
 def _recording(name: str, partial: bool = False) -> "Replay":
     from sandbox.session.replay.reader import read_replay
-    from sandbox.session.replay.verify import ReplayError
+    from sandbox.session.replay.recording import ReplayError
 
     try:
         return read_replay(name, partial)
@@ -159,16 +167,28 @@ def _is_replay(name: str) -> bool:
 
 
 def _play(options: argparse.Namespace) -> int:
-    replay = _recording(options.level) if options.level and _is_replay(options.level) else None
-    level = _level(options.level) if options.level and replay is None else None
     from sandbox.app.display import has_display
 
     if not has_display():
-        return _play_headless(level or (replay.level if replay else _level("rope_bridge_jelly")), replay)
-    from sandbox.app.app import run_app
+        level, replay = _level_or_replay(options.level or "rope_bridge_jelly")
+        return _play_headless(level, replay)
+    from sandbox.app.opening import open_app
+    from sandbox.app.wanted import Wanted
 
-    source = Path(options.level) if level and Path(options.level).is_file() else None
-    return run_app(level, replay, source, profile=options.profile, seconds=options.seconds, scale=options.scale)
+    def find() -> Wanted:
+        if options.level is None:
+            return Wanted()
+        level, replay = _level_or_replay(options.level)
+        source = Path(options.level) if not replay and Path(options.level).is_file() else None
+        return Wanted(None if replay else level, replay, source)
+
+    return open_app(find, profile=options.profile, seconds=options.seconds, scale=options.scale)
+
+
+def _level_or_replay(name: str) -> "tuple[Level, Replay | None]":
+    """What a file holds: a level, or a replay and the level that it is of."""
+    replay = _recording(name) if _is_replay(name) else None
+    return (replay.level if replay else _level(name)), replay
 
 
 def _play_headless(level: "Level", replay: "Replay | None") -> int:
@@ -243,12 +263,15 @@ def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
 
 
 def _scripted_session(level: "Level", commands: Path | None) -> "Session":
-    from sandbox.session.replay.reader import read_script
-    from sandbox.session.replay.verify import ReplayError
     from sandbox.session.session import Session
 
+    if commands is None:
+        return Session(level)
+    from sandbox.session.replay.reader import read_script
+    from sandbox.session.replay.recording import ReplayError
+
     try:
-        return Session(level, read_script(commands) if commands else ())
+        return Session(level, read_script(commands))
     except ReplayError as error:
         raise Refused(*error.faults) from None
 
@@ -257,12 +280,10 @@ def _run_with_bar(
     session: "Session", ticks: int, source: object, on_tick: "Callable[[World], None] | None" = None
 ) -> Any:
     """Run a session with a progress bar; source: the file that its commands come from."""
-    from sandbox.physics.step import warm_up
     from sandbox.session.commands import CommandError
     from sandbox.session.summary import run
 
-    warm_up((session.world.settings.solver,), session.world.has_contacts)
-    with interrupted_between_ticks() as look_up, progress(ticks) as bar:
+    with interrupted_between_ticks() as look_up, Progress(ticks) as bar:
 
         def after(world: "World") -> None:
             bar.update()
@@ -311,12 +332,13 @@ def _replay(options: argparse.Namespace) -> int:
 
 def _verify(name: str, partial: bool) -> tuple[int, dict[str, Any]]:
     from sandbox.session.probe import finite
-    from sandbox.session.replay.verify import ReplayError, verify
+    from sandbox.session.replay.recording import ReplayError
+    from sandbox.session.replay.verify import verify
 
     try:
         replay = _recording(name, partial)
-        with progress(replay.ticks) as bar:
-            divergence = verify(replay, progress=lambda done, total: bar.update(done - bar.n))
+        with Progress(replay.ticks) as bar:
+            divergence = verify(replay, progress=lambda done, total: bar.update(done - bar.done))
     except (Refused, ReplayError) as error:
         return EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)}
     if divergence is None:
@@ -328,33 +350,26 @@ def _verify(name: str, partial: bool) -> tuple[int, dict[str, Any]]:
 
 
 def _check(options: argparse.Namespace) -> int:
+    from sandbox.session.checking import check_levels
+
     worst = EXIT_OK
-    for name in options.levels:
-        try:
-            worst = max(worst, _check_level(name))
-        except Refused as refusal:
-            worst = max(worst, _refuse(refusal.faults))
+    names = options.levels
+    processes = min(options.processes or max(1, min(_cores(), len(names) // LEVELS_PER_PROCESS)), len(names))
+    with Progress(len(names), "level") as bar, closing(check_levels(names, processes)) as reports:
+        for found in reports:
+            with bar.aside():
+                for line in found.lines:
+                    print(line)
+                sys.stdout.flush()
+                tell(found.faults)
+            worst = max(worst, EXIT_REFUSED if found.faults else EXIT_OK if found.passed else EXIT_FAILED)
+            bar.update()
     return worst
 
 
-def _check_level(name: str) -> int:
-    from sandbox.level.build.build_world import build_world
-    from sandbox.physics.stability import report
-    from sandbox.session.checking import run_checks
-
-    level = _level(name)
-    world = build_world(level)
-    print(f"{name}: valid: {level.name}")
-    stability = report(world)
-    print(f"  stability  {stability.text}")
-    print(
-        f"  in a single pass Cs = Cd would be stable up to {stability.proven_limit:.3g} proven, "
-        f"{stability.estimated_limit:.3g} estimated, {stability.article_limit:.3g} by the article's 1/(n+1)"
-    )
-    results = run_checks(level)
-    for result in results:
-        print(f"  check      {result.text}")
-    return EXIT_OK if all(result.passed for result in results) else EXIT_FAILED
+def _cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _render(options: argparse.Namespace) -> int:
@@ -362,8 +377,7 @@ def _render(options: argparse.Namespace) -> int:
 
     if options.output.suffix.lower() != ".png":
         raise Refused(f"{options.output}: this version draws PNG pictures; end the name in .png")
-    replay = _recording(options.level) if _is_replay(options.level) else None
-    level = replay.level if replay else _level(options.level)
+    level, replay = _level_or_replay(options.level)
     session = Session(level, replay.script if replay else ())
     ticks = round(options.seconds * level.settings.tick_rate)
     if replay and ticks > replay.ticks:
@@ -371,7 +385,9 @@ def _render(options: argparse.Namespace) -> int:
     _run_with_bar(session, ticks, options.level)
     from sandbox.app.draw.picture import save_picture
 
-    save_picture(session, options.output, options.size)
+    with Progress(1, "picture") as bar:
+        save_picture(session, options.output, options.size)
+        bar.update()
     return EXIT_OK
 
 
@@ -380,9 +396,10 @@ def _edit(options: argparse.Namespace) -> int:
 
     if not has_display():
         raise Refused("the editor needs a display; without one, edit the level's JSON and try `sandbox check`")
-    from sandbox.app.app import run_app
+    from sandbox.app.opening import open_app
+    from sandbox.app.wanted import Wanted
 
-    return run_app(edit=options.level or "", scale=options.scale)
+    return open_app(lambda: Wanted(edit=options.level or ""), scale=options.scale)
 
 
 def _format(options: argparse.Namespace) -> int:

@@ -5,6 +5,7 @@ import io
 import os
 import signal
 import sys
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any, cast
@@ -12,6 +13,11 @@ from typing import Any, cast
 # Longest run [s] and picture side [pixels] that a person can mean; more is a slip of the finger.
 SECONDS_LIMIT = 1e6
 PIXEL_LIMIT = 16384
+# Most processes that a person can mean.
+PROCESS_LIMIT = 256
+# How long [s] a watch waits between two looks; where nothing has happened from one to the next, it says why.
+PATIENCE = 0.5
+SLOW = "still working: what runs for the first time is compiled, once, which takes a minute or two"
 # Longest number of ticks, in digits, for the same reason.
 COUNT_DIGITS = 12
 
@@ -48,6 +54,11 @@ def count(text: str) -> int:
             f"{text[:40]!r} is not a whole number from 1 on, of at most {COUNT_DIGITS} digits"
         )
     return int(text)
+
+
+def processes(text: str) -> int:
+    """A number of processes."""
+    return int(_number(1, PROCESS_LIMIT, str(count(text))))
 
 
 def size(text: str) -> tuple[int, int]:
@@ -138,25 +149,69 @@ def tell(lines: Iterable[str]) -> None:
         print("".join(c if c.isprintable() else repr(c)[1:-1] for c in line), file=sys.stderr)
 
 
-def progress(total: int, unit: str = "tick") -> Any:
-    """A progress bar on standard error, where a person looks at it."""
-    from tqdm import tqdm
+class Progress:
+    """A bar on standard error where a person looks at it; where it stands still, a line that says why."""
 
-    return tqdm(total=total, unit=unit, leave=False, disable=not sys.stderr.isatty())
+    def __init__(self, total: int, unit: str = "tick") -> None:
+        self.done = 0
+        self._bar: Any = None
+        self._finished = threading.Event()
+        if sys.stderr.isatty():
+            from tqdm import tqdm
+
+            self._bar = tqdm(total=total, unit=unit, leave=False)
+            threading.Thread(target=self._watch, daemon=True).start()
+
+    def __enter__(self) -> "Progress":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._finished.set()
+        if self._bar is not None:
+            self._bar.close()
+
+    def update(self, count: int = 1) -> None:
+        """Something has happened, so many units of it."""
+        self.done += count
+        if self._bar is not None:
+            self._bar.update(count)
+
+    @contextmanager
+    def aside(self) -> Iterator[None]:
+        """Print other lines in here, which the bar makes room for."""
+        if self._bar is None:
+            yield
+            return
+        with self._bar.external_write_mode(file=sys.stderr):
+            yield
+
+    def _watch(self) -> None:
+        # Whatever takes so long, a first start is the likeliest cause; that it is one cannot be known from here.
+        before = -1
+        while not self._finished.wait(PATIENCE):
+            if self.done == before:
+                self._bar.write(SLOW, file=sys.stderr)
+                return
+            before = self.done
 
 
 @contextmanager
 def interrupted_between_ticks() -> Iterator[Callable[[], None]]:
-    """Hold an interrupt back until the function given is called: it never strikes in the middle of a recorded line."""
-    asked = False
+    """Hold an interrupt back until the function given is called: it never strikes in the middle of a recorded line.
+
+    Before the first call it strikes at once: a first tick may take a minute, in which its kernels are compiled.
+    """
+    asked, begun = False, False
 
     def note(*_: object) -> None:
         nonlocal asked
-        if asked:
+        if asked or not begun:
             raise KeyboardInterrupt
         asked = True
 
     def look_up() -> None:
+        nonlocal begun
+        begun = True
         if asked:
             raise KeyboardInterrupt
 

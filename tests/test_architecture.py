@@ -2,6 +2,7 @@
 
 import ast
 import functools
+import importlib
 import subprocess
 import sys
 from graphlib import CycleError, TopologicalSorter
@@ -9,13 +10,18 @@ from pathlib import Path
 
 import pytest
 
+import sandbox
+
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "sandbox"
-ROOMS = ("physics", "level", "session", "tools", "editor", "app", "terminal", "cli", "__main__")
+# What users import: modules that only pass names on. They stand above the rooms that they take those from.
+PUBLIC = ("commands", "replay", "bodies")
+ROOMS = ("physics", "level", "session", *PUBLIC, "tools", "editor", "app", "terminal", "cli", "__main__")
 LIBRARIES = {
-    "physics": {"numpy", "numba"},
+    "physics": {"numpy", "numba", "llvmlite"},
     "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},
     "session": {"numpy", "pydantic", "filelock"},
+    **{name: set() for name in PUBLIC},
     "tools": {"numpy"},
     "editor": {"numpy", "pydantic", "platformdirs", "filelock"},
     "terminal": {"tqdm"},
@@ -38,19 +44,11 @@ def sources():
     return trees
 
 
-def nodes(tree, *, with_types):
-    """Every node below one of a syntax tree, with or without what only a type checker reads."""
-    for child in ast.iter_child_nodes(tree):
-        if with_types or not (isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING"):
-            yield child
-            yield from nodes(child, with_types=with_types)
-
-
 @functools.cache
-def imported(name, *, with_types=True):
+def imported(name):
     """Dotted names that a module imports, anywhere in it; what it names of our own are modules, not their contents."""
     found = set()
-    for node in nodes(sources()[name], with_types=with_types):
+    for node in ast.walk(sources()[name]):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -66,12 +64,12 @@ def room(name):
     return name.split(".")[1] if "." in name else None
 
 
-def own_imports(*, with_types=True):
+def own_imports():
     """Pairs of our modules, importer and imported, without those of the package itself."""
     return [
         (name, other)
         for name in sources()
-        for other in sorted(imported(name, with_types=with_types))
+        for other in sorted(imported(name))
         if room(name) and other in sources() and room(other)
     ]
 
@@ -97,7 +95,7 @@ def test_of_the_package_itself_only_the_version_is_imported():
 
 def test_no_modules_import_each_other_in_a_circle():
     graph = TopologicalSorter()
-    for name, other in own_imports(with_types=False):
+    for name, other in own_imports():
         graph.add(name, other)
     try:
         graph.prepare()
@@ -110,7 +108,7 @@ def test_only_app_imports_pygame_and_only_jit_imports_numba():
         libraries = {other.partition(".")[0] for other in imported(name)}
         if room(name) != "app":
             assert not libraries & {"pygame", "pygame_gui"}, name
-        if name != "sandbox.physics.jit":
+        if not name.startswith("sandbox.physics.jit"):
             assert "numba" not in libraries, name
 
 
@@ -129,8 +127,24 @@ def loaded_after(statement):
     return set(ended.stderr.split())
 
 
+@pytest.mark.parametrize("name", PUBLIC)
+def test_a_public_module_only_passes_on_the_names_that_it_lists_and_no_room_needs_it(name):
+    tree = sources()[f"sandbox.{name}"]
+    assert all(isinstance(node, ast.Expr | ast.ImportFrom | ast.Assign) for node in tree.body)
+    passed_on = {alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names}
+    public = importlib.import_module(f"sandbox.{name}")
+    assert set(public.__all__) == passed_on
+    assert all(hasattr(public, exported) for exported in public.__all__)
+    assert [importer for importer, other in own_imports() if other == f"sandbox.{name}"] == []
+
+
+def test_every_name_of_the_package_itself_can_be_had():
+    assert set(sandbox.__all__) == {"__version__", *sandbox._HOME}
+    assert all(getattr(sandbox, name) is not None for name in sandbox.__all__)
+
+
 def test_physics_level_and_session_load_no_pygame():
-    rooms = [name for name in sources() if room(name) in ("physics", "level", "session", "tools", "editor")]
+    rooms = [name for name in sources() if room(name) in ("physics", "level", "session", *PUBLIC, "tools", "editor")]
     loaded = loaded_after(f"import {', '.join(rooms)}")
     assert "sandbox.physics.step" in loaded
     assert not loaded & {"pygame", "pygame_gui"}
@@ -151,6 +165,12 @@ def test_help_loads_neither_pygame_nor_numba_nor_numpy(arguments):
     )
     assert "sandbox.cli" in loaded
     assert not loaded & {"pygame", "pygame_gui", "numba", "numpy", "pydantic"}
+
+
+def test_the_window_needs_none_of_the_libraries_that_take_long_to_import():
+    loaded = loaded_after("from sandbox.app.opening import open_app")
+    assert "pygame" in loaded
+    assert not loaded & {"pygame_gui", "numba", "numpy", "pydantic", "platformdirs", "sandbox.physics.jit"}
 
 
 def test_no_file_is_longer_than_600_lines():

@@ -1,14 +1,19 @@
+import io
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
+import threading
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
 from sandbox.cli import main
 from sandbox.level.format.files import shipped_folder
+from sandbox.terminal import SLOW
 
 ROPE = {
     "format": "spring-sandbox/level", "version": 1, "name": "Short rope", "settings": {"solver": "iterative"},
@@ -354,8 +359,6 @@ def test_nothing_that_is_read_is_written_over(rope, tmp_path, options, monkeypat
 
 @pytest.mark.parametrize("suffix", ["jsonl", "gz"])
 def test_an_interrupted_run_leaves_a_recording_that_is_only_cut_off(rope, tmp_path, suffix, monkeypatch, capsys):
-    import signal
-
     from sandbox.session.replay.writer import Recorder
 
     write, replay = Recorder.write_tick, tmp_path / f"run.{suffix}"
@@ -383,10 +386,138 @@ def test_edit_without_a_display_is_refused_in_one_line(monkeypatch, capsys):
 
 
 def test_edit_hands_the_level_on_to_the_app(monkeypatch, rope):
-    asked = {}
+    asked = []
     monkeypatch.setattr("sandbox.app.display.has_display", lambda: True)
-    monkeypatch.setattr("sandbox.app.app.run_app", lambda **given: asked.update(given) or 0)
+    monkeypatch.setattr("sandbox.app.opening.open_app", lambda find, **_: asked.append(find()) or 0)
     assert main(["edit", rope]) == 0
-    assert asked["edit"] == rope
     assert main(["edit"]) == 0
-    assert asked["edit"] == ""
+    assert [wanted.edit for wanted in asked] == [rope, ""]
+
+
+def test_play_opens_the_window_before_it_reads_what_was_asked_for(monkeypatch, rope):
+    found = []
+    monkeypatch.setattr("sandbox.app.display.has_display", lambda: True)
+    monkeypatch.setattr("sandbox.app.opening.open_app", lambda find, **_: found.append(find()) or 0)
+    assert main(["play", rope]) == main(["play", "rope"]) == main(["play"]) == 0
+    of_file, shipped, nothing = found
+    assert of_file.source == Path(rope) and shipped.source is None
+    assert of_file.level.name != shipped.level.name == "Rope"
+    assert nothing.level is nothing.replay is None
+    assert main(["play", "no such level"]) == 2
+
+
+@pytest.fixture
+def three_levels(rope, tmp_path) -> list[str]:
+    failing, refused = tmp_path / "failing.json", tmp_path / "refused.json"
+    failing.write_text(json.dumps({**ROPE, "checks": [{**ROPE["checks"][0], "at_least": 5.0}]}))
+    refused.write_text(json.dumps({**ROPE, "settings": {"tick_rate": 0}}))
+    return [str(failing), str(refused), rope]
+
+
+def test_levels_are_checked_in_processes_with_the_same_lines_in_the_same_order(three_levels, capfd):
+    assert main(["check", *three_levels]) == 2
+    alone = capfd.readouterr()
+    assert main(["check", "--processes", "2", *three_levels]) == 2
+    assert capfd.readouterr() == alone
+    assert [line.partition(":")[0] for line in alone.out.splitlines() if "valid" in line] == three_levels[::2]
+    assert alone.err.startswith(three_levels[1])
+
+
+@pytest.mark.skipif(os.name != "posix", reason="sends an interrupt to a group of processes, as a terminal does")
+def test_an_interrupt_of_checks_in_processes_ends_all_of_them_without_a_word(rope, tmp_path):
+    endless = tmp_path / "endless.json"
+    endless.write_text(json.dumps({**ROPE, "checks": [{**ROPE["checks"][0], "after": 3600.0}]}))
+    command = [sys.executable, "-m", "sandbox", "check", "--processes", "2", rope, str(endless), str(endless)]
+    root = str(Path(__file__).resolve().parents[1])
+    environment = {**os.environ, "PYTHONPATH": root, "NUMBA_DISABLE_JIT": "1", "PYTHONUNBUFFERED": "1"}
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, env=environment, start_new_session=True, **streams) as checking:
+        assert checking.stdout is not None
+        assert checking.stdout.readline().startswith(f"{rope}: valid")
+        os.killpg(checking.pid, signal.SIGINT)
+        try:
+            # Whatever were left of the processes would hold the streams open.
+            _, told = checking.communicate(timeout=60.0)
+        finally:
+            with suppress(ProcessLookupError):
+                os.killpg(checking.pid, signal.SIGKILL)
+    assert (checking.returncode, told) == (130, "")
+
+
+@pytest.mark.parametrize("text", ["0", "-1", "two", "1000"])
+def test_a_number_of_processes_that_nobody_can_mean_is_refused(text, capsys):
+    with pytest.raises(SystemExit) as leaving:
+        main(["check", "rope", "--processes", text])
+    assert leaving.value.code == 2
+
+
+class Terminal(io.StringIO):
+    """Standard error where a person looks at it; slow: set once the line for what takes long has been written."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.slow = threading.Event()
+
+    def isatty(self) -> bool:
+        return True
+
+    def write(self, text: str) -> int:
+        written = super().write(text)
+        if SLOW in text:
+            self.slow.set()
+        return written
+
+
+@pytest.mark.parametrize(
+    ("command", "work"),
+    [
+        (["run"], "sandbox.session.summary.run"),
+        (["check"], "sandbox.session.checking.check_level"),
+        (["render", "-o", "x.png"], "sandbox.app.draw.picture.save_picture"),
+    ],
+)
+def test_what_takes_long_before_anything_happens_is_explained_on_a_terminal(command, work, rope, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    told = []
+
+    def wait(*_: object) -> None:
+        told.append(terminal.slow.wait(60.0))
+        raise OSError(0, "enough")
+
+    monkeypatch.setattr(work, wait)
+    assert main([*command, rope]) == 2
+    assert told == [True]
+
+
+HEADLESS = """
+import sys
+from sandbox.cli import main
+code = main(sys.argv[1:])
+print(*sorted(name for name in sys.modules if name.partition(".")[0] in ("sandbox", "pygame")), file=sys.stderr)
+sys.exit(code)
+"""
+
+
+def test_a_headless_run_loads_no_drawing_and_without_contacts_nothing_that_finds_or_solves_them(rope, tmp_path):
+    def loaded(*arguments: str) -> set[str]:
+        environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1]), "NUMBA_DISABLE_JIT": "1"}
+        command = [sys.executable, "-c", HEADLESS, *arguments]
+        run = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
+        return set(run.stderr.split())
+
+    def contacts(modules: set[str]) -> set[str]:
+        words = ("contact", "broad_phase", "narrow_phase", "collide", "terrain_clamp", "restitution")
+        return {name for name in modules if name.startswith("sandbox.physics.") and any(word in name for word in words)}
+
+    touching = tmp_path / "touching.json"
+    touching.write_text(json.dumps({**ROPE, "contacts": {}}))
+    replay = str(tmp_path / "rope.jsonl")
+    runs = [loaded("run", rope, "--ticks", "2", "--solver", name) for name in ("direct", "single_pass")]
+    runs += [loaded("run", rope, "--ticks", "2", "--record", replay), loaded("replay", replay)]
+    for modules in runs:
+        assert not {name for name in modules if name.startswith(("pygame", "sandbox.app", "sandbox.editor"))}
+    for modules in runs[:2]:
+        assert contacts(modules) <= {"sandbox.physics.solvers.contact"}
+    assert len(contacts(loaded("run", str(touching), "--ticks", "2", "--solver", "direct"))) > 8

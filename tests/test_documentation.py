@@ -1,20 +1,37 @@
-"""What README and docs show works as they say."""
+"""What README and docs show works as they say, and what they point at is there."""
 
+import ast
+import functools
 import json
 import re
+import subprocess
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from sandbox.level.format.files import load_level, parse_level
-from sandbox.session.checking import run_checks
-from sandbox.session.records import COMMAND_TYPES
+from sandbox.physics.energy import kinetic_energy, spring_energy, spring_lengths
+from sandbox.physics.settings import WorldSettings
+from sandbox.physics.stability import report
+from sandbox.physics.step import step
+from sandbox.physics.substeps import halve
+from sandbox.physics.world import World
+from sandbox.session.commands import COMMAND_TYPES
 from sandbox.session.replay.reader import read_script
 from sandbox.session.session import Session
+from sandbox.session.summary import run_checks
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 COMMANDS = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
+PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
+PROSE = " ".join(PHYSICS.split())
+BENCHMARKS = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+# What kernels may take from math and numpy: results that IEEE 754 defines to the last bit, and types.
+EXACT = {"sqrt", "floor", "inf", "int32", "int64", "uint64", "float64"}
+FOLDERS = "sandbox|levels|assets|docs|tests|examples"
 
 
 def test_the_level_in_the_readme_keeps_its_own_checks():
@@ -62,3 +79,199 @@ def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_ca
         session.advance()
     assert not session.messages
     assert np.count_nonzero(session.world.element_rest > wanted) == 1
+
+
+def rows(page, heading):
+    """The rows of the first table under a heading, as cells without the back quotes."""
+    section = page.split(f"{heading}\n", 1)[1].split("\n## ")[0]
+    table = section[section.index("\n|") :].split("\n\n")[0].strip().splitlines()
+    return [[cell.strip().strip("`") for cell in line.strip("|").split("|")] for line in table[2:]]
+
+
+def anchor(heading):
+    """What a link to a heading is called."""
+    return re.sub(r"[^\w -]", "", heading.strip().lower()).replace(" ", "-")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_file_and_folder_that_a_page_names_exists(page):
+    named = re.findall(rf"`((?:{FOLDERS})(?:/[\w.-]+)*/?)`", page.read_text(encoding="utf-8"))
+    assert [name for name in named if not (ROOT / name).exists()] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_link_within_the_project_leads_somewhere(page):
+    astray = []
+    for target in re.findall(r"\]\(([^)]+)\)", page.read_text(encoding="utf-8")):
+        name, _, place = target.partition("#")
+        if "://" in target:
+            continue
+        found = page if not name else next(
+            (path for path in (page.parent / name, page.parent / f"{name}.md") if path.is_file()), None
+        )  # fmt: skip
+        headings = re.findall(r"^#+ (.*)$", found.read_text(encoding="utf-8"), re.M) if found and place else []
+        if found is None or (place and place not in map(anchor, headings)):
+            astray.append(target)
+    assert astray == []
+
+
+def test_the_map_in_the_readme_names_every_room_and_every_folder_and_no_other():
+    mapped = {
+        name
+        for folders, _ in rows(README, "## Where things are")
+        for name in re.findall(r"[\w/.]+", folders.replace("`", ""))
+    }
+    tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False).stdout.split()
+    if not tracked:
+        pytest.skip("no checkout: what belongs to the project cannot be told")
+    folders = {path.split("/")[0] for path in tracked if "/" in path and not path.startswith(".")}
+    public = {path for path in tracked if re.fullmatch(r"sandbox/(?!__)\w+\.py", path)}
+    rooms = {"/".join(path.split("/")[:2]) for path in tracked if re.match(r"sandbox/\w+/", path)}
+    assert mapped == (folders - {"sandbox"}) | rooms | public
+
+
+def row_of_springs(solver, coefficient, count):
+    """The springs worked out by hand in docs/physics.md: from a wall to the right, steps of 1 s."""
+    world = World(WorldSettings(solver=solver, tick_rate=1, gravity=(0.0, 0.0)))
+    places = [(0.0, 0.0), *((1.1 + k, 0.0) for k in range(count))]
+    world.add_particles([f"p.{k}" for k in range(count + 1)], places, pinned=[True] + [False] * count)
+    world.add_springs(
+        [f"p:{k}" for k in range(count)], np.arange(count), np.arange(1, count + 1), rest_length=1.0,
+        stiffness=coefficient, damping=coefficient,
+    )  # fmt: skip
+    return world
+
+
+def errors(world):
+    return world.position[1:, 0] - world.position[:-1, 0] - 1.0
+
+
+@pytest.mark.parametrize("solver", ["single_pass", "iterative", "direct"])
+def test_one_spring_worked_out_by_hand_moves_so(solver):
+    world = row_of_springs(solver, 0.5, 1)
+    step(world)
+    assert errors(world) == pytest.approx([0.05])
+    assert "J = -0.05 N s, u' = -0.05 m/s and x' = 0.05 m" in PROSE
+
+
+def test_two_rigid_springs_in_a_row_explode_in_the_single_pass_as_the_table_says():
+    table = rows(PHYSICS, "## 2. Many springs at once, and where 1/(n+1) comes from")
+    foreseen = np.array([[float(value) for value in row[1:]] for row in table]).T
+    world = row_of_springs("single_pass", 1.0, 2)
+    for expected in foreseen:
+        step(world)
+        assert errors(world) == pytest.approx(expected)
+
+
+def test_the_limits_of_the_row_are_those_that_the_page_names():
+    limits = report(row_of_springs("single_pass", 0.5, 2))
+    page = [
+        float(value)
+        for value in re.findall(r"(0\.\d+)(?= is (?:stable|proven|the article))", " ".join(PHYSICS.split()))
+    ]
+    assert page == pytest.approx([limits.estimated_limit, limits.proven_limit, limits.article_limit], abs=5e-4)
+
+
+def test_two_springs_in_a_row_move_in_the_direct_solver_as_worked_out_by_hand():
+    world = row_of_springs("direct", 0.5, 2)
+    before = spring_energy(world)
+    step(world)
+    assert world.velocity[1:, 0] == pytest.approx([-3.0 / 70.0, -1.0 / 70.0])
+    assert errors(world) == pytest.approx([0.0571, 0.0286], abs=5e-5)
+    assert (before, kinetic_energy(world), spring_energy(world)) == pytest.approx((0.005, 0.00102, 0.00184), abs=5e-6)
+    assert before - kinetic_energy(world) - spring_energy(world) == pytest.approx(0.00214, abs=5e-6)
+    assert world.energy_bank[1] == pytest.approx(0.00025)
+    rigid = row_of_springs("direct", 1.0, 2)
+    step(rigid)
+    assert spring_lengths(rigid) == pytest.approx([1.0, 1.0], abs=1e-6)
+
+
+def test_the_halved_coefficients_on_the_page_are_those_of_the_code():
+    stiffness, damping = np.array([0.5]), np.array([0.75])
+    halve(stiffness, damping, 2)
+    assert (stiffness[0], damping[0]) == pytest.approx((0.177, 0.5), abs=5e-4)
+    assert "(Cs, Cd) = (0.5, 0.75) becomes (0.177, 0.5)" in PROSE
+
+
+def test_every_test_that_a_figure_is_held_by_exists():
+    sources = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("test_*.py"))
+    named = [test for _, test in rows(PHYSICS, "## 12. Figures that hold") if test != "the same"]
+    assert len(named) > 15
+    assert [test for test in named if f"def {test}(" not in sources] == []
+
+
+@pytest.mark.parametrize("constant", rows(PHYSICS, "## 13. Constants"), ids=lambda row: row[0])
+def test_every_constant_of_the_derivation_has_the_value_that_the_page_says(constant):
+    name, value, file = constant
+    assert re.search(rf"^{name} = {re.escape(value)}$", (ROOT / file).read_text(encoding="utf-8"), re.M)
+
+
+@functools.cache
+def kernels():
+    """Every function of the physics that is compiled, with its file."""
+    return [
+        (path.name, function)
+        for path in sorted((ROOT / "sandbox" / "physics").rglob("*.py"))
+        for function in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(function, ast.FunctionDef)
+        and any("kernel" in ast.unparse(decorator) for decorator in function.decorator_list)
+    ]
+
+
+def test_kernels_use_no_operation_whose_bits_differ_between_machines():
+    differing = []
+    for file, function in kernels():
+        for node in ast.walk(function):
+            if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow | ast.MatMult):
+                differing.append(f"{file}: {function.name}: {ast.unparse(node)}")
+            if (
+                isinstance(node, ast.Attribute)
+                and isinstance(node.value, ast.Name)
+                and node.value.id in ("math", "np")
+                and node.attr not in EXACT
+            ):
+                differing.append(f"{file}: {function.name}: {ast.unparse(node)}")
+    assert len(kernels()) > 100
+    assert differing == []
+
+
+def test_every_figure_of_the_readme_s_benchmark_stands_in_the_full_table():
+    full = {(row[0], *row[2:4]) for row in rows(BENCHMARKS, "## Beside other engines")}
+    short = rows(README, "## Beside other engines")
+    assert len(short) == 6
+    assert [row for row in short for k in (1, 3, 5) if (row[0], row[k], row[k + 1]) not in full] == []
+
+
+def test_every_benchmark_program_that_is_named_exists():
+    named = re.findall(r"python -m tests\.bench\.(\w+)", BENCHMARKS)
+    assert len(set(named)) > 5
+    assert [name for name in named if not (ROOT / "tests" / "bench" / f"{name}.py").is_file()] == []
+
+
+def glossary():
+    """Term, meaning, the window's word and file of every row of the glossary."""
+    lines = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8").splitlines()
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("| ")]
+    return [(*row[:3], row[3].strip("`")) for row in cells if row[0] != "term"]
+
+
+FIELDS_WORDS = (
+    "collision", "contact", "manifold", "island", "constraint", "joint", "motor", "substep", "restitution",
+    "penetration", "Gauss-Seidel", "multifrontal", "shape matching", "projected Newton", "mouse joint",
+)  # fmt: skip
+
+
+def test_the_glossary_has_the_words_that_people_know_from_other_engines():
+    assert {term.lower() for term in FIELDS_WORDS} <= {term.lower() for term, *_ in glossary()}
+
+
+def test_the_glossary_has_each_word_once():
+    terms = [term.lower() for term, *_ in glossary()]
+    assert len(terms) > 40
+    assert sorted(terms) == sorted(set(terms))
+
+
+@pytest.mark.parametrize(("term", "file"), [(row[0], row[3]) for row in glossary()], ids=[row[0] for row in glossary()])
+def test_a_search_for_a_word_of_the_glossary_leads_to_its_file(term, file):
+    text = " ".join((ROOT / file).read_text(encoding="utf-8").lower().replace("_", " ").split())
+    assert term.lower() in text

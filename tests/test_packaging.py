@@ -26,6 +26,7 @@ def test_an_installed_wheel_finds_its_levels_and_assets_from_another_folder(tmp_
     elsewhere.mkdir()
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(installed)
+    assert (installed / "sandbox" / "py.typed").is_file()
     program = (
         "import sandbox; from sandbox.level.format.files import load_level, shipped_folder, shipped_levels\n"
         "assert load_level('rope').name and shipped_levels()\n"

@@ -16,20 +16,19 @@ from sandbox.app.gallery import Gallery
 from sandbox.app.help import show_help
 from sandbox.app.idle import IdleCollector
 from sandbox.app.input import Input
+from sandbox.app.loop import FRAME_RATE
 from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.status import NOTICES, Notice, StatusLine, draw_spinner
 from sandbox.app.preparing import Preparation
 from sandbox.app.profile import Profile
+from sandbox.app.progress import Progress
 from sandbox.app.screen import Screen
 from sandbox.app.shortcuts import Mode
+from sandbox.app.wanted import Wanted
 from sandbox.app.widgets.dialogs import show_lines
-from sandbox.app.widgets.progress import Progress
 from sandbox.app.widgets.ui import Ui
-from sandbox.level.format.model import Level
-from sandbox.session.replay.verify import Replay
 
-FRAME_RATE = 60
 # How often the status figures and the window title change [s].
 FIGURES_EVERY = 0.5
 
@@ -37,12 +36,10 @@ FIGURES_EVERY = 0.5
 class App:
     """The app in its window; `frame` is one turn of the loop; `screen` is what the window shows under its pages."""
 
-    def __init__(
-        self, display: Display, level: Level | None = None, replay: Replay | None = None, source: Path | None = None
-    ) -> None:
+    def __init__(self, display: Display, profile: Profile | None = None) -> None:
         self.display = display
         self.scale = display.scale
-        self.profile = Profile()
+        self.profile = profile or Profile()
         self._collector = IdleCollector()
         self._notices: deque[Notice] = deque(maxlen=NOTICES)
         self._description = ""
@@ -52,7 +49,7 @@ class App:
         self.input = Input(self)
         self.files = FileActions(self)
         self.documents = Documents(self)
-        self.guide = Guide(self)
+        self.guide = Guide(self, self.documents)
         self._progress = Progress(self)
         self._own_actions = self._actions()
         self._figures = (0.0, 0.0)
@@ -60,14 +57,19 @@ class App:
         self._seconds = 0.0
         self._build_ui()
         self.preparation = Preparation()
-        if replay is not None:
-            self.start(Playback(replay.level, replay))
-        elif level is not None:
-            self.start(Playback(level), source)
-        else:
-            self.open_gallery()
 
     # What is on the screen.
+
+    def open(self, wanted: Wanted) -> None:
+        """Show what the program was started for."""
+        if wanted.replay is not None:
+            self.start(Playback(wanted.replay.level, wanted.replay))
+        elif wanted.level is not None:
+            self.start(Playback(wanted.level), wanted.source)
+        elif wanted.edit is not None:
+            self.documents.begin(wanted.edit)
+        else:
+            self.open_gallery()
 
     @property
     def play(self) -> PlayScreen | None:
@@ -96,6 +98,14 @@ class App:
     def say(self, text: str) -> None:
         """Show a line to the person for some seconds."""
         self.status.say(text)
+
+    def take_back(self, text: str) -> None:
+        """Take away a line that no longer holds."""
+        self.status.take_back(text)
+
+    def offer_tour(self) -> None:
+        """Offer the tour of the editor to who has not seen it."""
+        self.guide.offer()
 
     def show_faults(self, title: str, faults: list[str]) -> None:
         """Show lines in a box; the app goes on with what it had."""
@@ -137,7 +147,7 @@ class App:
         """Choose a level or a recording."""
         self.close_gallery()
         self._describe("")
-        self.gallery = Gallery(self.ui, self.files, section, self.close_gallery)
+        self.gallery = Gallery(self.ui, self, section, self.close_gallery)
 
     def close_gallery(self) -> None:
         """Back to the screen, where there is one."""
@@ -262,26 +272,11 @@ class App:
         return " - ".join([*words, "Spring Sandbox"])
 
 
-def run_app(
-    level: Level | None = None,
-    replay: Replay | None = None,
-    source: Path | None = None,
-    *,
-    edit: str | None = None,
-    profile: bool = False,
-    seconds: float | None = None,
-    scale: float | None = None,
-) -> int:
-    """Open the window and run until it is closed, or for so many seconds; returns the exit code.
-
-    source: the level's file. edit: the file to edit in place of playing, "" = an empty sheet. profile: print where a
-    frame's time goes, at the end. scale: size of the widgets; None = the display's.
-    """
-    app = App(Display(scale), level, replay, source)
+def run_app(display: Display, wanted: Wanted, profile: Profile, seconds: float | None = None) -> None:
+    """Show what is wanted in the window and run until it is closed, or for so many seconds."""
+    app = App(display, profile)
     app.guide.may_offer = True
-    if edit is not None:
-        app.close_gallery()
-        app.documents.begin(edit)
+    app.open(wanted)
     app.documents.offer_recovery()
     clock = pygame.time.Clock()
     started = before = time.perf_counter()
@@ -290,10 +285,11 @@ def run_app(
             now = time.perf_counter()
             app.frame(now - before)
             before = now
+            profile.shown()
+            profile.reached("the first page")
+            if app.play is not None and app.play.playback.session.tick:
+                profile.reached("the first tick")
             clock.tick(FRAME_RATE)
     finally:
         # Whatever ended the loop, a recording gets its last line.
         app.close()
-    if profile:
-        print(app.profile.table(time.perf_counter() - started))
-    return 0

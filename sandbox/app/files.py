@@ -2,8 +2,8 @@
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from sandbox.app.application import Application
 from sandbox.app.play.playback import Playback
 from sandbox.app.recordings import SUFFIX, chosen_path, free_path, plain_name, recordings_folder
 from sandbox.app.widgets.dialogs import ask
@@ -11,16 +11,13 @@ from sandbox.level.faults.level_error import LevelError, one_line
 from sandbox.level.format.files import load_level, read_level
 from sandbox.level.format.writing import refusal_of
 from sandbox.session.replay.reader import begins_as_replay, read_replay
-from sandbox.session.replay.verify import ReplayError
-
-if TYPE_CHECKING:
-    from sandbox.app.app import App
+from sandbox.session.replay.recording import ReplayError
 
 
 class FileActions:
     """What the app does with files; faults are shown as lines, and the app goes on with what it had."""
 
-    def __init__(self, app: "App") -> None:
+    def __init__(self, app: Application) -> None:
         self.app = app
 
     # Opening.
@@ -130,7 +127,7 @@ class FileActions:
         path = self.app.play.playback.stop_recording()
         if path is None:
             return
-        self.app.status.take_back(_recording(path))
+        self.app.take_back(_recording(path))
         self.app.say(_saved(path))
         suggestion = path.name.removesuffix(SUFFIX)
         ask(
@@ -153,7 +150,7 @@ class FileActions:
             return str(error)
         except OSError as error:
             return f"It stays {path.name}: {error.strerror or error}."
-        self.app.status.take_back(_saved(path))
+        self.app.take_back(_saved(path))
         self.app.say(_saved(wanted))
         return None
 
@@ -163,7 +160,7 @@ class FileActions:
         except OSError as error:
             self.app.say(f"{path} cannot be removed: {error.strerror or error}.")
         else:
-            self.app.status.take_back(_saved(path))
+            self.app.take_back(_saved(path))
             self.app.say(f"Removed {path.name}.")
 
 

@@ -1,26 +1,34 @@
-"""Gallery: levels as cards with rendered pictures, and saved recordings as a list."""
+"""Gallery: levels as cards with pictures, and saved recordings as a list."""
 
+import json
 import time
-from collections.abc import Callable, Sequence
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pygame
 
+from sandbox.app.application import Application
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT
-from sandbox.app.draw.picture import crop_of, draw_picture, run_ahead
+from sandbox.app.picture_cache import (
+    SECONDS,
+    draw_in_slices,
+    find_picture,
+    forget_old_pictures,
+    keep_picture,
+    kept_picture,
+    picture_key,
+)
 from sandbox.app.recordings import saved_recordings
 from sandbox.app.widgets.painted import Lit, wrapped
 from sandbox.app.widgets.ui import ENTER_KEYS, Ui
 from sandbox.editor.storage.recent import recent_levels
 from sandbox.level.faults.level_error import LevelError, one_line
-from sandbox.level.format.files import read_level, shipped_levels
-from sandbox.level.format.model import Level
+from sandbox.level.format.files import parse_level, read_bytes, shipped_levels
 from sandbox.physics.jit import COMPILED
-
-if TYPE_CHECKING:
-    from sandbox.app.files import FileActions
 
 # Sizes in layout units.
 CARD_WIDTH = 250.0
@@ -32,15 +40,15 @@ MARGIN = 36.0
 ROW_HEIGHT = 52.0
 WHEEL_STEP = 70.0
 NEW_TIP = "Draw a level of your own, from an empty sheet"
-# The pictures show the level after this time [s], or it would hang in mid-air where it was built.
-PICTURE_SECONDS = 0.8
-# Thickness of lines in pictures, which are drawn at twice their size.
-PICTURE_SCALE = 1.4
 # What is shown, a page each, and its name.
 SECTIONS = (("levels", "Levels", ""), ("mine", "My levels", ""), ("recordings", "Replays", ""))
-# Levels of more particles than this are drawn as they are built, and all where physics is interpreted: the gallery
-# stays quick.
-PICTURE_PARTICLES = 3000
+# Wall time [s] of a frame that cards are filled in.
+FILL_BUDGET = 0.02
+# What comes first while the physics is being prepared: levels that can be played without.
+LIGHT_LEVELS = (
+    "rope", "truss_bridge", "suspension_bridge", "ferris_wheel", "wrecking_ball", "breaking_bridge", "girder", "mast",
+    "hooke_comparison", "side_by_side",
+)  # fmt: skip
 
 
 class Card(Lit):
@@ -56,6 +64,16 @@ class Card(Lit):
         self.broken = False
         self.home = rect.copy()
         ui.add(self)
+
+    def show_picture(self, picture: pygame.Surface) -> None:
+        """Show a picture of the size that there is for it."""
+        self.picture = picture
+        self.repaint()
+
+    def show_fault(self, fault: str) -> None:
+        """Show why the file cannot be opened."""
+        self.text, self.broken = fault, True
+        self.repaint()
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """The card as it is now."""
@@ -104,34 +122,42 @@ class Card(Lit):
 class Gallery:
     """The page of levels or recordings."""
 
-    def __init__(self, ui: Ui, files: "FileActions", section: str, close: Callable[[], None]) -> None:
-        self._ui, self._files = ui, files
+    def __init__(self, ui: Ui, app: Application, section: str, close: Callable[[], None]) -> None:
+        self._ui, self._app = ui, app
         self.cards: list[Card] = []
         self.section = section
-        self._unpainted: list[tuple[Card, Level]] = []
+        # What is still to be found out or drawn for cards: each goes on by a slice, False where it has to wait.
+        self._unfilled: deque[Iterator[bool]] = deque()
+        self._has_kernels: Callable[[bool], bool] = lambda contacts: False
         self._scroll = 0.0
         self._columns = 1
         self.title = {name: text for name, text, _ in SECTIONS}[section]
-        self._open = partial(files.open_level, shipped=section == "levels")
-        end = close if files.app.screen is not None else lambda: None
-        self.sheet = ui.open_sheet(end, "@cover", again=lambda _: files.app.open_gallery(section))
+        self._open = partial(app.files.open_level, shipped=section == "levels")
+        end = close if app.screen is not None else lambda: None
+        self.sheet = ui.open_sheet(end, "@cover", again=lambda _: app.open_gallery(section))
         width, height = ui.units
-        editing = files.app.mode == "edit"
+        editing = app.mode == "edit"
         ui.label(ui.rect(MARGIN, 26, 300, 40), "Edit a level" if editing else "Spring Sandbox", self.sheet, "@display")
-        tabs = ui.choice(ui.rect(width - MARGIN - 424, 32, 252, 32), SECTIONS, self._files.app.open_gallery, self.sheet)
+        tabs = ui.choice(ui.rect(width - MARGIN - 424, 32, 252, 32), SECTIONS, self._app.open_gallery, self.sheet)
         tabs.show(section)
-        ui.button(ui.rect(width - MARGIN - 162, 32, 58, 32), "New", files.app.documents.new, self.sheet, tip=NEW_TIP)
-        ui.button(ui.rect(width - MARGIN - 98, 32, 98, 32), "Open file", files.ask_to_open, self.sheet)
+        ui.button(ui.rect(width - MARGIN - 162, 32, 58, 32), "New", app.documents.new, self.sheet, tip=NEW_TIP)
+        ui.button(ui.rect(width - MARGIN - 98, 32, 98, 32), "Open file", app.files.ask_to_open, self.sheet)
         place = ui.rect(MARGIN - 6, TOP, width - 2 * MARGIN + 12, height - TOP)
         self.area = ui.area(place, self.sheet)
         if section == "recordings":
             self._add_recordings()
         else:
-            self._add_levels(shipped_levels() if section == "levels" else recent_levels())
+            self._add_levels(self._shipped() if section == "levels" else recent_levels())
 
     def close(self) -> None:
         """Take the page away."""
         self._ui.close_sheet(self.sheet)
+
+    def _shipped(self) -> list[Path]:
+        if self._app.ready:
+            return shipped_levels()
+        place = {name: index for index, name in enumerate(LIGHT_LEVELS)}
+        return sorted(shipped_levels(), key=lambda path: place.get(path.stem, len(place)))
 
     def _add_levels(self, paths: Sequence[Path]) -> None:
         ui = self._ui
@@ -148,17 +174,48 @@ class Gallery:
             self._add_level(ui.rect(x, y, card_width, card_height), path)
 
     def _add_level(self, rect: pygame.Rect, path: Path) -> None:
+        card = self._add_card(rect, one_line(path.stem), "", partial(self._open, path))
         try:
-            level = read_level(path)
+            content = read_bytes(path)
         except LevelError as error:
-            card = self._add_card(rect, one_line(path.stem), error.faults[0], partial(self._open, path))
-            card.broken = True
-            card.repaint()
+            card.show_fault(error.faults[0])
             return
-        # Levels of one's own are often still without a name.
-        text = level.description if self.section == "levels" else f"{one_line(path.name)}  {level.description}".strip()
-        card = self._add_card(rect, level.name, text, partial(self._open, path))
-        self._unpainted.append((card, level))
+        is_shipped = self.section == "levels"
+        if is_shipped:
+            # What was shipped needs no check before it is shown.
+            data = json.loads(content)
+            card.name, card.text = data["name"], data.get("description", "")
+            card.repaint()
+        self._unfilled.append(self._fill(card, path, content, is_shipped))
+
+    def _fill(self, card: Card, path: Path, content: bytes, is_shipped: bool) -> Iterator[bool]:
+        key = picture_key(content)
+        size = (card.rect.width - 2, card.rect.height - self._ui.px(TEXT_HEIGHT) - 1)
+        picture = find_picture(path, key, size)
+        if picture is not None:
+            card.show_picture(picture)
+            yield True
+            if is_shipped:
+                return
+        try:
+            level = parse_level(content, str(path))
+        except LevelError as error:
+            card.show_fault(error.faults[0])
+            return
+        if not is_shipped:
+            # Levels of one's own are often still without a name.
+            card.name, card.text = level.name, f"{one_line(path.name)}  {level.description}".strip()
+            card.repaint()
+        if picture is not None:
+            return
+        while not self._has_kernels(level.has_contacts):
+            yield False
+        picture = yield from draw_in_slices(level, SECONDS if COMPILED else 0.0)
+        card.show_picture(pygame.transform.smoothscale(picture, size))
+        if COMPILED:
+            with suppress(OSError):
+                keep_picture(picture, kept_picture(key))
+                forget_old_pictures(kept_picture(key).parent)
 
     def _add_recordings(self) -> None:
         ui = self._ui
@@ -173,7 +230,7 @@ class Gallery:
             rect = ui.rect(6, 6 + index * (ROW_HEIGHT + 10), width, ROW_HEIGHT)
             card = Card(
                 ui, rect, one_line(path.name), f"{when}, {stat.st_size / 1024:,.0f} KiB",
-                partial(self._files.open_replay, path), self.area,
+                partial(self._app.files.open_replay, path), self.area,
             )  # fmt: skip
             card.has_picture = False
             card.repaint()
@@ -185,26 +242,22 @@ class Gallery:
         self.cards.append(card)
         return card
 
-    def update(self, is_ready: Callable[[bool], bool]) -> None:
-        """Draw one more picture of those that are ready to be run (see Preparation); keep the focused card in sight."""
-        next_one = next((each for each in self._unpainted if is_ready(each[1].has_contacts)), None)
-        if next_one is not None:
-            self._unpainted.remove(next_one)
-            self._paint_picture(*next_one)
+    def update(self, has_kernels: Callable[[bool], bool]) -> None:
+        """Go on filling cards for a while, those whose kernels are there (see Preparation); show the focused one."""
+        self._has_kernels = has_kernels
+        end, waiting = time.perf_counter() + FILL_BUDGET, 0
+        while waiting < len(self._unfilled):
+            went_on = next(self._unfilled[0], None)
+            if went_on is None:
+                self._unfilled.popleft()
+            elif not went_on:
+                self._unfilled.rotate(-1)
+                waiting += 1
+            if time.perf_counter() > end:
+                break
         focus = self._ui.focus
         if isinstance(focus, Card) and focus in self.cards:
             self._show(focus)
-
-    def _paint_picture(self, card: Card, level: Level) -> None:
-        ui = self._ui
-        size = (card.rect.width - 2, card.rect.height - ui.px(TEXT_HEIGHT) - 1)
-        snapshot = run_ahead(level, 0.0)
-        if COMPILED and len(snapshot.mass) <= PICTURE_PARTICLES:
-            snapshot = run_ahead(level, PICTURE_SECONDS)
-        box = crop_of(level, snapshot)
-        twice = draw_picture(level, snapshot, (size[0] * 2, size[1] * 2), box, PICTURE_SCALE * ui.scale)
-        card.picture = pygame.transform.smoothscale(twice, size)
-        card.repaint()
 
     def press_key(self, key: int) -> bool:
         """Go from card to card with the arrow keys."""

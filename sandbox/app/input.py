@@ -1,14 +1,11 @@
 """Input: pygame's events to widgets first, then to the world; pygame's events end here."""
 
 import math
-from typing import TYPE_CHECKING
 
 import pygame
 
+from sandbox.app.application import Application
 from sandbox.app.shortcuts import action_of
-
-if TYPE_CHECKING:
-    from sandbox.app.app import App
 
 # A press of Space shorter than this [s], without a drag, is the pause key; longer ones are a hand for panning.
 TAP_SECONDS = 0.35
@@ -36,7 +33,7 @@ def _works_while_typing(event: pygame.event.Event) -> bool:
 class Input:
     """Decides who gets an event."""
 
-    def __init__(self, app: "App") -> None:
+    def __init__(self, app: Application) -> None:
         self.app = app
         self._panning = False
         self._pressed = False

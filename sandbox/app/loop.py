@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+# Frames that the loop draws at most [1/s].
+FRAME_RATE = 60
 # Longest frame [s] that is made up for; a longer one (a stopped window, a slow computer) is time that is lost.
 LONGEST_FRAME = 0.1
 # Speeds that a person can choose, real time first.

@@ -4,16 +4,20 @@ import time
 from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
-from statistics import mean
 
 PARTS = ("events", "commands", "ticks", "springs", "particles", "ui", "flip", "frame")
 
 
 class Profile:
-    """Collects the wall time of each part of each frame."""
+    """Collects the wall time of each part of each frame, and when things came about for the first time."""
 
     def __init__(self) -> None:
         self.milliseconds: dict[str, list[float]] = defaultdict(list)
+        # From one picture in the window to the next, what a person sees stand still: wall time [s], and how much of it
+        # this thread itself was busy, which other programs do not lengthen.
+        self.longest_stop = (0.0, 0.0)
+        self.first_times: dict[str, float] = {}
+        self._shown: tuple[float, float] | None = None
 
     @contextmanager
     def part(self, name: str) -> Iterator[None]:
@@ -24,14 +28,29 @@ class Profile:
         finally:
             self.milliseconds[name].append(1e3 * (time.perf_counter() - start))
 
-    def table(self, seconds: float) -> str:
-        """Mean, 95th percentile and worst [ms] of every part, and the frames per second over so many seconds."""
+    def shown(self) -> None:
+        """Note that the window shows a new picture now."""
+        now = time.perf_counter(), time.thread_time()
+        if self._shown is not None:
+            self.longest_stop = max(self.longest_stop, (now[0] - self._shown[0], now[1] - self._shown[1]))
+        self._shown = now
+
+    def reached(self, what: str) -> None:
+        """Note when something came about, the first time that it does."""
+        self.first_times.setdefault(what, time.perf_counter())
+
+    def table(self, began: float) -> str:
+        """Mean, 95th percentile and worst [ms] of every part; then what came when after began [s of perf_counter]."""
+        seconds = time.perf_counter() - began
         frames = len(self.milliseconds["frame"])
         lines = [f"{'part':<12}{'mean':>8}{'p95':>8}{'worst':>8}   ms"]
         for name in PARTS:
             times = sorted(self.milliseconds[name])
             if times:
                 p95 = times[min(len(times) - 1, int(0.95 * len(times)))]
-                lines.append(f"{name:<12}{mean(times):8.2f}{p95:8.2f}{times[-1]:8.2f}")
+                lines.append(f"{name:<12}{sum(times) / len(times):8.2f}{p95:8.2f}{times[-1]:8.2f}")
         lines.append(f"{frames} frames in {seconds:.1f} s: {frames / max(seconds, 1e-9):.1f} frames a second")
+        wall, busy = self.longest_stop
+        lines.append(f"longest time without a new picture: {wall:.3f} s, {busy:.3f} s of it at work")
+        lines += [f"{what}: after {when - began:.2f} s" for what, when in self.first_times.items()]
         return "\n".join(lines)

@@ -1,4 +1,4 @@
-"""Equipment of a world: limits of its materials, its driven parts, its surface. Constant while it runs, so no state."""
+"""Actuators of a world, with the limits of its materials and its surface. Constant while it runs, so no state."""
 
 from dataclasses import dataclass, field
 from functools import cached_property

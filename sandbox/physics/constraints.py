@@ -1,11 +1,11 @@
-"""Elements: constraints of several corners, areas of polygons and angles between two links, in the same equation.
+"""Constraints of several corners (elements): areas of polygons and angles between two links, in the same equation.
 
 Any scalar constraint C(x) of gradient g has the effective mass 1 / (sum of w |g|^2); with C for the distance error and
 dC/dt for the velocity error, Cs and Cd mean what they mean for a spring (Nissen 2019). The mass is that of the rest
 shape: that of the present one is infinite where a triangle lies flat.
 
-    area   C = A - A0 [m^2], A signed and counter-clockwise, of a polygon of three corners or more
-    bend   C = 4 sin(phi / 4), phi = the angle at the middle corner less its angle at rest
+    area constraint      C = A - A0 [m^2], A signed and counter-clockwise, of a polygon of three corners or more
+    bending constraint   C = 4 sin(phi / 4), phi = the angle at the middle corner less its angle at rest
 
 The bend's torque is that of 2 sin(phi / 2): most for a link that is folded back, where sin(phi) would let go.
 """
@@ -14,7 +14,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inner_kernel, kernel
@@ -171,3 +171,52 @@ def explicit_mass(first, last, inverse_mass, particle, weight, slope):  # type: 
         present += w * (slope[c, 0] * slope[c, 0] + slope[c, 1] * slope[c, 1])
     most = max(rest, present)
     return (1.0 / most, present / most) if most > 0.0 else (0.0, 0.0)
+
+
+def sides_gone(
+    elements: Elements,
+    particle_a: NDArray[np.int32],
+    particle_b: NDArray[np.int32],
+    spring_active: NDArray[np.bool_],
+    springs: NDArray[np.int64],
+) -> NDArray[np.int32]:
+    """Elements, each at least once, of which one of these springs was a side that no active spring holds any more."""
+    cut = _sides(particle_a[springs], particle_b[springs])
+    loose = np.setdiff1d(cut, _sides(particle_a[spring_active], particle_b[spring_active]))
+    owner = np.repeat(np.arange(len(elements.kind)), elements.corners)
+    corner, first = np.arange(len(owner)), elements.first[owner]
+    before = np.where(corner == first, first + elements.corners[owner] - 1, corner - 1)
+    # A bend's two outer corners are no side of it.
+    is_side = (elements.kind[owner] == AREA) | (corner != first)
+    return owner[is_side & np.isin(_sides(elements.particle[before], elements.particle), loose)]
+
+
+def _sides(a: NDArray[np.int32], b: NDArray[np.int32]) -> NDArray[np.int64]:
+    """One number for each pair of particles, whichever comes first."""
+    return np.minimum(a, b).astype(np.int64) << 32 | np.maximum(a, b)
+
+
+def rest_of_area(places: Floats, inflation: ArrayLike) -> tuple[Floats, Floats]:
+    """Rest (t, 2) and weights (t, k) of areas; sums are in a written order, as those of a tick are."""
+    apart = places - places[:, :1]
+    area = np.zeros(len(places))
+    for corner in range(1, places.shape[1] - 1):
+        x, y = apart[:, corner], apart[:, corner + 1]
+        area = area + 0.5 * (x[:, 0] * y[:, 1] - x[:, 1] * y[:, 0])
+    across = np.roll(places, -1, axis=1) - np.roll(places, 1, axis=1)
+    weight = 0.25 * (across[..., 0] * across[..., 0] + across[..., 1] * across[..., 1])
+    return np.stack([np.broadcast_to(inflation, len(places)) * area, area], axis=1), weight
+
+
+def rest_of_bend(places: Floats) -> tuple[Floats, Floats]:
+    """Rest (t, 2) and weights (t, 3) of bends."""
+    links = np.diff(places, axis=1)
+    length = np.sqrt(links[..., 0] * links[..., 0] + links[..., 1] * links[..., 1])
+    if np.any(length == 0.0):
+        raise ValueError("a bend joins two links, each with a length")
+    a, b = links[:, 0] / length[:, :1], links[:, 1] / length[:, 1:]
+    cosine, sine = a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1], a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    scaled = a / length[:, :1] + b / length[:, 1:]
+    middle = scaled[:, 0] * scaled[:, 0] + scaled[:, 1] * scaled[:, 1]
+    ends = 1.0 / (length * length)
+    return np.stack([cosine, sine], axis=1), np.stack([ends[:, 0], middle, ends[:, 1]], axis=1)

@@ -36,6 +36,8 @@ def _extend(spring, shortest, longest, rate, part, part_value, rest_length, h, l
 def drive_muscles(world: World, tick: int) -> None:
     """Give every muscle the rest length that it has at a tick."""
     muscles = world.driven.muscles
+    if not len(muscles.spring):
+        return
     lengths = np.zeros(len(muscles.spring))
     _contract(
         tick, muscles.spring, muscles.amplitude, muscles.period, muscles.phase, world.natural_length, lengths

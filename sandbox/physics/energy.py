@@ -1,4 +1,4 @@
-"""Energy of a world [J]: what the panel and the checks show; no tick depends on it."""
+"""Energy of a world [J] and what ticks take out of it: for the panel and the checks; no tick depends on it."""
 
 import numpy as np
 
@@ -39,7 +39,7 @@ def spring_energy(world: World) -> float:
     """
     h = substep_time(world.settings)
     stiffness, damping = substep_coefficients(world)
-    nissen = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, reduced_masses(world), h)
+    nissen = SOLVERS[world.settings.solver].schedule.spring_constant(stiffness, damping, reduced_masses(world), h)
     constant = np.where(world.law == LAW_HOOKE, world.hooke_stiffness, nissen)
     error = spring_lengths(world) - world.rest_length
     springs = np.sum((constant * error * error)[world.spring_active & (world.material != HAND_MATERIAL)])
@@ -50,7 +50,7 @@ def spring_energy(world: World) -> float:
 def element_energies(world: World) -> Floats:
     """Energy [J] of every element (t,), k C^2 / 2 with the k that the world's solver gives it; 0 where inactive."""
     value, mass, _ = measure_elements(world)
-    constant = SOLVERS[world.settings.solver].spring_constant(
+    constant = SOLVERS[world.settings.solver].schedule.spring_constant(
         *element_coefficients(world), mass, substep_time(world.settings)
     )
     return np.asarray(0.5 * constant * value * value)
@@ -60,7 +60,8 @@ def measure_elements(world: World) -> tuple[Floats, Floats, Floats]:
     """C (t,) and effective mass (t,) of every element, 0 where inactive; and the gradient at each corner (q, 2)."""
     value, mass = np.zeros((2, world.element_count))
     place, slope = np.zeros((2, len(world.corner_particle), 2))
-    element_values(world.position, world.inverse_mass, world.elements, place, value, mass, slope)
+    if world.element_count:
+        element_values(world.position, world.inverse_mass, world.elements, place, value, mass, slope)
     return value, mass, slope
 
 
@@ -78,3 +79,36 @@ def gravity_energy(world: World) -> float:
 def total_energy(world: World) -> float:
     """Kinetic energy and that of springs and gravity [J]."""
     return kinetic_energy(world) + spring_energy(world) + gravity_energy(world)
+
+
+class Dissipation:
+    """Energy [J] lost in ticks: `before` each, then `after` it; energy that a tick gained counts against it.
+
+    What commands change between ticks is not counted, nor is a tick in which something works on the world: a hand that
+    holds a particle, a muscle, a hydraulic or motor that is driven, the wind.
+    """
+
+    def __init__(self) -> None:
+        self.energy = 0.0
+        self._before: float | None = None
+        self._after: float | None = None
+
+    def before(self, world: World, changed: bool = True) -> None:
+        """Look at a world that is about to make a tick; changed: whether it may differ from the last look `after`."""
+        if _is_worked_on(world):
+            self._before = None
+        else:
+            self._before = total_energy(world) if changed or self._after is None else self._after
+
+    def after(self, world: World) -> None:
+        """Look at it again after the tick."""
+        self._after = None
+        if self._before is not None:
+            self._after = total_energy(world)
+            self.energy += self._before - self._after
+
+
+def _is_worked_on(world: World) -> bool:
+    settings = world.settings
+    blows = settings.drag > 0.0 and any(settings.wind)
+    return world.hands_in_use() or bool(len(world.driven.muscles.spring)) or bool(np.any(world.part_value)) or blows

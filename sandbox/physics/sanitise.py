@@ -5,86 +5,48 @@ pinned where it was, until somebody unpins it. An absurd constant of a spring or
 back. Positions and velocities are good as the last tick ended with them, masses and constants as they were last set.
 """
 
-from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.jit import kernel
-from sandbox.physics.state import GUARDED_CONSTANTS, GUARDED_ELEMENTS, VECTOR_ARRAYS
+from sandbox.physics.events import Containment
+from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
+from sandbox.physics.state import GUARDED, Family, Floats
 from sandbox.physics.world import World
 
 # Larger than anything that a level or a command can ask for (1e6 m, 1e9 m/s, 1e9 kg, 1e15 N/m), and small enough that
 # energies stay finite; a mistuned spring that passes it is frozen there.
 ABSURD = 1e18
+# What is guarded of springs and elements.
+_CONSTANTS = [(column.name, column.width) for column in GUARDED if column.family is not Family.PARTICLE]
 
 
-@dataclass(frozen=True)
-class Containment:
-    """What was taken back: at a tick, in the array `array` of the particle, spring or element `name`."""
+class CheckedArrays(NamedTuple):
+    """The arrays of a world that are looked at, see StateArrays, and where positions and velocities are kept."""
 
-    tick: int
-    array: str
-    name: str
-    frozen: bool
-
-    def __str__(self) -> str:
-        text = f"tick {self.tick}: {self.name}: an impossible {self.array.replace('_', ' ')} was taken back"
-        return text + ("; it is frozen where it last was, unpin it to let it go" if self.frozen else "")
-
-
-@kernel
-def sound(  # type: ignore[no-untyped-def]
-    position, velocity, mass, inverse_mass, rest_length, stiffness, damping, hooke_stiffness, hooke_damping
-):  # fmt: skip
-    """Whether every value that a tick reads is one that physics can give; NaN is in no range."""
-    for p in range(mass.shape[0]):
-        if not (
-            -ABSURD <= position[p, 0] <= ABSURD
-            and -ABSURD <= position[p, 1] <= ABSURD
-            and -ABSURD <= velocity[p, 0] <= ABSURD
-            and -ABSURD <= velocity[p, 1] <= ABSURD
-            and 0.0 < mass[p] <= ABSURD
-            and 0.0 <= inverse_mass[p] <= ABSURD
-        ):
-            return False
-    for s in range(rest_length.shape[0]):
-        if not (
-            0.0 <= rest_length[s] <= ABSURD
-            and 0.0 <= stiffness[s] <= 1.0
-            and 0.0 <= damping[s] <= 1.0
-            and 0.0 <= hooke_stiffness[s] <= ABSURD
-            and 0.0 <= hooke_damping[s] <= ABSURD
-        ):
-            return False
-    return True
+    position: Floats
+    velocity: Floats
+    mass: Floats
+    inverse_mass: Floats
+    rest_length: Floats
+    stiffness: Floats
+    damping: Floats
+    hooke_stiffness: Floats
+    hooke_damping: Floats
+    element_rest: Floats
+    element_stiffness: Floats
+    element_damping: Floats
+    corner_weight: Floats
+    corner_form: Floats
+    good_position: Floats
+    good_velocity: Floats
 
 
-@kernel
-def sound_elements(element_rest, element_stiffness, element_damping, corner_weight, corner_form):  # type: ignore[no-untyped-def]
-    """Whether every constant of elements is one that physics can give."""
-    for k in range(element_stiffness.shape[0]):
-        if not (
-            -ABSURD <= element_rest[k, 0] <= ABSURD
-            and -ABSURD <= element_rest[k, 1] <= ABSURD
-            and 0.0 <= element_stiffness[k] <= 1.0
-            and 0.0 <= element_damping[k] <= 1.0
-        ):
-            return False
-    for c in range(corner_weight.shape[0]):
-        weight = corner_weight[c]
-        if not (
-            0.0 <= weight <= ABSURD
-            and -ABSURD <= corner_form[c, 0] <= ABSURD
-            and -ABSURD <= corner_form[c, 1] <= ABSURD
-        ):
-            return False
-    return True
-
-
-@kernel
-def keep_if_sound(position, velocity, good_position, good_velocity):  # type: ignore[no-untyped-def]
-    """Keep positions and velocities (n, 2) as good, if all of them are; else keep nothing and say so."""
+@inner_kernel
+def _sound_motion(arrays: CheckedArrays) -> bool:
+    position = arrays.position
+    velocity = arrays.velocity
     for p in range(position.shape[0]):
         if not (
             -ABSURD <= position[p, 0] <= ABSURD
@@ -93,47 +55,94 @@ def keep_if_sound(position, velocity, good_position, good_velocity):  # type: ig
             and -ABSURD <= velocity[p, 1] <= ABSURD
         ):
             return False
-    for p in range(position.shape[0]):
-        good_position[p, 0] = position[p, 0]
-        good_position[p, 1] = position[p, 1]
-        good_velocity[p, 0] = velocity[p, 0]
-        good_velocity[p, 1] = velocity[p, 1]
     return True
+
+
+@inner_kernel
+def _sound_elements(arrays: CheckedArrays) -> bool:
+    for k in range(arrays.element_stiffness.shape[0]):
+        if not (
+            -ABSURD <= arrays.element_rest[k, 0] <= ABSURD
+            and -ABSURD <= arrays.element_rest[k, 1] <= ABSURD
+            and 0.0 <= arrays.element_stiffness[k] <= 1.0
+            and 0.0 <= arrays.element_damping[k] <= 1.0
+        ):
+            return False
+    for c in range(arrays.corner_weight.shape[0]):
+        if not (
+            0.0 <= arrays.corner_weight[c] <= ABSURD
+            and -ABSURD <= arrays.corner_form[c, 0] <= ABSURD
+            and -ABSURD <= arrays.corner_form[c, 1] <= ABSURD
+        ):
+            return False
+    return True
+
+
+@kernel
+def _are_sound(items: Any) -> bool:
+    # Whether every value that a tick reads is one that physics can give; NaN is in no range.
+    arrays = contents(items)[0]
+    if not _sound_motion(arrays) or not _sound_elements(arrays):
+        return False
+    for p in range(arrays.mass.shape[0]):
+        if not (0.0 < arrays.mass[p] <= ABSURD and 0.0 <= arrays.inverse_mass[p] <= ABSURD):
+            return False
+    for s in range(arrays.rest_length.shape[0]):
+        if not (
+            0.0 <= arrays.rest_length[s] <= ABSURD
+            and 0.0 <= arrays.stiffness[s] <= 1.0
+            and 0.0 <= arrays.damping[s] <= 1.0
+            and 0.0 <= arrays.hooke_stiffness[s] <= ABSURD
+            and 0.0 <= arrays.hooke_damping[s] <= ABSURD
+        ):
+            return False
+    return True
+
+
+@kernel
+def _keep_if_sound(items: Any) -> bool:
+    # Keep positions and velocities as good, if all of them are; else keep nothing and say so.
+    arrays = contents(items)[0]
+    if not _sound_motion(arrays):
+        return False
+    for p in range(arrays.position.shape[0]):
+        for axis in range(2):
+            arrays.good_position[p, axis] = arrays.position[p, axis]
+            arrays.good_velocity[p, axis] = arrays.velocity[p, axis]
+    return True
+
+
+def _checked_arrays(world: World) -> Any:
+    own = [getattr(world, name) for name in CheckedArrays._fields[:-2]]
+    return bundle((CheckedArrays._make([*own, world.good["position"], world.good["velocity"]]),))
 
 
 def contain_inputs(world: World) -> None:
     """Before a tick: take back whatever something outside the physics has put there."""
-    if sound(
-        world.position, world.velocity, world.mass, world.inverse_mass, world.rest_length, world.stiffness,
-        world.damping, world.hooke_stiffness, world.hooke_damping,
-    ) and (world.element_count == 0 or sound_elements(
-        world.element_rest, world.element_stiffness, world.element_damping, world.corner_weight,
-        world.corner_form,
-    )):  # fmt: skip
+    if _are_sound(world.derived(_checked_arrays)):
         return
     for name in ("mass", "position", "velocity", "inverse_mass"):
         values = getattr(world, name)
         lowest = -ABSURD if values.ndim == 2 else 0.0
         bad = _outside(values, lowest) | ((values == 0.0) if name == "mass" else False)
         _freeze(world, bad, name)
-    for name in (*GUARDED_CONSTANTS, *GUARDED_ELEMENTS):
+    for name, width in _CONSTANTS:
         values = getattr(world, name)
-        lowest = -ABSURD if name in VECTOR_ARRAYS else 0.0
+        lowest = -ABSURD if width > 1 else 0.0
         highest = 1.0 if name.endswith(("stiffness", "damping")) and "hooke" not in name else ABSURD
         for slot in np.flatnonzero(_outside(values, lowest, highest)).tolist():
-            values[slot] = world.good[name][slot]
+            world.change(name, world.good[name][slot], slot)
             owner = world.slot_name(name, slot)
             world.contained.append(Containment(world.tick, name, owner, frozen=False))
 
 
 def contain_outcome(world: World) -> None:
     """After a tick: take back what the tick itself has blown up, and keep the rest as good."""
-    good = world.good
-    if keep_if_sound(world.position, world.velocity, good["position"], good["velocity"]):
+    if _keep_if_sound(world.derived(_checked_arrays)):
         return
     for name in ("position", "velocity"):
         _freeze(world, _outside(getattr(world, name), -ABSURD), name)
-    keep_if_sound(world.position, world.velocity, good["position"], good["velocity"])
+    _keep_if_sound(world.derived(_checked_arrays))
 
 
 def _outside(values: NDArray[np.float64], lowest: float, highest: float = ABSURD) -> NDArray[np.bool_]:

@@ -1,11 +1,17 @@
 """WorldSettings: the few numbers of a world that are no arrays."""
 
+import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 # Substeps that every tick chooses for itself, see substeps.py.
 AUTO: Literal["auto"] = "auto"
 Substeps = int | Literal["auto"]
+SUBSTEPS = (1, 2, 4, 8, 16, 32, 64)  # powers of two, which the exact map of coefficients needs
+# The names of `SOLVERS`, which needs the world and so cannot be asked here.
+SOLVER_NAMES = ("single_pass", "iterative", "direct")
+# The solver of a world or a level that names none.
+DEFAULT_SOLVER = "direct"
 
 
 @dataclass(frozen=True)
@@ -13,18 +19,45 @@ class WorldSettings:
     """What a tick needs besides arrays: gravity [m/s^2], tick rate [1/s], substeps, solver, wind [m/s], drag [1/s].
 
     Drag is the rate at which every free particle takes on the wind's velocity, whatever its mass.
+    Raises ValueError, one line, for a value that means nothing.
     """
 
     gravity: tuple[float, float] = (0.0, -9.81)
     tick_rate: int = 60
     substeps: Substeps = 1
-    solver: str = "iterative"
+    solver: str = DEFAULT_SOLVER
     iterations: int = 10
     warm_start: float = 0.5
     wind: tuple[float, float] = (0.0, 0.0)
     drag: float = 0.0
 
+    def __post_init__(self) -> None:
+        if self.solver not in SOLVER_NAMES:
+            raise ValueError(f"there is no solver {self.solver!r}; there are {', '.join(SOLVER_NAMES)}")
+        if self.substeps != AUTO and not (_is_whole(self.substeps) and self.substeps in SUBSTEPS):
+            raise ValueError(f'substeps is a power of two from 1 to {SUBSTEPS[-1]} or "{AUTO}", not {self.substeps!r}')
+        for name in ("tick_rate", "iterations"):
+            value = getattr(self, name)
+            if not (_is_whole(value) and value >= 1):
+                raise ValueError(f"{name} is a whole number of at least 1, not {value!r}")
+        for name in ("gravity", "wind"):
+            value = getattr(self, name)
+            if not (isinstance(value, tuple) and len(value) == 2 and all(map(_is_finite, value))):
+                raise ValueError(f"{name} is a pair of finite numbers, not {value!r}")
+        if not (_is_finite(self.warm_start) and 0.0 <= self.warm_start <= 1.0):
+            raise ValueError(f"warm_start is a number from 0 to 1, not {self.warm_start!r}")
+        if not (_is_finite(self.drag) and self.drag >= 0.0):
+            raise ValueError(f"drag is a finite number of at least 0, not {self.drag!r}")
+
     @property
     def fewest_substeps(self) -> int:
         """Substeps that every tick takes at least; what limits, energies and stored impulses are stated for."""
         return 1 if self.substeps == AUTO else self.substeps
+
+
+def _is_whole(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _is_finite(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

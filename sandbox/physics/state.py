@@ -1,177 +1,166 @@
-"""The arrays of a world's state: their names, their types, and their order."""
+"""The table of a world's state arrays: one line each gives its name in files, type, unit and meaning.
+
+World and Snapshot have these attributes, appending, hashing, storing and guarding go through them: a new array is one
+line here, and the place that gives it its values.
+"""
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any, TypeVar, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
+Scalar = TypeVar("Scalar", bound=np.generic)
 
-PARTICLE_ARRAYS = {
-    "position": np.float64,
-    "velocity": np.float64,
-    "origin": np.float64,
-    "mass": np.float64,
-    "inverse_mass": np.float64,
-    "radius": np.float64,
-    "gravity_scale": np.float64,
-    "particle_active": np.bool_,
-    "slow_velocity": np.float64,
-    "energy_bank": np.float64,
-    "friction": np.float64,
-    "restitution": np.float64,
-    "owner": np.int32,
-    "group": np.int64,
-    "collides": np.int64,
-}
-SPRING_ARRAYS = {
-    "particle_a": np.int32,
-    "particle_b": np.int32,
-    "rest_length": np.float64,
-    "natural_length": np.float64,
-    "stiffness": np.float64,
-    "damping": np.float64,
-    "law": np.int8,
-    "hooke_stiffness": np.float64,
-    "hooke_damping": np.float64,
-    "material": np.int32,
-    "spring_active": np.bool_,
-    "impulse": np.float64,
-    "tension": np.float64,
-    "edge": np.int8,
-}
-ELEMENT_ARRAYS = {
-    "element_kind": np.int8,
-    "element_first": np.int32,
-    "element_corners": np.int32,
-    "element_rest": np.float64,
-    "element_stiffness": np.float64,
-    "element_damping": np.float64,
-    "element_material": np.int32,
-    "element_active": np.bool_,
-}
-CORNER_ARRAYS = {
-    "corner_particle": np.int32,
-    "corner_weight": np.float64,
-    "corner_form": np.float64,
-}
-PART_ARRAYS = {"part_value": np.float64}
-CONTACT_ARRAYS = {
-    "contact_particle": np.int32,
-    "contact_feature": np.int64,
-    "contact_impulse": np.float64,
-}
-# Arrays that go together: one row for each particle, spring, element, corner of one, driven part, contact.
-FAMILIES = (PARTICLE_ARRAYS, SPRING_ARRAYS, ELEMENT_ARRAYS, CORNER_ARRAYS, PART_ARRAYS, CONTACT_ARRAYS)
-KINDS = {name: kind for family in FAMILIES for name, kind in family.items()}
-# Every array of a world's state, in the order in which it is hashed and stored: part of the replay contract.
-STATE_ARRAYS = tuple(KINDS)
-# Constants of springs that the quarantine can take back.
-GUARDED_CONSTANTS = ("rest_length", "stiffness", "damping", "hooke_stiffness", "hooke_damping")
-# Constants of elements that it can take back.
-GUARDED_ELEMENTS = ("element_rest", "element_stiffness", "element_damping", "corner_weight", "corner_form")
-GUARDED = ("position", "velocity", "mass", *GUARDED_CONSTANTS, *GUARDED_ELEMENTS)
-VECTOR_ARRAYS = frozenset(
-    {"position", "velocity", "origin", "slow_velocity", "impulse", "element_rest", "corner_form", "contact_impulse"}
-)
 
-# An energy bank that the direct solver begins anew at its next step: something outside changed the body.
-BANK_UNOPENED = -1.0
+class Family(Enum):
+    """Arrays that go together: one row for each of these."""
+
+    PARTICLE = "particle"
+    SPRING = "spring"
+    ELEMENT = "element"
+    CORNER = "corner"
+    ACTUATOR = "actuator"
+    CONTACT = "contact"
+
+
+@dataclass(eq=False)
+class Column:
+    """A line of the table. stored: the name in files, hashes and messages; name: the attribute in code.
+
+    width: numbers a row, 1 = a flat array (n,), 2 = (n, 2). guarded: the last good values are kept, and taken back where
+    the present ones are absurd (sanitise.py). topology: solvers and collision derive from it what they keep from step
+    to step (World.derived), so that it is only written by methods of World.
+    """
+
+    stored: str
+    family: Family
+    dtype: type[np.generic]
+    unit: str
+    meaning: str
+    width: int
+    guarded: bool
+    topology: bool
+    name: str = field(default="", init=False)
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def empty(self) -> NDArray[Any]:
+        """The array of no rows."""
+        return np.zeros((0, self.width) if self.width > 1 else 0, dtype=self.dtype)
+
+
+def _array(
+    stored: str,
+    family: Family,
+    dtype: type[Scalar],
+    unit: str,
+    meaning: str,
+    *,
+    width: int = 1,
+    guarded: bool = False,
+    topology: bool = False,
+) -> NDArray[Scalar]:
+    """A line of the table, which a type checker takes for the array that an instance holds under that name."""
+    return cast(Any, Column(stored, family, dtype, unit, meaning, width, guarded, topology))
+
+
+P, S, E, C, A, T = Family
+F64, I64, I32, I8, BOOL = np.float64, np.int64, np.int32, np.int8, np.bool_
 
 
 class StateArrays:
-    """The state of particles, springs, elements, driven parts and contacts as a struct of arrays, float64 unless said.
+    """Particles, springs, elements, actuators and contacts as a struct of arrays.
 
-    Of n particles and m springs:
-
-    position [m] (n, 2), velocity [m/s] (n, 2), origin [m] (n, 2) = where each was created, which orders the direct
-    solver's elimination, mass [kg], inverse_mass [1/kg] (0 = pinned), radius [m], gravity_scale = how many times the
-    world's gravity pulls at it, particle_active (bool); particle_a, particle_b (int32 slots), rest_length [m],
-    natural_length [m] = the rest length that it was made with, before it yielded or was driven, stiffness, damping
-    (Cs, Cd per tick), law (int8), hooke_stiffness [N/m], hooke_damping [N s/m], material (int32 index into
-    material_names, -1 = a hand's), spring_active (bool), impulse [N s] (m, 2) = what the iterative solver keeps for its
-    warm start. The direct solver keeps slow_velocity [m/s] (n, 2) = the slow part of the velocity, energy_bank [J] (n,)
-    = what a body's earlier losses still allow it, at its free particle of lowest slot (-1: to be begun anew), tension
-    [N s] (m,) = the impulse by which a spring pulled in the last step, of a whole tick where substeps are "auto", as
-    impulse then is.
-
-    Of t elements (constraints.py) with q corners in all: element_kind (int8), element_first, element_corners (int32:
-    where its corners begin, and how many), element_rest (t, 2), element_stiffness, element_damping (Cs, Cd per tick),
-    element_material (int32, -1 = Cs and Cd of its own), element_active (bool); corner_particle (int32), corner_weight
-    (q,), corner_form [m] (q, 2) = where it stands at rest. An element goes with any of the springs along its sides.
-
-    part_value (k,) = how each driven part is driven, -1..1.
-
-    For contacts: friction and restitution (n,), owner (int32) = the body that a particle belongs to, negative: its own,
-    group (int64) = one bit, collides (int64) = the bits of the groups that it touches, TERRAIN_GROUP for terrain, 0 =
-    nothing; edge (int8) of a spring = no line that others meet, one with two sides, or the outline of a solid body on
-    its left or right. Of the c contacts of the last step: contact_particle (int32), contact_feature (int64, see
-    contacts.py), contact_impulse [N s] (c, 2), along and across.
+    The order of the lines is that in which arrays are hashed and stored. It and the names in quotes are part of the
+    replay contract: they do not follow a rename in code, and new lines go to the end of their family.
     """
 
-    position: Floats
-    velocity: Floats
-    origin: Floats
-    mass: Floats
-    inverse_mass: Floats
-    radius: Floats
-    gravity_scale: Floats
-    particle_active: NDArray[np.bool_]
-    slow_velocity: Floats
-    energy_bank: Floats
-    particle_a: NDArray[np.int32]
-    particle_b: NDArray[np.int32]
-    rest_length: Floats
-    natural_length: Floats
-    stiffness: Floats
-    damping: Floats
-    law: NDArray[np.int8]
-    hooke_stiffness: Floats
-    hooke_damping: Floats
-    material: NDArray[np.int32]
-    spring_active: NDArray[np.bool_]
-    impulse: Floats
-    tension: Floats
-    element_kind: NDArray[np.int8]
-    element_first: NDArray[np.int32]
-    element_corners: NDArray[np.int32]
-    element_rest: Floats
-    element_stiffness: Floats
-    element_damping: Floats
-    element_material: NDArray[np.int32]
-    element_active: NDArray[np.bool_]
-    corner_particle: NDArray[np.int32]
-    corner_weight: Floats
-    corner_form: Floats
-    part_value: Floats
-    friction: Floats
-    restitution: Floats
-    owner: NDArray[np.int32]
-    group: Slots
-    collides: Slots
-    edge: NDArray[np.int8]
-    contact_particle: NDArray[np.int32]
-    contact_feature: Slots
-    contact_impulse: Floats
+    # fmt: off
+    # ruff: noqa: E501
+    position = _array("position", P, F64, "m", "where it is", width=2, guarded=True)
+    velocity = _array("velocity", P, F64, "m/s", "how it moves; 0 where pinned, but for a hand's cursor", width=2, guarded=True)
+    origin = _array("origin", P, F64, "m", "where it was created, which orders the direct solver's elimination", width=2, topology=True)
+    mass = _array("mass", P, F64, "kg", "its mass, pinned or not", guarded=True)
+    inverse_mass = _array("inverse_mass", P, F64, "1/kg", "0 = pinned", topology=True)
+    radius = _array("radius", P, F64, "m", "of its disc")
+    gravity_scale = _array("gravity_scale", P, F64, "1", "how many times the world's gravity pulls at it")
+    particle_active = _array("particle_active", P, BOOL, "", "whether its slot is in use", topology=True)
+    slow_velocity = _array("slow_velocity", P, F64, "m/s", "the slow part of the velocity, for the direct solver", width=2)
+    energy_bank = _array("energy_bank", P, F64, "J", "what a body's earlier losses still allow it, at its free particle of lowest slot; -1: to be begun anew")
+    friction = _array("friction", P, F64, "1", "of two that touch the geometric mean counts")
+    restitution = _array("restitution", P, F64, "1", "of two that touch the larger counts")
+    owner = _array("owner", P, I32, "", "the body that it belongs to, negative: its own", topology=True)
+    group = _array("group", P, I64, "", "its collision group, one bit", topology=True)
+    collides = _array("collides", P, I64, "", "bits of the groups that it touches, TERRAIN_GROUP for terrain, 0 = nothing", topology=True)
 
-    def __init__(self) -> None:
-        for name, kind in KINDS.items():
-            setattr(self, name, np.zeros((0, 2) if name in VECTOR_ARRAYS else 0, dtype=kind))
-        # The last good values of what the quarantine guards; never state.
-        self.good: dict[str, Floats] = {}
-        self.trust()
+    particle_a = _array("particle_a", S, I32, "slot", "its first end", topology=True)
+    particle_b = _array("particle_b", S, I32, "slot", "its second end", topology=True)
+    rest_length = _array("rest_length", S, F64, "m", "where it pulls and pushes nothing", guarded=True)
+    natural_length = _array("natural_length", S, F64, "m", "the rest length it was made with, before it yielded or was driven")
+    stiffness = _array("stiffness", S, F64, "1", "Cs of a tick", guarded=True)
+    damping = _array("damping", S, F64, "1", "Cd of a tick", guarded=True)
+    law = _array("law", S, I8, "", "LAW_NISSEN or LAW_HOOKE", topology=True)
+    hooke_stiffness = _array("hooke_stiffness", S, F64, "N/m", "k of a Hooke spring", guarded=True)
+    hooke_damping = _array("hooke_damping", S, F64, "N s/m", "c of a Hooke spring", guarded=True)
+    material = _array("material", S, I32, "", "index into material_names, -1 = a hand's", topology=True)
+    spring_active = _array("spring_active", S, BOOL, "", "False: cut, broken, or a hand's that holds nothing", topology=True)
+    impulse = _array("impulse", S, F64, "N s", "what the iterative solver keeps for its warm start", width=2)
+    tension = _array("tension", S, F64, "N s", "the impulse by which it pulled in the last step, of a whole tick where substeps are \"auto\", for the direct solver")
+    edge = _array("edge", S, I8, "", "no line that others meet, one of two sides, or the outline of a solid body on its left or right", topology=True)
 
-    def trust(self) -> None:
-        """Take everything as it is now for good."""
-        self.good = {name: getattr(self, name).copy() for name in GUARDED}
+    element_kind = _array("element_kind", E, I8, "", "AREA or BEND (constraints.py)", topology=True)
+    element_first = _array("element_first", E, I32, "corner", "where its corners begin", topology=True)
+    element_corners = _array("element_corners", E, I32, "", "how many corners it has", topology=True)
+    element_rest = _array("element_rest", E, F64, "m^2 or 1", "area wanted and area of the form; cosine and sine of the angle at rest", width=2, guarded=True)
+    element_stiffness = _array("element_stiffness", E, F64, "1", "Cs of a tick", guarded=True)
+    element_damping = _array("element_damping", E, F64, "1", "Cd of a tick", guarded=True)
+    element_material = _array("element_material", E, I32, "", "index into material_names, -1 = Cs and Cd of its own")
+    element_active = _array("element_active", E, BOOL, "", "whether it holds; it goes with any of the springs along its sides", topology=True)
 
-    def _append(self, **arrays: ArrayLike) -> None:
-        for name, values in arrays.items():
-            present = getattr(self, name)
-            added = np.asarray(values, dtype=present.dtype)
-            setattr(self, name, np.concatenate([present, added]))
-            if name in GUARDED:
-                self.good[name] = np.concatenate([self.good[name], added])
+    corner_particle = _array("corner_particle", C, I32, "slot", "the particle there", topology=True)
+    corner_weight = _array("corner_weight", C, F64, "m^2 or 1/m^2", "square of the gradient there, at rest", guarded=True)
+    corner_form = _array("corner_form", C, F64, "m", "where it stands at rest", width=2, guarded=True, topology=True)
 
-    def _disturb(self, *particles: NDArray[np.integer] | int) -> None:
-        for slots in particles:
-            self.energy_bank[slots] = BANK_UNOPENED
+    part_value = _array("part_value", A, F64, "1", "how it is driven, -1..1")
+
+    contact_particle = _array("contact_particle", T, I32, "slot", "the particle of a contact of the last step")
+    contact_feature = _array("contact_feature", T, I64, "", "what it touched there (contacts.py)")
+    contact_impulse = _array("contact_impulse", T, F64, "N s", "along and across", width=2)
+    # fmt: on
+
+
+# Every array of a world's state, in the order in which it is hashed and stored.
+COLUMNS: tuple[Column, ...] = tuple(column for column in vars(StateArrays).values() if isinstance(column, Column))
+BY_NAME: dict[str, Column] = {column.name: column for column in COLUMNS}
+BY_STORED: dict[str, Column] = {column.stored: column for column in COLUMNS}
+GUARDED: tuple[Column, ...] = tuple(column for column in COLUMNS if column.guarded)
+
+
+def family_of(family: Family) -> tuple[Column, ...]:
+    """The arrays of one family, in order."""
+    return tuple(column for column in COLUMNS if column.family is family)
+
+
+def reference() -> str:
+    """The table as a page of Markdown."""
+    lines = [
+        "# State arrays",
+        "",
+        "Every array of a world's state, in the order in which it is hashed and stored. Names are those of files and",
+        "messages. Made by `python -m sandbox.physics.state > docs/state.md`.",
+    ]
+    for family in Family:
+        lines += ["", f"## One row for each {family.value}", "", "| name | type | unit | is |", "|---|---|---|---|"]
+        for column in family_of(family):
+            kind = np.dtype(column.dtype).name + (f", {column.width} a row" if column.width > 1 else "")
+            lines.append(f"| `{column.stored}` | {kind} | {column.unit} | {column.meaning} |")
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    print(reference(), end="")

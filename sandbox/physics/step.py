@@ -6,33 +6,19 @@ import numpy as np
 
 from sandbox.physics.actuators import Driven, Hydraulics, Motors, Muscles, StrainLimits
 from sandbox.physics.breaking import yield_and_break
-from sandbox.physics.collision.collide import leave, meet
-from sandbox.physics.collision.outline import TERRAIN_GROUP
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_springs
 from sandbox.physics.forces import Before, apply_forces
-from sandbox.physics.jit import kernel
+from sandbox.physics.integrate import integrate
 from sandbox.physics.sanitise import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.direct.solve import pattern_of
-from sandbox.physics.solvers.linear import parallel
-from sandbox.physics.solvers.linear.dissection import dissect
 from sandbox.physics.substeps import halve, substep_count
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import Floats, World
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
 PHYSICS_VERSION = 1
-
-
-@kernel
-def _integrate(position, velocity, active, h):  # type: ignore[no-untyped-def]
-    # Symplectic Euler: x += v h with the NEW velocity; the equation is derived for it.
-    for p in range(active.shape[0]):
-        if active[p]:
-            position[p, 0] += velocity[p, 0] * h
-            position[p, 1] += velocity[p, 1] * h
 
 
 def substep_time(settings: WorldSettings, parts: int | None = None) -> float:
@@ -59,8 +45,11 @@ def element_coefficients(world: World, parts: int | None = None) -> tuple[Floats
 
 def step(world: World) -> None:
     """Advance the world by one tick of 1 / tick_rate seconds."""
+    if world.has_contacts:
+        # Half of the physics, which a world in which nothing touches does without.
+        from sandbox.physics.collision.collide import begin_collisions, collide, end_collisions, finish
     settings = world.settings
-    solver = SOLVERS[settings.solver]
+    solver = SOLVERS[settings.solver].schedule
     contain_inputs(world)
     rest_length = drive_springs(world)
     parts = substep_count(world)
@@ -73,15 +62,20 @@ def step(world: World) -> None:
     # What a solver keeps is an impulse of one step: exact, as parts are a power of two.
     world.scale_impulses(settings.fewest_substeps / parts)
     world.contacts = None
+    collisions = begin_collisions(world)
     for _ in range(parts):
         before = Before(world.velocity.copy(), rest_length)
         apply_forces(world, h)
-        meeting = meet(world, before.velocity, h) if world.has_contacts else None
+        if collisions is not None:
+            world.contacts = collide(collisions, before.velocity, world.tick, h)
         solver.solve(world, springs, elements, h, before)
-        if meeting is not None:
-            leave(world, meeting, h)
-        _integrate(world.position, world.velocity, world.particle_active, h)
+        if collisions is not None:
+            finish(collisions, h)
+        else:
+            integrate(world.position, world.velocity, world.particle_active, h)
         rest_length = world.rest_length
+    if collisions is not None:
+        end_collisions(world, collisions)
     world.scale_impulses(parts / settings.fewest_substeps)
     world.rest_hands()
     world.tick += 1
@@ -107,6 +101,8 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
         world.fit(Driven(("a",), muscles, hydraulics, motors), [1.0])
         step(world)
         if contacts:
+            from sandbox.physics.collision.outline import TERRAIN_GROUP
+
             # Two loose ones that touch, and two on a spring, out of their reach.
             places = np.array([[0.0, 0.0], [0.0, 0.0], [0.5, 0.0], [0.7, 0.0]])
             world.add_particles(["d", "e", "f", "g"], places, group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
@@ -114,6 +110,10 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
             world.terrain = make_terrain([Chain([[-1.0, 0.0], [1.0, 0.0]])])
             step(world)
     if "direct" in solvers:
+        from sandbox.physics.solvers.direct.solve import pattern_of
+        from sandbox.physics.solvers.linear import parallel
+        from sandbox.physics.solvers.linear.dissection import dissect
+
         # That is too small a body to be dissected by itself, or to need a second thread.
         dissect(np.array([0]), np.array([1]), world.position)
         pattern = pattern_of(world)

@@ -1,11 +1,14 @@
 """Terrain: lines and solid shapes that never move, as edges in a grid that is laid once."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from sandbox.physics.jit import inner_kernel
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
@@ -49,6 +52,16 @@ class Terrain(NamedTuple):
     size: Slots
     cell_start: Slots
     cell_edge: Slots
+
+
+@inner_kernel
+def cells_between(low: float, high: float, corner: float, cell: float, size: int) -> tuple[int, int]:
+    """First and last of `size` cells of the grid that an interval covers; none: the last is before the first."""
+    first = (low - corner) / cell
+    last = (high - corner) / cell
+    if not (last >= 0.0 and first < size):
+        return 0, -1
+    return math.floor(max(0.0, first)), math.floor(min(last, size - 1.0))
 
 
 def make_terrain(chains: Sequence[Chain]) -> Terrain:

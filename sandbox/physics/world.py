@@ -1,27 +1,23 @@
-"""World: particles, springs, settings and tick, with the only methods that change them."""
+"""World: particles, springs, elements, settings and tick, with the only methods that change them."""
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.actuators import Driven, StrainLimits, Surface, unlimited
-from sandbox.physics.constraints import BEND
+from sandbox.physics.constraints import AREA, BEND, Elements, rest_of_area, rest_of_bend, sides_gone
+from sandbox.physics.events import Containment
 from sandbox.physics.names import Names
 from sandbox.physics.settings import AUTO, WorldSettings
-from sandbox.physics.slots import ElementSlots
-from sandbox.physics.state import (
-    BANK_UNOPENED,
-    CONTACT_ARRAYS,
-    CORNER_ARRAYS,
-    PART_ARRAYS,
-    PARTICLE_ARRAYS,
-    SPRING_ARRAYS,
-    Floats,
-    Slots,
-)
+from sandbox.physics.state import BY_NAME, BY_STORED, COLUMNS, GUARDED, Family, Floats, Slots, StateArrays
 from sandbox.physics.terrain import NO_TERRAIN, Terrain
+
+Derived = TypeVar("Derived")
+
+# An energy bank that the direct solver begins anew at its next step: something outside changed the body.
+BANK_UNOPENED = -1.0
 
 LAW_NISSEN = 0
 LAW_HOOKE = 1
@@ -36,16 +32,36 @@ HAND_MATERIAL = -1
 HAND_STIFFNESS = 0.2
 HAND_DAMPING = 0.3
 
+# The material index of an element with Cs and Cd of its own, which no slider reaches.
+OWN_MATERIAL = -1
+# Corners of an area that is all shape: it and its sides agree in one.
+TRIANGLE = 3
+# Cs and Cd at most of an area of more corners, whose size its sides may not allow: at 0.999 a rigid skin that is blown
+# up shakes for seconds at 20 m/s, at 1 for ever at 90; at 0.95 it breathes.
+HIGHEST_OF_RING = 0.99
 
-class World(ElementSlots):
-    """Particles and springs as a struct of arrays, see StateArrays, plus the settings of a tick.
+# Attributes that another value of counts as a change of topology. A step's contacts are other arrays in every step, and
+# nothing is derived from them.
+_WATCHED = frozenset({"terrain", *(column.name for column in COLUMNS if column.family is not Family.CONTACT)})
+
+
+class World(StateArrays):
+    """A world's state, see StateArrays, plus the settings of a tick, and what is constant: limits, driven, terrain.
 
     Slots are append-only: an index stays a particle's or spring's handle for ever; removing clears the active flag.
-    Pinned particles have velocity 0, except a hand's cursor while it moves. limits and driven: equipment, see there.
+    Arrays of the table that are no topology may be written in place; those that are only by methods of World, `change`
+    where there is no other, as what was derived from them (`derived`) would not notice.
     """
 
     def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
-        super().__init__()
+        # Counts the changes of what solvers and collision derive from, see derived; never state.
+        self.topology_version = 0
+        self._derived: dict[Callable[[World], Any], tuple[int, Any]] = {}
+        for column in COLUMNS:
+            setattr(self, column.name, column.empty())
+        # The last good values of what is guarded; never state.
+        self.good: dict[str, Floats] = {}
+        self.trust()
         self._settings = settings or WorldSettings()
         self.tick = 0
         self.material_names = tuple(material_names)
@@ -54,23 +70,73 @@ class World(ElementSlots):
         # What a particle that is added while the world runs is like to the touch.
         self.surface = Surface()
         self._particles, self._springs = Names(), Names()
+        # Bodies that keep areas, and the elements of each.
+        self.area_names: list[str] = []
+        self.area_elements: list[range] = []
         self.hand_particle = -1
         self.hand_spring = -1
         self.terrain: Terrain = NO_TERRAIN
-        # What a solver derives from topology and pins alone; never state.
-        self.solver_cache: Any = None
-        # The contacts of the present step, and what finding them derives from topology alone; never state.
+        # The contacts of the present step; never state.
         self.contacts: Any = None
-        self.contact_cache: Any = None
-        # What the quarantine has taken back since somebody last looked; never state.
-        self.contained: list[Any] = []
-        # The springs that broke in the last tick; never state.
+        # What was taken back since somebody last looked, and the springs that broke in the last tick; never state.
+        self.contained: list[Containment] = []
         self.broken: Slots = np.zeros(0, dtype=np.int64)
-        self._touching = False
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Replace an attribute; another array in place of one of the table counts as a change of topology."""
+        if name in _WATCHED and value is not self.__dict__.get(name):
+            self.topology_version += 1
+        object.__setattr__(self, name, value)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What a copy starts from: all but what solvers derive, which may hold a thread."""
-        return self.__dict__ | {"solver_cache": None}
+        """What a copy starts from: all but what was derived, which may hold a thread."""
+        return self.__dict__ | {"_derived": {}}
+
+    def derived(self, make: Callable[["World"], Derived]) -> Derived:
+        """What `make` makes of this world, kept until the world's topology or one of its arrays is another.
+
+        That is the place for layouts, scratch and pointers to arrays that outlive a step: not compared with anything,
+        but made anew when `topology_version` has gone up. Of a world of the same arrays it is the same, so no state.
+        """
+        version, kept = self._derived.get(make, (-1, None))
+        if version != self.topology_version:
+            kept = make(self)
+            self._derived[make] = self.topology_version, kept
+        return kept
+
+    def change(self, name: str, values: ArrayLike, slots: Any = slice(None)) -> None:
+        """Write values into slots of the state array of that attribute, in place, topology or not, and trust them."""
+        getattr(self, name)[slots] = values
+        if name in self.good:
+            self.good[name][slots] = values
+        if BY_NAME[name].topology:
+            self.topology_version += 1
+
+    def trust(self) -> None:
+        """Take everything as it is now for good."""
+        for column in GUARDED:
+            values = getattr(self, column.name)
+            good = self.good.get(column.name)
+            # In place where it can be: what was derived points to them.
+            if good is not None and len(good) == len(values):
+                good[:] = values
+            else:
+                self.good[column.name] = values.copy()
+
+    def _append(self, family: Family, count: int, **arrays: ArrayLike) -> None:
+        """Append `count` rows to the arrays of a family: (count, ...) or one value for all; 0 where none is given."""
+        for column in COLUMNS:
+            if column.family is family:
+                present, given = getattr(self, column.name), arrays.pop(column.name, 0)
+                added = np.broadcast_to(np.asarray(given, present.dtype), (count, *present.shape[1:]))
+                setattr(self, column.name, np.concatenate([present, added]))
+                if column.guarded:
+                    self.good[column.name] = np.concatenate([self.good[column.name], added])
+        assert not arrays, f"no arrays of {family}: {', '.join(arrays)}"
+
+    def _disturb(self, *particles: NDArray[np.integer] | int) -> None:
+        for slots in particles:
+            self.energy_bank[slots] = BANK_UNOPENED
 
     @property
     def settings(self) -> WorldSettings:
@@ -100,11 +166,7 @@ class World(ElementSlots):
     @property
     def has_contacts(self) -> bool:
         """Whether anything in the world can touch anything."""
-        return self._touching
-
-    def see_what_touches(self) -> None:
-        """Note whether anything can touch anything, where particles have come or gone."""
-        self._touching = bool(self.collides.any())
+        return self.derived(_collides)
 
     def keep_contacts(self, particle: NDArray[np.int32], feature: Slots, impulse: Floats) -> None:
         """Keep the contacts of a step and their impulses [N s] for the next."""
@@ -119,6 +181,32 @@ class World(ElementSlots):
     def spring_count(self) -> int:
         """Spring slots in use, active or not, hands included."""
         return len(self.rest_length)
+
+    @property
+    def element_count(self) -> int:
+        """Element slots in use, active or not."""
+        return len(self.element_kind)
+
+    @property
+    def elements(self) -> Elements:
+        """The elements as kernels read them."""
+        return Elements(
+            self.element_kind, self.element_first, self.element_corners, self.element_rest, self.element_active,
+            self.corner_particle, self.corner_weight,
+        )  # fmt: skip
+
+    @property
+    def element_coefficients(self) -> tuple[Floats, Floats]:
+        """Cs and Cd (t,) of a tick, as solvers take them; those of areas of more than three corners give way."""
+        stiffness, damping = self.element_stiffness, self.element_damping
+        # numpy takes 2 us for nothing at all, a fifth of the tick of a rope.
+        if not len(damping):
+            return stiffness, damping
+        gives = (self.element_corners > TRIANGLE) & (damping > HIGHEST_OF_RING)
+        if not gives.any():
+            return stiffness, damping
+        least = np.minimum(stiffness, HIGHEST_OF_RING)
+        return np.where(gives, least, stiffness), np.where(gives, HIGHEST_OF_RING, damping)
 
     @property
     def particle_names(self) -> list[str]:
@@ -144,16 +232,17 @@ class World(ElementSlots):
 
     def slot_name(self, array: str, slot: int) -> str:
         """What a person calls the owner of a slot of the state array of that name."""
-        if array in PARTICLE_ARRAYS:
-            return self.particle_names[slot]
-        if array in SPRING_ARRAYS:
-            return self.spring_names[slot]
-        if array in PART_ARRAYS:
-            return self.driven.part_names[slot]
-        if array in CONTACT_ARRAYS:
-            return f"contact of {self.particle_names[self.contact_particle[slot]]}"
-        if array in CORNER_ARRAYS:
-            return f"corner at {self.particle_names[self.corner_particle[slot]]}"
+        match BY_STORED[array].family:
+            case Family.PARTICLE:
+                return self.particle_names[slot]
+            case Family.SPRING:
+                return self.spring_names[slot]
+            case Family.ACTUATOR:
+                return self.driven.part_names[slot]
+            case Family.CONTACT:
+                return f"contact of {self.particle_names[self.contact_particle[slot]]}"
+            case Family.CORNER:
+                return f"corner at {self.particle_names[self.corner_particle[slot]]}"
         bend = self.element_kind[slot] == BEND
         middle = self.corner_particle[self.element_first[slot] + bend]
         return f"{'bend' if bend else 'area'} at {self.particle_names[middle]}"
@@ -196,23 +285,24 @@ class World(ElementSlots):
         self._particles.append(names)
         velocities = np.broadcast_to(np.asarray(velocity, dtype=np.float64), (count, 2))
         self._append(
+            Family.PARTICLE,
+            count,
             position=np.asarray(position, dtype=np.float64).reshape(count, 2),
             origin=np.asarray(position, dtype=np.float64).reshape(count, 2),
             velocity=np.where(is_pinned[:, None], 0.0, velocities),
             slow_velocity=np.where(is_pinned[:, None], 0.0, velocities),
-            energy_bank=np.full(count, BANK_UNOPENED),
+            energy_bank=BANK_UNOPENED,
             mass=masses,
             inverse_mass=np.where(is_pinned, 0.0, 1.0 / masses),
-            radius=np.broadcast_to(np.asarray(radius, dtype=np.float64), count),
-            gravity_scale=np.broadcast_to(np.asarray(gravity_scale, dtype=np.float64), count),
-            particle_active=np.ones(count, dtype=np.bool_),
-            friction=np.broadcast_to(np.asarray(friction, dtype=np.float64), count),
-            restitution=np.broadcast_to(np.asarray(restitution, dtype=np.float64), count),
-            owner=np.broadcast_to(-1 - first - np.arange(count) if owner is None else np.asarray(owner), count),
-            group=np.broadcast_to(group, count),
-            collides=np.broadcast_to(collides, count),
+            radius=radius,
+            gravity_scale=gravity_scale,
+            particle_active=True,
+            friction=friction,
+            restitution=restitution,
+            owner=-1 - first - np.arange(count) if owner is None else owner,
+            group=group,
+            collides=collides,
         )
-        self.see_what_touches()
         return first
 
     def add_springs(
@@ -248,23 +338,103 @@ class World(ElementSlots):
         given = np.broadcast_to(np.asarray(np.nan if rest_length is None else rest_length, dtype=np.float64), count)
         rest = np.where(np.isnan(given), placed, given)
         self._append(
+            Family.SPRING,
+            count,
             particle_a=a,
             particle_b=b,
             rest_length=rest,
             natural_length=rest,
-            stiffness=np.broadcast_to(stiffness, count),
-            damping=np.broadcast_to(damping, count),
-            law=np.broadcast_to(law, count),
-            hooke_stiffness=np.broadcast_to(hooke_stiffness, count),
-            hooke_damping=np.broadcast_to(hooke_damping, count),
-            material=np.broadcast_to(material, count),
-            spring_active=np.ones(count, dtype=np.bool_),
-            impulse=np.zeros((count, 2)),
-            tension=np.zeros(count),
-            edge=np.broadcast_to(edge, count),
+            stiffness=stiffness,
+            damping=damping,
+            law=law,
+            hooke_stiffness=hooke_stiffness,
+            hooke_damping=hooke_damping,
+            material=material,
+            spring_active=True,
+            edge=edge,
         )
         self._disturb(a, b)
         return first
+
+    def add_elements(
+        self,
+        kind: int,
+        corners: ArrayLike,
+        *,
+        form: ArrayLike | None = None,
+        inflation: ArrayLike = 1.0,
+        stiffness: ArrayLike = 0.5,
+        damping: ArrayLike = 0.9,
+        material: ArrayLike = 0,
+    ) -> int:
+        """Append elements of one kind, AREA or BEND, with k corners each, and return the first slot.
+
+        corners: particle slots (t, k), of an area in the order of its outline. form [m] (t, k, 2): their places at
+        rest, None = as they stand. inflation: area wanted as a multiple of the form's. The others (t,) or one for all.
+        Raises ValueError for a slot that does not exist, one that comes twice, a bend with no three corners or with a
+        link of no length, and an area with fewer than three corners.
+        """
+        slots = np.asarray(corners, dtype=np.int64)
+        count, size = slots.shape
+        if size < 3 or (kind == BEND and size != 3):
+            raise ValueError("an area has three corners or more, a bend three")
+        if count and (slots.min() < 0 or slots.max() >= len(self.position)):
+            raise ValueError("an element names a particle slot that does not exist")
+        if np.any(np.diff(np.sort(slots, axis=1), axis=1) == 0):
+            raise ValueError("the corners of an element are different particles")
+        places = self.position[slots] if form is None else np.asarray(form, dtype=np.float64)
+        rest, weight = rest_of_area(places, inflation) if kind == AREA else rest_of_bend(places)
+        first = self.element_count
+        self._append(
+            Family.ELEMENT,
+            count,
+            element_kind=kind,
+            element_first=len(self.corner_particle) + size * np.arange(count),
+            element_corners=size,
+            element_rest=rest,
+            element_stiffness=stiffness,
+            element_damping=damping,
+            element_material=material,
+            element_active=True,
+        )
+        self._append(
+            Family.CORNER,
+            count * size,
+            corner_particle=slots.reshape(-1),
+            corner_weight=weight.reshape(-1),
+            corner_form=places.reshape(-1, 2),
+        )
+        self._disturb(slots)
+        return first
+
+    def name_areas(self, name: str, elements: range) -> None:
+        """Name the areas of a body, to be inflated together."""
+        self.area_names.append(name)
+        self.area_elements.append(elements)
+
+    def inflate(self, body: int, inflation: float) -> None:
+        """Let each area of a body, by its place in `area_names`, want this multiple of its form's."""
+        first, last = self.area_elements[body].start, self.area_elements[body].stop
+        self.element_rest[first:last, 0] = inflation * self.element_rest[first:last, 1]
+        self.good["element_rest"][first:last] = self.element_rest[first:last]
+        corners = self.element_first[first], self.element_first[last - 1] + self.element_corners[last - 1]
+        self._disturb(self.corner_particle[corners[0] : corners[1]])
+
+    def set_coefficients(self, stiffness: float | None, damping: float | None, material: int | None) -> None:
+        """Set Cs, Cd or both, of one material's springs and areas or (None) of all.
+
+        Hands, Hooke springs and elements with Cs and Cd of their own keep theirs.
+        """
+        for family, materials in (("", self.material), ("element_", self.element_material)):
+            chosen = materials >= 0 if material is None else materials == material
+            for name, value in ((f"{family}stiffness", stiffness), (f"{family}damping", damping)):
+                if value is not None:
+                    getattr(self, name)[chosen] = value
+                self.good[name][chosen] = getattr(self, name)[chosen]
+            if not family:
+                self._disturb(self.particle_a[chosen], self.particle_b[chosen])
+            else:
+                self._disturb(self.corner_particle[np.repeat(chosen, self.element_corners)])
 
     def reserve_hands(self) -> None:
         """Reserve the slots of all hands, inactive; done once, when the world is built."""
@@ -283,12 +453,12 @@ class World(ElementSlots):
             damping=HAND_DAMPING,
             material=HAND_MATERIAL,
         )
-        self.particle_active[self.hand_particle :] = False
-        self.spring_active[self.hand_spring :] = False
+        self.change("particle_active", False, slice(self.hand_particle, None))
+        self.change("spring_active", False, slice(self.hand_spring, None))
 
     def pin(self, particle: int) -> None:
         """Hold a particle where it is."""
-        self.inverse_mass[particle] = 0.0
+        self.change("inverse_mass", 0.0, particle)
         self.velocity[particle] = 0.0
         self.slow_velocity[particle] = 0.0
         self._disturb(particle)
@@ -301,26 +471,29 @@ class World(ElementSlots):
 
     def unpin(self, particle: int) -> None:
         """Let a pinned particle move again, with the mass it has."""
-        self.inverse_mass[particle] = 1.0 / self.mass[particle]
+        self.change("inverse_mass", 1.0 / self.mass[particle], particle)
         self.slow_velocity[particle] = self.velocity[particle]
         self._disturb(particle)
 
     def cut(self, springs: Sequence[int]) -> None:
         """Take springs out of the world; their slots stay."""
-        for slot in springs:
-            self.spring_active[slot] = False
-            self.impulse[slot] = 0.0
-            self.tension[slot] = 0.0
-            self._disturb(self.particle_a[slot], self.particle_b[slot])
-        self._drop_elements(springs)
+        slots = np.asarray(springs, dtype=np.int64)
+        self._take_out(slots)
+        self._disturb(self.particle_a[slots], self.particle_b[slots])
 
     def break_springs(self, springs: Slots) -> None:
         """Take springs out that broke by themselves: what is left of a body goes on with the energy that it has."""
-        self.spring_active[springs] = False
+        self._take_out(springs)
+        self.broken = springs
+
+    def _take_out(self, springs: Slots) -> None:
+        """Take springs out, and the elements that they were a side of, unless another spring holds that side."""
+        self.change("spring_active", False, springs)
         self.impulse[springs] = 0.0
         self.tension[springs] = 0.0
-        self._drop_elements(springs)
-        self.broken = springs
+        if self.element_count:
+            gone = sides_gone(self.elements, self.particle_a, self.particle_b, self.spring_active, springs)
+            self.change("element_active", False, gone)
 
     def fit(self, driven: Driven, values: ArrayLike) -> None:
         """Give the world its driven parts, with the value (k,) of each, -1..1; done once, when the world is built."""
@@ -337,15 +510,15 @@ class World(ElementSlots):
         self.good["rest_length"][springs] = lengths
 
     def hold(self, hand: int, particle: int, target: tuple[float, float]) -> None:
-        """Join a particle to a hand's cursor at target [m] by a spring of rest length 0."""
+        """Join a particle to a hand's cursor at target [m] by a spring of rest length 0: a mouse joint."""
         self.reserve_hands()
         cursor, spring = self.hand_particle + hand, self.hand_spring + hand
-        self.particle_active[cursor] = True
+        self.change("particle_active", True, cursor)
         self.position[cursor] = target
         self.velocity[cursor] = 0.0
         self.slow_velocity[cursor] = 0.0
-        self.particle_b[spring] = particle
-        self.spring_active[spring] = True
+        self.change("particle_b", particle, spring)
+        self.change("spring_active", True, spring)
         self.impulse[spring] = 0.0
         self.tension[spring] = 0.0
         self._disturb(particle)
@@ -371,13 +544,13 @@ class World(ElementSlots):
     def release(self, hand: int) -> None:
         """Let go; the hand's slots wait for its next use."""
         cursor, spring = self.hand_particle + hand, self.hand_spring + hand
-        self.particle_active[cursor] = False
+        self.change("particle_active", False, cursor)
         self._disturb(self.particle_b[spring])
         self.position[cursor] = 0.0
         self.velocity[cursor] = 0.0
         self.slow_velocity[cursor] = 0.0
-        self.particle_b[spring] = 0
-        self.spring_active[spring] = False
+        self.change("particle_b", 0, spring)
+        self.change("spring_active", False, spring)
         self.impulse[spring] = 0.0
         self.tension[spring] = 0.0
 
@@ -398,3 +571,7 @@ class World(ElementSlots):
 
 def _hand_names() -> list[str]:
     return [f"+hand.{hand}" for hand in range(HAND_COUNT)]
+
+
+def _collides(world: World) -> bool:
+    return bool(world.collides.any())

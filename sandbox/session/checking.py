@@ -1,23 +1,86 @@
-"""Checking: runs a level and holds the checks that it carries against what was measured."""
+"""Checking: what is to be said of level files, one after another or in processes."""
 
-from sandbox.level.checks import CheckDef, CheckResult, check_ticks, evaluate
-from sandbox.level.format.model import Level
-from sandbox.session.session import Session
-from sandbox.session.summary import Summary, particle_metric, run
+import multiprocessing
+import signal
+import threading
+from collections.abc import Generator, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from sandbox.level.build.build_world import build_world
+from sandbox.level.format.files import LevelError, load_level
+from sandbox.physics.stability import report
+from sandbox.session.summary import run_checks
 
 
-def run_checks(level: Level) -> list[CheckResult]:
-    """Run the level by itself as long as each check asks for, and judge; in the order of the file."""
-    measured: dict[int, tuple[Session, Summary]] = {}
+@dataclass(frozen=True)
+class LevelReport:
+    """What came of a level: lines about it, or the faults for which it was refused; passed: whether its checks held."""
 
-    def measure(check: CheckDef) -> float:
-        ticks = check_ticks(check, level.settings.tick_rate)
-        if ticks not in measured:
-            session = Session(level)
-            measured[ticks] = session, run(session, ticks)
-        session, summary = measured[ticks]
-        if check.particle is not None:
-            return particle_metric(session.world, check.particle, check.metric)
-        return float(getattr(summary, check.metric))
+    lines: tuple[str, ...] = ()
+    faults: tuple[str, ...] = ()
+    passed: bool = False
 
-    return evaluate(level.checks, measure)
+
+def check_level(name: str) -> LevelReport:
+    """Validate a level file or a shipped level of that name, report its stability and run its checks."""
+    try:
+        level = load_level(name)
+    except LevelError as error:
+        return LevelReport(faults=tuple(error.faults))
+    stability = report(build_world(level))
+    results = run_checks(level)
+    lines = (
+        f"{name}: valid: {level.name}",
+        f"  stability  {stability.text}",
+        f"  in a single pass Cs = Cd would be stable up to {stability.proven_limit:.3g} proven, "
+        f"{stability.estimated_limit:.3g} estimated, {stability.article_limit:.3g} by the article's 1/(n+1)",
+        *(f"  check      {result.text}" for result in results),
+    )
+    return LevelReport(lines, passed=all(result.passed for result in results))
+
+
+def check_levels(names: Sequence[str], processes: int) -> Generator[LevelReport, None, None]:
+    """What came of each level, in order, as soon as it is known; with one process, in this one.
+
+    Close it if not all of them are wanted: processes would work on otherwise.
+    Raises OSError where a process cannot be started, or is gone before it has answered.
+    """
+    if processes == 1:
+        yield from map(check_level, names)
+        return
+    # A new interpreter each: one that is copied would have threads that are not running any more.
+    spawn = multiprocessing.get_context("spawn")
+    workers = ProcessPoolExecutor(processes, spawn, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN))
+    try:
+        with _interrupts_ignored():
+            waiting = [workers.submit(check_level, name) for name in names]
+        yield from map(_answer, waiting)
+        workers.shutdown()
+    except BaseException:
+        workers.shutdown(wait=False, cancel_futures=True)
+        for child in multiprocessing.active_children():
+            child.terminate()
+        raise
+
+
+def _answer(waiting: "Future[LevelReport]") -> LevelReport:
+    try:
+        return waiting.result()
+    except BrokenProcessPool:
+        raise OSError(0, "a process that checked a level has ended before its time; is there memory for all?") from None
+
+
+@contextmanager
+def _interrupts_ignored() -> Iterator[None]:
+    """An interrupt goes to all processes: those that are started in here leave it to this one."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    previous = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, previous)

@@ -8,11 +8,11 @@ from typing import Any
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import Level
 from sandbox.physics.snapshot import Snapshot, restore, take
-from sandbox.physics.state import STATE_ARRAYS
 from sandbox.physics.step import step
-from sandbox.session.breaks import break_lines
-from sandbox.session.commands import Command, CommandError, Grab, Redo, Release, SetDrive, Undo, apply, name_added
-from sandbox.session.records import ScriptLine, from_record, to_record
+from sandbox.physics.world import World
+from sandbox.session.commands import Command, CommandError, Redo, Undo, apply
+from sandbox.session.commands.adding import name_added
+from sandbox.session.commands.records import ScriptLine, from_record, to_record
 from sandbox.session.replay.writer import Recorder
 
 KEYFRAME_TICKS = 60
@@ -20,14 +20,16 @@ KEYFRAME_TICKS = 60
 KEYFRAME_BUDGET = 256 * 2**20
 # Ticks between two calls of `progress` while re-stepping.
 PROGRESS_TICKS = 120
+# Of more springs that break in one tick the message says how many they are, not their names.
+MOST_NAMED = 3
 
 
 @dataclass
 class LogEntry:
     """A command that was applied at a tick, before that tick's step.
 
-    in_effect: False while the command cannot be carried out because what it needed is undone. implied: the release
-    that an Undo brings about by itself, so that a recording of that Undo does not hold it.
+    in_effect: False while the command cannot be carried out because what it needed is undone. implied: the end of a
+    drag or drive that an Undo brings about by itself, so that a recording of that Undo does not hold it.
     """
 
     tick: int
@@ -117,9 +119,14 @@ class Session:
         """Queue the redoing of the gesture undone last."""
         self.submit(Redo())
 
-    def apply_pending(self) -> None:
-        """Apply what is due at this tick boundary without stepping: the script's commands, then those submitted."""
+    def apply_pending(self) -> bool:
+        """Apply what is due at this tick boundary without stepping: the script's commands, then those submitted.
+
+        Whether anything was due.
+        """
+        due = bool(self._pending)
         while self._scripted is not None and self._scripted.tick == self.tick == self._last_tick:
+            due = True
             line, self._scripted = self._scripted, next(self._script, None)
             try:
                 self._apply(from_record(line.record, self.world), line.gesture)
@@ -133,6 +140,7 @@ class Session:
                 self.messages.append(str(error))
             else:
                 self._scripted = None
+        return due
 
     def advance(self) -> None:
         """One tick: apply what is due, then step. In the past that `seek` reached, the logged commands follow again."""
@@ -143,7 +151,7 @@ class Session:
         self._step()
         self._last_tick = self.tick
         self.messages.extend(str(hit) for hit in self.world.contained)
-        self.messages.extend(break_lines(self.world))
+        self.messages.extend(_break_lines(self.world))
         if self._recorder is not None:
             self._record(self._recorder.write_tick, self.world)
 
@@ -259,23 +267,16 @@ class Session:
         self._step_again_from(gesture)
 
     def _let_go(self, gesture: int) -> None:
-        """End a drag or drive that is still going on, so that doing it again cannot leave it going for ever."""
-        grabs = {
-            entry.command.grab: entry.gesture
+        """End what a gesture began and is still going on, so that doing it again cannot leave it going for ever."""
+        going = {
+            begun: (entry.gesture, entry.command)
             for entry in self._effective_log()
-            if isinstance(entry.command, Grab) and entry.in_effect
+            if entry.in_effect and (begun := entry.command.begins()) is not None
         }
-        for hand, owner in grabs.items():
-            if owner == gesture and self.world.is_held(hand):
-                self._log.append(LogEntry(self.tick, gesture, Release(hand), implied=True))
-        driven = {
-            entry.command.part: (entry.gesture, entry.command.value)
-            for entry in self._effective_log()
-            if isinstance(entry.command, SetDrive) and entry.in_effect
-        }
-        for part, (owner, value) in driven.items():
-            if owner == gesture and value != 0.0:
-                self._log.append(LogEntry(self.tick, gesture, SetDrive(part, 0.0), implied=True))
+        for owner, command in going.values():
+            ending = command.ending(self.world)
+            if owner == gesture and ending is not None:
+                self._log.append(LogEntry(self.tick, gesture, ending, implied=True))
 
     def _step_again_from(self, gesture: int) -> None:
         first = next(entry.tick for entry in self._log if entry.gesture == gesture)
@@ -336,10 +337,22 @@ class Session:
 
     def _keep_keyframe(self) -> None:
         self._keyframes.append(take(self.world))
-        size = sum(getattr(self._keyframes[-1], name).nbytes for name in STATE_ARRAYS)
+        size = sum(array.nbytes for array in self._keyframes[-1].arrays.values())
         if size * len(self._keyframes) > KEYFRAME_BUDGET and len(self._keyframes) > 2:
             del self._keyframes[1::2]
 
     def _report_progress(self, done: int, total: int) -> None:
         if self.progress is not None and done % PROGRESS_TICKS == 0:
             self.progress(done, total)
+
+
+def _break_lines(world: World) -> list[str]:
+    """One line about the springs that broke in the last tick, or none."""
+    broken = world.broken.tolist()
+    if not broken:
+        return []
+    if len(broken) > MOST_NAMED:
+        return [f"tick {world.tick}: {len(broken)} springs broke"]
+    names = [world.spring_names[slot] for slot in broken]
+    listed = names[0] if len(names) == 1 else ", ".join(names[:-1]) + " and " + names[-1]
+    return [f"tick {world.tick}: {listed} broke"]

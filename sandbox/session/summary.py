@@ -1,20 +1,19 @@
 """Summary: what a headless run measures, for `sandbox run --json` and for the checks that a level carries."""
 
 import time
-from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from statistics import median
 
 import numpy as np
 
-from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
-from sandbox.physics.query import shown_particles, shown_springs
+from sandbox.level.checks import CheckDef, CheckResult, check_ticks, evaluate
+from sandbox.level.format.model import Level
+from sandbox.physics.energy import Dissipation, gravity_energy, kinetic_energy, spring_energy
+from sandbox.physics.query import load_bearing, shown_particles, shown_springs, strain
 from sandbox.physics.settings import Substeps
 from sandbox.physics.snapshot import state_hash
-from sandbox.physics.strain import load_bearing, strain
 from sandbox.physics.world import World
-from sandbox.session.dissipation import Dissipation
 from sandbox.session.session import Session
 
 # Strain is measured over this last part of a run [s].
@@ -67,18 +66,20 @@ class Summary:
 def run(session: Session, ticks: int, on_tick: Callable[[World], None] | None = None) -> Summary:
     """Advance a session by a number of ticks and measure; on_tick: called with the world after every step."""
     world = session.world
-    window = deque[tuple[float, float, int]](maxlen=max(1, round(STRAIN_WINDOW * world.settings.tick_rate)))
+    samples = max(1, round(STRAIN_WINDOW * world.settings.tick_rate))
+    window: list[tuple[float, float, int]] = []
     times: list[float] = []
     dissipation = Dissipation()
     with np.errstate(over="ignore", invalid="ignore"):
-        for _ in range(ticks):
-            session.apply_pending()
-            dissipation.before(world)
+        for done in range(ticks):
+            changed = session.apply_pending()
+            dissipation.before(world, changed)
             start = time.perf_counter()
             session.advance()
             times.append(time.perf_counter() - start)
             dissipation.after(world)
-            window.append(_strain_sample(world))
+            if ticks - done <= samples:
+                window.append(_strain_sample(world))
             if on_tick is not None:
                 on_tick(world)
         session.apply_pending()
@@ -92,7 +93,7 @@ def _strain_sample(world: World) -> tuple[float, float, int]:
 
 
 def _summary(
-    world: World, ticks: int, window: deque[tuple[float, float, int]], times: list[float], dissipated: float
+    world: World, ticks: int, window: list[tuple[float, float, int]], times: list[float], dissipated: float
 ) -> Summary:
     shown = shown_particles(world)
     speed = np.sqrt(np.sum(world.velocity[shown] ** 2, axis=1))
@@ -128,3 +129,20 @@ def particle_metric(world: World, particle: str, metric: str) -> float:
     slot = world.particle_slot(particle)
     x, y = world.position[slot].tolist()
     return {"x": x, "y": y, "speed": float(np.hypot(*world.velocity[slot]))}[metric]
+
+
+def run_checks(level: Level) -> list[CheckResult]:
+    """Run the level by itself as long as each check asks for, and judge; in the order of the file."""
+    measured: dict[int, tuple[Session, Summary]] = {}
+
+    def measure(check: CheckDef) -> float:
+        ticks = check_ticks(check, level.settings.tick_rate)
+        if ticks not in measured:
+            session = Session(level)
+            measured[ticks] = session, run(session, ticks)
+        session, summary = measured[ticks]
+        if check.particle is not None:
+            return particle_metric(session.world, check.particle, check.metric)
+        return float(getattr(summary, check.metric))
+
+    return evaluate(level.checks, measure)

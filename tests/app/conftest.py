@@ -12,6 +12,7 @@ import pytest
 
 from sandbox.app.app import App
 from sandbox.app.display import Display
+from sandbox.app.wanted import Wanted
 from sandbox.level.format.files import parse_level
 from tests.support.person import VirtualScreen
 
@@ -41,7 +42,8 @@ class Driver:
     """A person at the app: moves, clicks, types, and lets frames pass."""
 
     def __init__(self, level=None, replay=None):
-        self.app = App(Display(1.0), level, replay)
+        self.app = App(Display(1.0))
+        self.app.open(Wanted(level, replay))
         self.frames(2)
 
     @property
@@ -157,6 +159,9 @@ def documents(tmp_path, monkeypatch):
         "sandbox.editor.storage.level_file.platformdirs.user_data_dir", lambda *_, **__: str(tmp_path / "data")
     )
     monkeypatch.setattr("sandbox.app.recordings.platformdirs.user_documents_dir", lambda: str(tmp_path))
+    monkeypatch.setattr(
+        "sandbox.app.picture_cache.platformdirs.user_cache_dir", lambda *_, **__: str(tmp_path / "cache")
+    )
     return tmp_path / "Spring Sandbox"
 
 

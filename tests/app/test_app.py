@@ -10,11 +10,14 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.app import run_app
 from sandbox.app.display import has_display
+from sandbox.app.opening import open_app
 from sandbox.app.play.playback import Playback
 from sandbox.app.shortcuts import action_of, shortcuts
-from sandbox.level.format.files import read_level, shipped_levels
+from sandbox.app.wanted import Wanted
+from sandbox.editor.storage.recent import remember
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.files import shipped_levels
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
 from tests.app.conftest import FRAME, small_level
@@ -371,8 +374,8 @@ def test_a_window_made_smaller_and_larger_again_shows_what_it_showed(driver):
 
 def test_a_long_run_played_again_shows_how_far_it_is(driver, monkeypatch):
     now, shown = [0.0], []
-    monkeypatch.setattr("sandbox.app.widgets.progress.time.perf_counter", lambda: now[0])
-    monkeypatch.setattr("sandbox.app.widgets.progress.draw_bar", lambda surface, ui, share, text: shown.append(share))
+    monkeypatch.setattr("sandbox.app.progress.time.perf_counter", lambda: now[0])
+    monkeypatch.setattr("sandbox.app.progress.draw_bar", lambda surface, ui, share, text: shown.append(share))
     for done in range(0, 1000, 100):
         now[0] += 0.06
         driver.playback.session.progress(done, 1000)
@@ -398,10 +401,11 @@ def test_particles_that_are_no_longer_finite_are_left_out_and_counted(driver):
     assert any("no longer finite" in text for text, _ in driver.app.screen.status(0.0, 0.0))
 
 
-def test_run_app_closes_after_the_given_time_and_prints_where_the_time_went(capsys, documents):
-    assert run_app(None, profile=True, seconds=0.2) == 0
+def test_the_app_closes_after_the_given_time_and_prints_where_the_time_went(capsys, documents):
+    assert open_app(Wanted, profile=True, seconds=0.2) == 0
     printed = capsys.readouterr().out
-    assert all(part in printed for part in ("events", "ui", "flip", "frames a second"))
+    parts = ("events", "ui", "flip", "frames a second", "without a new picture", "words in the window", "first page")
+    assert all(part in printed for part in parts)
 
 
 def delayed_contacts(driver, monkeypatch):
@@ -427,17 +431,22 @@ def test_a_level_in_which_things_touch_waits_until_contacts_are_prepared(driver,
     assert driver.playback.session.tick > 0
 
 
-def test_pictures_of_levels_in_which_nothing_touches_are_drawn_before_contacts_are_prepared(open_app, monkeypatch):
-    driver = open_app()
+def test_pictures_of_levels_in_which_nothing_touches_are_drawn_before_contacts_are_prepared(
+    open_app, monkeypatch, tmp_path
+):
+    for name, changes in (("Touching", {"contacts": {}}), ("Loose", {})):
+        path = tmp_path / f"{name}.json"
+        path.write_text(level_text(small_level(name=name, **changes)))
+        remember(path)
+    driver = open_app(small_level())
     driver.app.preparation.finish()
     touching = delayed_contacts(driver, monkeypatch)
-    driver.app.open_gallery()
-    cards = driver.app.gallery.cards
-    for _ in cards:
+    driver.app.open_gallery("mine")
+    has_picture = {}
+    while not has_picture.get("Loose"):
         driver.app.frame(FRAME)
-    touches = {level.name: level.has_contacts for level in map(read_level, shipped_levels())}
-    assert {card.name: card.picture is None for card in cards} == touches and any(touches.values())
+        has_picture = {card.name: card.picture is not None for card in driver.app.gallery.cards}
+    assert has_picture == {"Loose": True, "Touching": False}
     touching.set()
-    driver.app.preparation.finish(contacts=True)
-    driver.frames(len(cards))
-    assert all(card.picture is not None for card in cards)
+    while not all(card.picture is not None for card in driver.app.gallery.cards):
+        driver.frames()

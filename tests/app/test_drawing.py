@@ -9,10 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sandbox.app.draw.camera import Camera, bounds, grid_spacing
-from sandbox.app.draw.colours import BACKGROUND, packed, strain_colours
+from sandbox.app.draw.colours import BACKGROUND, packed
 from sandbox.app.draw.lines import Canvas
 from sandbox.app.draw.picture import crop_of, draw_picture, save_picture, view_of
 from sandbox.app.draw.renderer import Renderer
+from sandbox.app.draw.strain_colours import strain_colours
 from sandbox.app.loop import LONGEST_FRAME, SPEEDS, TickClock
 from sandbox.app.play.playback import Playback, interpolated
 from sandbox.level.build.build_world import build_world
@@ -209,7 +210,7 @@ def draw(level, change=None):
     if change is not None:
         position = snapshot.position.copy()
         change(position)
-        snapshot = replace(snapshot, position=position)
+        snapshot = replace(snapshot, arrays={**snapshot.arrays, "position": position})
     surface = pygame.Surface((400, 300), 0, 32)
     camera = Camera(viewport=(0, 0, 400, 300))
     camera.fit((-1.0, -3.0, 7.0, 3.0))

@@ -21,9 +21,9 @@ def test_a_rope_is_drawn_by_a_drag_with_a_ghost_before_the_release(edit):
     driver.key(pygame.K_r)
     driver.press(driver.at(-2, 1))
     driver.move(driver.at(1, 1))
-    ghost = driver.editor.hand.ghost()
+    ghost = driver.editor.pointer_tool.ghost()
     assert [body.type for body in ghost.level.bodies] == ["rope"] and not driver.editor.document.level.bodies
-    assert "3 m" in driver.editor.hand.measure
+    assert "3 m" in driver.editor.pointer_tool.measure
     driver.release(driver.at(1, 1))
     (rope,) = driver.editor.document.level.bodies
     assert isinstance(rope, RopeDef)
@@ -215,9 +215,12 @@ def test_plus_and_minus_count_the_parts_while_drawing_and_zoom_otherwise(edit):
     zoom = driver.editor.camera.zoom
     driver.press(driver.at(-2, 1))
     driver.move(driver.at(1, 1))
-    links = len(driver.editor.hand.ghost().level.bodies) and driver.editor.hand.ghost().level.bodies[0].segments
+    links = (
+        len(driver.editor.pointer_tool.ghost().level.bodies)
+        and driver.editor.pointer_tool.ghost().level.bodies[0].segments
+    )
     driver.key(pygame.K_EQUALS)
-    assert driver.editor.hand.ghost().level.bodies[0].segments == links + 1
+    assert driver.editor.pointer_tool.ghost().level.bodies[0].segments == links + 1
     assert driver.editor.camera.zoom == zoom
     driver.key(pygame.K_ESCAPE)
     driver.key(pygame.K_EQUALS)
@@ -230,7 +233,7 @@ def test_escape_gives_a_drawing_up_and_then_the_tool(edit):
     driver.click_at(-2, 1)
     driver.move(driver.at(1, 1))
     driver.key(pygame.K_ESCAPE)
-    assert driver.editor.hand.ghost() is None or not driver.editor.hand.drawing.under_way
+    assert driver.editor.pointer_tool.ghost() is None or not driver.editor.pointer_tool.drawing.under_way
     assert driver.editor.tool == "rope"
     driver.key(pygame.K_ESCAPE)
     assert driver.editor.tool == "select" and driver.editor.history.labels == ["New"]
@@ -267,7 +270,7 @@ def test_all_options_can_be_reached_at_every_scale_and_none_lies_beyond_the_wind
     driver.app.rebuild()
     driver.frames(2)
     options, reached, pages = driver.editor.options, [], 0
-    names = list(described(driver.editor.hand.drawing.options))
+    names = list(described(driver.editor.pointer_tool.drawing.options))
     while not set(names) <= set(reached):
         shown = {name: field.entry for name, field in options.fields.items()} | options.flags | options.menus
         assert all(options.back.rect.contains(widget.rect) for widget in shown.values())

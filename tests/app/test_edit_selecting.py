@@ -75,7 +75,7 @@ def test_a_drag_shows_the_selection_where_it_will_be_and_escape_gives_it_up(driv
     driver.press(driver.at(2, 0))
     driver.move(driver.at(2, 0.5))
     driver.move(driver.at(2, 1))
-    assert driver.editor.hand.matrix[1, 2] == pytest.approx(1.0)
+    assert driver.editor.pointer_tool.matrix[1, 2] == pytest.approx(1.0)
     driver.key(pygame.K_ESCAPE)
     driver.release(driver.at(2, 1))
     assert driver.editor.document.level is before
@@ -91,10 +91,10 @@ def test_an_end_that_is_dropped_on_a_particle_joins_it_and_undo_parts_them(drive
 
 def test_handles_scale_about_the_other_side_and_the_knob_turns(driver):
     driver.click_at(1, 0)
-    handles = driver.editor.hand.handles()
+    handles = driver.editor.pointer_tool.handles()
     assert "right" not in handles.places or "top" not in handles.places
     driver.key(pygame.K_a, CTRL)
-    handles = driver.editor.hand.handles()
+    handles = driver.editor.pointer_tool.handles()
     corner = handles.places["top right"]
     driver.press(corner)
     driver.move((corner[0] + 10, corner[1] - 10))
@@ -102,7 +102,7 @@ def test_handles_scale_about_the_other_side_and_the_knob_turns(driver):
     driver.release((corner[0] + 60, corner[1] - 30))
     assert driver.editor.history.labels[-1] == "Scale"
     assert body(driver).start == pytest.approx((0, 0), abs=1e-9) and body(driver).end[0] > 4.1
-    knob = driver.editor.hand.handles().knob
+    knob = driver.editor.pointer_tool.handles().knob
     driver.press(knob)
     driver.move((knob[0] + 20, knob[1] + 5))
     x, y = driver.at(*np.reshape(driver.editor.selection_box, (2, 2)).mean(axis=0))

@@ -29,7 +29,7 @@ def test_ground_is_drawn_by_clicks(edit, end):
     driver.key(pygame.K_d)
     for point in ((0, 0), (2, 0), (2, 1)):
         driver.click_at(*point)
-    assert driver.editor.hand.drawing.outline[:3] == [(0, 0), (2, 0), (2, 1)]
+    assert driver.editor.pointer_tool.drawing.outline[:3] == [(0, 0), (2, 0), (2, 1)]
     if end == "first corner":
         driver.click_at(0, 0)
     elif end == "enter":
@@ -53,7 +53,7 @@ def test_backspace_takes_a_corner_of_a_line_back_and_escape_all_of_it(edit):
     assert terrain(driver)[0].polyline == ((0, 0), (2, 0), (3, 0))
     driver.click_at(0, 2)
     driver.key(pygame.K_ESCAPE)
-    assert not driver.editor.hand.drawing.under_way and len(terrain(driver)) == 1
+    assert not driver.editor.pointer_tool.drawing.under_way and len(terrain(driver)) == 1
 
 
 def test_a_line_is_drawn_by_the_keyboard_alone(edit):
@@ -84,7 +84,7 @@ def test_a_corner_is_dragged_one_is_put_in_and_one_is_taken_out_with_undo(driver
     driver.drag((1, -2), (1, -2.3), (1, -2.5))
     assert terrain(driver)[0].polygon[1] == (1, -2.5) and len(terrain(driver)[0].polygon) == 5
     driver.click_at(-2, -1)
-    assert driver.editor.hand.corner == 4 and "Delete" in driver.editor.hand.hint
+    assert driver.editor.pointer_tool.corner == 4 and "Delete" in driver.editor.pointer_tool.hint
     driver.key(pygame.K_DELETE)
     assert terrain(driver)[0].polygon == ((-2, -2), (1, -2.5), (4, -2), (4.5, -0.5))
     assert driver.editor.document.selection == {PIECE}
@@ -113,7 +113,7 @@ def test_a_corner_that_would_cross_a_side_stays_where_it_was(driver):
     driver.click_at(1, -1.6)
     driver.press(driver.at(-2, -1))
     driver.move(driver.at(1, -3))
-    assert driver.editor.hand.ghost() is None
+    assert driver.editor.pointer_tool.ghost() is None
     driver.release(driver.at(1, -3))
     assert len(terrain(driver)[0].polygon) == 4 and labels(driver) == []
     assert any("touch or cross" in notice for notice in driver.notices)

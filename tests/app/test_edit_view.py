@@ -88,13 +88,13 @@ def test_the_forecast_shows_where_a_rope_will_hang_and_changes_nothing(edit):
     driver.key(pygame.K_u)
     for _ in range(3000):
         driver.frames()
-        if driver.editor.forecast is not None and driver.editor.forecast.position is not None:
+        if driver.editor.hanging is not None:
             break
-    hanging = driver.editor.watch.hanging
+    hanging = driver.editor.hanging
     assert hanging[driver.editor.scene.slot("rope.4")] == pytest.approx((0, -4), abs=0.3)
     assert driver.editor.document.level is level
     driver.key(pygame.K_u)
-    assert driver.editor.watch.hanging is None
+    assert driver.editor.hanging is None
 
 
 def test_the_window_can_be_resized_and_the_panel_hidden(driver):
@@ -104,7 +104,7 @@ def test_the_window_can_be_resized_and_the_panel_hidden(driver):
     assert driver.editor.camera.viewport[2] < 400 and driver.editor.camera.centre == middle
     driver.key(pygame.K_h)
     assert driver.editor.camera.viewport[0] + driver.editor.camera.viewport[2] == 700
-    assert set(driver.editor.palette.tools) == set(driver.editor.hands)
+    assert set(driver.editor.palette.tools) == set(driver.editor.pointer_tools)
 
 
 def test_handles_lie_around_the_box_and_only_where_they_mean_something():

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sandbox.physics.energy import kinetic_energy, spring_energy
+from sandbox.physics.query import load_bearing, strain
 from sandbox.physics.snapshot import take
 from sandbox.physics.step import step
-from sandbox.physics.strain import load_bearing, strain
 from sandbox.physics.world import World
 from tests.bench.scenes import Scene, lattice, total_energy
 

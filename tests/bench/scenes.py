@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
+from sandbox.physics.query import load_bearing, strain
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.strain import load_bearing, strain
 from sandbox.physics.world import Floats, Slots, World
 
 LINK = 0.1

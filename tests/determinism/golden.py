@@ -14,7 +14,7 @@ from typing import Any
 
 from sandbox.level.format.files import parse_level
 from sandbox.physics.snapshot import hash_by_array, state_hash
-from sandbox.session.records import ScriptLine
+from sandbox.session.commands.records import ScriptLine
 from sandbox.session.session import Session
 
 FOLDER = Path(__file__).with_name("goldens")

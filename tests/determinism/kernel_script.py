@@ -5,6 +5,7 @@ Some of its springs yield and break.
 python kernel_script.py SOLVER SUBSTEPS TICKS [--without-numba | --broken-numba | --without-cache]
 """
 
+import os
 import sys
 import warnings
 from pathlib import Path
@@ -29,20 +30,8 @@ def prepare(mode: str) -> None:
     elif mode == "--broken-numba":
         sys.modules["numba"] = None  # importing it raises ImportError, as a numba too old for this numpy does
     elif mode == "--without-cache":
-        import numba
-
-        original = numba.njit
-
-        def njit_without_cache(*arguments, cache=False, **options):
-            if not cache:
-                return original(*arguments, **options)
-
-            def refuse(function):
-                raise RuntimeError(f"cannot cache function {function.__name__!r}: no locator available")
-
-            return refuse
-
-        numba.njit = njit_without_cache
+        os.environ["NUMBA_CACHE_DIR"] = str(Path(__file__) / "not a folder")
+        warnings.filterwarnings("ignore", "compiled kernels cannot be kept")
 
 
 def busy_world(solver: str, substeps: int):
@@ -77,7 +66,7 @@ def busy_world(solver: str, substeps: int):
     names = [f"net:{k}" for k in range(len(pairs))]
     first, second = zip(*pairs, strict=True)
     world.add_springs(names, first, second, stiffness=0.09, damping=0.13)
-    world.law[5:9] = LAW_HOOKE
+    world.change("law", LAW_HOOKE, slice(5, 9))
     world.hooke_stiffness[5:9], world.hooke_damping[5:9] = 40.0, 0.3
     pair = world.add_particles(["a", "b", "free"], [(4, 4), (4, 4), (5, 5)], velocity=[(0, 0), (0.1, -0.2), (1, 2)])
     world.add_springs([":0", ":1"], [pair, pair], [pair + 1, pair + 1], rest_length=[0.3, 0.0], stiffness=0.2)
@@ -101,8 +90,9 @@ def touching_world(solver: str, substeps: int):
     from sandbox.physics.terrain import Chain, make_terrain
 
     world = busy_world(solver, substeps)
-    world.edge[:] = LINE
-    world.group[:36], world.collides[:36], world.owner[:36] = 2, ALL_GROUPS, 1
+    world.change("edge", LINE)
+    for name, value in (("group", 2), ("collides", ALL_GROUPS), ("owner", 1)):
+        world.change(name, value, slice(36))
     names, points = [f"disc.{k}" for k in range(6)], [(0.3 + 0.41 * k, 2.9 + 0.2 * (k % 2)) for k in range(6)]
     world.add_particles(
         names, points, radius=0.15, friction=0.4, restitution=[0.6, 0.0] * 3, group=2, collides=ALL_GROUPS,

@@ -17,7 +17,7 @@ from sandbox.level.format.files import parse_level, shipped_levels
 from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers import SOLVERS
-from sandbox.session.records import from_record
+from sandbox.session.commands.records import from_record
 from sandbox.session.session import Session
 from tests.determinism.golden import Golden, golden_path, played, write_golden
 

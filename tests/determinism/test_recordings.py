@@ -9,7 +9,8 @@ import pytest
 from sandbox.level.format.files import read_level, shipped_levels
 from sandbox.physics.jit import COMPILED
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import ReplayError, verify
+from sandbox.session.replay.recording import ReplayError
+from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.play import play
 

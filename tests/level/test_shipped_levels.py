@@ -10,9 +10,9 @@ from sandbox.level.checks import check_ticks, evaluate
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import load_level, parse_level, read_level, shipped_levels
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.query import load_bearing, strain
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
-from sandbox.physics.strain import load_bearing, strain
 
 LEVELS = [path.stem for path in shipped_levels()]
 

@@ -14,7 +14,7 @@ def test_kinetic_and_gravity_energy_count_free_active_particles():
     world.velocity[1:] = [(3.0, 4.0), (1.0, 0.0)]
     assert kinetic_energy(world) == pytest.approx(0.5 * 2.0 * 25.0 + 0.5 * 4.0)
     assert gravity_energy(world) == pytest.approx(10.0 * (2.0 * 3.0 + 4.0 * 5.0))
-    world.particle_active[2] = False
+    world.change("particle_active", False, 2)
     assert kinetic_energy(world) == pytest.approx(25.0)
     assert gravity_energy(world) == pytest.approx(60.0)
 
@@ -33,13 +33,14 @@ def test_spring_energy_is_half_k_x_squared_with_the_k_of_cs():
     assert reduced_masses(world)[0] == pytest.approx(0.75)
     assert spring_lengths(world)[0] == pytest.approx(1.5)
     assert spring_energy(world) == pytest.approx(0.5 * (0.2 * 0.75 * 60.0**2) * 0.25)
-    world.spring_active[:] = False
+    world.change("spring_active", False)
     assert spring_energy(world) == 0.0
 
 
 def test_a_hooke_spring_stores_energy_by_its_own_k_and_a_pinned_pair_none():
     world = network([(0, 0), (1, 0), (2, 0)], [(0, 1), (1, 2)], pinned=[0, 1])
-    world.law[:], world.hooke_stiffness[1] = [0, LAW_HOOKE], 8.0
+    world.change("law", [0, LAW_HOOKE])
+    world.hooke_stiffness[1] = 8.0
     world.rest_length[:] = 0.5
     assert spring_energy(world) == pytest.approx(0.5 * 8.0 * 0.25)
 

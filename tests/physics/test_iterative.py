@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from sandbox.physics.query import strain
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
-from sandbox.physics.strain import strain
 from sandbox.physics.world import LAW_HOOKE
 from tests.support.physics_scenes import grid, grid_with_diagonals, lengths, network, random_graph, run, scaled
 
@@ -153,7 +153,8 @@ def test_hooke_springs_act_once_whatever_the_iterations():
     positions = []
     for iterations in (1, 50):
         world = network([(0, 0), (1, 0)], [(0, 1)], solver="iterative", iterations=iterations)
-        world.law[:], world.hooke_stiffness[:] = LAW_HOOKE, 100.0
+        world.change("law", LAW_HOOKE)
+        world.hooke_stiffness[:] = 100.0
         world.position[1, 0] = 1.2
         run(world, 20)
         positions.append(world.position.copy())

@@ -1,9 +1,6 @@
 """Kernels run from one source, compiled or not."""
 
 import importlib
-import os
-import shutil
-import subprocess
 import sys
 
 import numpy as np
@@ -37,33 +34,18 @@ def test_a_compiled_kernel_gives_the_same_bits_as_its_source():
 
 def test_a_bundle_hands_kernels_the_very_arrays_that_went_into_it():
     def add(items, factor):
-        values, active, total = items.items
+        values, active, total = jit.contents(items)
         for k in range(active.shape[0]):
             if active[k]:
                 total[k, 0] += factor * values[k]
 
     values, total = np.linspace(0.1, 7.7, 9), np.zeros((9, 2))
-    bundle, function = jit.bundle((values, np.arange(9) % 3 > 0, total)), jit.bundle_kernel(add)
+    bundle, function = jit.bundle((values, np.arange(9) % 3 > 0, total)), jit.kernel(add)
     first = values.tolist()
     function(bundle, 2.0)
     values[:] = 1.0
     function(bundle, 0.5)
     assert total[:, 0].tolist() == [2.0 * value + 0.5 if k % 3 else 0.0 for k, value in enumerate(first)]
-
-
-@pytest.mark.skipif(not jit.COMPILED, reason="nothing is compiled here")
-def test_a_kernel_is_compiled_uncached_where_the_cache_refuses(monkeypatch):
-    asked = []
-
-    def njit_without_cache(*, cache=False, error_model, **options):
-        asked.append((cache, error_model))
-        if cache:
-            raise RuntimeError("cannot cache function: no locator available")
-        return lambda function: function
-
-    monkeypatch.setattr(jit._numba, "njit", njit_without_cache)
-    assert jit.kernel(accumulate) is accumulate
-    assert asked == [(True, "numpy"), (False, "numpy")]
 
 
 def test_kernels_are_interpreted_when_compiling_is_switched_off_or_numba_is_missing(monkeypatch):
@@ -77,45 +59,3 @@ def test_kernels_are_interpreted_when_compiling_is_switched_off_or_numba_is_miss
     finally:
         monkeypatch.undo()
         importlib.reload(jit)
-
-
-CALLEE = """from room.jit import scalar_kernel
-
-@scalar_kernel
-def share(value):
-    return value * {factor}
-"""
-CALLER = """import numpy as np
-from room.callee import share
-from room.jit import kernel
-
-@kernel
-def fill(values):
-    for k in range(values.shape[0]):
-        values[k] = share(2.0)
-
-values = np.zeros(1)
-fill(values)
-print(values[0], *getattr(fill, "stats", ()))
-"""
-
-
-def test_a_change_in_a_file_that_a_kernel_calls_reaches_the_compiled_kernel(tmp_path):
-    room = tmp_path / "room"
-    room.mkdir()
-    shutil.copy(jit.__file__, room / "jit.py")
-    (room / "caller.py").write_text(CALLER)
-    for factor in (3.0, 5.0):
-        (room / "callee.py").write_text(CALLEE.format(factor=factor))
-        for _ in range(2):
-            command = [sys.executable, "-m", "room.caller"]
-            environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
-            ended = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
-            assert ended.stdout.split()[:1] == [str(2.0 * factor)], ended.stderr
-
-
-@pytest.mark.skipif(not jit.COMPILED, reason="nothing is cached here")
-def test_choosing_a_cache_folder_leaves_the_rest_of_the_process_alone():
-    before = jit._numba.config.CACHE_DIR, os.environ.get("NUMBA_CACHE_DIR")
-    jit.kernel(accumulate)
-    assert (jit._numba.config.CACHE_DIR, os.environ.get("NUMBA_CACHE_DIR")) == before

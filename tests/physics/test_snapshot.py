@@ -10,7 +10,7 @@ from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.state import STATE_ARRAYS
+from sandbox.physics.state import COLUMNS
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE, World
 from tests.support.physics_scenes import grid, network, run, scaled
@@ -18,7 +18,8 @@ from tests.support.physics_scenes import grid, network, run, scaled
 
 def busy_world(solver="iterative"):
     world = grid(5, 5, solver=solver, gravity=(0.5, -9.81), substeps=2, stiffness=0.2)
-    world.law[3], world.hooke_stiffness[3], world.hooke_damping[3] = LAW_HOOKE, 50.0, 0.1
+    world.change("law", LAW_HOOKE, 3)
+    world.hooke_stiffness[3], world.hooke_damping[3] = 50.0, 0.1
     world.add_elements(AREA, [[0, 1, 6], [6, 7, 12]], stiffness=0.1)
     world.add_elements(BEND, [[0, 1, 2]], damping=0.1, material=-1)
     world.fit(Driven(("part",)), [0.5])
@@ -83,20 +84,20 @@ def test_a_snapshot_is_a_read_only_copy():
     before = snapshot.position.copy()
     run(world, 3)
     assert np.array_equal(snapshot.position, before)
-    for name in STATE_ARRAYS:
+    for column in COLUMNS:
         with pytest.raises(ValueError, match="read-only"):
-            getattr(snapshot, name)[:] = 0
+            getattr(snapshot, column.name)[:] = 0
     restore(world, snapshot)
     step(world)
     assert np.array_equal(snapshot.position, before)
 
 
-@pytest.mark.parametrize("name", STATE_ARRAYS)
-def test_each_array_changes_the_hash_and_its_own_hash_alone(name):
+@pytest.mark.parametrize("column", COLUMNS, ids=lambda column: column.stored)
+def test_each_array_changes_the_hash_and_its_own_hash_alone(column):
     world = busy_world()
     world.keep_contacts(np.zeros(1, dtype=np.int32), np.ones(1, dtype=np.int64), np.ones((1, 2)))
     before, by_array = state_hash(world), hash_by_array(world)
-    array = getattr(world, name)
+    array = getattr(world, column.name)
     if array.dtype.kind == "f":
         array.flat[-1] = np.nextafter(array.flat[-1], np.inf)
     elif array.dtype.kind == "b":
@@ -104,7 +105,7 @@ def test_each_array_changes_the_hash_and_its_own_hash_alone(name):
     else:
         array[-1] += 1
     assert state_hash(world) != before
-    assert [other for other, digest in hash_by_array(world).items() if digest != by_array[other]] == [name]
+    assert [other for other, digest in hash_by_array(world).items() if digest != by_array[other]] == [column.stored]
 
 
 @pytest.mark.parametrize(

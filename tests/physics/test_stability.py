@@ -110,7 +110,7 @@ def test_what_is_reported_stable_is_stable_with_mixed_coefficients_hooke_springs
         world.stiffness[:] = np.minimum(reach * generator.random(count), 1.0)
         world.damping[:] = np.minimum(0.5 * (reach - world.stiffness).clip(0.0), 1.0)
         if trial % 2:
-            world.law[:5] = LAW_HOOKE
+            world.change("law", LAW_HOOKE, slice(5))
             world.hooke_stiffness[:5] = generator.uniform(0.0, 1.0, 5) * reduced_masses(world)[:5] * 60.0**2
             world.hold(0, int(generator.integers(2, 12)), (9.0, 9.0))
         state = report(world)
@@ -235,7 +235,7 @@ def test_no_stiffness_is_proven_where_the_damping_alone_is_too_much():
 )
 def test_a_mistuned_hooke_spring_is_reported_past_the_limit(name, limit):
     world = network([(0, 0), (1, 0)], [(0, 1)], masses=3.0, pinned=[0])
-    world.law[:] = LAW_HOOKE
+    world.change("law", LAW_HOOKE)
     getattr(world, name)[:] = 0.99 * limit
     assert report(world).within_limit
     getattr(world, name)[:] = 1.01 * limit

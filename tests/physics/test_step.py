@@ -39,7 +39,8 @@ def test_an_empty_world_only_counts_its_ticks(solver):
 @pytest.mark.parametrize("law", [0, LAW_HOOKE])
 def test_a_spring_between_two_pinned_particles_does_nothing(solver, law):
     world = network([(0, 0), (1, 0), (5, 5)], [(0, 1)], pinned=[0, 1], solver=solver, stiffness=1.0, damping=1.0)
-    world.law[:], world.hooke_stiffness[:] = law, 1e6
+    world.change("law", law)
+    world.hooke_stiffness[:] = 1e6
     world.rest_length[:] = 0.1
     run(world, 10)
     assert np.array_equal(world.position, [(0, 0), (1, 0), (5, 5)])
@@ -120,7 +121,8 @@ def test_substep_coefficients_are_as_many_halvings_as_substeps_need():
 
 def test_hooke_springs_are_in_newtons_per_metre_and_substeps_do_not_retune_them():
     world = network([(0, 0), (1, 0)], [(0, 1)], pinned=[0], substeps=64, tick_rate=60)
-    world.law[:], world.hooke_stiffness[:] = LAW_HOOKE, 25.0
+    world.change("law", LAW_HOOKE)
+    world.hooke_stiffness[:] = 25.0
     world.position[1, 0] = 1.1
     quarter = 2.0 * math.pi / 5.0 / 4.0
     run(world, round(2 * quarter * 60))

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from sandbox.physics.query import load_bearing, strain
 from sandbox.physics.snapshot import take
-from sandbox.physics.strain import load_bearing, strain
 from sandbox.physics.world import World
 from tests.support.physics_scenes import network
 

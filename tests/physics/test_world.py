@@ -6,7 +6,8 @@ import pytest
 from sandbox.physics.constraints import AREA
 from sandbox.physics.energy import kinetic_energy, spring_energy
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.state import FAMILIES, STATE_ARRAYS
+from sandbox.physics.snapshot import take
+from sandbox.physics.state import Family, family_of
 from sandbox.physics.step import step
 from sandbox.physics.world import HAND_COUNT, LAW_HOOKE, World
 from tests.support.physics_scenes import STILL, grid_with_diagonals, network, rope, run, scaled
@@ -34,10 +35,10 @@ def test_every_array_keeps_its_type_and_one_item_per_slot():
     world = held_rope()
     world.add_elements(AREA, [[0, 1, 2, 3]])
     counts = (5 + HAND_COUNT, 4 + HAND_COUNT, 1, 4, 0, 0)
-    for family, count in zip(FAMILIES, counts, strict=True):
-        for name in family:
-            array = getattr(world, name)
-            assert array.flags.c_contiguous and len(array) == count
+    for family, count in zip(Family, counts, strict=True):
+        for column in family_of(family):
+            array = getattr(world, column.name)
+            assert array.dtype == column.dtype and array.flags.c_contiguous and len(array) == count
     assert (world.particle_count, world.spring_count, world.element_count) == counts[:3]
     assert world.particle_a.dtype == np.int32 and world.position.dtype == np.float64
 
@@ -133,10 +134,10 @@ def test_a_hand_draws_a_particle_to_its_cursor():
 
 def test_a_released_hand_pulls_no_more_and_its_slots_serve_again():
     world = held_rope()
-    before = [getattr(world, name).copy() for name in STATE_ARRAYS]
+    before = take(world)
     world.hold(2, 4, (9.0, 9.0))
     world.release(2)
-    assert all(np.array_equal(getattr(world, name), old) for name, old in zip(STATE_ARRAYS, before, strict=True))
+    assert all(np.array_equal(getattr(world, name), old) for name, old in before.arrays.items())
     count = world.particle_count, world.spring_count
     world.hold(2, 1, (1.0, 1.0))
     step(world)
@@ -195,7 +196,8 @@ def test_dragging_a_body_at_the_article_s_limit_leaves_it_bounded(substeps):
 
 def test_hooke_springs_keep_their_k_and_c_when_sliders_move():
     world = network([(0, 0), (1, 0)], [(0, 1)])
-    world.law[:], world.hooke_stiffness[:], world.hooke_damping[:] = LAW_HOOKE, 5.0, 0.5
+    world.change("law", LAW_HOOKE)
+    world.hooke_stiffness[:], world.hooke_damping[:] = 5.0, 0.5
     world.set_coefficients(1.0, 1.0, None)
     assert (world.hooke_stiffness[0], world.hooke_damping[0]) == (5.0, 0.5)
 

@@ -8,7 +8,7 @@ import pytest
 from sandbox.level.format.parse import parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import CommandError, CutSprings, Grab, MoveGrab, SetAir, SetDrive, SetInflation, apply
-from sandbox.session.records import ScriptLine
+from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.reader import read_replay, read_script
 from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session

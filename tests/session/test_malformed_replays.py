@@ -3,7 +3,8 @@ from pathlib import Path
 import pytest
 
 from sandbox.session.replay.reader import read_replay, read_script
-from sandbox.session.replay.verify import ReplayError, verify
+from sandbox.session.replay.recording import ReplayError
+from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.malformed_replays import bad_commands, cases, sealed
 from tests.support.play import play

@@ -6,10 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.physics.state import CONTACT_ARRAYS, STATE_ARRAYS, VECTOR_ARRAYS
+from sandbox.physics.state import BY_STORED, Family, family_of
 from sandbox.session.commands import AddParticle, AddSpring, CutSprings, Grab, MoveGrab, Pin, Release
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import Divergence, ReplayError, verify
+from sandbox.session.replay.recording import ReplayError
+from sandbox.session.replay.verify import Divergence, verify
 from sandbox.session.session import Session
 from tests.support.play import play
 from tests.support.rope_level import rope_level
@@ -77,10 +78,10 @@ def _outcome(replay, start: int) -> str | None:
 
 # Of another topology a world is no longer the same machine; driven parts and contacts: see test_touching.py.
 SPARED = {"particle_a", "particle_b", "law", "element_kind", "element_first", "element_corners", "corner_particle"}
-SPARED |= {"part_value", *CONTACT_ARRAYS}
+SPARED |= {column.stored for family in (Family.ACTUATOR, Family.CONTACT) for column in family_of(family)}
 
 
-@pytest.mark.parametrize("array", [name for name in STATE_ARRAYS if name not in SPARED])
+@pytest.mark.parametrize("array", [name for name in BY_STORED if name not in SPARED])
 def test_a_fault_of_one_unit_in_the_last_place_is_named(recorded, array):
     replay = read_replay(recorded)
     tick, slot = 137, 7
@@ -88,7 +89,7 @@ def test_a_fault_of_one_unit_in_the_last_place_is_named(recorded, array):
     def disturb(world):
         if world.tick != tick:
             return
-        values = getattr(world, array)
+        values = getattr(world, BY_STORED[array].name)
         place = (slot, 1) if values.ndim == 2 else slot
         if values.dtype.kind == "f":
             values[place] = np.nextafter(values[place], np.inf)
@@ -97,7 +98,7 @@ def test_a_fault_of_one_unit_in_the_last_place_is_named(recorded, array):
 
     divergence = verify(replay, on_tick=disturb)
     assert isinstance(divergence, Divergence)
-    vector = array in VECTOR_ARRAYS
+    vector = BY_STORED[array].width == 2
     assert (divergence.tick, divergence.array) == (tick, array)
     assert divergence.index == ((slot, 1) if vector else slot)
     assert divergence.expected != divergence.actual

@@ -42,7 +42,8 @@ from sandbox.session.commands import (
     apply,
 )
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import ReplayError, verify
+from sandbox.session.replay.recording import ReplayError
+from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.rope_level import rope_level
 

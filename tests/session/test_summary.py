@@ -3,10 +3,9 @@
 import pytest
 
 from sandbox.physics.energy import total_energy
-from sandbox.session.checking import run_checks
 from sandbox.session.commands import CutSprings, Grab, Release, SetDrive
 from sandbox.session.session import Session
-from sandbox.session.summary import run
+from sandbox.session.summary import run, run_checks
 from tests.support.rope_level import rope_level
 
 

@@ -5,8 +5,9 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Camera
-from sandbox.app.draw.colours import BACKGROUND, strain_colours
+from sandbox.app.draw.colours import BACKGROUND
 from sandbox.app.draw.lines import FARTHEST, Canvas
+from sandbox.app.draw.strain_colours import strain_colours
 from sandbox.physics.constraints import AREA
 from sandbox.physics.snapshot import Snapshot
 

@@ -1,6 +1,7 @@
 """Pictures of levels and runs, drawn off screen."""
 
 import os
+from collections.abc import Generator
 from pathlib import Path
 
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
@@ -56,10 +57,11 @@ def save_picture(session: Session, path: Path, size: tuple[int, int] = (1280, 72
         raise OSError(0, str(error), str(path)) from None
 
 
-def run_ahead(level: Level, seconds: float) -> Snapshot:
-    """The state of a level after so many seconds by itself."""
+def run_ahead(level: Level, ticks: int, most_particles: int) -> Generator[bool, None, Snapshot]:
+    """Give the state of a level after so many ticks, one a slice; of one of more particles, as it is built."""
     session = Session(level)
-    with np.errstate(over="ignore", invalid="ignore"):
-        for _ in range(round(seconds * level.settings.tick_rate)):
+    for _ in range(ticks if len(session.world.mass) <= most_particles else 0):
+        yield True
+        with np.errstate(over="ignore", invalid="ignore"):
             session.advance()
     return session.snapshot()

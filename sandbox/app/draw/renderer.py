@@ -8,18 +8,9 @@ from numpy.typing import NDArray
 
 from sandbox.app.draw.areas import draw_areas
 from sandbox.app.draw.camera import Camera, grid_spacing
-from sandbox.app.draw.colours import (
-    ACCENT,
-    BACKGROUND,
-    DANGER,
-    GRID,
-    GRID_AXIS,
-    PARTICLE,
-    PINNED,
-    packed,
-    strain_colours,
-)
+from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, GRID, GRID_AXIS, PARTICLE, PINNED, packed
 from sandbox.app.draw.lines import Canvas
+from sandbox.app.draw.strain_colours import strain_colours
 from sandbox.app.draw.terrain import draw_terrain
 from sandbox.app.play.playback import interpolated
 from sandbox.app.profile import Profile

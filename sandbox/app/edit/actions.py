@@ -3,12 +3,15 @@
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
+from sandbox.app.application import Application
 from sandbox.app.draw.camera import Box
 from sandbox.app.draw.colours import material_colours
 from sandbox.app.edit.bar import TOOLS
-from sandbox.app.edit.canvas.pointer import DrawHand, SelectHand
+from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
+from sandbox.app.edit.clipboard import Clipboard
+from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.rows import Row
 from sandbox.app.shortcuts import shortcuts
 from sandbox.app.widgets.dialogs import choose, choose_row, fill_in
@@ -20,9 +23,6 @@ from sandbox.editor.edits.moving import align, distribute, mirror
 from sandbox.editor.edits.placing import unweld
 from sandbox.editor.items import Item
 from sandbox.editor.pick import items_of_material
-
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
 
 # A copy is put this many steps of the grid to the right of and below what it is of.
 COPY_STEPS = 2
@@ -38,18 +38,18 @@ Edge = Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]
 Place = Literal["front", "forward", "backward", "back"]
 
 
-def edit_actions(screen: "EditScreen") -> dict[str, Callable[[], object]]:
+def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dict[str, Callable[[], object]]:
     """The actions of a screen."""
-    documents, clipboard = screen.app.documents, screen.clipboard
+    documents = app.documents
     actions: dict[str, Callable[[], object]] = {f"tool_{name}": partial(screen.choose_tool, name) for name in TOOLS}
     return actions | {
         "play": documents.play,
         "undo": lambda: _step(screen, -1),
         "redo": lambda: _step(screen, 1),
         "new": documents.new,
-        "open": screen.app.open_gallery,
-        "open_file": screen.app.files.ask_to_open,
-        "recent": lambda: screen.app.open_gallery("mine"),
+        "open": app.open_gallery,
+        "open_file": app.files.ask_to_open,
+        "recent": lambda: app.open_gallery("mine"),
         "save": documents.save,
         "save_as": documents.save_as,
         "revert": documents.revert,
@@ -74,8 +74,8 @@ def edit_actions(screen: "EditScreen") -> dict[str, Callable[[], object]]:
         "forward": lambda: _reorder(screen, "forward"),
         "backward": lambda: _reorder(screen, "backward"),
         "snap": lambda: _toggle_snap(screen),
-        "forecast": screen.watch.toggle_forecast,
-        "numbers": lambda: screen.options.focus(),
+        "forecast": screen.toggle_forecast,
+        "numbers": screen.focus_numbers,
         "next_item": lambda: _visit(screen, 1),
         "previous_item": lambda: _visit(screen, -1),
         "press": screen.press_cursor,
@@ -85,35 +85,30 @@ def edit_actions(screen: "EditScreen") -> dict[str, Callable[[], object]]:
         "zoom_out": lambda: _adjust_or_zoom(screen, -1),
         "fit": screen.fit,
         "panel": screen.toggle_side,
-        "next_page": lambda: _turn_page(screen, 1),
-        "previous_page": lambda: _turn_page(screen, -1),
+        "next_page": lambda: screen.turn_page(1),
+        "previous_page": lambda: screen.turn_page(-1),
     }
 
 
-def _show_menu(screen: "EditScreen") -> None:
+def _show_menu(screen: Editing) -> None:
     """Offer what has no button of its own."""
     entries = [entry for entry in shortcuts("edit") if entry.action in MENU]
     choices = [(f"{entry.label}  [{entry.keys[0]}]", screen.actions[entry.action]) for entry in entries]
     choose(screen.ui, "More", "", choices, columns=2)
 
 
-def _turn_page(screen: "EditScreen", by: int) -> None:
-    if screen.side is not None:
-        screen.side.turn(by)
-
-
-def _has_selection(screen: "EditScreen") -> bool:
+def _has_selection(screen: Editing) -> bool:
     if not screen.document.selection:
         screen.say("Nothing is selected.")
     return bool(screen.document.selection)
 
 
-def _edit_selection(screen: "EditScreen", label: str, function: Callable[[Document], Document]) -> None:
+def _edit_selection(screen: Editing, label: str, function: Callable[[Document], Document]) -> None:
     if _has_selection(screen):
         screen.edit(label, function)
 
 
-def _step(screen: "EditScreen", by: int) -> None:
+def _step(screen: Editing, by: int) -> None:
     history = screen.history
     if not (history.can_undo if by < 0 else history.can_redo):
         screen.say(f"There is nothing to {'undo' if by < 0 else 'redo'}.")
@@ -121,23 +116,23 @@ def _step(screen: "EditScreen", by: int) -> None:
     screen.step_to(history.index + by)
 
 
-def _duplicate(screen: "EditScreen") -> None:
+def _duplicate(screen: Editing) -> None:
     step = COPY_STEPS * screen.grid
     _edit_selection(screen, "Duplicate", lambda document: duplicate(document, step, -step))
 
 
-def _reorder(screen: "EditScreen", to: Place) -> None:
+def _reorder(screen: Editing, to: Place) -> None:
     _edit_selection(screen, f"Order: {to}", lambda document: reorder(document, to))
 
 
-def _box(screen: "EditScreen") -> Box | None:
+def _box(screen: Editing) -> Box | None:
     box = screen.selection_box
     if box is None:
         screen.say("Nothing is selected.")
     return box
 
 
-def _ask_mirror(screen: "EditScreen") -> None:
+def _ask_mirror(screen: Editing) -> None:
     box = _box(screen)
     if box is None:
         return
@@ -150,7 +145,7 @@ def _ask_mirror(screen: "EditScreen") -> None:
     choose(screen.ui, "Mirror", "What changes sides?", choices)
 
 
-def _ask_order(screen: "EditScreen") -> None:
+def _ask_order(screen: Editing) -> None:
     if not _has_selection(screen):
         return
     places: tuple[tuple[str, Place], ...] = (
@@ -160,7 +155,7 @@ def _ask_order(screen: "EditScreen") -> None:
     choose(screen.ui, "Order", text, [(label, partial(_reorder, screen, to)) for label, to in places])
 
 
-def _ask_align(screen: "EditScreen") -> None:
+def _ask_align(screen: Editing) -> None:
     if not _has_selection(screen):
         return
     edges: tuple[tuple[str, Edge], ...] = (
@@ -178,7 +173,7 @@ def _ask_align(screen: "EditScreen") -> None:
     choose(screen.ui, "Align", "Bring the selected parts into line.", choices, columns=2)
 
 
-def _ask_parts(screen: "EditScreen") -> None:
+def _ask_parts(screen: Editing) -> None:
     names = ("group", "ungroup", "break_apart", "unjoin")
     labels = ("Group", "Ungroup", "Break bodies apart", "Take joints apart")
     choices = [(label, screen.actions[name]) for label, name in zip(labels, names, strict=True)]
@@ -186,7 +181,7 @@ def _ask_parts(screen: "EditScreen") -> None:
            "becomes loose particles and springs.", choices)  # fmt: skip
 
 
-def _ask_material(screen: "EditScreen") -> None:
+def _ask_material(screen: Editing) -> None:
     colours = material_colours(screen.scene.materials)
 
     def take(index: int) -> None:
@@ -207,13 +202,13 @@ def _unjoined(document: Document) -> Document:
     return document
 
 
-def _ask_array(screen: "EditScreen") -> None:
+def _ask_array(screen: Editing) -> None:
     if _has_selection(screen):
         choices = [("Along a line", lambda: _ask_line(screen)), ("Along a circle", lambda: _ask_circle(screen))]
         choose(screen.ui, "Array", "Put several copies of the selection", choices)
 
 
-def _ask_line(screen: "EditScreen") -> None:
+def _ask_line(screen: Editing) -> None:
     box = screen.selection_box
     assert box is not None
     apart = box[2] - box[0] + 2 * screen.grid
@@ -229,7 +224,7 @@ def _ask_line(screen: "EditScreen") -> None:
     fill_in(screen.ui, "Array along a line", "The selection is the first of them.", fields, "Make", make)
 
 
-def _ask_circle(screen: "EditScreen") -> None:
+def _ask_circle(screen: Editing) -> None:
     box = screen.selection_box
     assert box is not None
     x, y = (box[0] + box[2]) / 2, box[1] - (box[3] - box[1]) - 1.0
@@ -269,33 +264,33 @@ def _count(text: str) -> int:
     return int(value)
 
 
-def _toggle_snap(screen: "EditScreen") -> None:
+def _toggle_snap(screen: Editing) -> None:
     screen.snapping = not screen.snapping
     screen.say("Snapping is on." if screen.snapping else "Snapping is off.")
 
 
-def _adjust_or_zoom(screen: "EditScreen", by: int) -> None:
+def _adjust_or_zoom(screen: Editing, by: int) -> None:
     """Count the parts of what is drawn up or down, or zoom."""
-    if isinstance(screen.hand, DrawHand) and screen.hand.drawing.under_way:
-        screen.hand.adjust(by)
+    if isinstance(screen.pointer_tool, DrawTool) and screen.pointer_tool.drawing.under_way:
+        screen.pointer_tool.adjust(by)
     else:
         screen.camera.zoom_at(screen.cursor, 2 * by)
 
 
-def _delete_or_back(screen: "EditScreen") -> None:
+def _delete_or_back(screen: Editing) -> None:
     """Take the last point of what is drawn back, or delete the selection."""
-    if isinstance(screen.hand, DrawHand) and screen.hand.drawing.under_way:
-        screen.hand.drawing.back()
-    elif not (isinstance(screen.hand, SelectHand) and screen.hand.delete_corner()):
+    if isinstance(screen.pointer_tool, DrawTool) and screen.pointer_tool.drawing.under_way:
+        screen.pointer_tool.drawing.back()
+    elif not (isinstance(screen.pointer_tool, SelectTool) and screen.pointer_tool.delete_corner()):
         _edit_selection(screen, "Delete", delete)
 
 
-def _finish(screen: "EditScreen") -> None:
-    if isinstance(screen.hand, DrawHand):
-        screen.hand.finish()
+def _finish(screen: Editing) -> None:
+    if isinstance(screen.pointer_tool, DrawTool):
+        screen.pointer_tool.finish()
 
 
-def _visit(screen: "EditScreen", by: int) -> None:
+def _visit(screen: Editing, by: int) -> None:
     """Select the next item of the file, or the one before."""
     items = screen.scene.items
     if not items:

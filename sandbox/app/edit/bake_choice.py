@@ -1,15 +1,12 @@
 """Keeping of what playing has changed: a choice that puts it into the document that is played."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
+from sandbox.app.application import Application
 from sandbox.app.widgets.dialogs import choose
 from sandbox.editor.document import Document
 from sandbox.editor.edits.bake import keep_coefficients, keep_cuts, keep_pins, keep_pose
 from sandbox.physics.world import World
-
-if TYPE_CHECKING:
-    from sandbox.app.app import App
 
 Keeper = Callable[[Document, World], Document]
 KEEPERS: tuple[tuple[str, Keeper], ...] = (
@@ -21,7 +18,7 @@ KEEPERS: tuple[tuple[str, Keeper], ...] = (
 )
 
 
-def ask_to_keep(app: "App") -> None:
+def ask_to_keep(app: Application) -> None:
     """Ask what of the run the document takes over; each is a step of its history."""
     play, editor = app.play, app.documents.editor
     if play is None or editor is None or not play.of_document:

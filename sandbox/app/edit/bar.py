@@ -1,18 +1,16 @@
 """Bar and palette of the editor: a button for everything that is done often, and one for every tool."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DISABLED, TEXT, Colour
+from sandbox.app.edit.editing import Editing
 from sandbox.app.play.toolbar import BAR_HEIGHT, BUTTON, GAP, ICON, ROOM_FOR_NAME
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.icons import icon
 from sandbox.app.widgets.ui import Ui, set_icon
-
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
 
 # Tools in the order of the palette; the picture of each has its name.
 TOOLS = (
@@ -114,7 +112,7 @@ class Bar:
             right += pitch
         self.buttons.add_text("help", "?", right, y)
 
-    def show(self, screen: "EditScreen") -> None:
+    def show(self, screen: Editing) -> None:
         """Show what is possible now."""
         history, show = screen.history, self.buttons.show
         show("undo", history.can_undo)
@@ -123,7 +121,7 @@ class Bar:
             show(action, bool(screen.document.selection))
         show("save", not history.is_saved or screen.level_file.path is None)
         show("snap", on=screen.snapping)
-        show("forecast", on=screen.watch.forecasts)
+        show("forecast", on=screen.shows_forecast)
         show("panel", on=screen.show_side)
         name = screen.document.level.name + ("" if history.is_saved else " *")
         if self.title is not None and name != self._name:

@@ -1,10 +1,11 @@
 """Clipboard: parts of a level and whole levels as JSON text, by way of the system's clipboard."""
 
 import json
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import pygame
 
+from sandbox.app.edit.editing import Editing
 from sandbox.app.widgets.dialogs import choose
 from sandbox.editor.document import Document
 from sandbox.editor.edits.copying import copy_text, paste
@@ -14,15 +15,12 @@ from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import parse_level
 from sandbox.level.format.model import Level
 
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
-
 
 class Clipboard:
     """Copies and pastes for a screen; where the system has no clipboard, within the program."""
 
-    def __init__(self, screen: "EditScreen") -> None:
-        self._screen = screen
+    def __init__(self, screen: Editing, open_as_new: Callable[[Level], object]) -> None:
+        self._screen, self._open = screen, open_as_new
         self._own = ""
 
     def copy(self) -> bool:
@@ -57,7 +55,7 @@ class Clipboard:
             return
         choices = [
             ("Paste as parts of this level", lambda: self._paste_parts(text)),
-            ("Open as a new level", lambda: screen.app.documents.edit_level(level)),
+            ("Open as a new level", lambda: self._open(level)),
         ]
         choose(screen.ui, f"Paste “{level.name}”", "The clipboard holds a whole level.", choices)
 

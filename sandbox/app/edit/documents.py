@@ -4,8 +4,8 @@ import os
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from sandbox.app.application import Application
 from sandbox.app.edit.edit_screen import EditScreen
 from sandbox.app.play.playback import Playback
 from sandbox.app.recordings import plain_name, recordings_folder
@@ -19,9 +19,6 @@ from sandbox.level.faults.level_error import LevelError, one_line
 from sandbox.level.format.files import load_level
 from sandbox.level.format.model import Level
 
-if TYPE_CHECKING:
-    from sandbox.app.app import App
-
 # Longest name of a level's file [characters].
 NAME_LIMIT = 200
 # Autosaves that are offered at once.
@@ -31,7 +28,7 @@ OFFERED = 5
 class Documents:
     """What the app does with the level that is edited; `editor` is its screen, also while it is played."""
 
-    def __init__(self, app: "App") -> None:
+    def __init__(self, app: Application) -> None:
         self.app = app
         self.editor: EditScreen | None = None
         self._autosave: Autosave | None = None
@@ -126,7 +123,7 @@ class Documents:
         if level_file.path is not None:
             remember(level_file.path)
         self.app.show_screen(self.editor)
-        self.app.guide.offer()
+        self.app.offer_tour()
 
     # Saving.
 

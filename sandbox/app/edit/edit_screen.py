@@ -3,20 +3,23 @@
 import math
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
+import numpy as np
 import pygame
+from numpy.typing import NDArray
 
+from sandbox.app.application import Application
 from sandbox.app.draw.camera import Box, Camera, Point, grid_spacing
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, SURFACE, TEXT, WARNING, Colour
 from sandbox.app.edit.actions import edit_actions
 from sandbox.app.edit.bar import Bar, Palette
 from sandbox.app.edit.canvas.canvas import SNAP_STEP
 from sandbox.app.edit.canvas.overlay import draw_snap
-from sandbox.app.edit.canvas.pointer import DrawHand, Hand, SelectHand
+from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.edit.canvas.rulers import RULER, Rulers
 from sandbox.app.edit.canvas.view import View
 from sandbox.app.edit.clipboard import Clipboard
+from sandbox.app.edit.editing import PointerTool
 from sandbox.app.edit.side.options import OPTIONS_HEIGHT, OptionsRow
 from sandbox.app.edit.side.side import Side
 from sandbox.app.edit.watch import Watch
@@ -29,7 +32,6 @@ from sandbox.app.shortcuts import Mode
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import can_scale_unevenly, move
-from sandbox.editor.forecast import Forecast
 from sandbox.editor.history import History
 from sandbox.editor.items import Selection
 from sandbox.editor.lint.finding import Finding
@@ -37,9 +39,6 @@ from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.storage.level_file import LevelFile
 from sandbox.editor.tools.drawing import DRAWINGS
 from sandbox.editor.tools.snap import Snap, snap
-
-if TYPE_CHECKING:
-    from sandbox.app.app import App
 
 # Sizes in layout units.
 PALETTE_WIDTH = 52.0
@@ -60,16 +59,16 @@ class EditScreen:
     mode: Mode = "edit"
     notices_left = PALETTE_WIDTH + RULER + 12.0
 
-    def __init__(self, app: "App", history: History, level_file: LevelFile) -> None:
+    def __init__(self, app: Application, history: History, level_file: LevelFile) -> None:
         self.app = app
         self.ui = app.ui
         self.history = history
         self.level_file = level_file
+        self.show_side = True
         self.camera = Camera(viewport=self._viewport())
         self.view = View(self)
         self.tool = "select"
         self.snapping = True
-        self.show_side = True
         self.cursor: Point | None = None
         self.pointer: Pixel | None = None
         self._scenes: deque[Scene] = deque(maxlen=SCENES_KEPT)
@@ -78,13 +77,13 @@ class EditScreen:
         self._seen: Document | None = None
         self._is_side_late = False
         self.watch = Watch(self)
-        self.clipboard = Clipboard(self)
-        self.hands: dict[str, Hand] = {
-            "select": SelectHand(self, lasso=False),
-            "lasso": SelectHand(self, lasso=True),
-            **{name: DrawHand(self, drawing(), f"Draw {name}") for name, drawing in DRAWINGS.items()},
+        self.clipboard = Clipboard(self, app.documents.edit_level)
+        self.pointer_tools: dict[str, PointerTool] = {
+            "select": SelectTool(self, lasso=False),
+            "lasso": SelectTool(self, lasso=True),
+            **{name: DrawTool(self, drawing(), f"Draw {name}") for name, drawing in DRAWINGS.items()},
         }
-        self.actions: dict[str, Callable[[], object]] = edit_actions(self)
+        self.actions: dict[str, Callable[[], object]] = edit_actions(self, app, self.clipboard)
         self.fit()
 
     # The document.
@@ -156,9 +155,18 @@ class EditScreen:
         return self.watch.findings
 
     @property
-    def forecast(self) -> Forecast | None:
-        """Where everything will hang; None while it is not asked for."""
-        return self.watch.forecast
+    def hanging(self) -> NDArray[np.float64] | None:
+        """Where everything will hang [m]; None while it is not asked for or not known."""
+        return self.watch.hanging
+
+    @property
+    def shows_forecast(self) -> bool:
+        """Whether it is shown where everything will hang."""
+        return self.watch.forecasts
+
+    def toggle_forecast(self) -> None:
+        """Show where everything will hang, or no more."""
+        self.watch.toggle_forecast()
 
     def show(self, place: Point) -> None:
         """Bring a place [m] into view, and mark it for a moment."""
@@ -178,7 +186,7 @@ class EditScreen:
     def _viewport(self) -> tuple[int, int, int, int]:
         ui, (width, height) = self.ui, self.ui.size
         left, top = ui.px(PALETTE_WIDTH) + ui.px(RULER), ui.px(BAR_HEIGHT + OPTIONS_HEIGHT) + ui.px(RULER)
-        right = ui.px(SIDE_WIDTH) if getattr(self, "show_side", True) else 0
+        right = ui.px(SIDE_WIDTH) if self.show_side else 0
         return left, top, max(width - left - right, 1), max(height - top - ui.px(STATUS_HEIGHT), 1)
 
     def build(self, ui: Ui) -> None:
@@ -202,6 +210,15 @@ class EditScreen:
         """Hide or show the panel at the side."""
         self.show_side = not self.show_side
         self.app.rebuild()
+
+    def turn_page(self, by: int) -> None:
+        """Show another page of the panel at the side."""
+        if self.side is not None:
+            self.side.turn(by)
+
+    def focus_numbers(self) -> None:
+        """Type into the row of numbers."""
+        self.options.focus()
 
     def fit(self) -> None:
         """Show the level's view and all particles; again, or without a view: terrain and walls too."""
@@ -229,20 +246,20 @@ class EditScreen:
     # Tools.
 
     @property
-    def hand(self) -> Hand:
+    def pointer_tool(self) -> PointerTool:
         """What the pointer does."""
-        return self.hands[self.tool]
+        return self.pointer_tools[self.tool]
 
     def choose_tool(self, name: str) -> None:
         """Take another tool up."""
-        if name != self.tool and isinstance(self.hand, DrawHand):
-            self.hand.cancel()
+        if name != self.tool and isinstance(self.pointer_tool, DrawTool):
+            self.pointer_tool.cancel()
         self.tool = name
 
     def cancel(self) -> None:
         """Give up what is under way, then the tool, then the selection."""
         self.cursor = None
-        if not self.hand.cancel() and self.tool != "select":
+        if not self.pointer_tool.cancel() and self.tool != "select":
             self.choose_tool("select")
 
     @property
@@ -278,11 +295,11 @@ class EditScreen:
         if kind == "down":
             self.cursor = None
             self.history.end_merge()
-            self.hand.down(point, modifiers, clicks)
+            self.pointer_tool.down(point, modifiers, clicks)
         elif kind == "move":
-            self.hand.move(point, modifiers)
+            self.pointer_tool.move(point, modifiers)
         else:
-            self.hand.up(point, modifiers)
+            self.pointer_tool.up(point, modifiers)
 
     def press_key(self, key: int, modifiers: int) -> bool:
         """No key of a level works while it is edited."""
@@ -294,7 +311,7 @@ class EditScreen:
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
         """Nudge the selection by a step of the grid, ten with Shift; without one, move the keyboard cursor."""
         step = self.grid * (NUDGE_LEAP if modifiers & pygame.KMOD_SHIFT else 1)
-        if isinstance(self.hand, SelectHand) and self.hand.nudge_corner(dx * step, dy * step):
+        if isinstance(self.pointer_tool, SelectTool) and self.pointer_tool.nudge_corner(dx * step, dy * step):
             return
         if self.tool in ("select", "lasso") and self.document.selection:
             self.edit("Nudge", lambda document: move(document, dx * step, dy * step), merge="nudge")
@@ -305,16 +322,16 @@ class EditScreen:
             self.camera.to_world(corner) for corner in ((left, top), (left + width, top + height))
         )
         self.cursor = (min(max(x + dx * step, low_x), high_x), min(max(y + dy * step, low_y), high_y))
-        if isinstance(self.hand, DrawHand):
-            self.hand.move(self.cursor, modifiers)
+        if isinstance(self.pointer_tool, DrawTool):
+            self.pointer_tool.move(self.cursor, modifiers)
 
     def press_cursor(self) -> None:
         """Click at the keyboard cursor; without one, end what is drawn."""
-        hand = self.hand
+        hand = self.pointer_tool
         if self.cursor is not None:
             hand.down(self.cursor, 0, 1)
             hand.up(self.cursor, 0)
-        elif isinstance(hand, DrawHand):
+        elif isinstance(hand, DrawTool):
             hand.finish()
 
     # A frame.
@@ -325,7 +342,7 @@ class EditScreen:
         if not pygame.mouse.get_pressed()[0] or pointer is None:
             self.pointer = pointer
             at = self.cursor if self.cursor is not None else None if pointer is None else self.camera.to_world(pointer)
-            self.hand.hover(at, pygame.key.get_mods())
+            self.pointer_tool.hover(at, pygame.key.get_mods())
         with profile.part("lint"):
             self.watch.update(frame_time)
         self.bar.show(self)
@@ -359,7 +376,7 @@ class EditScreen:
         scene, selection = self.scene, self.document.selection
         parts: list[tuple[str, Colour]] = [
             (self.tool if self.tool != "box" else "jelly", ACCENT),
-            (self.hand.hint, TEXT),
+            (self.pointer_tool.hint, TEXT),
         ]
         errors = sum(finding.severity == "error" for finding in self.findings)
         warnings = sum(finding.severity == "warning" for finding in self.findings)
@@ -384,6 +401,6 @@ class EditScreen:
 
     def leave(self) -> None:
         """Give up what is under way; the document stays as it is."""
-        if self.hand.matrix is not None or isinstance(self.hand, DrawHand):
-            self.hand.cancel()
+        if self.pointer_tool.matrix is not None or isinstance(self.pointer_tool, DrawTool):
+            self.pointer_tool.cancel()
         self.history.end_merge()

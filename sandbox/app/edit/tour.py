@@ -1,20 +1,19 @@
 """Guide: the tour on the screen: a small card with the step, and a ring around what it points at; it blocks nothing."""
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pygame
 
+from sandbox.app.application import Application
 from sandbox.app.draw.colours import ACCENT, MUTED, TEXT, WARNING
-from sandbox.app.edit.canvas.pointer import DrawHand
+from sandbox.app.edit.canvas.pointer import DrawTool
+from sandbox.app.edit.documents import Documents
 from sandbox.app.edit.edit_screen import EditScreen
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.editor.tour import STEPS, Situation, Target, Tour
-
-if TYPE_CHECKING:
-    from sandbox.app.app import App
 
 # Name of the preference, and sizes in layout units.
 SEEN = "tour_seen"
@@ -36,8 +35,8 @@ Place = tuple[int, int]
 class Guide:
     """Offers the tour once, and leads through it; may_offer: whether a person is there to be asked."""
 
-    def __init__(self, app: "App") -> None:
-        self._app = app
+    def __init__(self, app: Application, documents: Documents) -> None:
+        self._app, self._documents = app, documents
         self.may_offer = False
         self.tour: Tour | None = None
         self._offers = False
@@ -51,14 +50,14 @@ class Guide:
 
     def offer(self) -> None:
         """Ask whether the person wants the tour, the first time that they see an empty sheet."""
-        editor = self._app.documents.editor
+        editor = self._documents.editor
         if self.may_offer and editor is not None and not editor.scene.items and not preference(SEEN):
             set_preference(SEEN, True)
             self._offers = True
 
     def begin(self) -> None:
         """Start from an empty sheet."""
-        self._app.documents.new(self._start)
+        self._documents.new(self._start)
 
     def _start(self) -> None:
         self.tour, self._offers = Tour(), False
@@ -145,16 +144,16 @@ class Guide:
 
     def _situation(self) -> Situation | None:
         """What the person has done; None where neither the document nor a run of it is on the screen."""
-        app, editor = self._app, self._app.documents.editor
+        app, editor = self._app, self._documents.editor
         is_played = app.play is not None and app.play.of_document
         if editor is None or app.gallery is not None or not (app.screen is editor or is_played):
             return None
-        options = editor.hand.drawing.options if isinstance(editor.hand, DrawHand) else None
+        options = editor.pointer_tool.drawing.options if isinstance(editor.pointer_tool, DrawTool) else None
         return Situation(editor.scene, editor.tool, options, is_played)
 
     def _spot(self, situation: Situation) -> pygame.Rect | None:
         """The part of the window [pixels] that the step points at; None = the whole canvas."""
-        editor = self._app.documents.editor
+        editor = self._documents.editor
         if self.tour is None or editor is None or self._app.screen is not editor:
             return None
         return _rect_of(self.tour.step.target(situation), editor)
@@ -208,9 +207,9 @@ class Guide:
             pygame.draw.aaline(surface, WARNING, near, edge)
 
     def _arrow_across(self, surface: pygame.Surface) -> None:
-        editor, view = self._app.documents.editor, self._viewport()
-        hand = editor.hand if editor is not None else None
-        if not isinstance(hand, DrawHand) or hand.drawing.under_way:
+        editor, view = self._documents.editor, self._viewport()
+        hand = editor.pointer_tool if editor is not None else None
+        if not isinstance(hand, DrawTool) or hand.drawing.under_way:
             return
         head, y = self._app.ui.px(9), view.top + round(view.height * 0.45)
         start, end = view.left + view.width // 4, view.right - view.width // 4

@@ -2,17 +2,14 @@
 
 import time
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.app.edit.editing import Editing
 from sandbox.editor.forecast import Forecast
 from sandbox.editor.lint.lint import Finding, findings
 from sandbox.level.format.model import Level
-
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
 
 # Time [s] that each of the two may take of a frame, and how long the level has to stay as it is before they begin.
 SLICE = 0.004
@@ -22,7 +19,7 @@ PATIENCE = 0.25
 class Watch:
     """Findings about the level on the screen, and its forecast while it is asked for."""
 
-    def __init__(self, screen: "EditScreen") -> None:
+    def __init__(self, screen: Editing) -> None:
         self._screen = screen
         self.findings: list[Finding] = []
         self.forecasts = False

@@ -2,10 +2,10 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pygame
 
+from sandbox.app.application import Application
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colour
 from sandbox.app.edit.bake_choice import ask_to_keep
@@ -22,9 +22,6 @@ from sandbox.app.shortcuts import Mode
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.query import shown_particles, shown_springs
 
-if TYPE_CHECKING:
-    from sandbox.app.app import App
-
 
 class PlayScreen:
     """Plays a level or a replay; source: the file of the level; of_document: the level is what the editor has open."""
@@ -32,7 +29,9 @@ class PlayScreen:
     mode: Mode = "play"
     notices_left = 16.0
 
-    def __init__(self, app: "App", playback: Playback, source: Path | None = None, of_document: bool = False) -> None:
+    def __init__(
+        self, app: Application, playback: Playback, source: Path | None = None, of_document: bool = False
+    ) -> None:
         self._app = app
         self._ui = app.ui
         self.source, self.of_document = source, of_document

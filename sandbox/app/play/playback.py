@@ -8,10 +8,10 @@ import numpy as np
 
 from sandbox.app.loop import TickClock
 from sandbox.level.format.model import Level
+from sandbox.physics.energy import Dissipation
 from sandbox.physics.snapshot import Snapshot, state_hash
 from sandbox.session.commands import Command, CommandError, Redo, Undo
-from sandbox.session.dissipation import Dissipation
-from sandbox.session.replay.verify import Replay
+from sandbox.session.replay.recording import Replay
 from sandbox.session.session import Session
 from sandbox.tools.tool import Response
 

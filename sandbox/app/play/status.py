@@ -7,19 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import pygame
 
-from sandbox.app.draw.colours import (
-    ACCENT,
-    DANGER,
-    FULL_STRAIN,
-    LINE,
-    MUTED,
-    SLIGHT_STRAIN,
-    SURFACE,
-    TEXT,
-    WARNING,
-    Colour,
-    strain_colours,
-)
+from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, SURFACE, TEXT, WARNING, Colour
+from sandbox.app.draw.strain_colours import FULL_STRAIN, SLIGHT_STRAIN, strain_colours
 from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
 

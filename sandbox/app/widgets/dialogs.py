@@ -6,9 +6,8 @@ from typing import Any
 
 from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.edit.side.rows import MENU_ROWS, Row, RowList
-from sandbox.app.widgets.fields import Again
 from sandbox.app.widgets.painted import TextBlock
-from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.ui import Again, Ui
 
 # Sizes in layout units.
 WIDTH = 560.0

@@ -1,18 +1,9 @@
-"""Parts of the widgets that hold a state of their own: lines to type into, rows of buttons, modal pages."""
+"""Parts of the widgets that hold a state of their own: lines to type into, rows of buttons."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from dataclasses import field as default
-from typing import TYPE_CHECKING
 
-from pygame_gui.core import UIElement
-from pygame_gui.elements import UIButton, UIPanel, UITextEntryLine
-
-if TYPE_CHECKING:
-    from sandbox.app.widgets.ui import Ui
-
-# Opens a modal page anew on other widgets, with what was typed so far.
-Again = Callable[["Ui"], object]
+from pygame_gui.elements import UIButton, UITextEntryLine
 
 
 @dataclass
@@ -73,18 +64,3 @@ class Choice:
         self.chosen = chosen
         for value, button in self.buttons.items():
             (button.select if value == chosen else button.unselect)()
-
-
-@dataclass
-class Sheet:
-    """A modal page and the widgets on it; close: what Escape does; is_page: it is read, so no notices lie over it.
-
-    again: opens it anew in another layout; None = it ends with this one. is_question: it outlives the screen under it.
-    """
-
-    panel: UIPanel
-    close: Callable[[], None]
-    is_page: bool
-    again: Again | None
-    is_question: bool
-    widgets: list[UIElement] = default(default_factory=list)

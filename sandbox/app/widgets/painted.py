@@ -1,20 +1,18 @@
 """Painted: widgets that paint themselves, for what pygame_gui has not."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pygame
 from pygame_gui.core import UIElement
 
 from sandbox.app.draw.colours import MUTED, Colour
-
-if TYPE_CHECKING:
-    from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.layout import Layout
 
 
 class Painted(UIElement):
     """A widget that paints itself; subclasses give `paint`, and what mouse and keys do."""
 
-    def __init__(self, ui: "Ui", rect: pygame.Rect, container: Any = None) -> None:
+    def __init__(self, ui: Layout, rect: pygame.Rect, container: Any = None) -> None:
         super().__init__(
             rect, ui.manager, container or ui.root, starting_height=1, layer_thickness=1, element_id=["painted"]
         )
@@ -65,7 +63,13 @@ class TextBlock(Painted):
     """Text that wraps; colour and size in layout units."""
 
     def __init__(
-        self, ui: "Ui", rect: pygame.Rect, text: str, container: Any = None, size: float = 11.0, colour: Colour = MUTED
+        self,
+        ui: Layout,
+        rect: pygame.Rect,
+        text: str,
+        container: Any = None,
+        size: float = 11.0,
+        colour: Colour = MUTED,
     ) -> None:
         super().__init__(ui, rect, container)
         self.text, self.text_size, self.colour = text, size, colour

@@ -3,6 +3,8 @@
 import html
 import warnings
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from dataclasses import field as default
 from functools import partial
 from typing import Any
 
@@ -12,9 +14,9 @@ from pygame_gui.core import ObjectID, UIContainer, UIElement
 from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITextEntryLine
 
 from sandbox.app.draw.colours import ACCENT
-from sandbox.app.widgets.fields import Again, Choice, Field, Sheet
+from sandbox.app.widgets.fields import Choice, Field
+from sandbox.app.widgets.layout import Layout
 from sandbox.app.widgets.painted import Painted
-from sandbox.app.widgets.theme import Manager, plain_font, scaled_theme
 
 # It warns of every label that is a pixel lower than its font: only people who lay out can do something about that.
 warnings.filterwarnings("ignore", message="Label Rect is too small", module="pygame_gui")
@@ -31,15 +33,30 @@ ANSWERS = (
 )
 
 
-class Ui:
+# Opens a modal page anew on other widgets, with what was typed so far.
+Again = Callable[["Ui"], object]
+
+
+@dataclass
+class Sheet:
+    """A modal page and the widgets on it; close: what Escape does; is_page: it is read, so no notices lie over it.
+
+    again: opens it anew in another layout; None = it ends with this one. is_question: it outlives the screen under it.
+    """
+
+    panel: UIPanel
+    close: Callable[[], None]
+    is_page: bool
+    again: Again | None
+    is_question: bool
+    widgets: list[UIElement] = default(default_factory=list)
+
+
+class Ui(Layout):
     """Widgets on a window of size [pixels]; positions and sizes given to it are layout units of `scale` pixels."""
 
     def __init__(self, size: tuple[int, int], scale: float, pixel_ratio: tuple[float, float] = (1.0, 1.0)) -> None:
-        self.size = size
-        self.scale = scale
-        self.manager = Manager(size, scaled_theme(scale), enable_live_theme_updates=False)
-        self.manager.mouse_pos_scale_factor = list(pixel_ratio)
-        self.root = self.manager.get_root_container()
+        super().__init__(size, scale, pixel_ratio)
         self._actions: dict[UIElement, Callable[[], None]] = {}
         self._choosers: dict[UIDropDownMenu, Callable[[str], None]] = {}
         self._fields: dict[UIElement, Field] = {}
@@ -49,19 +66,6 @@ class Ui:
         self._focus: UIElement | None = None
         # The line that Enter left: Tab goes on from there.
         self._left: UIElement | None = None
-
-    def px(self, units: float) -> int:
-        """Layout units in pixels."""
-        return round(units * self.scale)
-
-    def rect(self, x: float, y: float, width: float, height: float) -> pygame.Rect:
-        """A rectangle of layout units in pixels."""
-        return pygame.Rect(self.px(x), self.px(y), self.px(width), self.px(height))
-
-    @property
-    def units(self) -> tuple[float, float]:
-        """Size of the window in layout units."""
-        return self.size[0] / self.scale, self.size[1] / self.scale
 
     def panel(self, rect: pygame.Rect, container: Any = None, style: str = "") -> UIPanel:
         """A background that holds other widgets."""
@@ -372,10 +376,6 @@ class Ui:
         if self._focus is not None and self._focus.alive():
             around = self._focus.rect.inflate(self.px(5), self.px(5))
             pygame.draw.rect(surface, ACCENT, around, max(1, self.px(2)), self.px(8))
-
-    def font(self, size: float, bold: bool = False) -> pygame.font.Font:
-        """The widgets' font in a size of layout units, for what is painted."""
-        return plain_font(self.px(size), bold)
 
 
 _NO_MARGINS = {"left": 0, "right": 0, "top": 0, "bottom": 0}

@@ -1,4 +1,4 @@
-"""What a played world leaves in its level, where the maker wants to keep it: coefficients, pose, cuts, pins."""
+"""Baking: what a played world leaves in its level, where the maker wants to keep it: coefficients, pose, cuts, pins."""
 
 from dataclasses import replace
 

@@ -11,8 +11,7 @@ from sandbox.level.build.welds import Slots
 from sandbox.level.format.model import Level, Material, NissenMaterial
 from sandbox.level.kinds.expansion import NO_POLYGONS, Expansion
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.slots import OWN_MATERIAL
-from sandbox.physics.world import World
+from sandbox.physics.world import OWN_MATERIAL, World
 
 
 def add_constraints(

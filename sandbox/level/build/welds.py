@@ -1,4 +1,4 @@
-"""Welds: which particles are one."""
+"""Welds, the rigid joints: which particles are one."""
 
 from collections.abc import Iterable
 

@@ -1,5 +1,10 @@
 """Limits of the level format: each stands here once, with its unit; a file beyond one is refused, never clamped."""
 
+from typing import Final
+
+from sandbox.physics.settings import DEFAULT_SOLVER as DEFAULT_SOLVER
+from sandbox.physics.settings import SUBSTEPS as SUBSTEPS
+
 # Reading a hostile file costs time and memory in proportion to these.
 FILE_LIMIT = 8 * 1024 * 1024  # [bytes]
 DEPTH_LIMIT = 32  # lists and objects inside each other
@@ -42,10 +47,7 @@ FRICTION_LIMIT = 100.0  # beyond it nothing slides that did not before
 INFLATION_LIMIT = 100.0  # multiple of a ring's own area
 SECONDS_LIMIT = 3_600.0  # [s] of run that an acceptance check may ask for
 
-FORMAT = "spring-sandbox/level"
+FORMAT: Final = "spring-sandbox/level"
 VERSION = 1
-# The solver of a level that names none; written into every file all the same, so that a file keeps its meaning.
-DEFAULT_SOLVER = "direct"
-SUBSTEPS = (1, 2, 4, 8, 16, 32, 64)  # powers of two, which the exact map of coefficients needs
 DEFAULT_MATERIAL = "default"
 BODY_RADIUS = 0.05  # [m] of the drawn disc of a body's particles

@@ -65,6 +65,7 @@ class Settings(Description):
         json_schema_extra={"enum": [*SUBSTEPS, AUTO]},
     )
     solver: str = Field(
+        # Written into every file all the same, so that a file keeps its meaning.
         default=DEFAULT_SOLVER,
         description="How the springs of a network are solved together.",
         json_schema_extra={"enum": [*sorted(SOLVERS)]},

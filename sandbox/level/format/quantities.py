@@ -38,7 +38,7 @@ def unit(name: str) -> dict[str, Any]:
 class Description(BaseModel):
     """Base of all models: strict types, frozen, no unknown keys, finite numbers."""
 
-    model_config = ConfigDict(strict=True, frozen=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(strict=True, frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True)
 
 
 Described = TypeVar("Described", bound=Description)

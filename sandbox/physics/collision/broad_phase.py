@@ -1,6 +1,6 @@
 """Broad phase: which boxes overlap, by a uniform grid whose cells are kept in a table by their hash.
 
-Everything that can be met, a disc or an edge, lies in the cells that its box covers; a box that covers too many is
+Everything that can be hit, a disc or an edge, lies in the cells that its box covers; a box that covers too many is
 looked at by everybody. Buckets hold objects in ascending order, so the order of pairs is one of positions alone.
 """
 
@@ -8,10 +8,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.world import Floats, Slots
+from sandbox.physics.collision.types import Flags
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.state import Floats, Slots
 
 # Cell in units of the mean box: smaller puts an object into many cells, larger many objects into a cell.
 CELL_SIZE = 1.0
@@ -20,36 +20,47 @@ CELL_SIZE = 1.0
 MOST_CELLS = 1024.0
 FARTHEST = 1e8
 HASH_X, HASH_Y = 73856093, 19349663
-# What a particle meets: nothing, edges alone, edges and discs.
-MEETS_NOTHING, MEETS_EDGES, MEETS_ALL = 0, 1, 2
+# What a particle collides with: nothing, edges alone, edges and discs.
+WITH_NOTHING, WITH_EDGES, WITH_ALL = 0, 1, 2
 
 
-class Grid(NamedTuple):
-    """Objects by bucket: object and cell of each entry, entries of bucket k at start[k]:start[k + 1]; large ones apart.
+class Boxes(NamedTuple):
+    """Boxes of o objects: n particles, then the edges of bodies.
 
-    box [m] (n, 4) = left, bottom, right, top of every object; one that takes no part has left above right. cell [m]
-    (1,). low (n, 2): the cell of each box's corner.
+    box [m] (o, 4) = left, bottom, right, top; of what takes no part left is above right. is_target (o,): whether others
+    look for it. filter (n,): what a particle looks for.
     """
 
     box: Floats
-    cell: Floats
-    low: Slots
-    start: Slots
-    object: Slots
-    column: Slots
-    row: Slots
+    is_target: Flags
+    filter: Slots
+
+
+class Grid(NamedTuple):
+    """Objects by bucket: those of bucket k at start[k]:start[k + 1], with the cell in which they lie there.
+
+    cells (o, 4): first column and row, last column and row of each box; of a large one the last is before the first.
+    large: those, of them that others look for. at: how many entries of a bucket are filled in. object = 4 times its
+    number, + 1 in the first column of its cells, + 2 in their first row; object and cell have room for more.
+    """
+
+    cells: Slots
     large: Slots
+    start: Slots
+    at: Slots
+    object: Slots
+    cell: Slots
 
 
 class Pairs(NamedTuple):
-    """What each particle may meet: other[start[p]:start[p + 1]]."""
+    """What each particle may touch: other[start[p]:start[p + 1]]; there is room for more."""
 
     start: Slots
     other: Slots
 
 
 @inner_kernel
-def is_large(left, bottom, right, top, cell):  # type: ignore[no-untyped-def]
+def is_large(left: float, bottom: float, right: float, top: float, cell: float) -> bool:
     """Whether a box covers too many cells, or lies too far away, to be put into the grid."""
     reach = FARTHEST * cell
     if not (left > -reach and bottom > -reach and right < reach and top < reach):
@@ -58,146 +69,182 @@ def is_large(left, bottom, right, top, cell):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def bucket_of(column, row, count):  # type: ignore[no-untyped-def]
+def bucket_of(column: int, row: int, count: int) -> int:
     """Bucket of a cell, of a power of two of them."""
     return ((column * HASH_X) ^ (row * HASH_Y)) & (count - 1)
 
 
-@kernel
-def _mean_extent(box):  # type: ignore[no-untyped-def]
+@inner_kernel
+def cell_size(box: Floats) -> float:
+    """Side of a cell [m]: the mean extent of the boxes; boxes of no extent at all, and absurd ones, still get one."""
     total = 0.0
     count = 0
     for k in range(box.shape[0]):
         if box[k, 0] <= box[k, 2]:
             total += max(box[k, 2] - box[k, 0], box[k, 3] - box[k, 1])
             count += 1
-    return total / count if count > 0 else 1.0
-
-
-@kernel
-def _count(box, is_target, cell, low, start, large):  # type: ignore[no-untyped-def]
-    # Entries of each bucket, at start[bucket + 1]; how many objects are large.
-    buckets = start.shape[0] - 1
-    larges = 0
-    for k in range(box.shape[0]):
-        if not is_target[k] or not box[k, 0] <= box[k, 2]:
-            continue
-        if is_large(box[k, 0], box[k, 1], box[k, 2], box[k, 3], cell):
-            large[larges] = k
-            larges += 1
-            continue
-        low[k, 0] = math.floor(box[k, 0] / cell)
-        low[k, 1] = math.floor(box[k, 1] / cell)
-        for column in range(low[k, 0], math.floor(box[k, 2] / cell) + 1):
-            for row in range(low[k, 1], math.floor(box[k, 3] / cell) + 1):
-                start[bucket_of(column, row, buckets) + 1] += 1
-    for bucket in range(buckets):
-        start[bucket + 1] += start[bucket]
-    return larges
-
-
-@kernel
-def _fill(box, is_target, cell, low, start, at, objects, columns, rows):  # type: ignore[no-untyped-def]
-    buckets = start.shape[0] - 1
-    for k in range(box.shape[0]):
-        if not is_target[k] or not box[k, 0] <= box[k, 2]:
-            continue
-        if is_large(box[k, 0], box[k, 1], box[k, 2], box[k, 3], cell):
-            continue
-        for column in range(low[k, 0], math.floor(box[k, 2] / cell) + 1):
-            for row in range(low[k, 1], math.floor(box[k, 3] / cell) + 1):
-                bucket = bucket_of(column, row, buckets)
-                entry = start[bucket] + at[bucket]
-                at[bucket] += 1
-                objects[entry] = k
-                columns[entry] = column
-                rows[entry] = row
+    extent = total / count if count > 0 else 1.0
+    return CELL_SIZE * extent if 0.0 < extent < FARTHEST * FARTHEST else 1.0
 
 
 @inner_kernel
-def _may_meet(box, p, k):  # type: ignore[no-untyped-def]
+def _cell_number(column: int, row: int) -> int:
+    # One number of a cell: both are within FARTHEST.
+    return column * 0x100000000 + row
+
+
+@inner_kernel
+def _find_cells(boxes: Boxes, cell: float, grid: Grid) -> int:
+    # The cells of every box that takes part; how many of those that others look for are large.
+    box = boxes.box
+    larges = 0
+    for k in range(box.shape[0]):
+        if not box[k, 0] <= box[k, 2]:
+            continue
+        if is_large(box[k, 0], box[k, 1], box[k, 2], box[k, 3], cell):
+            grid.cells[k, 0] = 0
+            grid.cells[k, 2] = -1
+            if boxes.is_target[k]:
+                grid.large[larges] = k
+                larges += 1
+            continue
+        for side in range(4):
+            grid.cells[k, side] = math.floor(box[k, side] / cell)
+    return larges
+
+
+@inner_kernel
+def _count(boxes: Boxes, grid: Grid) -> int:
+    # Where the entries of each bucket begin; how many there are in all.
+    cells = grid.cells
+    start = grid.start
+    buckets = start.shape[0] - 1
+    for bucket in range(buckets + 1):
+        start[bucket] = 0
+    for k in range(boxes.is_target.shape[0]):
+        if boxes.is_target[k]:
+            for column in range(cells[k, 0], cells[k, 2] + 1):
+                for row in range(cells[k, 1], cells[k, 3] + 1):
+                    start[bucket_of(column, row, buckets) + 1] += 1
+    for bucket in range(buckets):
+        grid.at[bucket] = start[bucket]
+        start[bucket + 1] += start[bucket]
+    return start[buckets]
+
+
+@inner_kernel
+def _fill(boxes: Boxes, grid: Grid) -> None:
+    cells = grid.cells
+    buckets = grid.start.shape[0] - 1
+    for k in range(boxes.is_target.shape[0]):
+        if boxes.is_target[k]:
+            for column in range(cells[k, 0], cells[k, 2] + 1):
+                for row in range(cells[k, 1], cells[k, 3] + 1):
+                    bucket = bucket_of(column, row, buckets)
+                    entry = grid.at[bucket]
+                    grid.at[bucket] = entry + 1
+                    first = (1 if column == cells[k, 0] else 0) + (2 if row == cells[k, 1] else 0)
+                    grid.object[entry] = 4 * k + first
+                    grid.cell[entry] = _cell_number(column, row)
+
+
+@inner_kernel
+def fill_grid(boxes: Boxes, cell: float, grid: Grid) -> tuple[int, int]:
+    """Sort the boxes of targets into the grid; how many are large, and how many entries they need in all.
+
+    Where these are more than there is room for, none is filled in.
+    """
+    larges = _find_cells(boxes, cell, grid)
+    entries = _count(boxes, grid)
+    if entries <= grid.object.shape[0]:
+        _fill(boxes, grid)
+    return larges, entries
+
+
+@inner_kernel
+def _overlap(box: Floats, p: int, k: int) -> bool:
     return (
         box[p, 0] <= box[k, 2] and box[k, 0] <= box[p, 2] and box[p, 1] <= box[k, 3] and box[k, 1] <= box[p, 3]
     )  # fmt: skip
 
 
-@kernel
-def _pair(grid, is_target, meets, particles, start, other):  # type: ignore[no-untyped-def]
-    # The objects whose boxes overlap that of each particle; their number, counted on where there is no room.
+@inner_kernel
+def _pair_with_all(boxes: Boxes, p: int, past_discs: int, other: Slots, count: int) -> int:
+    # The objects that a particle with a large box may touch.
+    particles = boxes.filter.shape[0]
+    for k in range(boxes.is_target.shape[0]):
+        if boxes.is_target[k] and k != p and (k >= particles or k < past_discs) and _overlap(boxes.box, p, k):
+            if count < other.shape[0]:
+                other[count] = k
+            count += 1
+    return count
+
+
+@inner_kernel
+def find_pairs(boxes: Boxes, grid: Grid, larges: int, pairs: Pairs) -> int:
+    """The objects whose boxes overlap that of each particle; their number, counted on where there is no room."""
     count = 0
+    other = pairs.other
     room = other.shape[0]
-    box = grid.box
-    cell = grid.cell[0]
+    box = boxes.box
+    cells = grid.cells
+    particles = boxes.filter.shape[0]
     buckets = grid.start.shape[0] - 1
-    larges = grid.large.shape[0]
     for p in range(particles):
-        start[p] = count
-        if meets[p] == MEETS_NOTHING:
+        pairs.start[p] = count
+        if boxes.filter[p] == WITH_NOTHING:
             continue
-        # Two discs that are both looked for meet once.
-        past_discs = 0 if meets[p] == MEETS_EDGES else p if is_target[p] else particles
-        if is_large(box[p, 0], box[p, 1], box[p, 2], box[p, 3], cell):
-            for k in range(box.shape[0]):
-                if is_target[k] and k != p and (k >= particles or k < past_discs) and _may_meet(box, p, k):
-                    if count < room:
-                        other[count] = k
-                    count += 1
+        # Two discs that both look for others are found once.
+        past_discs = 0 if boxes.filter[p] == WITH_EDGES else p if boxes.is_target[p] else particles
+        left = cells[p, 0]
+        bottom = cells[p, 1]
+        if cells[p, 2] < left:
+            count = _pair_with_all(boxes, p, past_discs, other, count)
             continue
         for at in range(larges):
             k = grid.large[at]
-            if k != p and (k >= particles or k < past_discs) and _may_meet(box, p, k):
+            if k != p and (k >= particles or k < past_discs) and _overlap(box, p, k):
                 if count < room:
                     other[count] = k
                 count += 1
-        left = math.floor(box[p, 0] / cell)
-        bottom = math.floor(box[p, 1] / cell)
-        right = math.floor(box[p, 2] / cell)
-        top = math.floor(box[p, 3] / cell)
-        for column in range(left, right + 1):
-            for row in range(bottom, top + 1):
+        for column in range(left, cells[p, 2] + 1):
+            for row in range(bottom, cells[p, 3] + 1):
                 bucket = bucket_of(column, row, buckets)
+                here = _cell_number(column, row)
+                # Boxes that share many cells are found in the first of them alone.
+                seen = (0 if column == left else 1) + (0 if row == bottom else 2)
                 for entry in range(grid.start[bucket], grid.start[bucket + 1]):
-                    k = grid.object[entry]
-                    # Boxes that share many cells meet in the first of them alone.
+                    k = grid.object[entry] >> 2
                     if (
-                        k != p
-                        and (k >= particles or k < past_discs)
-                        and grid.column[entry] == column
-                        and grid.row[entry] == row
-                        and column == max(left, grid.low[k, 0])
-                        and row == max(bottom, grid.low[k, 1])
-                        and _may_meet(box, p, k)
+                        (k >= particles or k < past_discs)
+                        and k != p
+                        and grid.object[entry] & seen == seen
+                        and grid.cell[entry] == here
+                        and _overlap(box, p, k)
                     ):
                         if count < room:
                             other[count] = k
                         count += 1
-    start[particles] = count
+    pairs.start[particles] = count
     return count
 
 
-def make_grid(box: Floats, is_target: NDArray[np.bool_]) -> Grid:
-    """Sort the boxes (n, 4) of targets into a grid."""
-    count = len(box)
-    # Boxes of no extent at all, and absurd ones, still need a cell.
-    extent = float(_mean_extent(box))
-    cell = CELL_SIZE * extent if 0.0 < extent < FARTHEST * FARTHEST else 1.0
+def new_boxes(particles: int, objects: int) -> Boxes:
+    """Boxes to be filled in."""
+    return Boxes(np.zeros((objects, 4)), np.zeros(objects, np.bool_), np.zeros(particles, np.int64))
+
+
+def new_grid(objects: int, entries: int) -> Grid:
+    """A grid for so many objects, with room for so many entries."""
     buckets = 64
-    while buckets < 2 * count:
+    while buckets < 2 * objects:
         buckets *= 2
-    low, start, large = np.zeros((count, 2), np.int64), np.zeros(buckets + 1, np.int64), np.zeros(count, np.int64)
-    larges = _count(box, is_target, cell, low, start, large)
-    entries = np.zeros((3, start[-1]), dtype=np.int64)
-    _fill(box, is_target, cell, low, start, np.zeros(buckets, np.int64), entries[0], entries[1], entries[2])
-    return Grid(box, np.array([cell]), low, start, entries[0], entries[1], entries[2], large[:larges])
+    return Grid(
+        np.zeros((objects, 4), np.int64), np.zeros(objects, np.int64), np.zeros(buckets + 1, np.int64),
+        np.zeros(buckets, np.int64), np.zeros(entries, np.int64), np.zeros(entries, np.int64),
+    )  # fmt: skip
 
 
-def find_pairs(box: Floats, is_target: NDArray[np.bool_], meets: Slots, room: int) -> Pairs:
-    """Objects that each particle may meet by their boxes (n, 4); room: a guess at their number."""
-    grid, particles = make_grid(box, is_target), len(meets)
-    start = np.zeros(particles + 1, np.int64)
-    while True:
-        other = np.zeros(room, np.int64)
-        count = _pair(grid, is_target, meets, particles, start, other)
-        if count <= room:
-            return Pairs(start, other)
-        room = count
+def new_pairs(particles: int, room: int) -> Pairs:
+    """Pairs to be filled in, with room for so many."""
+    return Pairs(np.zeros(particles + 1, np.int64), np.zeros(room, np.int64))

@@ -1,50 +1,338 @@
-"""What touches in a step: found before a solver moves bodies, kept, and held out of terrain, after it."""
+"""Collisions of a step, in two entries: `collide` before a solver moves bodies, `finish` after it.
 
-from typing import NamedTuple
+The first finds what touches and solves what no spring holds; the second keeps the contacts for the next step, holds
+particles out of terrain and moves them. Their arrays are made when the topology changes. Those whose length a step
+decides have room for more than there is; a kernel that finds too little says so, and is called again with more.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sandbox.physics.collision.contacts import find_contacts
-from sandbox.physics.collision.outline import outline_of
-from sandbox.physics.collision.terrain_clamp import stop_at_terrain
-from sandbox.physics.collision.types import Contacts
-from sandbox.physics.solvers.contact.free_contacts import settle_loose
-from sandbox.physics.solvers.contact.islands import bound_contacts
-from sandbox.physics.world import Floats, World
+from sandbox.physics.collision.broad_phase import (
+    Boxes,
+    Grid,
+    Pairs,
+    cell_size,
+    fill_grid,
+    find_pairs,
+    new_boxes,
+    new_grid,
+    new_pairs,
+)
+from sandbox.physics.collision.contacts import bound_solids, carry_over, fill_boxes, find_contacts, find_terrain
+from sandbox.physics.collision.inversion import Inversions, Triangles, find_inverted, new_inversions, triangles_of
+from sandbox.physics.collision.outline import Outline, colliders_of, outline_of
+from sandbox.physics.collision.restitution import find_bounces
+from sandbox.physics.collision.terrain_clamp import clamp_at_terrain
+from sandbox.physics.collision.types import (
+    NO_CONTACTS,
+    NOTHING_KEPT,
+    Colliders,
+    Contacts,
+    Flags,
+    KeptContacts,
+    Near,
+    room_for,
+    room_near,
+    room_to_keep,
+)
+from sandbox.physics.integrate import advance
+from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
+from sandbox.physics.solvers.contact.free_contacts import Work, new_work, solve_free_contacts
+from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, new_islands, sort_free_contacts
+from sandbox.physics.state import Floats, Slots
+from sandbox.physics.terrain import Terrain
+from sandbox.physics.world import World
+
+# What a step may find before it asks for more room, at least; and by how much more than it needs it then gets.
+LEAST_ROOM = 64
+MORE_ROOM = 2
+# Places in `counts`: contacts of the present step and of the last, entries of the grid, pairs by boxes, with terrain.
+CONTACTS, KEPT, ENTRIES, PAIRS, TERRAIN_PAIRS = range(5)
+# What `_collide` returns where there is too little room.
+NO_ROOM = -1
 
 
-class Meeting(NamedTuple):
-    """Contacts of a step; bound (k,): those that a solver solves with the bodies; ahead: see free_contacts.py."""
+class CollidingParticles(NamedTuple):
+    """The arrays of a world that collisions read and change, see StateArrays."""
 
+    position: Floats
+    velocity: Floats
+    origin: Floats
+    inverse_mass: Floats
+    radius: Floats
+    friction: Floats
+    restitution: Floats
+    group: Slots
+    collides: Slots
+    particle_active: Flags
+    element_rest: Floats
+
+
+class CollisionRoom(NamedTuple):
+    """What a step fills in. bounds (k, 5): see bound_solids. bound: the contacts that are left to a solver."""
+
+    boxes: Boxes
+    grid: Grid
+    pairs: Pairs
+    terrain_pairs: Pairs
+    bounds: Floats
+    near: Near
     contacts: Contacts
-    bound: NDArray[np.bool_]
-    ahead: Floats
+    bound: Contacts
+    kept: KeptContacts
+    islands: Islands
+    work: Work
+    inversions: Inversions
+    counts: Slots
 
 
-def meet(world: World, start: Floats, h: float) -> Meeting:
-    """Find the contacts of a step of h [s] and solve those of loose particles; the others are left to the solver.
+@inner_kernel
+def _load_particles(particles: CollidingParticles, colliders: Colliders) -> None:
+    for p in range(particles.radius.shape[0]):
+        for axis in range(2):
+            colliders.position[p, axis] = particles.position[p, axis]
+            colliders.velocity[p, axis] = particles.velocity[p, axis]
+            colliders.origin[p, axis] = particles.origin[p, axis]
+        colliders.radius[p] = particles.radius[p]
+        colliders.friction[p] = particles.friction[p]
+        colliders.restitution[p] = particles.restitution[p]
+        colliders.group[p] = particles.group[p]
+        colliders.collides[p] = particles.collides[p] if particles.particle_active[p] else 0
+        colliders.inverse_mass[p] = particles.inverse_mass[p]
+
+
+@kernel
+def _bound_terrain(items: Any) -> None:
+    # What is solid of terrain stays where it is.
+    _, outline, _, _, colliders, room = contents(items)
+    bound_solids(colliders, outline, outline.dynamic[1], outline.solid.shape[0], room.bounds)
+
+
+@inner_kernel
+def _detect(
+    particles: CollidingParticles, outline: Outline, terrain: Terrain, triangles: Triangles, colliders: Colliders,
+    room: CollisionRoom, tick: int, h: float,
+) -> int:  # fmt: skip
+    # Broad and narrow phase: the contacts of the step, but for bounces and impulses; their number, or NO_ROOM.
+    _load_particles(particles, colliders)
+    if triangles.element.shape[0] > 0:
+        find_inverted(
+            particles.position, particles.element_rest, triangles, room.inversions, colliders.inverted
+        )  # fmt: skip
+    fill_boxes(colliders, outline.dynamic[0], h, room.boxes)
+    cell = cell_size(room.boxes.box)
+    larges, entries = fill_grid(room.boxes, cell, room.grid)
+    room.counts[ENTRIES] = entries
+    if entries > room.grid.object.shape[0]:
+        return NO_ROOM
+    room.counts[PAIRS] = find_pairs(room.boxes, room.grid, larges, room.pairs)
+    room.counts[TERRAIN_PAIRS] = find_terrain(room.boxes, terrain, room.terrain_pairs)
+    if room.counts[PAIRS] > room.pairs.other.shape[0] or room.counts[TERRAIN_PAIRS] > room.terrain_pairs.other.shape[0]:
+        return NO_ROOM
+    bound_solids(colliders, outline, 0, outline.dynamic[1], room.bounds)
+    count = find_contacts(
+        colliders, outline, room.pairs, room.terrain_pairs, room.bounds, room.near, room.kept, room.counts[KEPT], tick,
+        h, room.contacts,
+    )  # fmt: skip
+    room.counts[CONTACTS] = count
+    return count if count <= room.contacts.particle.shape[0] else NO_ROOM
+
+
+@inner_kernel
+def _copy_bound(contacts: Contacts, count: int, bound: Flags, to: Contacts) -> None:
+    # The contacts that are bound, in their order.
+    k = 0
+    for c in range(count):
+        if bound[c]:
+            to.particle[k] = contacts.particle[c]
+            to.feature[k] = contacts.feature[c]
+            to.end_a[k] = contacts.end_a[c]
+            to.end_b[k] = contacts.end_b[c]
+            to.share[k] = contacts.share[c]
+            to.gap[k] = contacts.gap[c]
+            to.friction[k] = contacts.friction[c]
+            to.restitution[k] = contacts.restitution[c]
+            to.bounce[k] = contacts.bounce[c]
+            for axis in range(2):
+                to.normal[k, axis] = contacts.normal[c, axis]
+                to.impulse[k, axis] = contacts.impulse[c, axis]
+            k += 1
+
+
+@kernel
+def _collide(items: Any, start: Floats, tick: int, h: float) -> int:
+    # Everything before the solver; how many contacts are left to it, or NO_ROOM.
+    particles, outline, terrain, triangles, colliders, room = contents(items)
+    count = _detect(particles, outline, terrain, triangles, colliders, room, tick, h)
+    if count == NO_ROOM:
+        return count
+    contacts = room.contacts
+    find_bounces(contacts, count, start, particles.velocity, h)
+    carry_over(contacts, count, room.kept, room.counts[KEPT])
+    bound = find_islands(contacts, count, particles.inverse_mass, outline.held, room.islands)
+    found = sort_free_contacts(count, room.islands) if bound < count else 0
+    solve_free_contacts(
+        contacts, room.islands, found, particles.inverse_mass, particles.radius, start, particles.velocity, h, room.work
+    )
+    if bound > 0:
+        _copy_bound(contacts, count, room.islands.bound, room.bound)
+    return bound
+
+
+@kernel
+def _finish(items: Any, h: float) -> int:
+    # Everything after the solver; how many contacts there are.
+    particles, _, terrain, _, _, room = contents(items)
+    contacts = room.contacts
+    count = room.counts[CONTACTS]
+    k = 0
+    for c in range(count):
+        if room.islands.bound[c]:
+            contacts.impulse[c, 0] = room.bound.impulse[k, 0]
+            contacts.impulse[c, 1] = room.bound.impulse[k, 1]
+            k += 1
+        room.kept.particle[c] = contacts.particle[c]
+        room.kept.feature[c] = contacts.feature[c]
+        room.kept.impulse[c, 0] = contacts.impulse[c, 0]
+        room.kept.impulse[c, 1] = contacts.impulse[c, 1]
+    room.counts[KEPT] = count
+    ahead = room.work.ahead
+    clamp_at_terrain(
+        particles.position, particles.velocity, ahead, particles.collides, particles.particle_active,
+        particles.inverse_mass, terrain, h,
+    )  # fmt: skip
+    for p in range(ahead.shape[0]):
+        particles.position[p, 0] += ahead[p, 0]
+        particles.position[p, 1] += ahead[p, 1]
+    advance(particles.position, particles.velocity, particles.particle_active, h)
+    return count
+
+
+@dataclass(eq=False)
+class Collisions:
+    """The scratch of a world's collisions: what topology decides, what a step fills in, and all as one argument.
+
+    wanted: the largest counts so far. solved: the contacts that the last step left to a solver. kept: the contacts of
+    the last tick, the first of those in room; they are the world's own, which so has them without a copy.
+    """
+
+    particles: CollidingParticles
+    outline: Outline
+    terrain: Terrain
+    triangles: Triangles
+    colliders: Colliders
+    room: CollisionRoom
+    wanted: Slots
+    items: Any
+    solved: Contacts = NO_CONTACTS
+    kept: KeptContacts = NOTHING_KEPT
+    count: int = 0
+
+
+def collisions_of(world: World) -> Collisions | None:
+    """The scratch of a world's collisions, made anew where topology has changed; None: nothing can touch anything."""
+    return world.derived(_make_collisions)
+
+
+def _make_collisions(world: World) -> Collisions | None:
+    if not world.has_contacts:
+        return None
+    outline, triangles = outline_of(world), triangles_of(world)
+    particles = CollidingParticles._make([getattr(world, name) for name in CollidingParticles._fields])
+    wanted = np.full(5, len(world.contact_particle))
+    wanted[ENTRIES] = world.particle_count
+    made = Collisions(
+        particles, outline, world.terrain, triangles, colliders_of(world, outline),
+        _make_room(outline, triangles, wanted), wanted, None,
+    )  # fmt: skip
+    _bundle_up(made)
+    return made
+
+
+def _make_room(outline: Outline, triangles: Triangles, wanted: Slots) -> CollisionRoom:
+    particles = len(outline.held)
+    objects = particles + int(outline.dynamic[0])
+    contacts, kept, entries, pairs, terrain_pairs = (MORE_ROOM * wanted + LEAST_ROOM).tolist()
+    contacts = max(contacts, kept)
+    return CollisionRoom(
+        new_boxes(particles, objects), new_grid(objects, entries), new_pairs(particles, pairs),
+        new_pairs(particles, terrain_pairs), np.zeros((len(outline.solid), 5)), room_near(), room_for(contacts),
+        room_for(contacts), room_to_keep(contacts), new_islands(particles, contacts), new_work(particles, contacts),
+        new_inversions(triangles), np.zeros(5, np.int64),
+    )  # fmt: skip
+
+
+def _bundle_up(made: Collisions) -> None:
+    made.items = bundle((made.particles, made.outline, made.terrain, made.triangles, made.colliders, made.room))
+    _bound_terrain(made.items)
+
+
+def _grow(collisions: Collisions) -> None:
+    """Give a step the room that it has found to be too little; the contacts kept of the last step stay."""
+    old = collisions.room
+    collisions.wanted = np.maximum(collisions.wanted, old.counts)
+    collisions.room = _make_room(collisions.outline, collisions.triangles, collisions.wanted)
+    collisions.room.counts[:] = old.counts
+    count = len(old.kept.particle)
+    new = collisions.room.kept
+    new.particle[:count], new.feature[:count], new.impulse[:count] = old.kept
+    collisions.solved, collisions.kept = NO_CONTACTS, NOTHING_KEPT
+    _bundle_up(collisions)
+
+
+def begin_collisions(world: World) -> Collisions | None:
+    """The scratch of the coming tick's collisions, with the contacts of the world's last step."""
+    collisions = collisions_of(world)
+    if collisions is not None and world.contact_impulse is not collisions.kept.impulse:
+        counts, count = collisions.room.counts, len(world.contact_particle)
+        counts[KEPT] = collisions.count = count
+        if count > len(collisions.room.kept.particle):
+            _grow(collisions)
+        room = collisions.room.kept
+        room.particle[:count] = world.contact_particle
+        room.feature[:count], room.impulse[:count] = world.contact_feature, world.contact_impulse
+        _share_kept(world, collisions)
+    return collisions
+
+
+def _share_kept(world: World, collisions: Collisions) -> None:
+    count = collisions.count
+    collisions.kept = KeptContacts._make([array[:count] for array in collisions.room.kept])
+    world.keep_contacts(*collisions.kept)
+
+
+def collide(collisions: Collisions, start: Floats, tick: int, h: float) -> Contacts:
+    """Find the contacts of a step of h [s] and solve those of free particles; the others, returned, are a solver's.
 
     start [m/s] (n, 2): the velocities before gravity and all else from outside.
     """
-    outline, ahead = outline_of(world), np.zeros((world.particle_count, 2))
-    contacts = find_contacts(world, outline, start, h)
-    held = np.diff(outline.near_start) > 0
-    held[world.corner_particle] = True
-    bound, cluster = bound_contacts(contacts, world.inverse_mass, held)
-    if not bound.all():
-        settle_loose(world, contacts, np.flatnonzero(~bound), cluster, start, h, ahead)
-        world.contacts = Contacts._make(array[bound] for array in contacts)
-    else:
-        world.contacts = contacts
-    return Meeting(contacts, bound, ahead)
+    count = _collide(collisions.items, start, tick, h)
+    while count == NO_ROOM:
+        _grow(collisions)
+        count = _collide(collisions.items, start, tick, h)
+    if count != len(collisions.solved.particle):
+        room = collisions.room.bound
+        collisions.solved = Contacts._make([array[:count] for array in room]) if count else NO_CONTACTS
+    return collisions.solved
 
 
-def leave(world: World, meeting: Meeting, h: float) -> None:
-    """Keep a step's contacts with their impulses, and stop what would cross terrain, before particles move."""
-    contacts = meeting.contacts
-    contacts.impulse[meeting.bound] = world.contacts.impulse
-    world.contacts = contacts
-    world.keep_contacts(contacts.particle.astype(np.int32), contacts.feature, contacts.impulse)
-    stop_at_terrain(world, meeting.ahead, h)
-    world.position += meeting.ahead
+def finish(collisions: Collisions, h: float) -> None:
+    """Keep a step's contacts with their impulses, stop what would cross terrain, and move particles over h [s]."""
+    collisions.count = _finish(collisions.items, h)
+
+
+def end_collisions(world: World, collisions: Collisions) -> None:
+    """Make the contacts of a tick's last step those of the world's state."""
+    if collisions.count != len(collisions.kept.particle) or collisions.kept is NOTHING_KEPT:
+        _share_kept(world, collisions)
+
+
+def last_contacts(world: World) -> Contacts:
+    """A copy of the contacts of the world's last step; none where topology has changed since."""
+    collisions = collisions_of(world)
+    if collisions is None:
+        return NO_CONTACTS
+    return Contacts._make([array[: collisions.room.counts[CONTACTS]].copy() for array in collisions.room.contacts])

@@ -1,18 +1,19 @@
-"""Tangles: which jellies are so out of shape that springs and areas alone may not find back.
+"""Inversion: which jellies are so out of shape that springs and areas alone may not find back.
 
-A jelly is a group of triangles that share sides. It is tangled while a triangle of it is turned over, or while the
+A jelly is a group of triangles that share sides. It is inverted while a triangle of it is turned over, or while the
 triangles about one of its inner particles do not wind round that particle just once.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sandbox.physics.collision.types import Flags
 from sandbox.physics.components import label_bodies
 from sandbox.physics.constraints import AREA
-from sandbox.physics.jit import inlined_kernel, kernel
-from sandbox.physics.world import Slots, World
+from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.state import Floats, Slots
+from sandbox.physics.world import World
 
 
 class Jellies(NamedTuple):
@@ -29,7 +30,7 @@ class Jellies(NamedTuple):
     start: Slots
     particle: Slots
     corner: Slots
-    inner: NDArray[np.bool_]
+    inner: Flags
 
 
 def group_triangles(corners: Slots) -> Jellies:
@@ -52,7 +53,7 @@ def group_triangles(corners: Slots) -> Jellies:
 
 
 @inlined_kernel
-def _crossing(px, py, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+def _crossing(px: float, py: float, ax: float, ay: float, bx: float, by: float) -> int:
     # +1 where the corner at p, from a to b, sweeps over the direction (1, 0) counter-clockwise, -1 clockwise.
     crossing = 0
     below = ay < py
@@ -66,7 +67,7 @@ def _crossing(px, py, ax, ay, bx, by):  # type: ignore[no-untyped-def]
 
 
 @inlined_kernel
-def wind(place, a, b, c, member, at, turns):  # type: ignore[no-untyped-def]
+def wind(place: Floats, a: int, b: int, c: int, member: Slots, at: int, turns: Slots) -> float:
     """Count the turns of triangle a b c, whose corners are member[at], round each of them; its area, doubled."""
     ax = place[a, 0]
     ay = place[a, 1]
@@ -80,29 +81,48 @@ def wind(place, a, b, c, member, at, turns):  # type: ignore[no-untyped-def]
     return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 
 
-@kernel
-def _find(position, rest, element, corners, jellies, turns, is_tangled, tangled):  # type: ignore[no-untyped-def]
-    for t in range(corners.shape[0]):
-        area = wind(position, corners[t, 0], corners[t, 1], corners[t, 2], jellies.member, t, turns)
-        wanted = rest[element[t], 0]
-        if wanted * rest[element[t], 1] > 0.0 and not area * wanted > 0.0:
-            is_tangled[jellies.group[t]] = True
-    for g in range(is_tangled.shape[0]):
-        once = 1 if rest[element[jellies.first[g]], 1] > 0.0 else -1
-        for i in range(jellies.start[g], jellies.start[g + 1]):
-            if jellies.inner[i] and turns[i] != once:
-                is_tangled[g] = True
-        if is_tangled[g]:
-            for i in range(jellies.start[g], jellies.start[g + 1]):
-                tangled[jellies.particle[i]] = True
-
-
 class Triangles(NamedTuple):
     """The triangles of a world that keep their areas, t of them: element (t,), corners (t, 3), and their jellies."""
 
     element: Slots
     corners: Slots
     jellies: Jellies
+
+
+class Inversions(NamedTuple):
+    """By corner of a jelly: turns of triangles round it; by jelly: whether it is inverted. Filled in by each step."""
+
+    turns: Slots
+    is_inverted: Flags
+
+
+@inner_kernel
+def find_inverted(
+    position: Floats, element_rest: Floats, triangles: Triangles, found: Inversions, inverted: Flags
+) -> None:
+    """Mark the particles, of all those in jellies, that belong to an inverted jelly."""
+    corners = triangles.corners
+    jellies = triangles.jellies
+    turns = found.turns
+    for i in range(turns.shape[0]):
+        turns[i] = 0
+    for g in range(found.is_inverted.shape[0]):
+        found.is_inverted[g] = False
+    for t in range(corners.shape[0]):
+        area = wind(position, corners[t, 0], corners[t, 1], corners[t, 2], jellies.member, t, turns)
+        wanted = element_rest[triangles.element[t], 0]
+        if wanted * element_rest[triangles.element[t], 1] > 0.0 and not area * wanted > 0.0:
+            found.is_inverted[jellies.group[t]] = True
+    for i in range(turns.shape[0]):
+        inverted[jellies.particle[i]] = False
+    for g in range(found.is_inverted.shape[0]):
+        once = 1 if element_rest[triangles.element[jellies.first[g]], 1] > 0.0 else -1
+        for i in range(jellies.start[g], jellies.start[g + 1]):
+            if jellies.inner[i] and turns[i] != once:
+                found.is_inverted[g] = True
+        if found.is_inverted[g]:
+            for i in range(jellies.start[g], jellies.start[g + 1]):
+                inverted[jellies.particle[i]] = True
 
 
 def triangles_of(world: World) -> Triangles:
@@ -113,14 +133,7 @@ def triangles_of(world: World) -> Triangles:
     return Triangles(element, corners, group_triangles(corners))
 
 
-def tangled_particles(world: World, triangles: Triangles, count: int) -> NDArray[np.bool_]:
-    """Which of `count` vertices, the particles first, belong to a tangled jelly."""
-    tangled = np.zeros(count, dtype=np.bool_)
-    if len(triangles.element):
-        jellies = triangles.jellies
-        turns, is_tangled = np.zeros(len(jellies.particle), np.int64), np.zeros(len(jellies.first), np.bool_)
-        _find(
-            world.position, world.element_rest, triangles.element, triangles.corners, jellies, turns, is_tangled,
-            tangled,
-        )  # fmt: skip
-    return tangled
+def new_inversions(triangles: Triangles) -> Inversions:
+    """Inversions to be filled in."""
+    jellies = triangles.jellies
+    return Inversions(np.zeros(len(jellies.particle), np.int64), np.zeros(len(jellies.first), np.bool_))

@@ -6,9 +6,10 @@ and is pushed out there. What moves fast is followed along its way, and meets wh
 
 import math
 
-from sandbox.physics.collision.types import MOST_NEAR
+from sandbox.physics.collision.types import MOST_NEAR, Colliders, Contacts, Near
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.state import Floats, Slots
 
 # A contact exists from this gap on, as a share of the radii together, so that what rests keeps its contacts; a larger
 # share costs contacts that do nothing, a smaller one lets crowded particles overlap when they are pushed.
@@ -23,23 +24,36 @@ DISC, EDGE, TERRAIN = 0, 1, 2
 
 
 @inlined_kernel
-def may_touch(p, v, shapes):  # type: ignore[no-untyped-def]
+def may_collide(p: int, v: int, colliders: Colliders) -> bool:
     """Whether the groups of two vertices let them touch."""
-    return shapes.collides[p] & shapes.group[v] != 0 and shapes.collides[v] & shapes.group[p] != 0
+    return colliders.collides[p] & colliders.group[v] != 0 and colliders.collides[v] & colliders.group[p] != 0
 
 
 @inlined_kernel
-def are_joined(p, v, shapes):  # type: ignore[no-untyped-def]
+def are_joined(p: int, v: int, colliders: Colliders) -> bool:
     """Whether a spring joins two particles."""
     found = False
-    for at in range(shapes.near_start[p], shapes.near_start[p + 1]):
-        if shapes.near_of[at] == v:
+    for at in range(colliders.near_start[p], colliders.near_start[p + 1]):
+        if colliders.near_of[at] == v:
             found = True
     return found
 
 
 @inlined_kernel
-def add_contact(count, contacts, p, feature, a, b, share, nx, ny, gap, surface, shapes):  # type: ignore[no-untyped-def]
+def add_contact(
+    count: int,
+    contacts: Contacts,
+    p: int,
+    feature: int,
+    a: int,
+    b: int,
+    share: float,
+    nx: float,
+    ny: float,
+    gap: float,
+    surface: int,
+    colliders: Colliders,
+) -> int:
     """Append a contact of particle p if there is room; the number of contacts then, counted on where there is none."""
     if count < contacts.particle.shape[0]:
         contacts.particle[count] = p
@@ -51,28 +65,28 @@ def add_contact(count, contacts, p, feature, a, b, share, nx, ny, gap, surface, 
         contacts.normal[count, 1] = ny
         contacts.gap[count] = gap
         # Friction: the geometric mean, so that ice is slippery for all; restitution: the livelier of the two.
-        contacts.friction[count] = math.sqrt(shapes.friction[p] * shapes.friction[surface])
-        contacts.restitution[count] = max(shapes.restitution[p], shapes.restitution[surface])
+        contacts.friction[count] = math.sqrt(colliders.friction[p] * colliders.friction[surface])
+        contacts.restitution[count] = max(colliders.restitution[p], colliders.restitution[surface])
     return count + 1
 
 
 @inlined_kernel
-def touch_disc(p, q, h, shapes, contacts, count):  # type: ignore[no-untyped-def]
+def collide_disc(p: int, q: int, h: float, colliders: Colliders, contacts: Contacts, count: int) -> int:
     """Contact of two discs, if there is one; the number of contacts then."""
-    if shapes.inverse[p] + shapes.inverse[q] == 0.0 or not may_touch(p, q, shapes):
+    if colliders.inverse_mass[p] + colliders.inverse_mass[q] == 0.0 or not may_collide(p, q, colliders):
         return count
-    if shapes.owner[p] == shapes.owner[q] or are_joined(p, q, shapes):
+    if colliders.owner[p] == colliders.owner[q] or are_joined(p, q, colliders):
         return count
-    dx = shapes.place[p, 0] - shapes.place[q, 0]
-    dy = shapes.place[p, 1] - shapes.place[q, 1]
-    wx = h * (shapes.motion[p, 0] - shapes.motion[q, 0])
-    wy = h * (shapes.motion[p, 1] - shapes.motion[q, 1])
-    reach = shapes.radius[p] + shapes.radius[q]
+    dx = colliders.position[p, 0] - colliders.position[q, 0]
+    dy = colliders.position[p, 1] - colliders.position[q, 1]
+    wx = h * (colliders.velocity[p, 0] - colliders.velocity[q, 0])
+    wy = h * (colliders.velocity[p, 1] - colliders.velocity[q, 1])
+    reach = colliders.radius[p] + colliders.radius[q]
     distance = math.sqrt(dx * dx + dy * dy)
     travel = math.sqrt(wx * wx + wy * wy)
     gap = distance - reach
     if travel > FAST * reach and gap > MARGIN * reach:
-        when = _meets_circle(dx, dy, wx, wy, reach)
+        when = _time_to_circle(dx, dy, wx, wy, reach)
         if when > 1.0 or not reach > 0.0:
             return count
         nx = (dx + when * wx) / reach
@@ -87,11 +101,11 @@ def touch_disc(p, q, h, shapes, contacts, count):  # type: ignore[no-untyped-def
         else:
             nx = 0.0
             ny = 1.0
-    return add_contact(count, contacts, p, 3 * q + DISC, q, -1, 0.0, nx, ny, gap, q, shapes)
+    return add_contact(count, contacts, p, 3 * q + DISC, q, -1, 0.0, nx, ny, gap, q, colliders)
 
 
 @inlined_kernel
-def _meets_circle(dx, dy, wx, wy, reach):  # type: ignore[no-untyped-def]
+def _time_to_circle(dx: float, dy: float, wx: float, wy: float, reach: float) -> float:
     # Part of the way w from d at which the origin is first `reach` away; 2 where it never is.
     squared = wx * wx + wy * wy
     along = dx * wx + dy * wy
@@ -105,27 +119,27 @@ def _meets_circle(dx, dy, wx, wy, reach):  # type: ignore[no-untyped-def]
 
 
 @inlined_kernel
-def look_at(p, e, shapes, near, count):  # type: ignore[no-untyped-def]
+def find_near(p: int, e: int, colliders: Colliders, near: Near, count: int) -> int:
     """Note where the particle lies to an edge that it may touch; the number of edges noted then."""
-    a = shapes.edge_a[e]
-    b = shapes.edge_b[e]
-    if count >= MOST_NEAR or a == p or b == p or not may_touch(p, a, shapes):
+    a = colliders.edge_a[e]
+    b = colliders.edge_b[e]
+    if count >= MOST_NEAR or a == p or b == p or not may_collide(p, a, colliders):
         return count
-    if shapes.inverse[p] + shapes.inverse[a] + shapes.inverse[b] == 0.0:
+    if colliders.inverse_mass[p] + colliders.inverse_mass[a] + colliders.inverse_mass[b] == 0.0:
         return count
-    own = shapes.owner[a] == shapes.owner[p]
-    # A tangled jelly would be kept so by its own edges.
-    if own and (shapes.tangled[p] or shapes.edge_start[p] == shapes.edge_start[p + 1]):
+    own = colliders.owner[a] == colliders.owner[p]
+    # An inverted jelly would be kept so by its own edges.
+    if own and (colliders.inverted[p] or colliders.edge_start[p] == colliders.edge_start[p + 1]):
         return count
-    if are_joined(p, a, shapes) or are_joined(p, b, shapes):
+    if are_joined(p, a, colliders) or are_joined(p, b, colliders):
         return count
     if own:
-        reach = OWN_REACH * (shapes.radius[p] + shapes.radius[a])
-        _, distance, _, _ = closest(p, a, b, shapes.origin)
+        reach = OWN_REACH * (colliders.radius[p] + colliders.radius[a])
+        _, distance, _, _ = closest(p, a, b, colliders.origin)
         if distance <= reach:
             return count
     near.edge[count] = e
-    share, distance, signed, region = closest(p, a, b, shapes.place)
+    share, distance, signed, region = closest(p, a, b, colliders.position)
     near.share[count] = share
     near.distance[count] = distance
     near.signed[count] = signed
@@ -134,12 +148,12 @@ def look_at(p, e, shapes, near, count):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def closest(p, a, b, place):  # type: ignore[no-untyped-def]
+def closest(p: int, a: int, b: int, position: Floats) -> tuple[float, float, float, int]:
     """Place along the edge a b that is closest to p, distance, signed distance (right of the edge: above 0), region."""
-    dx = place[b, 0] - place[a, 0]
-    dy = place[b, 1] - place[a, 1]
-    px = place[p, 0] - place[a, 0]
-    py = place[p, 1] - place[a, 1]
+    dx = position[b, 0] - position[a, 0]
+    dy = position[b, 1] - position[a, 1]
+    px = position[p, 0] - position[a, 0]
+    py = position[p, 1] - position[a, 1]
     squared = dx * dx + dy * dy
     if not squared > SHORTEST:
         distance = math.sqrt(px * px + py * py)
@@ -159,10 +173,10 @@ def closest(p, a, b, place):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _edge_normal(e, shapes):  # type: ignore[no-untyped-def]
+def _edge_normal(e: int, colliders: Colliders) -> tuple[float, float]:
     # Unit normal on the right of the edge, away from what is solid.
-    dx = shapes.place[shapes.edge_b[e], 0] - shapes.place[shapes.edge_a[e], 0]
-    dy = shapes.place[shapes.edge_b[e], 1] - shapes.place[shapes.edge_a[e], 1]
+    dx = colliders.position[colliders.edge_b[e], 0] - colliders.position[colliders.edge_a[e], 0]
+    dy = colliders.position[colliders.edge_b[e], 1] - colliders.position[colliders.edge_a[e], 1]
     length = math.sqrt(dx * dx + dy * dy)
     if length > SHORTEST:
         return dy / length, -dx / length
@@ -170,38 +184,38 @@ def _edge_normal(e, shapes):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _end_of(e, region, shapes):  # type: ignore[no-untyped-def]
-    return shapes.edge_a[e] if region < 0 else shapes.edge_b[e]
+def _end_of(e: int, region: int, colliders: Colliders) -> int:
+    return colliders.edge_a[e] if region < 0 else colliders.edge_b[e]
 
 
 @inner_kernel
-def _owns_corner(e, v, x, y, shapes):  # type: ignore[no-untyped-def]
+def _owns_corner(e: int, v: int, x: float, y: float, colliders: Colliders) -> bool:
     # Whether (x, y) is nearer to vertex v than to any other place of its edges, and e is the first of those.
-    first = shapes.edge_start[v]
-    if shapes.edge_of[first] != e:
+    first = colliders.edge_start[v]
+    if colliders.edge_of[first] != e:
         return False
-    vx = shapes.place[v, 0]
-    vy = shapes.place[v, 1]
-    for at in range(first, shapes.edge_start[v + 1]):
-        other = shapes.edge_a[shapes.edge_of[at]]
+    vx = colliders.position[v, 0]
+    vy = colliders.position[v, 1]
+    for at in range(first, colliders.edge_start[v + 1]):
+        other = colliders.edge_a[colliders.edge_of[at]]
         if other == v:
-            other = shapes.edge_b[shapes.edge_of[at]]
-        dx = shapes.place[other, 0] - vx
-        dy = shapes.place[other, 1] - vy
+            other = colliders.edge_b[colliders.edge_of[at]]
+        dx = colliders.position[other, 0] - vx
+        dy = colliders.position[other, 1] - vy
         if (x - vx) * dx + (y - vy) * dy > CORNER * (dx * dx + dy * dy):
             return False
     return True
 
 
 @inner_kernel
-def _corner_normal(v, shapes):  # type: ignore[no-untyped-def]
+def _corner_normal(v: int, colliders: Colliders) -> tuple[float, float]:
     # Sum of the normals of the solid edges that meet in a vertex.
     nx = 0.0
     ny = 0.0
-    for at in range(shapes.edge_start[v], shapes.edge_start[v + 1]):
-        e = shapes.edge_of[at]
-        if shapes.side[e] != 0:
-            ex, ey = _edge_normal(e, shapes)
+    for at in range(colliders.edge_start[v], colliders.edge_start[v + 1]):
+        e = colliders.edge_of[at]
+        if colliders.side[e] != 0:
+            ex, ey = _edge_normal(e, colliders)
             nx += ex
             ny += ey
     length = math.sqrt(nx * nx + ny * ny)
@@ -211,19 +225,19 @@ def _corner_normal(v, shapes):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _winds(x, y, first, last, shapes):  # type: ignore[no-untyped-def]
+def _winds(x: float, y: float, first: int, last: int, colliders: Colliders) -> int:
     # How often solid edges run round a place: a ray to the right crosses one that has it on its left going up, or on
     # its right going down.
     winding = 0
     for e in range(first, last):
-        a = shapes.edge_a[e]
-        b = shapes.edge_b[e]
-        below = shapes.place[a, 1] <= y
-        if below == (shapes.place[b, 1] <= y) or shapes.side[e] == 0:
+        a = colliders.edge_a[e]
+        b = colliders.edge_b[e]
+        below = colliders.position[a, 1] <= y
+        if below == (colliders.position[b, 1] <= y) or colliders.side[e] == 0:
             continue
-        dx = shapes.place[b, 0] - shapes.place[a, 0]
-        dy = shapes.place[b, 1] - shapes.place[a, 1]
-        right = (x - shapes.place[a, 0]) * dy - (y - shapes.place[a, 1]) * dx
+        dx = colliders.position[b, 0] - colliders.position[a, 0]
+        dy = colliders.position[b, 1] - colliders.position[a, 1]
+        right = (x - colliders.position[a, 0]) * dy - (y - colliders.position[a, 1]) * dx
         if below and right < 0.0:
             winding += 1
         elif not below and right > 0.0:
@@ -232,31 +246,42 @@ def _winds(x, y, first, last, shapes):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def is_enclosed(p, k, solid, bounds, shapes):  # type: ignore[no-untyped-def]
+def is_enclosed(p: int, k: int, solid: Slots, bounds: Floats, colliders: Colliders) -> bool:
     """Whether particle p is inside the solid edges of span k."""
-    winding = _winds(shapes.place[p, 0], shapes.place[p, 1], solid[k, 0], solid[k, 1], shapes)
+    winding = _winds(colliders.position[p, 0], colliders.position[p, 1], solid[k, 0], solid[k, 1], colliders)
     # A hollow chain runs the other way round: nothing is counted outside it, -1 inside.
     return winding == 0 if bounds[k, 4] > 0.0 else winding > 0
 
 
 @inner_kernel
-def _is_in(p, owner, solid, bounds, shapes):  # type: ignore[no-untyped-def]
+def _is_in(p: int, owner: int, solid: Slots, bounds: Floats, colliders: Colliders) -> bool:
     # Whether particle p is inside the solid edges of that owner.
     for k in range(solid.shape[0]):
-        if shapes.owner[shapes.edge_a[solid[k, 0]]] == owner:
-            return is_enclosed(p, k, solid, bounds, shapes)
+        if colliders.owner[colliders.edge_a[solid[k, 0]]] == owner:
+            return is_enclosed(p, k, solid, bounds, colliders)
     return False
 
 
 @inner_kernel
-def touch_edges(p, h, shapes, near, edges, solid, bounds, dynamic, contacts, count):  # type: ignore[no-untyped-def]
+def collide_edges(
+    p: int,
+    h: float,
+    colliders: Colliders,
+    near: Near,
+    edges: int,
+    solid: Slots,
+    bounds: Floats,
+    dynamic: int,
+    contacts: Contacts,
+    count: int,
+) -> int:
     """Contacts of a particle with the edges noted, owner by owner; the number of contacts then."""
     for i in range(edges):
-        owner = shapes.owner[shapes.edge_a[near.edge[i]]]
+        owner = colliders.owner[colliders.edge_a[near.edge[i]]]
         nearest = i
         seen = False
         for j in range(edges):
-            if shapes.owner[shapes.edge_a[near.edge[j]]] == owner:
+            if colliders.owner[colliders.edge_a[near.edge[j]]] == owner:
                 if j < i:
                     seen = True
                     break
@@ -265,49 +290,83 @@ def touch_edges(p, h, shapes, near, edges, solid, bounds, dynamic, contacts, cou
         if seen:
             continue
         # Where an outline is folded, the edge that is nearest by itself can be seen from behind outside.
-        behind = owner != shapes.owner[p] and _is_behind(p, nearest, shapes, near)
-        if behind and _is_in(p, owner, solid, bounds, shapes):
+        behind = owner != colliders.owner[p] and _is_behind(p, nearest, colliders, near)
+        if behind and _is_in(p, owner, solid, bounds, colliders):
             count = push_out(p, near.edge[nearest], near.share[nearest], near.distance[nearest],
-                             near.region[nearest], shapes, dynamic, contacts, count)  # fmt: skip
+                             near.region[nearest], colliders, dynamic, contacts, count)  # fmt: skip
         else:
-            count = _touch_outside(p, h, i, edges, owner, shapes, near, dynamic, contacts, count)
+            count = _collide_outside(p, h, i, edges, owner, colliders, near, dynamic, contacts, count)
     return count
 
 
 @inner_kernel
-def _is_behind(p, i, shapes, near):  # type: ignore[no-untyped-def]
+def _is_behind(p: int, i: int, colliders: Colliders, near: Near) -> bool:
     e = near.edge[i]
-    if shapes.side[e] == 0:
+    if colliders.side[e] == 0:
         return False
     if near.region[i] == 0:
         return near.signed[i] < 0.0
-    v = _end_of(e, near.region[i], shapes)
-    nx, ny = _corner_normal(v, shapes)
-    return (shapes.place[p, 0] - shapes.place[v, 0]) * nx + (shapes.place[p, 1] - shapes.place[v, 1]) * ny < 0.0
+    v = _end_of(e, near.region[i], colliders)
+    nx, ny = _corner_normal(v, colliders)
+    return (colliders.position[p, 0] - colliders.position[v, 0]) * nx + (
+        colliders.position[p, 1] - colliders.position[v, 1]
+    ) * ny < 0.0
 
 
 @inner_kernel
-def push_out(p, e, share, distance, region, shapes, dynamic, contacts, count):  # type: ignore[no-untyped-def]
+def push_out(
+    p: int,
+    e: int,
+    share: float,
+    distance: float,
+    region: int,
+    colliders: Colliders,
+    dynamic: int,
+    contacts: Contacts,
+    count: int,
+) -> int:
     """Contact of a particle inside a solid body with the edge that is nearest; the number of contacts then."""
-    nx, ny = _edge_normal(e, shapes)
+    nx, ny = _edge_normal(e, colliders)
     if region != 0:
-        nx, ny = _corner_normal(_end_of(e, region, shapes), shapes)
-    reach = shapes.radius[p] + shapes.radius[shapes.edge_a[e]]
-    return _touch_edge(p, e, share, nx, ny, -distance - reach, shapes, dynamic, contacts, count)
+        nx, ny = _corner_normal(_end_of(e, region, colliders), colliders)
+    reach = colliders.radius[p] + colliders.radius[colliders.edge_a[e]]
+    return _add_edge(p, e, share, nx, ny, -distance - reach, colliders, dynamic, contacts, count)
 
 
 @inner_kernel
-def _touch_edge(p, e, share, nx, ny, gap, shapes, dynamic, contacts, count):  # type: ignore[no-untyped-def]
-    a = shapes.edge_a[e]
+def _add_edge(
+    p: int,
+    e: int,
+    share: float,
+    nx: float,
+    ny: float,
+    gap: float,
+    colliders: Colliders,
+    dynamic: int,
+    contacts: Contacts,
+    count: int,
+) -> int:
+    a = colliders.edge_a[e]
     if e < dynamic:
         return add_contact(
-            count, contacts, p, 3 * shapes.number[e] + EDGE, a, shapes.edge_b[e], share, nx, ny, gap, a, shapes
+            count, contacts, p, 3 * colliders.number[e] + EDGE, a, colliders.edge_b[e], share, nx, ny, gap, a, colliders
         )
-    return add_contact(count, contacts, p, 3 * shapes.number[e] + TERRAIN, -1, -1, share, nx, ny, gap, a, shapes)
+    return add_contact(count, contacts, p, 3 * colliders.number[e] + TERRAIN, -1, -1, share, nx, ny, gap, a, colliders)
 
 
 @inner_kernel
-def _touch_outside(p, h, first, edges, owner, shapes, near, dynamic, contacts, count):  # type: ignore[no-untyped-def]
+def _collide_outside(
+    p: int,
+    h: float,
+    first: int,
+    edges: int,
+    owner: int,
+    colliders: Colliders,
+    near: Near,
+    dynamic: int,
+    contacts: Contacts,
+    count: int,
+) -> int:
     # Every edge of the owner that is close, and the first one in the way of a fast particle.
     soonest = 2.0
     met = -1
@@ -317,60 +376,64 @@ def _touch_outside(p, h, first, edges, owner, shapes, near, dynamic, contacts, c
     met_gap = 0.0
     for j in range(first, edges):
         e = near.edge[j]
-        a = shapes.edge_a[e]
-        b = shapes.edge_b[e]
-        if shapes.owner[a] != owner:
+        a = colliders.edge_a[e]
+        b = colliders.edge_b[e]
+        if colliders.owner[a] != owner:
             continue
-        reach = shapes.radius[p] + shapes.radius[a]
-        wx = h * (shapes.motion[p, 0] - 0.5 * (shapes.motion[a, 0] + shapes.motion[b, 0]))
-        wy = h * (shapes.motion[p, 1] - 0.5 * (shapes.motion[a, 1] + shapes.motion[b, 1]))
+        reach = colliders.radius[p] + colliders.radius[a]
+        wx = h * (colliders.velocity[p, 0] - 0.5 * (colliders.velocity[a, 0] + colliders.velocity[b, 0]))
+        wy = h * (colliders.velocity[p, 1] - 0.5 * (colliders.velocity[a, 1] + colliders.velocity[b, 1]))
         travel = math.sqrt(wx * wx + wy * wy)
         gap = near.distance[j] - reach
         fast = travel > FAST * reach
         if gap <= MARGIN * reach + (0.0 if fast else travel):
-            if shapes.side[e] != 0 and near.signed[j] < 0.0 and near.region[j] == 0:
+            if colliders.side[e] != 0 and near.signed[j] < 0.0 and near.region[j] == 0:
                 continue
             if near.region[j] != 0:
-                v = _end_of(e, near.region[j], shapes)
-                if not _owns_corner(e, v, shapes.place[p, 0], shapes.place[p, 1], shapes):
+                v = _end_of(e, near.region[j], colliders)
+                if not _owns_corner(e, v, colliders.position[p, 0], colliders.position[p, 1], colliders):
                     continue
             if near.distance[j] > SHORTEST:
-                nx = (shapes.place[p, 0] - _along(e, near.share[j], 0, shapes)) / near.distance[j]
-                ny = (shapes.place[p, 1] - _along(e, near.share[j], 1, shapes)) / near.distance[j]
+                nx = (colliders.position[p, 0] - _along(e, near.share[j], 0, colliders)) / near.distance[j]
+                ny = (colliders.position[p, 1] - _along(e, near.share[j], 1, colliders)) / near.distance[j]
             else:
-                nx, ny = _edge_normal(e, shapes)
-            count = _touch_edge(p, e, near.share[j], nx, ny, gap, shapes, dynamic, contacts, count)
+                nx, ny = _edge_normal(e, colliders)
+            count = _add_edge(p, e, near.share[j], nx, ny, gap, colliders, dynamic, contacts, count)
         elif fast:
-            when, share, nx, ny, gap = _sweep(p, e, wx, wy, reach, near.signed[j], shapes)
+            when, share, nx, ny, gap = _sweep_edge(p, e, wx, wy, reach, near.signed[j], colliders)
             if when < soonest:
                 soonest, met, met_share, met_x, met_y, met_gap = when, e, share, nx, ny, gap
     if met >= 0:
-        count = _touch_edge(p, met, met_share, met_x, met_y, met_gap, shapes, dynamic, contacts, count)
+        count = _add_edge(p, met, met_share, met_x, met_y, met_gap, colliders, dynamic, contacts, count)
     return count
 
 
 @inner_kernel
-def _along(e, share, axis, shapes):  # type: ignore[no-untyped-def]
-    a = shapes.place[shapes.edge_a[e], axis]
-    return a + share * (shapes.place[shapes.edge_b[e], axis] - a)
+def _along(e: int, share: float, axis: int, colliders: Colliders) -> float:
+    a = colliders.position[colliders.edge_a[e], axis]
+    return a + share * (colliders.position[colliders.edge_b[e], axis] - a)
 
 
 @inner_kernel
-def _sweep(p, e, wx, wy, reach, signed, shapes):  # type: ignore[no-untyped-def]
+def _sweep_edge(
+    p: int, e: int, wx: float, wy: float, reach: float, signed: float, colliders: Colliders
+) -> tuple[float, float, float, float, float]:
     # Where the way w of a particle first comes within reach of an edge: when (2: never), share, normal, gap.
-    nx, ny = _edge_normal(e, shapes)
-    if shapes.side[e] == 0 and signed < 0.0:
+    nx, ny = _edge_normal(e, colliders)
+    if colliders.side[e] == 0 and signed < 0.0:
         nx, ny, signed = -nx, -ny, -signed
     approach = -(wx * nx + wy * ny)
-    x = shapes.place[p, 0]
-    y = shapes.place[p, 1]
-    a = shapes.edge_a[e]
-    dx = shapes.place[shapes.edge_b[e], 0] - shapes.place[a, 0]
-    dy = shapes.place[shapes.edge_b[e], 1] - shapes.place[a, 1]
+    x = colliders.position[p, 0]
+    y = colliders.position[p, 1]
+    a = colliders.edge_a[e]
+    dx = colliders.position[colliders.edge_b[e], 0] - colliders.position[a, 0]
+    dy = colliders.position[colliders.edge_b[e], 1] - colliders.position[a, 1]
     squared = dx * dx + dy * dy
     if approach > 0.0 and signed >= reach and squared > SHORTEST:
         when = (signed - reach) / approach
-        share = ((x + when * wx - shapes.place[a, 0]) * dx + (y + when * wy - shapes.place[a, 1]) * dy) / squared
+        share = (
+            (x + when * wx - colliders.position[a, 0]) * dx + (y + when * wy - colliders.position[a, 1]) * dy
+        ) / squared
         if when <= 1.0 and -CORNER <= share <= 1.0 + CORNER:
             return when, min(1.0, max(0.0, share)), nx, ny, signed - reach
     soonest = 2.0
@@ -378,11 +441,11 @@ def _sweep(p, e, wx, wy, reach, signed, shapes):  # type: ignore[no-untyped-def]
     gap = 0.0
     if reach > 0.0:
         for end in range(2):
-            v = a if end == 0 else shapes.edge_b[e]
-            vx = x - shapes.place[v, 0]
-            vy = y - shapes.place[v, 1]
-            when = _meets_circle(vx, vy, wx, wy, reach)
-            if when <= 1.0 and when < soonest and _owns_corner(e, v, x + when * wx, y + when * wy, shapes):
+            v = a if end == 0 else colliders.edge_b[e]
+            vx = x - colliders.position[v, 0]
+            vy = y - colliders.position[v, 1]
+            when = _time_to_circle(vx, vy, wx, wy, reach)
+            if when <= 1.0 and when < soonest and _owns_corner(e, v, x + when * wx, y + when * wy, colliders):
                 soonest = when
                 found = float(end)
                 nx = (vx + when * wx) / reach

@@ -1,14 +1,13 @@
 """What can touch: the edges that springs are, and terrain, as topology alone decides; kept while that stays."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sandbox.physics.collision.inversion import Triangles, tangled_particles, triangles_of
-from sandbox.physics.collision.types import Shapes
+from sandbox.physics.collision.types import Colliders, Flags
+from sandbox.physics.state import Slots
 from sandbox.physics.terrain import Terrain
-from sandbox.physics.world import HAND_MATERIAL, Slots, World
+from sandbox.physics.world import HAND_MATERIAL, World
 
 # The group of terrain, and the bits of every group.
 TERRAIN_GROUP = 1
@@ -19,15 +18,14 @@ TERRAIN_OWNER = -2_000_000_000
 NO_EDGE, LINE, SOLID_LEFT, SOLID_RIGHT = 0, 1, 2, 3
 
 
-@dataclass(frozen=True)
-class Outline:
-    """What the edges of a world's springs are, which topology alone decides; signature: what it was made for.
+class Outline(NamedTuple):
+    """What the edges of a world's springs are, and of its terrain, which topology alone decides; see Colliders.
 
-    shielded: particles inside a solid body that no torn spring lays bare; discs do not meet them.
-    solid (k, 2): first edge and one past the last of each owner's edges where any is solid, terrain included.
+    shielded: particles inside a solid body that no torn spring lays bare; discs do not hit them. held (n,): particles
+    that a spring or an element holds. solid (k, 2): first edge and one past the last of each owner's edges where any is
+    solid, terrain's last. dynamic (2,): edges of bodies, and how many of those in solid are bodies'.
     """
 
-    signature: tuple[NDArray[np.generic], ...]
     edge_a: Slots
     edge_b: Slots
     side: Slots
@@ -38,24 +36,17 @@ class Outline:
     near_of: Slots
     solid: Slots
     owner: Slots
-    shielded: NDArray[np.bool_]
-    dynamic: int
-    triangles: Triangles
+    shielded: Flags
+    held: Flags
+    dynamic: Slots
 
 
 def outline_of(world: World) -> Outline:
-    """The outline of a world's bodies, made anew where springs have changed."""
-    signature = (
-        world.spring_active, world.edge, world.particle_a, world.particle_b, world.owner, world.element_active,
-        world.corner_particle,
-    )  # fmt: skip
-    kept: Outline | None = world.contact_cache
-    if kept is None or not all(map(np.array_equal, kept.signature, signature)):
-        kept = world.contact_cache = _make_outline(world, tuple(array.copy() for array in signature))
-    return kept
+    """The outline of a world's bodies, made anew where topology has changed."""
+    return world.derived(_make_outline)
 
 
-def _make_outline(world: World, signature: tuple[NDArray[np.generic], ...]) -> Outline:
+def _make_outline(world: World) -> Outline:
     terrain, count = world.terrain, world.particle_count
     chosen = np.flatnonzero(world.spring_active & (world.edge != NO_EDGE))
     # Edges of one owner lie together, so that a whole outline can be walked through.
@@ -69,29 +60,33 @@ def _make_outline(world: World, signature: tuple[NDArray[np.generic], ...]) -> O
     joined = np.flatnonzero(world.spring_active)
     ends = world.particle_a[joined].astype(np.int64), world.particle_b[joined].astype(np.int64)
     edges = np.arange(len(edge_a))
+    near_start, near_of = _listed(np.append(*ends), np.append(*ends[::-1]), count)
+    held = np.diff(near_start) > 0
+    held[world.corner_particle] = True
+    solid = _solid(owner[edge_a] if len(edge_a) else edge_a, side)
     return Outline(
-        signature,
         edge_a,
         edge_b,
         side,
         np.append(chosen, np.arange(len(terrain.edge_a))),
         *_listed(np.append(edge_a, edge_b), np.append(edges, edges), len(owner)),
-        *_listed(np.append(*ends), np.append(*ends[::-1]), count),
-        _solid(owner[edge_a] if len(edge_a) else edge_a, side),
+        near_start,
+        near_of,
+        solid,
         owner,
         _shielded(world, chosen),
-        len(chosen),
-        triangles_of(world),
+        held,
+        np.array([len(chosen), np.count_nonzero(solid[:, 0] < len(chosen))]),
     )
 
 
-def _sides(solid: NDArray[np.bool_], a: Slots, b: Slots, owner: Slots) -> Slots:
+def _sides(solid: Flags, a: Slots, b: Slots, owner: Slots) -> Slots:
     """Side of each edge a to b: an outline that is torn open encloses nothing, so all its edges have two sides."""
     ways = np.bincount(a[solid], minlength=len(owner)) != np.bincount(b[solid], minlength=len(owner))
     return (solid & ~np.isin(owner[a], owner[ways])).astype(np.int64)
 
 
-def _shielded(world: World, edges: Slots) -> NDArray[np.bool_]:
+def _shielded(world: World, edges: Slots) -> Flags:
     solid = edges[world.edge[edges] != LINE]
     shielded = np.isin(world.owner, world.owner[world.particle_a[solid]])
     for bare in (edges, np.flatnonzero(~world.spring_active)):
@@ -120,33 +115,18 @@ def _solid(owner: Slots, side: Slots) -> Slots:
     return spans[[bool(side[first:last].any()) for first, last in spans.tolist()]] if len(spans) else spans
 
 
-def shapes_of(world: World, outline: Outline) -> Shapes:
-    """The shapes of a step: what topology has decided, where it is now and how it moves."""
-    terrain = world.terrain
-    size = len(terrain.vertex)
-    friction, restitution = np.zeros((2, size))
-    friction[terrain.edge_a], restitution[terrain.edge_a] = terrain.friction, terrain.restitution
-    friction[terrain.edge_b], restitution[terrain.edge_b] = terrain.friction, terrain.restitution
-    still = np.zeros((size, 2))
-    return Shapes(
-        np.concatenate([world.position, terrain.vertex]),
-        np.concatenate([world.velocity, still]),
-        np.concatenate([world.origin, terrain.vertex]),
-        np.append(world.radius, np.zeros(size)),
-        np.append(world.friction, friction),
-        np.append(world.restitution, restitution),
-        outline.owner,
-        np.append(world.group, np.full(size, TERRAIN_GROUP)),
-        np.append(np.where(world.particle_active, world.collides, 0), np.full(size, ALL_GROUPS)),
-        np.append(world.inverse_mass, np.zeros(size)),
-        outline.edge_a,
-        outline.edge_b,
-        outline.side,
-        outline.number,
-        outline.edge_start,
-        outline.edge_of,
-        outline.near_start,
-        outline.near_of,
-        outline.shielded,
-        tangled_particles(world, outline.triangles, world.particle_count + size),
-    )
+def colliders_of(world: World, outline: Outline) -> Colliders:
+    """The colliders of an outline: terrain is filled in, what is known of particles is left to each tick and step."""
+    terrain, count = world.terrain, world.particle_count
+    total = count + len(terrain.vertex)
+    position, velocity, origin = np.zeros((3, total, 2))
+    radius, friction, restitution, inverse_mass = np.zeros((4, total))
+    group, collides = np.full(total, TERRAIN_GROUP), np.full(total, ALL_GROUPS)
+    position[count:] = origin[count:] = terrain.vertex
+    for ends in (terrain.edge_a, terrain.edge_b):
+        friction[count + ends], restitution[count + ends] = terrain.friction, terrain.restitution
+    return Colliders(
+        position, velocity, origin, radius, friction, restitution, outline.owner, group, collides, inverse_mass,
+        outline.edge_a, outline.edge_b, outline.side, outline.number, outline.edge_start, outline.edge_of,
+        outline.near_start, outline.near_of, outline.shielded, np.zeros(total, np.bool_),
+    )  # fmt: skip

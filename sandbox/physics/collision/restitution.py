@@ -2,17 +2,18 @@
 
 import math
 
-from sandbox.physics.collision.types import weight_of
-from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.state import Floats
 
 # Bodies that meet more slowly [m/s] do not bounce. Lower makes what rests tremble, higher cuts off a last bounce.
 SLOWEST_BOUNCE = 0.5
 
 
-@kernel
-def load_bounces(contacts, start, velocity, inverse_mass, h):  # type: ignore[no-untyped-def]
+@inner_kernel
+def find_bounces(contacts: Contacts, count: int, start: Floats, velocity: Floats, h: float) -> None:
     """The bounce [m/s] of every contact, from the velocities before and after gravity and all else from outside."""
-    for c in range(contacts.particle.shape[0]):
+    for c in range(count):
         contacts.bounce[c] = -1.0
         if contacts.restitution[c] == 0.0:
             continue
@@ -31,7 +32,7 @@ def load_bounces(contacts, start, velocity, inverse_mass, h):  # type: ignore[no
 
 
 @inner_kernel
-def _bounce(restitution, speed, fall, gap, h):  # type: ignore[no-untyped-def]
+def _bounce(restitution: float, speed: float, fall: float, gap: float, h: float) -> float:
     # The velocity after a step in which what approaches at `speed` bounces off at the height of the surface, not where
     # the step begins: symplectic Euler keeps v^2/2 + g x - g h v/2 in free fall, and restitution^2 is left.
     energy = 0.5 * speed * speed + fall * gap + 0.5 * fall * h * speed

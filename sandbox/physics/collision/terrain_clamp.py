@@ -2,10 +2,11 @@
 
 import math
 
-from sandbox.physics.collision.contacts import span
 from sandbox.physics.collision.outline import TERRAIN_GROUP
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.world import Floats, World
+from sandbox.physics.collision.types import Flags
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.state import Floats, Slots
+from sandbox.physics.terrain import Terrain, cells_between
 
 # A particle that would cross a line of terrain is stopped this far in front of it, in units of its distance, and at
 # least SKIN [m], so that rounding never carries it across. More would be seen, less could not be told from rounding.
@@ -14,8 +15,20 @@ SKIN = 1e-6
 STOPS = 3
 
 
-@kernel
-def _stop(position, velocity, ahead, collides, active, inverse_mass, terrain, h):  # type: ignore[no-untyped-def]
+@inner_kernel
+def clamp_at_terrain(
+    position: Floats,
+    velocity: Floats,
+    ahead: Floats,
+    collides: Slots,
+    active: Flags,
+    inverse_mass: Floats,
+    terrain: Terrain,
+    h: float,
+) -> None:
+    """Cut the velocities [m/s] of particles that would cross terrain in the coming h [s], on ways h v + ahead [m]."""
+    if terrain.edge_a.shape[0] == 0:
+        return
     for p in range(position.shape[0]):
         if not active[p] or inverse_mass[p] == 0.0 or not collides[p] & TERRAIN_GROUP:
             continue
@@ -33,7 +46,7 @@ def _stop(position, velocity, ahead, collides, active, inverse_mass, terrain, h)
 
 
 @inner_kernel
-def stopped(x, y, wx, wy, terrain):  # type: ignore[no-untyped-def]
+def stopped(x: float, y: float, wx: float, wy: float, terrain: Terrain) -> tuple[int, float, float]:
     """The way w [m] of a particle's centre, cut towards each edge of terrain that it would cross, and how often it was.
 
     More often than STOPS: it stays where it is.
@@ -49,11 +62,15 @@ def stopped(x, y, wx, wy, terrain):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _crossing(x, y, wx, wy, terrain):  # type: ignore[no-untyped-def]
+def _crossing(x: float, y: float, wx: float, wy: float, terrain: Terrain) -> tuple[int, float, float, float]:
     # The first edge that the way w of a particle's centre crosses (-1: none), distance from it, normal towards it.
     cell = terrain.cell[0]
-    left, right = span(x + min(0.0, wx) - SKIN, x + max(0.0, wx) + SKIN, terrain.corner[0], cell, terrain.size[0])
-    bottom, top = span(y + min(0.0, wy) - SKIN, y + max(0.0, wy) + SKIN, terrain.corner[1], cell, terrain.size[1])
+    left, right = cells_between(
+        x + min(0.0, wx) - SKIN, x + max(0.0, wx) + SKIN, terrain.corner[0], cell, terrain.size[0]
+    )
+    bottom, top = cells_between(
+        y + min(0.0, wy) - SKIN, y + max(0.0, wy) + SKIN, terrain.corner[1], cell, terrain.size[1]
+    )
     soonest = 2.0
     found = -1
     distance = 0.0
@@ -90,12 +107,3 @@ def _crossing(x, y, wx, wy, terrain):  # type: ignore[no-untyped-def]
                     nx = dy / length
                     ny = -dx / length
     return found, distance, nx, ny
-
-
-def stop_at_terrain(world: World, ahead: Floats, h: float) -> None:
-    """Cut the velocities [m/s] of particles that would cross terrain in the coming h [s], on ways h v + ahead [m]."""
-    if len(world.terrain.edge_a):
-        _stop(
-            world.position, world.velocity, ahead, world.collides, world.particle_active, world.inverse_mass,
-            world.terrain, h,
-        )  # fmt: skip

@@ -6,23 +6,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.world import Floats, Slots
+from sandbox.physics.state import Floats, Slots
+
+Flags = NDArray[np.bool_]
 
 # Edges near one particle, at most; further ones are not looked at.
 MOST_NEAR = 64
 
 
-class Shapes(NamedTuple):
-    """What can touch: particles, then the vertices of terrain; edges between them, then those of terrain.
+class Colliders(NamedTuple):
+    """What can collide: particles, then the vertices of terrain; edges between them, then those of terrain.
 
-    By vertex: place [m], motion [m/s], origin [m], radius [m], friction, restitution, owner, group, collides, inverse
-    [1/kg]. By edge: edge_a, edge_b, side (1: solid on the left, 0: two sides), number = its spring, or of terrain.
-    Edges of vertex v: edge_of[edge_start[v]:edge_start[v + 1]]; particles that a spring joins to p: near_of likewise.
-    shielded (n,): see outline.py. By vertex, tangled: whether its body is now, and so does not touch itself.
+    By vertex: position [m], velocity [m/s], origin [m], radius [m], friction, restitution, owner, group, collides,
+    inverse_mass [1/kg]. By edge: edge_a, edge_b, side (1: solid on the left, 0: two sides), number = its spring, or of
+    terrain. Edges of vertex v: edge_of[edge_start[v]:edge_start[v + 1]]; particles that a spring joins to p: near_of
+    likewise. shielded (n,): see outline.py. inverted, by vertex: whether its body is now, and so does not touch itself.
     """
 
-    place: Floats
-    motion: Floats
+    position: Floats
+    velocity: Floats
     origin: Floats
     radius: Floats
     friction: Floats
@@ -30,7 +32,7 @@ class Shapes(NamedTuple):
     owner: Slots
     group: Slots
     collides: Slots
-    inverse: Floats
+    inverse_mass: Floats
     edge_a: Slots
     edge_b: Slots
     side: Slots
@@ -39,8 +41,8 @@ class Shapes(NamedTuple):
     edge_of: Slots
     near_start: Slots
     near_of: Slots
-    shielded: NDArray[np.bool_]
-    tangled: NDArray[np.bool_]
+    shielded: Flags
+    inverted: Flags
 
 
 class Near(NamedTuple):
@@ -57,8 +59,8 @@ class Contacts(NamedTuple):
     """Contacts in ascending order of particle: particle, feature = 3 number + kind, the particles it pushes against.
 
     end_a, end_b: the other disc and -1, or the ends of an edge; -1, -1: terrain. share: place along the edge. normal:
-    towards the particle. gap [m]; bounce [m/s]: the velocity along the normal that is left where it bounces, below 0:
-    it does not; impulse [N s] (k, 2) along normal and tangent.
+    towards the particle. gap [m], below 0: penetration; bounce [m/s]: the velocity along the normal that is left where
+    it bounces, below 0: it does not; impulse [N s] (k, 2) along normal and tangent.
     """
 
     particle: Slots
@@ -74,8 +76,16 @@ class Contacts(NamedTuple):
     impulse: Floats
 
 
+class KeptContacts(NamedTuple):
+    """What the next step gets to know of a step's contacts: see Contacts."""
+
+    particle: NDArray[np.int32]
+    feature: Slots
+    impulse: Floats
+
+
 @inner_kernel
-def weight_of(contacts, c, end):  # type: ignore[no-untyped-def]
+def weight_of(contacts: Contacts, c: int, end: int) -> tuple[int, float]:
     """Particle of an end of a contact (-1: none) and the share of the impulse that it takes, with its sign."""
     if end == 0:
         return contacts.particle[c], 1.0
@@ -93,6 +103,11 @@ def room_for(count: int) -> Contacts:
     return Contacts(particle, feature, end_a, end_b, share, pairs[0], gap, friction, restitution, bounce, pairs[1])
 
 
+def room_to_keep(count: int) -> KeptContacts:
+    """What is kept of contacts, to be filled in."""
+    return KeptContacts(np.zeros(count, np.int32), np.zeros(count, np.int64), np.zeros((count, 2)))
+
+
 def room_near() -> Near:
     """Edges near a particle, to be filled in."""
     slots, numbers = np.zeros((2, MOST_NEAR), dtype=np.int64), np.zeros((3, MOST_NEAR))
@@ -100,3 +115,4 @@ def room_near() -> Near:
 
 
 NO_CONTACTS = room_for(0)
+NOTHING_KEPT = room_to_keep(0)

@@ -12,7 +12,6 @@ from sandbox.physics.constraints import element_rate, evaluate, explicit_mass, l
 from sandbox.physics.equation import direction, reduced_mass, spring_impulse
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
-from sandbox.physics.solvers.contact.gauss_seidel import load_biases, loose_blocks, new_push, sweep_masses
 from sandbox.physics.world import Floats, World
 
 # Cs and Cd of springs (m,) or elements (t,).
@@ -98,6 +97,8 @@ def solve(world: World, springs: Pair, elements: Pair, h: float, before: Before)
     if contacts is None:
         apply_explicit(world, world.spring_active, springs, h, elements)
         return
+    from sandbox.physics.solvers.contact.gauss_seidel import load_biases, loose_blocks, new_push, sweep_masses
+
     push = new_push(len(contacts.particle))
     load_biases(contacts, push, h)
     apply_explicit(world, world.spring_active, springs, h, elements)

@@ -23,8 +23,7 @@ from sandbox.level.format.files import level_data
 from sandbox.level.format.model import Level
 from sandbox.physics.constraints import AREA
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
-from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.state import FAMILIES, KINDS, STATE_ARRAYS, VECTOR_ARRAYS
+from sandbox.physics.state import BY_STORED, COLUMNS, Column, Family, family_of
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.world import HAND_COUNT, HAND_MATERIAL, World, WorldSettings
 
@@ -80,20 +79,21 @@ def header(level: Level, physics_version: int, sandbox_version: str) -> dict[str
 def encode_state(world: World) -> dict[str, Any]:
     """Every state array as base64 of zlib of its little-endian bytes, and the settings."""
     arrays = {
-        name: base64.b64encode(zlib.compress(canonical_bytes(getattr(world, name)), 6)).decode()
-        for name in STATE_ARRAYS
+        column.stored: base64.b64encode(zlib.compress(canonical_bytes(getattr(world, column.name)), 6)).decode()
+        for column in COLUMNS
     }
     return {"state": arrays, "settings": asdict(world.settings)}
 
 
 def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> Snapshot:
     """The snapshot of a state line. Raises ValueError, one line."""
-    if set(state) != set(STATE_ARRAYS):
-        raise ValueError(f"state: the arrays are {', '.join(STATE_ARRAYS)}")
-    arrays = {name: _decode_array(name, text) for name, text in state.items()}
-    for group in FAMILIES:
-        if len({len(arrays[name]) for name in group}) != 1:
-            raise ValueError(f"state: {', '.join(group)} are not equally long")
+    if set(state) != set(BY_STORED):
+        raise ValueError(f"state: the arrays are {', '.join(BY_STORED)}")
+    arrays = {name: _decode_array(BY_STORED[name], text) for name, text in state.items()}
+    for family in Family:
+        names = [column.stored for column in family_of(family)]
+        if len({len(arrays[name]) for name in names}) != 1:
+            raise ValueError(f"state: {', '.join(names)} are not equally long")
     for name in ("particle_a", "particle_b", "corner_particle", "contact_particle"):
         if np.any((arrays[name] < 0) | (arrays[name] >= len(arrays["mass"]))):
             raise ValueError(f"state.{name}: names a particle that does not exist")
@@ -111,10 +111,8 @@ def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> S
     hand_particle = int(arrays["particle_a"][hand_spring]) if len(hands) else -1
     if len(hands) and hand_particle + HAND_COUNT > len(arrays["mass"]):
         raise ValueError("state.particle_a: a hand has no particle of its own")
-    if settings.solver not in SOLVERS:
-        raise ValueError(f"settings.solver: there is no solver {settings.solver!r}")
     return Snapshot(
-        **arrays,
+        {BY_STORED[name].name: array for name, array in arrays.items()},
         settings=settings,
         tick=tick,
         hand_particle=hand_particle,
@@ -123,15 +121,14 @@ def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> S
     )
 
 
-def _decode_array(name: str, text: str) -> Any:
-    kind = np.dtype(KINDS[name])
+def _decode_array(column: Column, text: str) -> Any:
+    kind, name = np.dtype(column.dtype), column.stored
     try:
         inflater = zlib.decompressobj()
         data = inflater.decompress(base64.b64decode(text, validate=True), ARRAY_LIMIT)
     except (binascii.Error, zlib.error, ValueError) as error:
         raise ValueError(f"state.{name}: not base64 of zlib data: {error}") from None
-    width = 2 if name in VECTOR_ARRAYS else 1
-    if not inflater.eof or len(data) % (kind.itemsize * width):
+    if not inflater.eof or len(data) % (kind.itemsize * column.width):
         raise ValueError(f"state.{name}: cut off, or longer than {ARRAY_LIMIT} bytes")
     array = np.frombuffer(data, dtype=kind.newbyteorder("<")).astype(kind)
-    return array.reshape(-1, 2) if width == 2 else array
+    return array.reshape(-1, column.width) if column.width > 1 else array

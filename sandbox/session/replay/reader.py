@@ -7,18 +7,19 @@ import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, BinaryIO, Literal
+from typing import Annotated, Any, BinaryIO
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from sandbox.level.format.files import LevelError, parse_level
+from sandbox.level.format.model import Settings
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.state import STATE_ARRAYS
+from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
-from sandbox.session.commands import Acceleration, DragRate, Fraction, WindSpeed, plain_fault
-from sandbox.session.records import ScriptLine
+from sandbox.session.commands.command import plain_fault
+from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import FORMAT, HEADER_LIMIT, LINE_LIMIT, VERSION, level_digest, unseal
-from sandbox.session.replay.verify import Replay, ReplayError, StoredState, TickHashes
+from sandbox.session.replay.recording import Replay, ReplayError, StoredState, TickHashes
 
 GZIP_MAGIC = b"\x1f\x8b"
 # The header that a Recorder writes: no flags, no time, no name; another one is a changed byte.
@@ -65,21 +66,17 @@ class _TickLine(_Sealed):
     arrays: dict[str, Digest]
 
 
-class _Settings(_Line):
-    gravity: tuple[Acceleration, Acceleration]
-    tick_rate: Annotated[int, Field(ge=1, le=10000)]
-    substeps: Annotated[int, Field(ge=1, le=64)] | Literal["auto"]
-    solver: Annotated[str, Field(max_length=40)]
-    iterations: Annotated[int, Field(ge=1, le=1000)]
-    warm_start: Fraction
-    wind: tuple[WindSpeed, WindSpeed]
-    drag: DragRate
-
-
 class _StateLine(_Sealed):
     tick: Tick
     state: dict[str, str]
-    settings: _Settings
+    settings: Settings
+
+    @field_validator("settings")
+    @classmethod
+    def _complete(cls, settings: Settings) -> Settings:
+        if missing := [name for name in Settings.model_fields if name not in settings.model_fields_set]:
+            raise ValueError(f"{', '.join(missing)}: missing")
+        return settings
 
 
 class _EndLine(_Sealed):
@@ -250,17 +247,17 @@ def _gather(gathered: _Gathered, line: _Sealed, number: int, where: str) -> None
     if line.tick != expected:  # type: ignore[attr-defined]
         raise ReplayError(f"{where}: is of tick {line.tick}, where tick {expected} belongs")  # type: ignore[attr-defined]
     if isinstance(line, _TickLine):
-        if set(line.arrays) != set(STATE_ARRAYS):
+        if set(line.arrays) != set(BY_STORED):
             raise ReplayError(
                 f"{where}: arrays: recorded by a version whose state has other arrays; record the run again"
             )
-        hashes = tuple(gathered.once(line.arrays[name]) for name in STATE_ARRAYS)
+        hashes = tuple(gathered.once(line.arrays[name]) for name in BY_STORED)
         gathered.hashes.append(TickHashes(line.hash, hashes))
     elif isinstance(line, _SealedCommand):
         gathered.script.append(ScriptLine(line.tick, line.gesture, line.command, number))
     elif isinstance(line, _StateLine):
         arrays = {gathered.once(name): gathered.once(text) for name, text in line.state.items()}
-        gathered.states[tick] = StoredState(arrays, WorldSettings(**line.settings.model_dump()), number)
+        gathered.states[tick] = StoredState(arrays, WorldSettings(**dict(line.settings)), number)
     elif isinstance(line, _EndLine):
         gathered.end_hash = line.hash
 

@@ -1,4 +1,4 @@
-"""Replay: a recorded run read back, and verify, which runs it again and names the first bit that differs."""
+"""verify: runs a replay again and names the first bit that differs."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,82 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.build.actuators import actuators
-from sandbox.level.format.model import Level
-from sandbox.physics.settings import WorldSettings
-from sandbox.physics.snapshot import Snapshot, canonical_bytes, hash_by_array, state_hash
-from sandbox.physics.state import STATE_ARRAYS
+from sandbox.physics.snapshot import canonical_bytes, hash_by_array, state_hash
+from sandbox.physics.state import BY_STORED
 from sandbox.physics.world import World
 from sandbox.session.commands import CommandError
-from sandbox.session.records import ScriptLine
-from sandbox.session.replay.format import decode_state
+from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.session import Session
 
 # Ticks between two calls of verify's `progress`.
 PROGRESS_TICKS = 60
-
-
-class ReplayError(ValueError):
-    """A replay or script that cannot be used; faults: one line each."""
-
-    def __init__(self, *faults: str) -> None:
-        super().__init__("\n".join(faults))
-        self.faults = list(faults)
-
-
-@dataclass(frozen=True, slots=True)
-class TickHashes:
-    """What a replay says of the state after a tick: the hash of all, and of each array in the order of STATE_ARRAYS."""
-
-    whole: str
-    arrays: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class StoredState:
-    """A state line: arrays as text, see replay_format.decode_state; line: where it stands in its file."""
-
-    arrays: dict[str, str]
-    settings: WorldSettings
-    line: int
-
-
-@dataclass(frozen=True)
-class Replay:
-    """A recorded run: hashes[t] is the state after t ticks; end_hash is None where the file is cut off."""
-
-    source: str
-    level: Level
-    script: tuple[ScriptLine, ...]
-    hashes: tuple[TickHashes, ...]
-    states: dict[int, StoredState]
-    end_hash: str | None
-
-    @property
-    def ticks(self) -> int:
-        """Ticks recorded."""
-        return len(self.hashes) - 1
-
-    def state(self, tick: int) -> Snapshot:
-        """The stored state of a tick. Raises ReplayError where there is none, or one that its own hash belies."""
-        stored = self.states.get(tick)
-        if stored is None:
-            raise ReplayError(f"{self.source}: no state is stored at tick {tick}")
-        try:
-            snapshot = decode_state(tick, stored.arrays, stored.settings)
-        except ValueError as error:
-            raise ReplayError(f"{self.source}: line {stored.line}: {error}") from None
-        driven = len(actuators(self.level))
-        if len(snapshot.part_value) != driven:
-            raise ReplayError(
-                f"{self.source}: line {stored.line}: state.part_value: has {len(snapshot.part_value)} values, "
-                f"where the level has {driven} driven parts"
-            )
-        if state_hash(snapshot) != self.hashes[tick].whole:
-            raise ReplayError(
-                f"{self.source}: line {stored.line}: state: is not the one whose hash stands at tick {tick}"
-            )
-        return snapshot
 
 
 @dataclass(frozen=True)
@@ -147,7 +80,7 @@ def _session(replay: Replay, start: int) -> Session:
     return Session(replay.level, script=replay.script, start=replay.state(start))
 
 
-def _guard(replay: Replay, act: Callable[[], None]) -> None:
+def _guard(replay: Replay, act: Callable[[], object]) -> None:
     try:
         act()
     except CommandError as error:
@@ -163,7 +96,7 @@ def _compare(replay: Replay, world: World) -> str | None:
     recorded, present = replay.hashes[world.tick], hash_by_array(world)
     if state_hash(world, present) == recorded.whole:
         return None
-    pairs = zip(STATE_ARRAYS, recorded.arrays, strict=True)
+    pairs = zip(BY_STORED, recorded.arrays, strict=True)
     return next((name for name, expected in pairs if present[name] != expected), "settings")
 
 
@@ -172,15 +105,15 @@ def _locate(replay: Replay, tick: int, array: str, world: World) -> Divergence:
     if array == "settings":
         return Divergence(tick, array, None, replay.hashes[tick].whole, state_hash(world))
     clean = _clean_session(replay, verified=tick - 1, tick=tick)
-    if hash_by_array(clean.world)[array] == replay.hashes[tick].arrays[STATE_ARRAYS.index(array)]:
-        return _first_difference(tick, array, getattr(clean.world, array), world)
+    if hash_by_array(clean.world)[array] == replay.hashes[tick].arrays[list(BY_STORED).index(array)]:
+        return _first_difference(tick, array, getattr(clean.world, BY_STORED[array].name), world)
     later = min((stored for stored in replay.states if stored >= tick), default=None)
     if later is None:
         note = "this build steps differently, and no later state is stored to show the values"
         return Divergence(tick, array, None, "unknown", "unknown", note=note)
     clean = _clean_session(replay, verified=tick - 1, tick=later)
     recorded = replay.state(later)
-    found = _first_difference(tick, array, getattr(recorded, array), clean.world)
+    found = _first_difference(tick, array, getattr(recorded, BY_STORED[array].name), clean.world)
     note = f"this build steps differently; the values are those of the next stored state, tick {later}"
     return Divergence(tick, array, found.index, found.expected, found.actual, found.name, note)
 
@@ -202,7 +135,7 @@ def _clean_session(replay: Replay, verified: int, tick: int) -> Session:
 
 
 def _first_difference(tick: int, array: str, expected: NDArray[Any], world: World) -> Divergence:
-    actual: NDArray[Any] = getattr(world, array)
+    actual: NDArray[Any] = getattr(world, BY_STORED[array].name)
     if len(expected) != len(actual):
         return Divergence(tick, array, None, f"{len(expected)} values", f"{len(actual)} values")
     size = actual.dtype.itemsize

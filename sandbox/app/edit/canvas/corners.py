@@ -1,7 +1,6 @@
 """Corners of the terrain that is selected: handles to drag them, to put new ones in, and the gesture that does it."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pygame
@@ -9,12 +8,10 @@ import pygame
 from sandbox.app.draw.camera import Camera, Point
 from sandbox.app.draw.colours import MUTED
 from sandbox.app.edit.canvas.overlay import CORNER, draw_corner
+from sandbox.app.edit.editing import Editing
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.terrain import corners_of, form_of, insert_corner, move_corner, piece_of
 from sandbox.editor.items import Item
-
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
 
 # Sizes in layout units: how far off a press still takes a corner; edges shorter than this have no middle to take.
 REACH = 9.0
@@ -64,7 +61,7 @@ class CornerMoving:
 
     matrix: np.ndarray | None = None
 
-    def __init__(self, screen: "EditScreen", corners: Corners, number: int, *, is_new: bool) -> None:
+    def __init__(self, screen: Editing, corners: Corners, number: int, *, is_new: bool) -> None:
         self._screen, self._item, self._number, self._is_new = screen, corners.item, number, is_new
         self._anchor = corners.points[number - 1]
         self._snap = screen.snapped(corners.points[number % len(corners.points)], pygame.KMOD_ALT)

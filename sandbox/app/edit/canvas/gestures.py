@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 import pygame
@@ -10,14 +10,12 @@ import pygame
 from sandbox.app.draw.camera import Point
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.edit.canvas.handles import Handles, Scaling, Turn
+from sandbox.app.edit.editing import Editing
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import move, rotate, scale
 from sandbox.editor.edits.placing import weld
 from sandbox.editor.pick import Mode, combined, items_in_box, items_in_lasso
 from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap, snap
-
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
 
 # Points of a lasso are at least this far apart [layout units].
 LASSO_STEP = 4.0
@@ -69,7 +67,7 @@ class _Matrix:
 class Moving(_Matrix):
     """Moves the selection, drawn by one of its particles to what it snaps to; an end that comes onto one is joined."""
 
-    def __init__(self, screen: "EditScreen", start: Point) -> None:
+    def __init__(self, screen: Editing, start: Point) -> None:
         self._screen, self._start = screen, start
         self.matrix: np.ndarray | None = None
         self._snap = Snap(start)
@@ -126,7 +124,7 @@ class Moving(_Matrix):
 class Transforming(_Matrix):
     """Scales or turns the selection by one of its handles."""
 
-    def __init__(self, screen: "EditScreen", handles: Handles, name: str, start: Point, even: bool) -> None:
+    def __init__(self, screen: Editing, handles: Handles, name: str, start: Point, even: bool) -> None:
         self._screen, self._handles, self._name, self._start, self._even = screen, handles, name, start, even
         self.matrix: np.ndarray | None = None
         self._change: Scaling | Turn | None = None
@@ -172,7 +170,7 @@ class Boxing(_Matrix):
     matrix: np.ndarray | None = None
     measure = ""
 
-    def __init__(self, screen: "EditScreen", start: Point) -> None:
+    def __init__(self, screen: Editing, start: Point) -> None:
         self._screen, self._start, self._end, self._modifiers = screen, start, start, 0
 
     def to(self, point: Point, modifiers: int) -> None:
@@ -200,7 +198,7 @@ class Lassoing(_Matrix):
     matrix: np.ndarray | None = None
     measure = ""
 
-    def __init__(self, screen: "EditScreen", start: Point) -> None:
+    def __init__(self, screen: Editing, start: Point) -> None:
         self._screen, self._line, self._modifiers = screen, [start], 0
 
     def to(self, point: Point, modifiers: int) -> None:

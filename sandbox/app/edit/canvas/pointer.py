@@ -1,7 +1,7 @@
 """Hands: what the pointer does with a tool of the editor: select and move, or draw."""
 
 import math
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any
 
 import numpy as np
 import pygame
@@ -11,6 +11,7 @@ from sandbox.app.edit.canvas.corners import CornerMoving, Corners
 from sandbox.app.edit.canvas.gestures import Boxing, Gesture, Lassoing, Moving, Transforming, pick_mode
 from sandbox.app.edit.canvas.handles import Handles
 from sandbox.app.edit.canvas.overlay import draw_outline
+from sandbox.app.edit.editing import Editing
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.grouping import with_groups
 from sandbox.editor.edits.terrain import corners_of, delete_corner, move_corner, piece_of
@@ -19,64 +20,14 @@ from sandbox.editor.pick import combined, edge_at, item_at
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap
 
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
-
 # A drag shorter than this is a click [layout units].
 CLICK_REACH = 4.0
 
 
-class Hand(Protocol):
-    """A tool under the pointer; matrix: what it does to the selection so far."""
-
-    @property
-    def hint(self) -> str:
-        """What to do next, in one line."""
-        ...
-
-    @property
-    def measure(self) -> str:
-        """Sizes of what is under way; empty where nothing is."""
-        ...
-
-    @property
-    def matrix(self) -> np.ndarray | None:
-        """What becomes of the selection so far (2, 3); None = nothing."""
-        ...
-
-    def down(self, point: Point, modifiers: int, clicks: int) -> None:
-        """The pointer is pressed at a point [m]."""
-        ...
-
-    def move(self, point: Point, modifiers: int) -> None:
-        """The pointer moves while pressed."""
-        ...
-
-    def up(self, point: Point, modifiers: int) -> None:
-        """The pointer is released."""
-        ...
-
-    def hover(self, point: Point | None, modifiers: int) -> None:
-        """Where the pointer is while nothing is pressed; None = elsewhere."""
-        ...
-
-    def cancel(self) -> bool:
-        """Give up what is under way; whether there was anything."""
-        ...
-
-    def ghost(self) -> Document | None:
-        """The document as it would be."""
-        ...
-
-    def draw(self, surface: pygame.Surface) -> None:
-        """Draw what belongs to the tool."""
-        ...
-
-
-class SelectHand:
+class SelectTool:
     """Selects, and moves what is selected; lasso: a drag in the open draws a lasso and no box."""
 
-    def __init__(self, screen: "EditScreen", lasso: bool) -> None:
+    def __init__(self, screen: Editing, lasso: bool) -> None:
         self._screen, self._lasso = screen, lasso
         self._gesture: Gesture | None = None
         self._pressed: Point | None = None
@@ -250,12 +201,12 @@ class SelectHand:
             corners.draw(surface, self.corner)
 
 
-class DrawHand:
+class DrawTool:
     """Draws with one of the editor's drawings; name: as in the history."""
 
     matrix: np.ndarray | None = None
 
-    def __init__(self, screen: "EditScreen", drawing: Drawing[Any], name: str) -> None:
+    def __init__(self, screen: Editing, drawing: Drawing[Any], name: str) -> None:
         self._screen, self.drawing, self._name = screen, drawing, name
         self._snap: Snap | None = None
         self._ghost: Document | None = None

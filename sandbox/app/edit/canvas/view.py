@@ -1,7 +1,6 @@
 """View: what the canvas of the editor shows: the scene, ghosts of what would be, and marks over them."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pygame
@@ -12,12 +11,10 @@ from sandbox.app.edit.canvas.canvas import Chosen, Part, ScenePainter, moved_by
 from sandbox.app.edit.canvas.edited_terrain import Ground
 from sandbox.app.edit.canvas.marks import DriveMarks
 from sandbox.app.edit.canvas.overlay import SPOT_SECONDS, draw_cursor, draw_label, draw_spot
-from sandbox.app.edit.canvas.pointer import SelectHand
+from sandbox.app.edit.canvas.pointer import SelectTool
+from sandbox.app.edit.editing import Editing
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene, make_scene
-
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
 
 # What will hang nearer than this [pixels] to where it is drawn is not shown again.
 MOVED = 2.0
@@ -26,7 +23,7 @@ MOVED = 2.0
 class View:
     """Draws the canvas of a screen, and keeps what is worth keeping from frame to frame."""
 
-    def __init__(self, screen: "EditScreen") -> None:
+    def __init__(self, screen: Editing) -> None:
         self._screen = screen
         self._painter = ScenePainter(screen.scale)
         self._marks = DriveMarks(screen.ui)
@@ -55,7 +52,7 @@ class View:
 
     def _draw_scene(self, surface: pygame.Surface) -> None:
         screen = self._screen
-        scene, selection, matrix = screen.scene, screen.document.selection, screen.hand.matrix
+        scene, selection, matrix = screen.scene, screen.document.selection, screen.pointer_tool.matrix
         if self._chosen is None or self._chosen[0] is not scene or self._chosen[1] is not selection:
             self._chosen = (scene, selection, Chosen.of(scene, selection))
         chosen = self._chosen[2]
@@ -66,7 +63,7 @@ class View:
         self._marks.draw(surface, screen.camera, scene)
 
     def _draw_forecast(self, surface: pygame.Surface) -> None:
-        scene, position = self._screen.scene, self._screen.watch.hanging
+        scene, position = self._screen.scene, self._screen.hanging
         if position is None:
             return
         if self._hanging is None or self._hanging[0] is not scene or self._hanging[1] is not position:
@@ -78,7 +75,7 @@ class View:
 
     def _draw_ghost(self, surface: pygame.Surface) -> None:
         screen = self._screen
-        ghost = screen.hand.ghost()
+        ghost = screen.pointer_tool.ghost()
         if ghost is None or ghost.level is screen.document.level:
             return
         if self._ghost is None or self._ghost.level is not ghost.level:
@@ -92,9 +89,9 @@ class View:
         self._painter.paint(surface, screen.camera, part)
 
     def _draw_marks(self, surface: pygame.Surface) -> None:
-        screen, hand = self._screen, self._screen.hand
+        screen, hand = self._screen, self._screen.pointer_tool
         hand.draw(surface)
-        under = hand.hovered if isinstance(hand, SelectHand) and hand.matrix is None else None
+        under = hand.hovered if isinstance(hand, SelectTool) and hand.matrix is None else None
         if under is not None and under not in screen.document.selection:
             self._painter.paint_hovered(surface, screen.camera, screen.scene, under)
         if screen.cursor is not None:

@@ -21,6 +21,8 @@ SCRUB_STEP = 5.0
 class CheckBox(Painted):
     """A box to tick; its state may be MIXED."""
 
+    ui: Ui
+
     def __init__(self, ui: Ui, rect: pygame.Rect, label: str, toggle: Callable[[bool], object], container: Any) -> None:
         super().__init__(ui, rect, container)
         self.label, self.state = label, False
@@ -74,6 +76,8 @@ class KeyBox(Painted):
 
     choose(key) is called with it, or with None.
     """
+
+    ui: Ui
 
     def __init__(self, ui: Ui, rect: pygame.Rect, choose: Callable[[str | None], object], container: Any) -> None:
         super().__init__(ui, rect, container)

@@ -1,11 +1,12 @@
 """ChecksPage: what the level promises of its own run, and whether it holds."""
 
 import threading
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED
+from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.rows import Row, RowList
 from sandbox.editor.document import Document
@@ -15,10 +16,7 @@ from sandbox.level.checks import CheckDef, CheckResult, check_ticks
 from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format.model import Level
 from sandbox.level.format.quantities import replaced
-from sandbox.session.checking import run_checks
-
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
+from sandbox.session.summary import run_checks
 
 # Part of the page that the list takes.
 LIST_PART = 0.38
@@ -69,7 +67,7 @@ class Trial:
 class ChecksPage:
     """The checks as a list, the chosen one as a form."""
 
-    def __init__(self, screen: "EditScreen", place: pygame.Rect, container: Any) -> None:
+    def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen, self._ui = screen, screen.ui
         ui = self._ui
         self.trial: Trial | None = None

@@ -1,17 +1,15 @@
 """FindingsPage: what the linter has found; a click selects it and shows where it is, a button mends what it can."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, WARNING, Colour
+from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.form import GAP, ROW
 from sandbox.app.edit.side.rows import Row, RowList
 from sandbox.editor.items import items_of
 from sandbox.editor.lint.finding import Finding, Remedy
-
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
 
 SEVERITIES: dict[str, Colour] = {"error": DANGER, "warning": WARNING, "hint": ACCENT}
 NOTHING = "Nothing to complain about."
@@ -22,7 +20,7 @@ NO_REMEDY = "Choose one to see it"
 class FindingsPage:
     """Findings, the gravest first."""
 
-    def __init__(self, screen: "EditScreen", place: pygame.Rect, container: Any) -> None:
+    def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen = screen
         self._ui = screen.ui
         ui, below = screen.ui, screen.ui.px(ROW + 2 * GAP)

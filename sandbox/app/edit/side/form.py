@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from functools import partial
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pygame
 
 from sandbox.app.draw.colours import MUTED, material_colours
+from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.boxes import CheckBox, KeyBox, Scrub
 from sandbox.app.edit.side.rows import Picker, Row
 from sandbox.app.edit.side.scroll import ScrollArea
@@ -19,9 +20,6 @@ from sandbox.editor.document import EditError
 from sandbox.editor.edits.collision_groups import collision_groups
 from sandbox.editor.panel.property import MIXED, Property, Section
 from sandbox.editor.panel.typed import EVERYTHING, NOTHING
-
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
 
 # Sizes in layout units.
 ROW = 28.0
@@ -54,7 +52,7 @@ def _listed(collides: Any) -> Sequence[str]:
 class Form:
     """Properties in a place [pixels]; the widgets are made anew only when other fields are shown."""
 
-    def __init__(self, screen: "EditScreen", place: pygame.Rect, container: Any, empty: str = "") -> None:
+    def __init__(self, screen: Editing, place: pygame.Rect, container: Any, empty: str = "") -> None:
         self._screen, self._ui = screen, screen.ui
         self._place, self._container, self._empty = place, container, empty
         self.area: ScrollArea | None = None

@@ -1,21 +1,19 @@
 """HistoryPage: every step with its label; a click goes there."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pygame
 
 from sandbox.app.draw.colours import DISABLED, TEXT
+from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.rows import Row, RowList
 from sandbox.editor.document import Document
-
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
 
 
 class HistoryPage:
     """The steps of the history, the present one marked, those that were undone in grey below it."""
 
-    def __init__(self, screen: "EditScreen", place: pygame.Rect, container: Any) -> None:
+    def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen = screen
         self._ui = screen.ui
         self.list = RowList(screen.ui, place, self._go, container)

@@ -4,11 +4,12 @@ import math
 from collections import Counter
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pygame
 
 from sandbox.app.draw.colours import material_colours
+from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.boxes import Scrub
 from sandbox.app.edit.side.form import GAP, ROW, sentence
 from sandbox.app.edit.side.rows import Row, RowList
@@ -26,9 +27,6 @@ from sandbox.level.format.model import HookeMaterial, Level, Material, MaterialD
 from sandbox.level.format.quantities import replaced
 from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
 
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
-
 # Part of the page that the list takes.
 LIST_PART = 0.3
 FIELD_WIDTH = 96.0
@@ -43,7 +41,7 @@ LAWS = (
 class MaterialsPage:
     """Materials as swatches; below, what the chosen one is made of."""
 
-    def __init__(self, screen: "EditScreen", place: pygame.Rect, container: Any) -> None:
+    def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen, self._ui = screen, screen.ui
         ui = self._ui
         self.chosen = _of_selection(screen.document)

@@ -3,12 +3,13 @@
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pygame
 
 from sandbox.app.draw.colours import material_colours
-from sandbox.app.edit.canvas.pointer import DrawHand
+from sandbox.app.edit.canvas.pointer import DrawTool
+from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.rows import Picker, Row
 from sandbox.app.widgets.fields import Field
 from sandbox.editor.document import EditError
@@ -16,9 +17,6 @@ from sandbox.editor.edits.moving import move, rotate, scale
 from sandbox.editor.tools.drawing_options import About, described, stepped
 from sandbox.editor.tools.snap import PLACE_DECIMALS
 from sandbox.level.format.limits import DEFAULT_MATERIAL
-
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
 
 # Sizes in layout units.
 OPTIONS_HEIGHT = 38.0
@@ -40,7 +38,7 @@ class OptionsRow:
     Where they do not fit side by side, a button turns to those that come next.
     """
 
-    def __init__(self, screen: "EditScreen", place: pygame.Rect) -> None:
+    def __init__(self, screen: Editing, place: pygame.Rect) -> None:
         self._screen, self._ui = screen, screen.ui
         self.back = self._ui.panel(place)
         self._made_for: tuple[object, ...] = ()
@@ -57,12 +55,12 @@ class OptionsRow:
         screen = self._screen
         chosen = bool(screen.document.selection)
         materials = tuple(screen.scene.materials)
-        hand = screen.hand
-        made_for = (screen.tool, materials) if isinstance(hand, DrawHand) else ("select", chosen)
+        hand = screen.pointer_tool
+        made_for = (screen.tool, materials) if isinstance(hand, DrawTool) else ("select", chosen)
         if made_for != self._made_for:
             self._made_for, self._page = made_for, 0
             self._remake()
-        if isinstance(hand, DrawHand):
+        if isinstance(hand, DrawTool):
             self._show_options(hand)
         elif chosen:
             self._show_selection()
@@ -71,9 +69,9 @@ class OptionsRow:
         for widget in self._made:
             self._ui.remove(widget)
         self._made, self.fields, self.flags, self.menus, self.more, self._x = [], {}, {}, {}, None, GAP
-        hand, chosen = self._screen.hand, bool(self._screen.document.selection)
+        hand, chosen = self._screen.pointer_tool, bool(self._screen.document.selection)
         items: list[Item] = []
-        if isinstance(hand, DrawHand):
+        if isinstance(hand, DrawTool):
             self._add_label(self._screen.tool.capitalize() if self._screen.tool != "box" else "Jelly", "@heading")
             items = [self._option(hand, name, about) for name, about in described(hand.drawing.options).items()]
         elif chosen:
@@ -161,7 +159,7 @@ class OptionsRow:
             items.append(self._labelled(label, NUMBER_WIDTH, add, 2 * GAP if name in ("y", "height") else GAP))
         return items
 
-    def _option(self, hand: DrawHand, name: str, about: About) -> Item:
+    def _option(self, hand: DrawTool, name: str, about: About) -> Item:
         if about.kind == "flag":
             width = self._text_width(about.label) + 22
             return width + LABEL_GAP, partial(self._add_flag, hand, name, about, width)
@@ -171,25 +169,25 @@ class OptionsRow:
             return self._labelled(label, MENU_WIDTH, partial(self._add_picker, hand, name, about))
         return self._labelled(label, ENTRY_WIDTH, partial(self._add_value, hand, name, about))
 
-    def _add_flag(self, hand: DrawHand, name: str, about: About, width: float) -> None:
+    def _add_flag(self, hand: DrawTool, name: str, about: About, width: float) -> None:
         toggle = partial(self._toggle, hand, name)
         button = self._ui.button(self._rect(width), about.label, toggle, self.back, style="@segment", tip=about.text)
         self.flags[name] = button
         self._made.append(button)
         self._x += LABEL_GAP
 
-    def _add_value(self, hand: DrawHand, name: str, about: About) -> None:
+    def _add_value(self, hand: DrawTool, name: str, about: About) -> None:
         tip = f"{about.text} The wheel or Up and Down change it."
         self._add_field(name, partial(self._type_option, hand, name, about), ENTRY_WIDTH, tip)
         self.fields[name].turn = partial(self._turn_option, hand, name, about)
 
-    def _settle_material(self, hand: DrawHand, name: str) -> None:
+    def _settle_material(self, hand: DrawTool, name: str) -> None:
         """Draw with a material that the level has."""
         materials = self._screen.scene.materials
         if getattr(hand.drawing.options, name) not in materials:
             self._set(hand, name, materials[-1] if len(materials) > 1 else DEFAULT_MATERIAL)
 
-    def _add_picker(self, hand: DrawHand, name: str, about: About) -> None:
+    def _add_picker(self, hand: DrawTool, name: str, about: About) -> None:
         picker = Picker(self._ui, self._rect(MENU_WIDTH), partial(self._choose, hand, name), self.back)
         picker.set_tooltip(about.text)
         self.menus[name] = picker
@@ -197,7 +195,7 @@ class OptionsRow:
 
     # Showing.
 
-    def _show_options(self, hand: DrawHand) -> None:
+    def _show_options(self, hand: DrawTool) -> None:
         options = hand.drawing.options
         for name, field in self.fields.items():
             value = getattr(options, name)
@@ -223,7 +221,7 @@ class OptionsRow:
 
     # Changing.
 
-    def _set(self, hand: DrawHand, name: str, value: Any) -> bool:
+    def _set(self, hand: DrawTool, name: str, value: Any) -> bool:
         try:
             hand.drawing.set_option(name, value)
         except EditError as error:
@@ -231,13 +229,13 @@ class OptionsRow:
             return False
         return True
 
-    def _choose(self, hand: DrawHand, name: str, index: int) -> None:
+    def _choose(self, hand: DrawTool, name: str, index: int) -> None:
         self._set(hand, name, self.menus[name].rows[index].text)
 
-    def _toggle(self, hand: DrawHand, name: str) -> None:
+    def _toggle(self, hand: DrawTool, name: str) -> None:
         self._set(hand, name, not getattr(hand.drawing.options, name))
 
-    def _type_option(self, hand: DrawHand, name: str, about: About, text: str) -> bool:
+    def _type_option(self, hand: DrawTool, name: str, about: About, text: str) -> bool:
         if not text.strip():
             return self._set(hand, name, None)
         value = self._number(about.label, text)
@@ -247,7 +245,7 @@ class OptionsRow:
             return self._set(hand, name, int(value))
         return self._set(hand, name, value)
 
-    def _turn_option(self, hand: DrawHand, name: str, about: About, by: int) -> None:
+    def _turn_option(self, hand: DrawTool, name: str, about: About, by: int) -> None:
         """Step a value up or down; a number of parts from the one that fits."""
         if name == hand.drawing.counted:
             hand.adjust(by)

@@ -1,15 +1,13 @@
 """PropertiesPage: what can be changed of the selection."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pygame
 
+from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.form import Form
 from sandbox.editor.document import Document
 from sandbox.editor.panel.properties import properties
-
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
 
 NOTHING = "Nothing is selected. Click a part, or draw a box around several, to see and change what they are made of."
 
@@ -17,7 +15,7 @@ NOTHING = "Nothing is selected. Click a part, or draw a box around several, to s
 class PropertiesPage:
     """The properties of what is selected."""
 
-    def __init__(self, screen: "EditScreen", place: pygame.Rect, container: Any) -> None:
+    def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen = screen
         self.form = Form(screen, place, container, NOTHING)
         self._shown: Document | None = None

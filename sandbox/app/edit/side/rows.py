@@ -204,6 +204,8 @@ class RowList(Painted):
 class Picker(Lit):
     """A value that a menu of rows changes: opens below it, by a click, Enter, Space or an arrow key."""
 
+    ui: Ui
+
     def __init__(self, ui: Ui, rect: pygame.Rect, choose: Callable[[int], None], container: Any = None) -> None:
         super().__init__(ui, rect, container)
         self.rows: Sequence[Row] = ()

@@ -1,17 +1,15 @@
 """SettingsPage: the level's name and maker, its first view, and how its time passes."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pygame
 
+from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.editor.document import Document
 from sandbox.editor.edits.fields import set_level_field
 from sandbox.editor.panel.level_properties import level_properties
 from sandbox.level.format.model import Level
-
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
 
 # Digits after the point of a view [m] that is taken from the camera.
 VIEW_DECIMALS = 3
@@ -20,7 +18,7 @@ VIEW_DECIMALS = 3
 class SettingsPage:
     """Settings of the level as a whole."""
 
-    def __init__(self, screen: "EditScreen", place: pygame.Rect, container: Any) -> None:
+    def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen, self._ui = screen, screen.ui
         below = self._ui.px(ROW + 2 * GAP)
         self.form = Form(screen, pygame.Rect(place.topleft, (place.width, place.height - below)), container)

@@ -1,11 +1,12 @@
 """Side: the panel at the right of the editor, a page at a time."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import pygame
 from pygame_gui.elements import UIButton
 
+from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.checks import ChecksPage
 from sandbox.app.edit.side.findings import FindingsPage
 from sandbox.app.edit.side.history import HistoryPage
@@ -13,9 +14,6 @@ from sandbox.app.edit.side.materials import MaterialsPage
 from sandbox.app.edit.side.properties import PropertiesPage
 from sandbox.app.edit.side.settings import SettingsPage
 from sandbox.app.widgets.ui import Ui
-
-if TYPE_CHECKING:
-    from sandbox.app.edit.edit_screen import EditScreen
 
 # Sizes in layout units.
 MARGIN = 14.0
@@ -36,7 +34,7 @@ class Page(Protocol):
         ...
 
 
-PAGES: dict[str, tuple[str, str, Callable[["EditScreen", pygame.Rect, Any], Page]]] = {
+PAGES: dict[str, tuple[str, str, Callable[[Editing, pygame.Rect, Any], Page]]] = {
     "properties": ("Properties", "What is selected", PropertiesPage),
     "materials": ("Materials", "What springs are made of", MaterialsPage),
     "level": ("Level", "Name, maker, view, time and solver", SettingsPage),
@@ -50,7 +48,7 @@ COLUMNS = 3
 class Side:
     """The panel in a place [pixels]; `tab` is the page that is shown."""
 
-    def __init__(self, ui: Ui, screen: "EditScreen", place: pygame.Rect) -> None:
+    def __init__(self, ui: Ui, screen: Editing, place: pygame.Rect) -> None:
         self._ui, self._screen = ui, screen
         before: Side | None = getattr(screen, "side", None)
         self.back = ui.panel(place)

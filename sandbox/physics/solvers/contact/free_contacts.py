@@ -1,9 +1,9 @@
-"""Contacts of loose particles among themselves and with what cannot move: small steps, alike in every solver.
+"""Contacts of free particles among themselves and with what cannot move: small steps, alike in every solver.
 
-No spring joins a loose particle, so a step of a heap can be taken in many small ones whose cost is a sweep over its
-contacts: overlap falls with the square of their number. In each, a first sweep pushes apart what overlaps, the
-particles move, and a second sweep, which leaves overlap alone, takes back the speed that pushing has given
-(soft contacts that relax: Catto 2023, "Solver2D"; small steps: Macklin and others 2019).
+No spring joins a free particle, so a step of a heap can be taken in many small ones whose cost is an iteration over its
+contacts: overlap falls with the square of their number. In each, a first iteration pushes apart what overlaps, the
+particles move, and a second one, which leaves overlap alone, takes back the speed that pushing has given (soft contacts
+that relax: Catto 2023, "Solver2D"; small steps: Macklin and others 2019).
 """
 
 import math
@@ -13,15 +13,16 @@ import numpy as np
 
 from sandbox.physics.collision.restitution import SLOWEST_BOUNCE
 from sandbox.physics.collision.types import Contacts
-from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
+from sandbox.physics.jit import inlined_kernel, inner_kernel, unsigned
+from sandbox.physics.solvers.contact.free_islands import Islands
 from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH
-from sandbox.physics.world import Floats, Slots, World
+from sandbox.physics.state import Floats, Slots
 
 # A small step is no longer than this [s]: 8 of them at 60 Hz. With a quarter of them, heaps of 50 layers sink into each
 # other by a seventh of a radius; twice as many double the time.
 SMALL_STEP = 1.0 / 480.0
-# Small steps of a step at most, where a cluster would sink too deep.
-MOST_PARTS = 64
+# Small steps of a step at most, where an island would sink too deep.
+MOST_SMALL_STEPS = 64
 # Part of an overlap that a small step removes, and 1 - Cd of a contact while it does. More of the first, or less of the
 # second, shakes heaps; less of the first, or more of the second, lets them sink into each other.
 OVERLAP_SHARE = 0.05
@@ -29,178 +30,263 @@ SOFTNESS = 0.013
 # Share of the smaller radius to which contacts sink in under the load of the last step; less costs small steps.
 DEEPEST = 0.04
 
+# Columns of a contact constraint: normal, gap [m], friction, bounce [m/s], restitution, effective mass [kg], weight
+# [1/kg] of its two particles, velocity [m/s] of what cannot move, impulse [N s] of a small step along and across, depth
+# [m] = as deep as it should sink. A row is what an iteration reads of a contact, and lies together.
+NX, NY, GAP, FRICTION, BOUNCE, RESTITUTION, MASS, WEIGHT_P, WEIGHT_Q, DRIFT_X, DRIFT_Y, ALONG, ACROSS, DEPTH = range(14)
+COLUMNS = 16
+# Columns of a place: velocity [m/s], way [m] so far; and what forces add to the velocity [m/s] in the step, what the
+# impulses of a small step add to it.
+VX, VY, WX, WY = range(4)
+GAIN_X, GAIN_Y, PUSHED_X, PUSHED_Y = range(4)
+
 
 class Work(NamedTuple):
-    """Contacts in the order of their clusters, and their particles; what cannot move has a place for each contact.
+    """Free contacts island by island, in the order in which they are solved; and their particles.
 
-    By cluster: the first contact, the first place (g + 1,). By contact: contact, first, second = places of particles
-    (-1: none), mass [kg], drift [m/s] (k, 2) = velocity of what cannot move, depth [m] = as deep as it should sink.
-    By place: particle, weight [1/kg], gain [m/s] (m, 2) = what forces add in the step; velocity [m/s], pushed [m/s] =
-    what the impulses of a small step add, way [m] so far.
+    Contacts that share no particle that can move are solved in any order with the same result. So those of an island
+    are sorted by level, one above the highest before it at the same particles: what lies side by side in a level does
+    not wait for each other's velocities, which makes an iteration twice as fast.
+
+    By contact: constraint (k, COLUMNS); end (k, 2) = places of its particles (-1: none); contact. place (k, 2), level:
+    the ends and the level before they are sorted; at (k + 1,): where each level begins. By place of a particle:
+    particle, weight [1/kg], motion (m, 4) and push (m, 4), see the columns, highest = level so far; what cannot move
+    has a place for each contact. local (n,): the place of a particle, -1: none. ahead [m] (n, 2): how much further than
+    h v' each particle has gone in the step. There is room for more.
     """
 
-    first_contact: Slots
-    first_particle: Slots
+    constraint: Floats
+    end: Slots
     contact: Slots
-    first: Slots
-    second: Slots
-    mass: Floats
-    drift: Floats
-    depth: Floats
+    place: Slots
+    level: Slots
+    at: Slots
     particle: Slots
     weight: Floats
-    gain: Floats
-    velocity: Floats
-    pushed: Floats
-    way: Floats
+    motion: Floats
+    push: Floats
+    highest: Slots
+    local: Slots
+    ahead: Floats
 
 
 @inner_kernel
-def _place_of(p, inverse_mass, start, velocity, local, work, count):  # type: ignore[no-untyped-def]
+def _place_of(p: int, inverse_mass: Floats, start: Floats, velocity: Floats, work: Work, count: int) -> tuple[int, int]:
     # The place of a particle, and the number of places then.
-    if inverse_mass[p] > 0.0 and local[p] >= 0:
-        return local[p], count
-    local[p] = count
+    if inverse_mass[p] > 0.0 and work.local[p] >= 0:
+        return work.local[p], count
+    work.local[p] = count
     work.particle[count] = p
     work.weight[count] = inverse_mass[p]
+    work.highest[count] = 0
     for axis in range(2):
-        work.velocity[count, axis] = start[p, axis]
-        work.gain[count, axis] = velocity[p, axis] - start[p, axis]
+        work.motion[count, VX + axis] = start[p, axis]
+        work.motion[count, WX + axis] = 0.0
+        work.push[count, GAIN_X + axis] = velocity[p, axis] - start[p, axis]
+        work.push[count, PUSHED_X + axis] = 0.0
     return count, count + 1
 
 
-@kernel
-def _gather(contacts, inverse_mass, radius, start, velocity, local, work):  # type: ignore[no-untyped-def]
-    # Fill in what a step works on, cluster by cluster; the number of places.
-    count = 0
-    for g in range(work.first_contact.shape[0] - 1):
-        work.first_particle[g] = count
-        for i in range(work.first_contact[g], work.first_contact[g + 1]):
-            c = work.contact[i]
-            p = contacts.particle[c]
-            a = contacts.end_a[c]
-            b = contacts.end_b[c]
-            mass = inverse_mass[p]
-            smaller = radius[p]
-            work.second[i] = -1
-            if b >= 0:
-                share = contacts.share[c]
-                for axis in range(2):
-                    work.drift[i, axis] = (1.0 - share) * start[a, axis] + share * start[b, axis]
-            elif a >= 0:
-                mass += inverse_mass[a]
-                smaller = min(smaller, radius[a])
-                work.second[i], count = _place_of(a, inverse_mass, start, velocity, local, work, count)
-            work.first[i], count = _place_of(p, inverse_mass, start, velocity, local, work, count)
-            work.mass[i] = 1.0 / mass
-            work.depth[i] = DEEPEST * smaller
-    work.first_particle[work.first_contact.shape[0] - 1] = count
+@inner_kernel
+def _place_contacts(
+    contacts: Contacts, islands: Islands, first: int, last: int, inverse_mass: Floats, start: Floats, velocity: Floats,
+    work: Work, count: int,
+) -> int:  # fmt: skip
+    # The places and levels of an island's contacts, and where each level begins; the number of places then.
+    for level in range(last - first + 1):
+        work.at[level] = 0
+    for i in range(first, last):
+        c = islands.contact[i]
+        q = -1
+        level = 0
+        if contacts.end_b[c] < 0 and contacts.end_a[c] >= 0:
+            q, count = _place_of(contacts.end_a[c], inverse_mass, start, velocity, work, count)
+            level = work.highest[q]
+        p, count = _place_of(contacts.particle[c], inverse_mass, start, velocity, work, count)
+        level = max(level, work.highest[p])
+        if work.weight[p] > 0.0:
+            work.highest[p] = level + 1
+        if q >= 0 and work.weight[q] > 0.0:
+            work.highest[q] = level + 1
+        work.place[i, 0] = p
+        work.place[i, 1] = q
+        work.level[i] = level
+        work.at[level + 1] += 1
+    for level in range(last - first):
+        work.at[level + 1] += work.at[level]
     return count
 
 
 @inner_kernel
-def _plan(contacts, work, first, last, h):  # type: ignore[no-untyped-def]
-    # Small steps of one cluster, and its softness: so deep sinks a contact that carries J in each step,
-    # SOFTNESS J h / (m OVERLAP_SHARE parts^2).
-    parts = 1
-    while parts < MOST_PARTS and h > SMALL_STEP * parts * (1.0 + 1e-9):
-        parts *= 2
-    deep = SOFTNESS * h / (OVERLAP_SHARE * parts * parts)
-    most = 1.0
+def _fill_constraints(
+    contacts: Contacts, islands: Islands, first: int, last: int, radius: Floats, start: Floats, work: Work
+) -> None:
+    # The constraints of an island's contacts, level by level.
+    row = work.constraint
     for i in range(first, last):
-        if work.depth[i] > 0.0:
-            most = max(most, contacts.impulse[work.contact[i], 0] * deep / (work.mass[i] * work.depth[i]))
-    stiffer = 1.0
-    while parts < MOST_PARTS and stiffer < most:
-        parts *= 2
-        stiffer *= 4.0
-    return parts, SOFTNESS * (stiffer / most if stiffer > most else 1.0)
+        level = work.level[i]
+        k = first + work.at[level]
+        work.at[level] += 1
+        c = islands.contact[i]
+        p = work.place[i, 0]
+        q = work.place[i, 1]
+        work.contact[k] = c
+        work.end[k, 0] = p
+        work.end[k, 1] = q
+        weight = work.weight[p]
+        mass = weight
+        smaller = radius[contacts.particle[c]]
+        row[k, WEIGHT_P] = weight
+        row[k, WEIGHT_Q] = 0.0
+        row[k, DRIFT_X] = 0.0
+        row[k, DRIFT_Y] = 0.0
+        a = contacts.end_a[c]
+        b = contacts.end_b[c]
+        if b >= 0:
+            share = contacts.share[c]
+            for axis in range(2):
+                row[k, DRIFT_X + axis] = (1.0 - share) * start[a, axis] + share * start[b, axis]
+        elif a >= 0:
+            mass += work.weight[q]
+            smaller = min(smaller, radius[a])
+            row[k, WEIGHT_Q] = work.weight[q]
+        row[k, MASS] = 1.0 / mass
+        row[k, DEPTH] = DEEPEST * smaller
+        row[k, NX] = contacts.normal[c, 0]
+        row[k, NY] = contacts.normal[c, 1]
+        row[k, GAP] = contacts.gap[c]
+        row[k, FRICTION] = contacts.friction[c]
+        row[k, BOUNCE] = contacts.bounce[c]
+        row[k, RESTITUTION] = contacts.restitution[c]
+        row[k, ALONG] = contacts.impulse[c, 0]
+        row[k, ACROSS] = contacts.impulse[c, 1]
 
 
 @inner_kernel
-def _begin(contacts, work, first, last, scale):  # type: ignore[no-untyped-def]
-    # The impulses that contacts bring along, as those of a small step; pushed: what they add to the velocities.
+def _plan(work: Work, first: int, last: int, h: float) -> tuple[int, float]:
+    # Small steps of one island, and its softness: so deep sinks a contact that carries J in each step,
+    # SOFTNESS J h / (m OVERLAP_SHARE count^2).
+    row = work.constraint
+    count = 1
+    while count < MOST_SMALL_STEPS and h > SMALL_STEP * count * (1.0 + 1e-9):
+        count *= 2
+    deep = SOFTNESS * h / (OVERLAP_SHARE * count * count)
+    most = 1.0
     for i in range(first, last):
-        c = work.contact[i]
-        jn = contacts.impulse[c, 0] * scale
-        jt = contacts.impulse[c, 1] * scale
-        contacts.impulse[c, 0] = jn
-        contacts.impulse[c, 1] = jt
-        jx = jn * contacts.normal[c, 0] - jt * contacts.normal[c, 1]
-        jy = jn * contacts.normal[c, 1] + jt * contacts.normal[c, 0]
-        p = work.first[i]
-        work.pushed[p, 0] += jx * work.weight[p]
-        work.pushed[p, 1] += jy * work.weight[p]
-        q = work.second[i]
+        if row[i, DEPTH] > 0.0:
+            most = max(most, row[i, ALONG] * deep / (row[i, MASS] * row[i, DEPTH]))
+    stiffer = 1.0
+    while count < MOST_SMALL_STEPS and stiffer < most:
+        count *= 2
+        stiffer *= 4.0
+    return count, SOFTNESS * (stiffer / most if stiffer > most else 1.0)
+
+
+@inner_kernel
+def _begin(work: Work, first: int, last: int, scale: float) -> None:
+    # The impulses that contacts bring along, as those of a small step; pushed: what they add to the velocities.
+    row = work.constraint
+    push = work.push
+    for i in range(first, last):
+        jn = row[i, ALONG] * scale
+        jt = row[i, ACROSS] * scale
+        row[i, ALONG] = jn
+        row[i, ACROSS] = jt
+        jx = jn * row[i, NX] - jt * row[i, NY]
+        jy = jn * row[i, NY] + jt * row[i, NX]
+        p = work.end[i, 0]
+        push[p, PUSHED_X] += jx * row[i, WEIGHT_P]
+        push[p, PUSHED_Y] += jy * row[i, WEIGHT_P]
+        q = work.end[i, 1]
         if q >= 0:
-            work.pushed[q, 0] -= jx * work.weight[q]
-            work.pushed[q, 1] -= jy * work.weight[q]
+            push[q, PUSHED_X] -= jx * row[i, WEIGHT_Q]
+            push[q, PUSHED_Y] -= jy * row[i, WEIGHT_Q]
 
 
 @inlined_kernel
-def _sweep(contacts, work, first, last, small, passed, softness, ends):  # type: ignore[no-untyped-def]
-    # One sweep in order, after the time `passed`; softness 0: what overlaps is not pushed apart. ends: whether the step
-    # does with it; what would meet in the first small step of the next one, and bounce there, is not slowed before.
-    for i in range(first, last):
-        c = work.contact[i]
-        p = work.first[i]
-        q = work.second[i]
-        nx = contacts.normal[c, 0]
-        ny = contacts.normal[c, 1]
-        ux = work.velocity[p, 0] - work.drift[i, 0]
-        uy = work.velocity[p, 1] - work.drift[i, 1]
-        wx = work.way[p, 0] - passed * work.drift[i, 0]
-        wy = work.way[p, 1] - passed * work.drift[i, 1]
-        if q >= 0:
-            ux -= work.velocity[q, 0]
-            uy -= work.velocity[q, 1]
-            wx -= work.way[q, 0]
-            wy -= work.way[q, 1]
-        gap = contacts.gap[c] + nx * wx + ny * wy
-        # J = max(0, J - ((u + b) m + soft J) / (1 + soft));  |J_t| <= friction J
+def _iterate(
+    work: Work, first: int, last: int, small: float, passed: float, softness: float, pushes: bool, is_last: bool
+) -> None:
+    # One Gauss-Seidel iteration, after the time `passed`. pushes: what overlaps is pushed apart, with that softness.
+    # is_last: whether the step ends with it; what would meet in the first small step of the next one, and bounce there,
+    # is not slowed before.
+    # J = max(0, J - ((u + b) m + soft J) / (1 + soft));  |J_t| <= friction J
+    row = work.constraint
+    end = work.end
+    motion = work.motion
+    for c in range(first, last):
+        i = unsigned(c)
+        p = unsigned(end[i, 0])
+        nx = row[i, NX]
+        ny = row[i, NY]
+        ux = motion[p, VX]
+        uy = motion[p, VY]
+        wx = motion[p, WX]
+        wy = motion[p, WY]
+        moves = end[i, 1] >= 0
+        if moves:
+            q = unsigned(end[i, 1])
+            ux -= motion[q, VX]
+            uy -= motion[q, VY]
+            wx -= motion[q, WX]
+            wy -= motion[q, WY]
+        else:
+            ux -= row[i, DRIFT_X]
+            uy -= row[i, DRIFT_Y]
+            wx -= passed * row[i, DRIFT_X]
+            wy -= passed * row[i, DRIFT_Y]
+        gap = row[i, GAP] + nx * wx + ny * wy
+        along = nx * ux + ny * uy
+        mass = row[i, MASS]
+        old = row[i, ALONG]
         soft = 0.0
-        bias = 0.0
-        if contacts.bounce[c] >= 0.0:
-            bias = -contacts.bounce[c]
+        if row[i, BOUNCE] >= 0.0:
+            bias = -row[i, BOUNCE]
         elif gap > 0.0:
-            if ends and contacts.restitution[c] > 0.0 and nx * ux + ny * uy < -SLOWEST_BOUNCE:
+            if is_last and row[i, RESTITUTION] > 0.0 and along < -SLOWEST_BOUNCE:
                 continue
             bias = gap / small
-        elif softness > 0.0:
+        elif pushes:
             bias = max(OVERLAP_SHARE * gap / small, -FASTEST_PUSH)
             soft = softness
-        old = contacts.impulse[c, 0]
-        new = max(0.0, old - ((nx * ux + ny * uy + bias) * work.mass[i] + soft * old) / (1.0 + soft))
-        most = contacts.friction[c] * new
-        held = contacts.impulse[c, 1]
-        across = min(most, max(-most, held - (nx * uy - ny * ux) * work.mass[i]))
-        contacts.impulse[c, 0] = new
-        contacts.impulse[c, 1] = across
+        else:
+            bias = 0.0
+        change = (along + bias) * mass
+        if pushes:
+            change = (change + soft * old) / (1.0 + soft)
+        new = max(0.0, old - change)
+        most = row[i, FRICTION] * new
+        held = row[i, ACROSS]
+        across = min(most, max(-most, held - (nx * uy - ny * ux) * mass))
+        row[i, ALONG] = new
+        row[i, ACROSS] = across
         jx = (new - old) * nx - (across - held) * ny
         jy = (new - old) * ny + (across - held) * nx
-        work.velocity[p, 0] += jx * work.weight[p]
-        work.velocity[p, 1] += jy * work.weight[p]
-        if q >= 0:
-            work.velocity[q, 0] -= jx * work.weight[q]
-            work.velocity[q, 1] -= jy * work.weight[q]
+        motion[p, VX] += jx * row[i, WEIGHT_P]
+        motion[p, VY] += jy * row[i, WEIGHT_P]
+        if moves:
+            q = unsigned(end[i, 1])
+            motion[q, VX] -= jx * row[i, WEIGHT_Q]
+            motion[q, VY] -= jy * row[i, WEIGHT_Q]
 
 
 @inner_kernel
-def _energy(work, begin, end, gained):  # type: ignore[no-untyped-def]
-    # Kinetic energy of what can move in a cluster [J]; gained: with what forces add in the step.
+def _energy(work: Work, begin: int, end: int, gained: float) -> float:
+    # Kinetic energy of what can move in an island [J]; gained: with what forces add in the step.
     total = 0.0
     for k in range(begin, end):
         if work.weight[k] > 0.0:
-            vx = work.velocity[k, 0] + gained * work.gain[k, 0]
-            vy = work.velocity[k, 1] + gained * work.gain[k, 1]
+            vx = work.motion[k, VX] + gained * work.push[k, GAIN_X]
+            vy = work.motion[k, VY] + gained * work.push[k, GAIN_Y]
             total += 0.5 * (vx * vx + vy * vy) / work.weight[k]
     return total
 
 
 @inner_kernel
-def _restrain(work, first, last, begin, end, allowed):  # type: ignore[no-untyped-def]
+def _restrain(work: Work, first: int, last: int, begin: int, end: int, allowed: float) -> None:
     # Many bounces at once can gain energy: what moves is slowed down until it has no more than it had; beside its
     # common motion, where it touches nothing that cannot move. What is carried along gets energy from outside.
+    motion = work.motion
     after = _energy(work, begin, end, 0.0)
     if not after > allowed:
         return
@@ -209,15 +295,15 @@ def _restrain(work, first, last, begin, end, allowed):  # type: ignore[no-untype
     py = 0.0
     apart = True
     for i in range(first, last):
-        if work.drift[i, 0] != 0.0 or work.drift[i, 1] != 0.0:
+        if work.constraint[i, DRIFT_X] != 0.0 or work.constraint[i, DRIFT_Y] != 0.0:
             return
-        apart = apart and work.second[i] >= 0
+        apart = apart and work.end[i, 1] >= 0
     for k in range(begin, end):
         if work.weight[k] > 0.0:
             mass += 1.0 / work.weight[k]
-            px += work.velocity[k, 0] / work.weight[k]
-            py += work.velocity[k, 1] / work.weight[k]
-        elif work.velocity[k, 0] != 0.0 or work.velocity[k, 1] != 0.0:
+            px += motion[k, VX] / work.weight[k]
+            py += motion[k, VY] / work.weight[k]
+        elif motion[k, VX] != 0.0 or motion[k, VY] != 0.0:
             return
         else:
             apart = False
@@ -227,69 +313,78 @@ def _restrain(work, first, last, begin, end, allowed):  # type: ignore[no-untype
     factor = math.sqrt(max(0.0, allowed - common) / (after - common)) if after > common else 0.0
     for k in range(begin, end):
         if work.weight[k] > 0.0:
-            work.velocity[k, 0] = vx + factor * (work.velocity[k, 0] - vx)
-            work.velocity[k, 1] = vy + factor * (work.velocity[k, 1] - vy)
+            motion[k, VX] = vx + factor * (motion[k, VX] - vx)
+            motion[k, VY] = vy + factor * (motion[k, VY] - vy)
 
 
-@kernel
-def _settle(contacts, work, h):  # type: ignore[no-untyped-def]
-    # Every cluster's small steps.
-    for g in range(work.first_contact.shape[0] - 1):
-        first = work.first_contact[g]
-        last = work.first_contact[g + 1]
-        begin = work.first_particle[g]
-        end = work.first_particle[g + 1]
-        parts, softness = _plan(contacts, work, first, last, h)
+@inner_kernel
+def _take_small_steps(work: Work, first: int, last: int, begin: int, end: int, h: float) -> int:
+    # All small steps of one island; their number.
+    motion = work.motion
+    push = work.push
+    count, softness = _plan(work, first, last, h)
+    small = h / count
+    scale = 1.0 / count
+    _begin(work, first, last, scale)
+    for step in range(count):
+        # The impulses of the last small step start this one; `pushed`: the velocities without them meanwhile.
+        for k in range(begin, end):
+            for axis in range(2):
+                free = motion[k, VX + axis] + push[k, GAIN_X + axis] * scale
+                motion[k, VX + axis] = free + push[k, PUSHED_X + axis]
+                push[k, PUSHED_X + axis] = free
+        _iterate(work, first, last, small, small * step, softness, True, False)
+        for k in range(begin, end):
+            motion[k, WX] += small * motion[k, VX]
+            motion[k, WY] += small * motion[k, VY]
+        _iterate(work, first, last, small, small * (step + 1), 0.0, False, step == count - 1)
+        for k in range(begin, end):
+            push[k, PUSHED_X] = motion[k, VX] - push[k, PUSHED_X]
+            push[k, PUSHED_Y] = motion[k, VY] - push[k, PUSHED_Y]
+    return count
+
+
+@inner_kernel
+def solve_free_contacts(
+    contacts: Contacts, islands: Islands, island_count: int, inverse_mass: Floats, radius: Floats, start: Floats,
+    velocity: Floats, h: float, work: Work,
+) -> None:  # fmt: skip
+    """Solve the sorted free contacts over a step of h [s]; work.ahead goes with velocity.
+
+    start [m/s] (n, 2): the velocities before anything acted in this step.
+    """
+    for p in range(work.local.shape[0]):
+        work.local[p] = -1
+        work.ahead[p, 0] = 0.0
+        work.ahead[p, 1] = 0.0
+    end = 0
+    for g in range(island_count):
+        first = islands.first[g]
+        last = islands.first[g + 1]
+        begin = end
+        end = _place_contacts(contacts, islands, first, last, inverse_mass, start, velocity, work, end)
+        _fill_constraints(contacts, islands, first, last, radius, start, work)
         allowed = _energy(work, begin, end, 1.0)
-        small = h / parts
-        scale = 1.0 / parts
-        _begin(contacts, work, first, last, scale)
-        for part in range(parts):
-            # The impulses of the last small step start this one; `pushed`: the velocities without them meanwhile.
-            for k in range(begin, end):
-                for axis in range(2):
-                    free = work.velocity[k, axis] + work.gain[k, axis] * scale
-                    work.velocity[k, axis] = free + work.pushed[k, axis]
-                    work.pushed[k, axis] = free
-            for turn in range(2):
-                relaxes = turn == 1
-                _sweep(
-                    contacts, work, first, last, small, small * (part + turn), 0.0 if relaxes else softness,
-                    relaxes and part == parts - 1,
-                )  # fmt: skip
-                if turn == 0:
-                    for k in range(begin, end):
-                        work.way[k, 0] += small * work.velocity[k, 0]
-                        work.way[k, 1] += small * work.velocity[k, 1]
-            for k in range(begin, end):
-                work.pushed[k, 0] = work.velocity[k, 0] - work.pushed[k, 0]
-                work.pushed[k, 1] = work.velocity[k, 1] - work.pushed[k, 1]
+        count = _take_small_steps(work, first, last, begin, end, h)
         _restrain(work, first, last, begin, end, allowed)
         for i in range(first, last):
-            contacts.impulse[work.contact[i], 0] *= parts
-            contacts.impulse[work.contact[i], 1] *= parts
+            c = work.contact[i]
+            contacts.impulse[c, 0] = work.constraint[i, ALONG] * count
+            contacts.impulse[c, 1] = work.constraint[i, ACROSS] * count
+    for k in range(end):
+        if work.weight[k] > 0.0:
+            p = work.particle[k]
+            for axis in range(2):
+                velocity[p, axis] = work.motion[k, VX + axis]
+                work.ahead[p, axis] = work.motion[k, WX + axis] - h * work.motion[k, VX + axis]
 
 
-def settle_loose(
-    world: World, contacts: Contacts, chosen: Slots, cluster: Slots, start: Floats, h: float, ahead: Floats
-) -> None:
-    """Solve the chosen contacts, of loose particles, over a step of h [s].
-
-    cluster: of each contact. start [m/s] (n, 2): the velocities before anything acted in this step. ahead [m] (n, 2):
-    to be filled in, how much further than h v' each particle has gone.
-    """
-    chosen = chosen[np.argsort(cluster[chosen], kind="stable")]
-    count = len(chosen)
-    edges = np.append(np.flatnonzero(np.diff(cluster[chosen], prepend=-1)), count)
-    slots, pairs = np.zeros((2, count), np.int64), np.zeros((4, 2 * count, 2))
-    work = Work(
-        edges, np.zeros_like(edges), chosen, slots[0], slots[1], np.zeros(count), np.zeros((count, 2)), np.zeros(count),
-        np.zeros(2 * count, np.int64), np.zeros(2 * count), *pairs,
+def new_work(particles: int, contacts: int) -> Work:
+    """Work to be filled in, with room for so many contacts."""
+    places = 2 * contacts
+    return Work(
+        np.zeros((contacts, COLUMNS)), np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64),
+        np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64), np.zeros(contacts + 1, np.int64),
+        np.zeros(places, np.int64), np.zeros(places), np.zeros((places, 4)), np.zeros((places, 4)),
+        np.zeros(places, np.int64), np.zeros(particles, np.int64), np.zeros((particles, 2)),
     )  # fmt: skip
-    local = np.full(world.particle_count, -1)
-    size = _gather(contacts, world.inverse_mass, world.radius, start, world.velocity, local, work)
-    _settle(contacts, work, h)
-    moved = np.flatnonzero(work.weight[:size] > 0.0)
-    particle = work.particle[moved]
-    world.velocity[particle] = work.velocity[moved]
-    ahead[particle] = work.way[moved] - h * work.velocity[moved]

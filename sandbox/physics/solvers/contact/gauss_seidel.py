@@ -1,4 +1,4 @@
-"""Contacts as springs that only push: sweeps of the one equation with accumulated, clamped impulses.
+"""Projected Gauss-Seidel: contacts as springs that only push, in sweeps with accumulated, clamped impulses.
 
 Along the normal a contact is the spring of Cs and Cd below whose impulse cannot pull; across it is one that stops the
 surfaces, whose impulse is at most friction times the push (Coulomb). Both answer to the effective mass of what they

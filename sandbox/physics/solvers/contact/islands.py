@@ -1,4 +1,4 @@
-"""Which bodies and loose particles contacts touch, and which of them touch each other."""
+"""Contact islands: which bodies and loose particles contacts touch, and which of them touch each other."""
 
 from typing import NamedTuple
 
@@ -74,34 +74,6 @@ def _join(contacts, block, inverse_mass, label):  # type: ignore[no-untyped-def]
                 label[node] = first
     for node in range(label.shape[0]):
         label[node] = _root(label, node)
-
-
-@kernel
-def _bind(contacts, inverse_mass, held, label, tied, bound, cluster):  # type: ignore[no-untyped-def]
-    # cluster (k,) of each contact; bound (k,): those in whose cluster anything that can move is held.
-    for p in range(label.shape[0]):
-        if held[p] and inverse_mass[p] > 0.0:
-            tied[label[p]] = True
-    for c in range(contacts.particle.shape[0]):
-        for end in range(3):
-            p, _ = weight_of(contacts, c, end)
-            if p >= 0 and inverse_mass[p] > 0.0:
-                cluster[c] = label[p]
-                bound[c] = tied[label[p]]
-
-
-def bound_contacts(
-    contacts: Contacts, inverse_mass: Floats, held: NDArray[np.bool_]
-) -> tuple[NDArray[np.bool_], Slots]:
-    """Whether each contact hangs together, by others, with a particle that can move and is held by a spring or an
-    element, as held (n,) says; the number of its cluster.
-    """
-    count, size = len(inverse_mass), len(contacts.particle)
-    label, tied = np.arange(count), np.zeros(count, dtype=np.bool_)
-    bound, cluster = np.zeros(size, dtype=np.bool_), np.zeros(size, dtype=np.int64)
-    _join(contacts, np.full(count, -1, dtype=np.int64), inverse_mass, label)
-    _bind(contacts, inverse_mass, held, label, tied, bound, cluster)
-    return bound, cluster
 
 
 def find_touching(world: World, pattern: Pattern, contacts: Contacts) -> tuple[Touching, Blocks]:

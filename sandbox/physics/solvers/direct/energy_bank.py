@@ -1,4 +1,4 @@
-"""One body in a step of the direct solver: what it begins with, its energies, and the bank of its losses."""
+"""One body in a step of the direct solver: what it begins with, its energies, and the energy bank of its losses."""
 
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.constraint_terms import load_shapes, shape_potential

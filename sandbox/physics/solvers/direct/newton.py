@@ -1,4 +1,4 @@
-"""The fallback of a step: f itself (spring_terms.py), minimised by Newton's method."""
+"""The fallback of a step: f itself (spring_terms.py), minimised by projected Newton: what pushes adds no curvature."""
 
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.constraint_terms import linearise_shapes, shape_objective, shape_slope

@@ -1,4 +1,4 @@
-"""Response of a factored body: how its particles answer to impulses at some of them."""
+"""Response of a factored body: how its particles answer to impulses at some of them (Delassus operator)."""
 
 from sandbox.physics.jit import inner_kernel, unsigned
 from sandbox.physics.solvers.direct.constraint_terms import correct_wide, solve_again

@@ -39,7 +39,7 @@ from sandbox.physics.solvers.direct.spring_terms import (
     solve_linear,
     update_impulses,
 )
-from sandbox.physics.solvers.direct.system import Pattern, has_elements, is_current, make_pattern
+from sandbox.physics.solvers.direct.system import Pattern, make_pattern
 from sandbox.physics.solvers.linear.parallel import hire
 from sandbox.physics.solvers.single_pass import Pair, apply_explicit
 from sandbox.physics.world import Floats, World
@@ -217,15 +217,12 @@ def _solve_bodies(  # type: ignore[no-untyped-def]
 
 def pattern_of(world: World) -> Pattern:
     """The pattern of a world's matrix, made anew where topology or pins have changed since the last step."""
-    pattern = world.solver_cache
-    if pattern is None or not (
-        is_current(
-            world.inverse_mass, world.particle_a, world.particle_b, world.spring_active, world.law, *pattern.signature
-        )
-        and (not world.element_count or has_elements(pattern, world))
-    ):
-        pattern = world.solver_cache = make_pattern(world)
-        hire(pattern, pattern.matrix.fronts, pattern.rows.change)
+    return world.derived(_hired_pattern)
+
+
+def _hired_pattern(world: World) -> Pattern:
+    pattern = make_pattern(world)
+    hire(pattern, pattern.matrix.fronts, pattern.rows.change)
     return pattern
 
 

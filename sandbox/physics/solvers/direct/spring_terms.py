@@ -9,7 +9,8 @@ with u' the velocity error AFTER the step, which is the minimum over v' of
     f(v') = 1/2 |v' - v*|^2_M + sum over springs of [K (x' - x)^2 + K beta (x'^2 - (x' - x)^2)] / (2 h^2)
 
 v* = the velocities after gravity, x' = |d + h (v'_b - v'_a)| - L. Here K is `along`, K beta (which needs no division
-by Cd) is `pull`, v* is `target`, v' is `trial`.
+by Cd) is `pull`, v* is `target`, v' is `trial`; the directions, rows of the Jacobian, are `normal`, and the geometric
+stiffness across them is `across`. A spring of Cs > Cd is underdamped, in code bouncy.
 """
 
 import math

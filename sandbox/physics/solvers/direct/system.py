@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.components import label_bodies
-from sandbox.physics.jit import bundle, kernel
+from sandbox.physics.jit import bundle
 from sandbox.physics.solvers.direct.constraint_layout import chosen_elements, lay_out_shapes, shapes_anchored
 from sandbox.physics.solvers.direct.constraint_terms import Shapes
 from sandbox.physics.solvers.direct.shape_matching import Goals, lay_out_goals
@@ -97,12 +97,9 @@ class Bodies(NamedTuple):
 class Pattern:
     """Everything about a world's matrix that its topology and pins decide, with the scratch arrays of a step.
 
-    signature: what it was made for. elements: which were active then, the particles of their corners and their form;
     corners: those of the elements of the matrix. numbers: the six named tuples as a bundle for kernels.
     """
 
-    signature: tuple[NDArray[Any], ...]
-    elements: tuple[NDArray[Any], ...]
     corners: Slots
     has_hooke: bool
     hooke: NDArray[np.bool_]
@@ -113,33 +110,6 @@ class Pattern:
     matrix: Matrix
     goals: Goals
     numbers: Any
-
-
-@kernel
-def is_current(inverse_mass, particle_a, particle_b, spring_active, law, free, kind, end_a, end_b):  # type: ignore[no-untyped-def]
-    """Whether topology and pins are still those that a pattern was made for."""
-    if inverse_mass.shape[0] != free.shape[0] or law.shape[0] != kind.shape[0]:
-        return False
-    for p in range(free.shape[0]):
-        if (inverse_mass[p] > 0.0) != free[p]:
-            return False
-    for s in range(kind.shape[0]):
-        if spring_active[s]:
-            if kind[s] != law[s] or end_a[s] != particle_a[s] or end_b[s] != particle_b[s]:
-                return False
-        elif kind[s] >= 0:
-            return False
-    return True
-
-
-def has_elements(pattern: Pattern, world: World) -> bool:
-    """Whether a world's elements are those that a pattern was made for."""
-    active, particle, form = pattern.elements
-    # What an element joins stays what it is, unless a restored state brings others: those are other arrays.
-    return np.array_equal(active, world.element_active) and (
-        (particle is world.corner_particle or np.array_equal(particle, world.corner_particle))
-        and (form is world.corner_form or np.array_equal(form, world.corner_form))
-    )
 
 
 def make_pattern(world: World) -> Pattern:
@@ -189,8 +159,6 @@ def make_pattern(world: World) -> Pattern:
     goals = lay_out_goals(shapes, shape_body, len(first_rows), world.corner_form[corners])
     springs = _scratch_springs(chosen[grouped], row_a, row_b, place(row_a, row_b))
     return Pattern(
-        signature=(free, kind, a, b),
-        elements=(world.element_active.copy(), world.corner_particle, world.corner_form),
         corners=corners,
         has_hooke=bool((kind == LAW_HOOKE).any()),
         hooke=kind == LAW_HOOKE,

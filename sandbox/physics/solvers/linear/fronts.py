@@ -1,4 +1,4 @@
-"""Dense fronts: L D L^T of a large body's matrix, scalar by scalar, in the order that `dissection` gives.
+"""Multifrontal factorisation: L D L^T of a large body's matrix, scalar by scalar, in the order that `dissection` gives.
 
 A front holds the upper triangle, by rows, of what its particles and their border have become when they are eliminated:
 its own rows stay in `numbers`, the others wait in `remainder` for its parent. Rows are long, so that the inner loops,

@@ -1,14 +1,11 @@
 """Progress: a card with a bar while a run is played again, so that the window never looks dead."""
 
 import time
-from typing import TYPE_CHECKING
 
 import pygame
 
+from sandbox.app.application import Application
 from sandbox.app.play.status import draw_bar
-
-if TYPE_CHECKING:
-    from sandbox.app.app import App
 
 # What takes no longer than this [s] shows nothing; then the bar is drawn this often [s].
 PATIENCE = 0.3
@@ -20,7 +17,7 @@ NEW_AFTER = 1.0
 class Progress:
     """Called with ticks done and ticks in all while a session steps again."""
 
-    def __init__(self, app: "App") -> None:
+    def __init__(self, app: Application) -> None:
         self._app = app
         self._started = self._last = self._drawn = 0.0
         self._done = 0

@@ -1,0 +1,125 @@
+"""Opening: the window with words at once; the rest of the program is imported meanwhile, on a thread.
+
+Nothing that is imported here needs numpy, numba, pydantic or pygame_gui.
+"""
+
+import io
+import math
+import threading
+import time
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+
+import pygame
+
+from sandbox.app.display import Display
+from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, MUTED, TEXT, mixed
+from sandbox.app.loop import FRAME_RATE
+from sandbox.app.profile import Profile
+from sandbox.app.wanted import Wanted
+
+CLOSING = (pygame.QUIT, pygame.WINDOWCLOSE)
+# Sizes in layout units.
+TITLE_SIZE, LINE_SIZE = 30, 14
+
+
+class _Work(threading.Thread):
+    """Imports the app and finds out what is wanted of it."""
+
+    def __init__(self, find: Callable[[], Wanted]) -> None:
+        super().__init__(daemon=True)
+        self._find = find
+        self.wanted: Wanted | None = None
+        self.error: BaseException | None = None
+
+    def run(self) -> None:
+        try:
+            import sandbox.app.app  # noqa: F401
+
+            self.wanted = self._find()
+        except BaseException as error:  # handed on to the thread that waits
+            self.error = error
+
+
+class _Words:
+    """The name of the program, and a ring that turns."""
+
+    def __init__(self, scale: float) -> None:
+        self._scale = scale
+        self._title = self._written("NotoSans-Bold.ttf", TITLE_SIZE, "Spring Sandbox", TEXT)
+        self._line = self._written("NotoSans-Regular.ttf", LINE_SIZE, "Starting", MUTED)
+
+    def _written(self, font: str, size: int, text: str, colour: tuple[int, int, int]) -> pygame.Surface:
+        return _font(font, round(size * self._scale)).render(text, True, colour)
+
+    def draw(self, surface: pygame.Surface, seconds: float) -> None:
+        """Draw the picture of a moment."""
+        surface.fill(BACKGROUND)
+        middle, y = surface.get_width() // 2, surface.get_height() // 2
+        surface.blit(self._title, self._title.get_rect(midbottom=(middle, y - round(30 * self._scale))))
+        surface.blit(self._line, self._line.get_rect(midtop=(middle, y + round(34 * self._scale))))
+        for dot in range(10):
+            turn = math.tau * dot / 10
+            age = (dot / 10 - seconds * 0.9) % 1.0
+            at = middle + math.cos(turn) * 16 * self._scale, y + math.sin(turn) * 16 * self._scale
+            pygame.draw.aacircle(surface, mixed(LINE, ACCENT, age), at, 3 * self._scale)
+
+
+def _font(name: str, size: int) -> pygame.font.Font:
+    """The widgets' font, found without importing the library that brings it."""
+    library = find_spec("pygame_gui")
+    if library is None or library.origin is None:
+        return pygame.font.Font(None, size)
+    return pygame.font.Font(io.BytesIO((Path(library.origin).parent / "data" / name).read_bytes()), size)
+
+
+def open_app(
+    find: Callable[[], Wanted], *, profile: bool = False, seconds: float | None = None, scale: float | None = None
+) -> int:
+    """Open the window and run until it is closed, or for so many seconds; returns the exit code.
+
+    find: says what to show, called once the window is there; what it raises is raised here, with the window closed.
+    profile: print where a frame's time went, at the end. scale: size of the widgets; None = the display's.
+    """
+    began = time.perf_counter()
+    times = Profile()
+    display = Display(scale)
+    try:
+        wanted = _wait(display, times, _Work(find))
+    except BaseException:
+        display.close()
+        raise
+    if wanted is None:
+        display.close()
+        return 0
+    from sandbox.app.app import run_app
+
+    run_app(display, wanted, times, seconds)
+    if profile:
+        print(times.table(began))
+    return 0
+
+
+def _wait(display: Display, times: Profile, work: _Work) -> Wanted | None:
+    """Show words until the work is done; None where the window was closed."""
+    words, clock = _Words(display.scale), pygame.time.Clock()
+    began = time.perf_counter()
+    while True:
+        with times.part("frame"):
+            # Keys and clicks stay in the queue, for the app.
+            if pygame.event.get(CLOSING):
+                return None
+            display.refresh()
+            words.draw(display.surface, time.perf_counter() - began)
+            display.flip()
+        times.shown()
+        if work.ident is None:
+            times.reached("words in the window")
+            work.start()
+        if not work.is_alive():
+            break
+        clock.tick(FRAME_RATE)
+    if work.error is not None:
+        raise work.error
+    return work.wanted

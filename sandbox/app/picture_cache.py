@@ -1,0 +1,128 @@
+"""Small pictures of levels, drawn once for each content of a level file: shipped, or kept in the user's cache folder.
+
+`python -m sandbox.app.picture_cache` draws those that are shipped (`make pictures`).
+"""
+
+import contextlib
+import functools
+import hashlib
+import os
+from collections.abc import Generator
+from pathlib import Path
+from typing import cast
+
+import platformdirs
+import pygame
+
+from sandbox.app.draw.picture import crop_of, draw_picture, run_ahead
+from sandbox.level.format.files import read_level, shipped_folder, shipped_levels
+from sandbox.level.format.model import Level
+
+# Every picture's size [pixels]: that of a card at scale 2, and twice that at scale 1.
+SIZE = (576, 324)
+# Thickness of lines in them.
+LINE_SCALE = 1.4
+# They show the level after this time [s], or it would hang in mid-air where it was built.
+SECONDS = 0.8
+# Levels of more particles than this are drawn as they are built: the gallery stays quick.
+PARTICLES = 3000
+# Rises when the same level is drawn otherwise.
+VERSION = 1
+# Pictures that are kept, those used last.
+KEPT = 300
+# Pictures in the size of cards that are held in memory: all of a page, and its neighbours'.
+HELD = 96
+
+
+def picture_key(content: bytes) -> str:
+    """What a picture of a level file's content is called."""
+    # Git may have given the file the line ends of the system.
+    text = content.replace(b"\r\n", b"\n")
+    return hashlib.blake2b(text, digest_size=8, person=f"{VERSION} {SIZE[0]}x{SIZE[1]}".encode()).hexdigest()
+
+
+def shipped_picture(level: Path, key: str) -> Path:
+    """Where the picture of a shipped level lies."""
+    return shipped_folder("assets") / "pictures" / f"{level.stem}-{key}.png"
+
+
+def kept_picture(key: str) -> Path:
+    """Where the picture of any other level is kept."""
+    return Path(platformdirs.user_cache_dir("spring-sandbox", appauthor=False)) / "pictures" / f"{key}.png"
+
+
+def find_picture(level: Path, key: str, size: tuple[int, int]) -> pygame.Surface | None:
+    """The picture of a level file in a size [pixels], where there is one."""
+    for path in (shipped_picture(level, key), kept_picture(key)):
+        with contextlib.suppress(OSError, pygame.error):
+            return _read(path, size)
+    return None
+
+
+@functools.lru_cache(HELD)
+def _read(path: Path, size: tuple[int, int]) -> pygame.Surface:
+    # A name says what the picture shows, so what was read once holds.
+    with path.open("rb") as file:
+        return pygame.transform.smoothscale(pygame.image.load(file, path.name).convert(32), size)
+
+
+def draw_in_slices(level: Level, seconds: float = SECONDS) -> Generator[bool, None, pygame.Surface]:
+    """Draw a level after so many seconds, a slice of the work at a time; the picture is what it gives in the end."""
+    snapshot = yield from run_ahead(level, round(seconds * level.settings.tick_rate), PARTICLES)
+    yield True
+    return draw_picture(level, snapshot, SIZE, crop_of(level, snapshot), LINE_SCALE)
+
+
+def draw_at_once(level: Level) -> pygame.Surface:
+    """Draw a level as the gallery shows it."""
+    slices = draw_in_slices(level)
+    while True:
+        try:
+            next(slices)
+        except StopIteration as end:
+            return cast(pygame.Surface, end.value)
+
+
+def keep_picture(picture: pygame.Surface, path: Path) -> None:
+    """Write a picture, whole or not at all. Raises OSError."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = path.with_suffix(f".{os.getpid()}.png")
+    try:
+        pygame.image.save(picture, str(unfinished))
+        os.replace(unfinished, path)
+    except pygame.error as error:
+        raise OSError(0, str(error), str(path)) from None
+    finally:
+        unfinished.unlink(missing_ok=True)
+    _read.cache_clear()
+
+
+def forget_old_pictures(folder: Path) -> None:
+    """Remove all but the newest pictures of a folder."""
+    with contextlib.suppress(OSError):
+        files = sorted(folder.glob("*.png"), key=lambda path: path.stat().st_mtime, reverse=True)
+        for file in files[KEPT:]:
+            file.unlink(missing_ok=True)
+
+
+def stale_pictures() -> tuple[dict[str, Path], list[Path]]:
+    """Shipped levels without a picture of their present content, each with its place, and pictures of nothing."""
+    wanted = {level.stem: shipped_picture(level, picture_key(level.read_bytes())) for level in shipped_levels()}
+    there = set((shipped_folder("assets") / "pictures").glob("*.png"))
+    missing = {name: path for name, path in wanted.items() if path not in there}
+    return missing, sorted(there - set(wanted.values()))
+
+
+def draw_shipped_pictures() -> None:
+    """Draw the pictures of shipped levels that are missing, and remove those of nothing."""
+    missing, unused = stale_pictures()
+    for path in unused:
+        path.unlink()
+    for level in shipped_levels():
+        if level.stem in missing:
+            keep_picture(draw_at_once(read_level(level)), missing[level.stem])
+            print(missing[level.stem].name)
+
+
+if __name__ == "__main__":
+    draw_shipped_pictures()

@@ -1,0 +1,212 @@
+"""Named tuples of arrays as one pointer: bundles that Python makes once, and what kernels lend to those they call.
+
+numba hands a named tuple on as the words of all its arrays, some hundred arguments at every call. A lent one is the
+address of these words: whoever made it keeps it, nobody writes to it, and an attribute is read where it is used.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+from collections.abc import Sequence
+from typing import Any
+
+import numba
+import numpy as np
+from llvmlite import ir
+from numba.core import cgutils
+from numba.core.datamodel import default_manager
+from numba.core.typing.templates import AttributeTemplate
+from numba.extending import (
+    infer_getattr,
+    intrinsic,
+    lower_cast,
+    lower_getattr_generic,
+    models,
+    register_model,
+)
+
+types: Any = numba.types
+
+_WORD = 8
+_CHAR = ir.IntType(8)
+# As numba lays an array out; shape and strides have a word for each dimension.
+_ARRAY_WORDS = ("meminfo", "parent", "nitems", "itemsize", "data", "shape", "strides")
+if default_manager.lookup(types.Array(types.float64, 1, "C"))._fields != _ARRAY_WORDS:
+    raise ImportError("this numba lays arrays out in another way")
+
+
+class Lent(types.Type):
+    """A pointer to the fields of a named tuple, or of a plain one, whose fields have no names."""
+
+    def __init__(self, name: str, fields: Sequence[str], kinds: Sequence[Any]) -> None:
+        self.fields, self.kinds = tuple(fields), tuple(kinds)
+        self.offsets = [0]
+        for kind in kinds:
+            self.offsets.append(self.offsets[-1] + _size(kind))
+        text = repr((self.fields, list(map(str, kinds))))
+        super().__init__(f"Lent{name}{hashlib.blake2b(text.encode(), digest_size=6).hexdigest()}")
+
+    def kind_of(self, field: str) -> Any:
+        """The type of a field; None where there is none of this name."""
+        return self.kinds[self.fields.index(field)] if field in self.fields else None
+
+
+def _size(kind: Any) -> int:
+    if isinstance(kind, types.Array):
+        return _WORD * (5 + 2 * kind.ndim)
+    if isinstance(kind, Lent):
+        return kind.offsets[-1]
+    if isinstance(kind, (types.Integer, types.Float)) and kind.bitwidth == 8 * _WORD:
+        return _WORD
+    raise TypeError(f"a named tuple for kernels holds arrays, named tuples, int64 and float64, not {kind}")
+
+
+def lent(kind: Any) -> Any:
+    """The type of what a part of a kernel gets for an argument of some type."""
+    if isinstance(kind, types.BaseNamedTuple):
+        return Lent(kind.instance_class.__name__, kind.fields, [lent(part) for part in kind.types])
+    return _BUNDLES.get(_bundle_name(kind), kind)
+
+
+@register_model(Lent)
+class _LentModel(models.PrimitiveModel):
+    def __init__(self, manager: Any, kind: Lent) -> None:
+        # The width tells the size, for the attributes of arguments; odd, so that no other type has it.
+        super().__init__(manager, kind, ir.IntType(kind.offsets[-1] + 1).as_pointer())
+
+
+def mark_arguments(module: Any) -> None:
+    """Say in the IR of a module that lent tuples are whole, and that nobody else writes to them or keeps them."""
+    for function in module.functions:
+        for argument in function.args if function.blocks else ():
+            pointed = getattr(argument.type, "pointee", None)
+            if isinstance(pointed, ir.IntType) and pointed.width > 1 and pointed.width % _WORD == 1:
+                argument.attributes.dereferenceable = pointed.width - 1
+                known = argument.attributes._known
+                for attribute in ("noalias", "captures(none)" if "captures(none)" in known else "nocapture"):
+                    argument.attributes.add(attribute)
+
+
+def _place(builder: Any, pointer: Any, offset: int, kind: Any) -> Any:
+    start = builder.bitcast(pointer, _CHAR.as_pointer())
+    return builder.bitcast(builder.gep(start, [ir.Constant(ir.IntType(64), offset)], inbounds=True), kind)
+
+
+def _field(context: Any, builder: Any, kind: Lent, pointer: Any, index: int) -> Any:
+    # A nested tuple stays where it is too.
+    part, value_type = kind.kinds[index], context.get_value_type(kind.kinds[index])
+    if isinstance(part, Lent):
+        return _place(builder, pointer, kind.offsets[index], value_type)
+    return builder.load(_place(builder, pointer, kind.offsets[index], value_type.as_pointer()))
+
+
+@infer_getattr
+class _LentAttributes(AttributeTemplate):
+    key = Lent
+
+    def generic_resolve(self, kind: Lent, attribute: str) -> Any:
+        return kind.kind_of(attribute)
+
+
+@lower_getattr_generic(Lent)
+def _lower_attribute(context: Any, builder: Any, kind: Lent, value: Any, attribute: str) -> Any:
+    return _field(context, builder, kind, value, kind.fields.index(attribute))
+
+
+@lower_cast(types.NamedTuple, Lent)
+@lower_cast(types.NamedUniTuple, Lent)
+def _lend(context: Any, builder: Any, given: Any, wanted: Lent, value: Any) -> Any:
+    # All fields are whole words, so the tuple lies in memory as the words of its fields.
+    return builder.bitcast(cgutils.alloca_once_value(builder, value), context.get_value_type(wanted))
+
+
+def lend_to(part: Any) -> None:
+    """Let callers lend a part of kernels the named tuples and bundles that they pass to it."""
+    resolve = getattr(part, "get_call_template", None)
+    if resolve is None:
+        return
+
+    def get_call_template(arguments: Any, named: Any) -> Any:
+        return resolve([lent(kind) for kind in arguments], {name: lent(kind) for name, kind in named.items()})
+
+    part.get_call_template = get_call_template
+
+
+# The bundles of this process, by the name that their arrays have for what lies in them.
+_BUNDLES: dict[str | None, Lent] = {}
+
+
+def _bundle_name(kind: Any) -> str | None:
+    fields = getattr(getattr(kind, "dtype", None), "fields", None) if isinstance(kind, types.Array) else None
+    return next(iter(fields)) if fields else None
+
+
+@lower_cast(types.Array, Lent)
+def _lend_bundle(context: Any, builder: Any, given: Any, wanted: Lent, value: Any) -> Any:
+    return builder.bitcast(context.make_array(given)(context, builder, value).data, context.get_value_type(wanted))
+
+
+@intrinsic
+def contents(typing_context: Any, bundle: Any) -> Any:
+    """The items of a bundle, lent."""
+    kind = lent(bundle)
+    if not isinstance(kind, Lent):
+        return None
+    result = kind if all(kind.fields) else types.Tuple(kind.kinds)
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        pointer = context.cast(builder, arguments[0], signature.args[0], kind)
+        if isinstance(result, Lent):
+            return pointer
+        items = [_field(context, builder, kind, pointer, k) for k in range(len(kind.kinds))]
+        return context.make_tuple(builder, result, items)
+
+    return result(bundle), generate
+
+
+class _Words(bytearray):
+    """What a bundle points to, and the arrays that its words are the addresses of, which live as long."""
+
+    items: Any
+
+
+def _described(item: Any) -> tuple[Any, list[int]]:
+    """The numba type of what lies in a bundle, and its words."""
+    if isinstance(item, np.ndarray):
+        if not item.flags.c_contiguous:
+            raise TypeError("arrays in a bundle are contiguous")
+        words = [0, 0, item.size, item.itemsize, item.__array_interface__["data"][0], *item.shape, *item.strides]
+        return _array_type(item.dtype, item.ndim), words
+    if not isinstance(item, tuple):
+        raise TypeError(f"a bundle holds arrays and tuples of them, not {type(item).__name__}")
+    described = [_described(part) for part in item]
+    name = type(item).__name__ if hasattr(item, "_fields") else ""
+    fields = getattr(item, "_fields", ("",) * len(item))
+    return _lent_type(name, fields, tuple(kind for kind, _ in described)), [
+        word for _, words in described for word in words
+    ]
+
+
+@functools.cache
+def _array_type(dtype: np.dtype[Any], dimensions: int) -> Any:
+    return types.Array(numba.np.numpy_support.from_dtype(dtype), dimensions, "C")
+
+
+@functools.cache
+def _lent_type(name: str, fields: tuple[str, ...], kinds: tuple[Any, ...]) -> Lent:
+    return Lent(name, fields, kinds)
+
+
+@functools.cache
+def _dtype(kind: Lent) -> np.dtype[Any]:
+    _BUNDLES[kind.name] = kind
+    return np.dtype([(kind.name, np.int64, (kind.offsets[-1] // _WORD,))])
+
+
+def bundle(items: tuple[Any, ...]) -> Any:
+    """One array with the addresses of all the arrays in `items`, which a kernel takes at the cost of one."""
+    kind, words = _described(items)
+    owner = _Words(np.array(words, dtype=np.int64).tobytes())
+    owner.items = items
+    return np.frombuffer(owner, dtype=_dtype(kind))

@@ -1,0 +1,142 @@
+"""Kernels that are linked once: a part stays as it was lowered until an entry gathers all that it calls.
+
+numba links the finished module of each callee into each caller, optimises the whole again and makes machine code of it
+again, at every level of a tree of calls. Here a part is neither optimised as a module nor made machine code, and an
+entry links every part below it once.
+"""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+import llvmlite.binding as llvm
+import numba
+import numpy as np
+from numba.core import compiler
+from numba.core.codegen import JITCodeLibrary
+from numba.core.environment import lookup_environment
+
+from sandbox.physics.jit.lending import mark_arguments
+
+_ENVIRONMENT = "_ZN08NumbaEnv"
+
+
+class _WithoutEnvironments:
+    """Code generation for a part, which has no address yet at which its environment could be set."""
+
+    def __init__(self, codegen: Any) -> None:
+        self._codegen = codegen
+
+    def set_env(self, name: str, environment: Any) -> None:
+        pass
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._codegen, name)
+
+
+class _PartLibrary(JITCodeLibrary):
+    @property
+    def codegen(self) -> Any:
+        return _WithoutEnvironments(self._codegen)
+
+    def add_ir_module(self, ir_module: Any) -> None:
+        mark_arguments(ir_module)
+        super().add_ir_module(ir_module)
+
+    def finalize(self) -> None:
+        self._raise_if_finalized()
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        return 0
+
+
+class _EntryLibrary(JITCodeLibrary):
+    def finalize(self) -> None:
+        self._raise_if_finalized()
+        self._codegen._check_llvm_bugs()
+        for library in self._below():
+            if hasattr(self, "_reload_init"):  # from numba 0.62 on
+                self._reload_init.update(library._reload_init)
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        # Nobody else calls them: arguments that are not used go, and what is called once is inlined.
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage == llvm.Linkage.linkonce_odr:
+                function.linkage = "internal"
+        self._optimize_final_module()
+        self._final_module.verify()
+        self._finalize_final_module()
+        for variable in self._final_module.global_variables:
+            environment = lookup_environment(variable.name) if variable.name.startswith(_ENVIRONMENT) else None
+            if environment is not None:
+                self._codegen.set_env(variable.name, environment)
+
+    def _below(self) -> list[Any]:
+        found, waiting = {}, list(self._linking_libraries)
+        while waiting:
+            library = waiting.pop(0)
+            if library not in found:
+                found[library] = True
+                if isinstance(library, _PartLibrary):
+                    waiting.extend(library._linking_libraries)
+        return list(found)
+
+
+class _PartCompiler(compiler.Compiler):
+    library: type[JITCodeLibrary] = _PartLibrary
+
+    def define_pipelines(self) -> Any:
+        self.state.library = self.library(self.state.targetctx.codegen(), self.state.func_id.func_qualname)
+        self.state.library.enable_object_caching()
+        return super().define_pipelines()
+
+
+class _EntryCompiler(_PartCompiler):
+    library = _EntryLibrary
+
+
+def _tried_out() -> float:
+    """What a small entry gives that calls parts, which call parts."""
+    part = numba.njit(pipeline_class=_PartCompiler, no_cpython_wrapper=True, no_cfunc_wrapper=True, error_model="numpy")
+
+    @part
+    def least(values: Any) -> Any:
+        if values.shape[0] == 0:
+            raise ValueError("no values")
+        return values[0]
+
+    @part
+    def spread(values: Any) -> Any:
+        return values[values.shape[0] - 1] - least(values)
+
+    @numba.njit(pipeline_class=_EntryCompiler, error_model="numpy")
+    def entry(values: Any) -> Any:
+        return spread(values) + 0.5 * least(values)
+
+    return float(entry(np.array([1.0, 3.0, 7.0])))
+
+
+@functools.cache
+def links_once() -> bool:
+    """Whether this numba can: what is used of it are inner parts, which another version may not have."""
+    try:
+        return _tried_out() == 6.5
+    except Exception:
+        return False
+
+
+class PartCompiler(_PartCompiler):
+    """For what kernels alone call."""
+
+    def define_pipelines(self) -> Any:
+        """numba's passes, with a library of its own where that works."""
+        return super().define_pipelines() if links_once() else compiler.Compiler.define_pipelines(self)
+
+
+class EntryCompiler(_EntryCompiler):
+    """For what Python calls."""
+
+    def define_pipelines(self) -> Any:
+        """numba's passes, with a library of its own where that works."""
+        return super().define_pipelines() if links_once() else compiler.Compiler.define_pipelines(self)

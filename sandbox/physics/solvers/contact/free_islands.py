@@ -1,0 +1,117 @@
+"""Islands of contacts: which hang together by what can move, and which of those a solver's bodies belong to.
+
+An island in which a spring or an element holds anything that can move is the solver's; the others are free.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sandbox.physics.collision.types import Contacts, Flags, weight_of
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.state import Floats, Slots
+
+
+class Islands(NamedTuple):
+    """Islands of a step's contacts, filled in by each step; there is room for more contacts.
+
+    Of particles: label (n,) = the first of its island; is_bound (n,), by label. Of contacts: label (k,), bound (k,).
+    Free contacts, island by island: contact (k,), those of the g-th at first[g]:first[g + 1]. at (n + 1,): scratch.
+    """
+
+    label: Slots
+    is_bound: Flags
+    contact_label: Slots
+    bound: Flags
+    contact: Slots
+    first: Slots
+    at: Slots
+
+
+@inner_kernel
+def _root(label: Slots, node: int) -> int:
+    while label[node] != node:
+        label[node] = label[label[node]]
+        node = label[node]
+    return node
+
+
+@inner_kernel
+def _join(contacts: Contacts, count: int, inverse_mass: Floats, label: Slots) -> None:
+    # Label the particles that touch each other alike; what cannot move joins nothing.
+    for p in range(label.shape[0]):
+        label[p] = p
+    for c in range(count):
+        first = -1
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p < 0 or inverse_mass[p] == 0.0:
+                continue
+            node = _root(label, p)
+            if first < 0:
+                first = node
+            elif node < first:
+                label[first] = node
+                first = node
+            else:
+                label[node] = first
+    for p in range(label.shape[0]):
+        label[p] = _root(label, p)
+
+
+@inner_kernel
+def find_islands(contacts: Contacts, count: int, inverse_mass: Floats, held: Flags, islands: Islands) -> int:
+    """The islands of the first `count` contacts; how many contacts are bound.
+
+    held (n,): particles that a spring or an element holds.
+    """
+    label = islands.label
+    _join(contacts, count, inverse_mass, label)
+    for p in range(label.shape[0]):
+        islands.is_bound[p] = False
+    for p in range(label.shape[0]):
+        if held[p] and inverse_mass[p] > 0.0:
+            islands.is_bound[label[p]] = True
+    bound = 0
+    for c in range(count):
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p >= 0 and inverse_mass[p] > 0.0:
+                islands.contact_label[c] = label[p]
+                islands.bound[c] = islands.is_bound[label[p]]
+        if islands.bound[c]:
+            bound += 1
+    return bound
+
+
+@inner_kernel
+def sort_free_contacts(count: int, islands: Islands) -> int:
+    """Sort the free ones of the first `count` contacts by island, each in their order; how many islands they make."""
+    at = islands.at
+    for p in range(at.shape[0]):
+        at[p] = 0
+    for c in range(count):
+        if not islands.bound[c]:
+            at[islands.contact_label[c] + 1] += 1
+    found = 0
+    for p in range(at.shape[0] - 1):
+        if at[p + 1] > 0:
+            islands.first[found] = at[p]
+            found += 1
+        at[p + 1] += at[p]
+    islands.first[found] = at[at.shape[0] - 1]
+    for c in range(count):
+        if not islands.bound[c]:
+            label = islands.contact_label[c]
+            islands.contact[at[label]] = c
+            at[label] += 1
+    return found
+
+
+def new_islands(particles: int, contacts: int) -> Islands:
+    """Islands to be filled in, with room for so many contacts."""
+    return Islands(
+        np.zeros(particles, np.int64), np.zeros(particles, np.bool_), np.zeros(contacts, np.int64),
+        np.zeros(contacts, np.bool_), np.zeros(contacts, np.int64), np.zeros(contacts + 1, np.int64),
+        np.zeros(particles + 1, np.int64),
+    )  # fmt: skip

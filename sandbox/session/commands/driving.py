@@ -1,0 +1,31 @@
+"""Actuators are driven."""
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+from typing import Annotated
+
+from pydantic import Field
+
+from sandbox.physics.world import World
+from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.named import PartSlot
+
+
+@dataclass(frozen=True)
+class SetDrive(Command):
+    """Drive a part, a motor or hydraulic, forward (1), backward (-1), slower, or not at all (0)."""
+
+    type = "set_drive"
+    part: PartSlot
+    value: Annotated[float, Field(ge=-1.0, le=1.0)]
+
+    def carry_out(self, world: World) -> None:
+        if self.part >= len(world.part_value):
+            raise CommandError(f"there is no driven part {self.part}")
+        world.drive(self.part, self.value)
+
+    def begins(self) -> Hashable:
+        return "drive", self.part
+
+    def ending(self, world: World) -> Command | None:
+        return SetDrive(self.part, 0.0) if self.value != 0.0 else None

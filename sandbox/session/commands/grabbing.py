@@ -1,0 +1,68 @@
+"""Hands hold particles, move them and let go."""
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+from typing import Annotated
+
+from pydantic import Field
+
+from sandbox.level.format.quantities import Point
+from sandbox.physics.world import HAND_COUNT, World
+from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.named import ParticleSlot, particle_of
+
+Hand = Annotated[int, Field(ge=0, lt=HAND_COUNT)]
+
+
+@dataclass(frozen=True)
+class Grab(Command):
+    """Hold a particle with hand number `grab` (0..9) at target [m]."""
+
+    type = "grab"
+    grab: Hand
+    particle: ParticleSlot
+    target: Point
+
+    def carry_out(self, world: World) -> None:
+        name = particle_of(world, self.particle)
+        if world.is_held(self.grab):
+            raise CommandError(f"hand {self.grab} holds something already")
+        if world.inverse_mass[self.particle] == 0.0:
+            raise CommandError(f"{name} is pinned: unpin it to drag it")
+        world.hold(self.grab, self.particle, self.target)
+
+    def begins(self) -> Hashable:
+        return "hand", self.grab
+
+    def ending(self, world: World) -> Command | None:
+        return Release(self.grab) if world.is_held(self.grab) else None
+
+
+@dataclass(frozen=True)
+class MoveGrab(Command):
+    """Move a hand that holds something to target [m]."""
+
+    type = "move_grab"
+    grab: Hand
+    target: Point
+
+    def carry_out(self, world: World) -> None:
+        _check_held(world, self.grab)
+        world.move_hand(self.grab, self.target)
+
+
+@dataclass(frozen=True)
+class Release(Command):
+    """Let go of what a hand holds."""
+
+    type = "release"
+    grab: Hand
+
+    def carry_out(self, world: World) -> None:
+        _check_held(world, self.grab)
+        world.release(self.grab)
+
+
+def _check_held(world: World, hand: int) -> None:
+    if not world.is_held(hand):
+        raise CommandError(f"hand {hand} holds nothing")

@@ -1,0 +1,22 @@
+"""Bodies are inflated."""
+
+from dataclasses import dataclass
+
+from sandbox.level.format.quantities import Inflation
+from sandbox.physics.world import World
+from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.named import BodySlot
+
+
+@dataclass(frozen=True)
+class SetInflation(Command):
+    """Let a body's areas, the one of a ring or those of a jelly, want this multiple of their own."""
+
+    type = "set_inflation"
+    body: BodySlot
+    value: Inflation
+
+    def carry_out(self, world: World) -> None:
+        if self.body >= len(world.area_names):
+            raise CommandError(f"there is no body {self.body} that keeps an area")
+        world.inflate(self.body, self.value)

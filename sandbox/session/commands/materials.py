@@ -1,0 +1,23 @@
+"""Coefficients of springs are set while they move."""
+
+from dataclasses import dataclass
+
+from sandbox.level.format.quantities import Share
+from sandbox.physics.world import World
+from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.named import MaterialSlot
+
+
+@dataclass(frozen=True)
+class SetCoefficients(Command):
+    """Set Cs, Cd or both (None = leave), of one material by index or of all (None)."""
+
+    type = "set_coefficients"
+    stiffness: Share | None = None
+    damping: Share | None = None
+    material: MaterialSlot | None = None
+
+    def carry_out(self, world: World) -> None:
+        if self.material is not None and self.material >= len(world.material_names):
+            raise CommandError(f"there is no material {self.material}")
+        world.set_coefficients(self.stiffness, self.damping, self.material)

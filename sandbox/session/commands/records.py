@@ -1,0 +1,64 @@
+"""Commands as the JSON objects of replay and script files, where everything goes by name."""
+
+import functools
+import json
+from dataclasses import asdict, dataclass
+from typing import Any, get_type_hints
+
+from pydantic import ValidationError
+
+from sandbox.physics.world import World
+from sandbox.session.commands.command import COMMAND_TYPES, Command, CommandError, adapter, plain_fault
+from sandbox.session.commands.named import Named, namespace
+
+
+@dataclass(frozen=True)
+class ScriptLine:
+    """A recorded command: the JSON object `record` of a gesture, for a tick; line: where it stands in its file."""
+
+    tick: int
+    gesture: int
+    record: dict[str, Any]
+    line: int
+
+
+@functools.cache
+def _namespaces(kind: type[Command]) -> dict[str, Named]:
+    """The fields of a command that go by name."""
+    found = {field: namespace(hint) for field, hint in get_type_hints(kind, include_extras=True).items()}
+    return {field: names for field, names in found.items() if names is not None}
+
+
+def to_record(command: Command, world: World) -> dict[str, Any]:
+    """A command as the JSON object of a file: slots become names, settings that it leaves alone are left out."""
+    record: dict[str, Any] = {"type": command.type}
+    named = _namespaces(type(command))
+    for field, value in asdict(command).items():  # type: ignore[call-overload]
+        if value is None:
+            continue
+        if field in named:
+            names = named[field].names(world)
+            record[field] = [names[slot] for slot in value] if isinstance(value, tuple) else names[value]
+        else:
+            record[field] = list(value) if isinstance(value, tuple) else value
+    return record
+
+
+def from_record(record: dict[str, Any], world: World) -> Command:
+    """The command of a JSON object, its names looked up in the world. Raises CommandError, one line."""
+    values = dict(record)
+    type_name = values.pop("type", None)
+    kind = COMMAND_TYPES.get(type_name) if isinstance(type_name, str) else None
+    if kind is None:
+        raise CommandError(f"unknown command {type_name!r:.80}; there are {', '.join(COMMAND_TYPES)}")
+    for field, names in _namespaces(kind).items():
+        if isinstance(values.get(field), list):
+            values[field] = [names.slot(world, name) for name in values[field]]
+        elif values.get(field) is not None:
+            values[field] = names.slot(world, values[field])
+    try:
+        # JSON mode: lists stand for tuples and whole numbers for floats, and nothing else is converted.
+        return adapter(kind).validate_json(json.dumps(values), strict=True)
+    except (ValidationError, ValueError) as error:
+        text = plain_fault(error) if isinstance(error, ValidationError) else str(error)
+        raise CommandError(f"{type_name}: {text}") from None

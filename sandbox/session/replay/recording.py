@@ -1,0 +1,73 @@
+"""Replay: a recorded run as a file holds it, read back."""
+
+from dataclasses import dataclass
+
+from sandbox.level.build.actuators import actuators
+from sandbox.level.format.model import Level
+from sandbox.physics.settings import WorldSettings
+from sandbox.physics.snapshot import Snapshot, state_hash
+from sandbox.session.commands.records import ScriptLine
+from sandbox.session.replay.format import decode_state
+
+
+class ReplayError(ValueError):
+    """A replay or script that cannot be used; faults: one line each."""
+
+    def __init__(self, *faults: str) -> None:
+        super().__init__("\n".join(faults))
+        self.faults = list(faults)
+
+
+@dataclass(frozen=True, slots=True)
+class TickHashes:
+    """What a replay says of the state after a tick: the hash of all, and of each array in the order of the table."""
+
+    whole: str
+    arrays: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class StoredState:
+    """A state line: arrays as text, see format.decode_state; line: where it stands in its file."""
+
+    arrays: dict[str, str]
+    settings: WorldSettings
+    line: int
+
+
+@dataclass(frozen=True)
+class Replay:
+    """A recorded run: hashes[t] is the state after t ticks; end_hash is None where the file is cut off."""
+
+    source: str
+    level: Level
+    script: tuple[ScriptLine, ...]
+    hashes: tuple[TickHashes, ...]
+    states: dict[int, StoredState]
+    end_hash: str | None
+
+    @property
+    def ticks(self) -> int:
+        """Ticks recorded."""
+        return len(self.hashes) - 1
+
+    def state(self, tick: int) -> Snapshot:
+        """The stored state of a tick. Raises ReplayError where there is none, or one that its own hash belies."""
+        stored = self.states.get(tick)
+        if stored is None:
+            raise ReplayError(f"{self.source}: no state is stored at tick {tick}")
+        try:
+            snapshot = decode_state(tick, stored.arrays, stored.settings)
+        except ValueError as error:
+            raise ReplayError(f"{self.source}: line {stored.line}: {error}") from None
+        driven = len(actuators(self.level))
+        if len(snapshot.part_value) != driven:
+            raise ReplayError(
+                f"{self.source}: line {stored.line}: state.part_value: has {len(snapshot.part_value)} values, "
+                f"where the level has {driven} driven parts"
+            )
+        if state_hash(snapshot) != self.hashes[tick].whole:
+            raise ReplayError(
+                f"{self.source}: line {stored.line}: state: is not the one whose hash stands at tick {tick}"
+            )
+        return snapshot

@@ -1,0 +1,66 @@
+"""The window with words, while the rest is imported."""
+
+import pygame
+import pytest
+
+from sandbox.app.display import Display
+from sandbox.app.draw.colours import BACKGROUND, TEXT
+from sandbox.app.opening import open_app
+from sandbox.app.wanted import Wanted
+from tests.app.conftest import small_level
+
+
+@pytest.fixture
+def pictures(monkeypatch, documents):
+    """What the window has shown so far."""
+    shown = []
+
+    def flip(display):
+        shown.append(display.surface.copy())
+
+    monkeypatch.setattr(Display, "flip", flip)
+    return shown
+
+
+def test_words_are_in_the_window_before_anything_is_looked_for(pictures, capsys):
+    found = []
+
+    def find():
+        colours = {tuple(pictures[0].get_at((x, y)))[:3] for x in range(400, 880) for y in range(280, 340)}
+        found.append(colours)
+        return Wanted(small_level())
+
+    assert open_app(find, profile=True, seconds=0.0) == 0
+    assert {BACKGROUND, TEXT} <= found[0]
+    assert "words in the window: after" in capsys.readouterr().out
+
+
+def test_a_fault_closes_the_window_and_is_raised(pictures, monkeypatch):
+    closed = []
+    monkeypatch.setattr(Display, "close", lambda display: closed.append(display))
+
+    def find():
+        raise FileNotFoundError("nothing there")
+
+    with pytest.raises(FileNotFoundError, match="nothing there"):
+        open_app(find)
+    assert len(closed) == 1
+
+
+def test_closing_the_window_early_ends_the_program(pictures, monkeypatch):
+    monkeypatch.setattr("sandbox.app.app.run_app", lambda *_: pytest.fail("the app was opened"))
+    pygame.display.init()
+    pygame.event.post(pygame.event.Event(pygame.QUIT))
+    assert open_app(lambda: Wanted(small_level())) == 0
+
+
+def test_keys_pressed_while_the_words_are_shown_reach_the_app(pictures, monkeypatch):
+    seen = []
+
+    def find():
+        pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_h, mod=0, unicode="h", scancode=0))
+        return Wanted(small_level())
+
+    monkeypatch.setattr("sandbox.app.app.run_app", lambda *_: seen.extend(pygame.event.get(pygame.KEYDOWN)))
+    assert open_app(find) == 0
+    assert [event.key for event in seen] == [pygame.K_h]

@@ -1,0 +1,124 @@
+"""Pictures of levels: shipped ones are those of the levels as they are, others are drawn once."""
+
+import os
+
+import pygame
+import pytest
+
+from sandbox.app import gallery, picture_cache
+from sandbox.app.picture_cache import kept_picture, picture_key, shipped_picture, stale_pictures
+from sandbox.editor.storage.recent import remember
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.files import shipped_levels
+from tests.app.conftest import small_level
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """The names of the levels that are drawn from now on."""
+    names, draw = [], gallery.draw_in_slices
+
+    def note(level, seconds):
+        names.append(level.name)
+        return draw(level, 0.0)
+
+    monkeypatch.setattr(gallery, "draw_in_slices", note)
+    return names
+
+
+def own_level(folder, name="Mine", **changes):
+    path = folder / f"{name}.json"
+    path.write_text(level_text(small_level(name=name, **changes)))
+    remember(path)
+    return path
+
+
+def test_every_shipped_picture_is_of_its_level_as_it_is_now():
+    missing, unused = stale_pictures()
+    assert (sorted(missing), [path.name for path in unused]) == ([], []), "`make pictures` draws them"
+
+
+def test_a_changed_level_has_no_shipped_picture_but_line_ends_change_nothing():
+    path = shipped_levels()[0]
+    content = path.read_bytes()
+    assert shipped_picture(path, picture_key(content)).is_file()
+    assert not shipped_picture(path, picture_key(content + b" ")).is_file()
+    assert picture_key(content.replace(b"\n", b"\r\n")) == picture_key(content)
+
+
+def test_the_gallery_of_shipped_levels_draws_nothing_however_often_and_large_it_is_opened(open_app, drawn):
+    driver = open_app()
+    for act in ("open", "resize"):
+        if act == "resize":
+            driver.app.display.window.size = (900, 700)
+        else:
+            driver.app.open_gallery()
+        while driver.app.gallery._unfilled:
+            driver.frames()
+        assert all(card.picture is not None for card in driver.app.gallery.cards)
+    assert drawn == []
+
+
+def test_a_level_of_ones_own_is_drawn_once_and_again_after_a_change(open_app, drawn, tmp_path):
+    path = own_level(tmp_path)
+    driver = open_app(small_level())
+    for times, act in ((1, "open"), (1, "again"), (2, "change"), (2, "again")):
+        if act == "change":
+            path.write_text(level_text(small_level(name="Mine, changed")))
+        picture_cache._read.cache_clear()
+        driver.app.open_gallery("mine")
+        while driver.app.gallery._unfilled:
+            driver.frames()
+        (card,) = driver.app.gallery.cards
+        assert card.picture is not None
+        assert len(drawn) == times, act
+    assert card.name == "Mine, changed"
+
+
+def test_a_damaged_picture_is_drawn_anew(open_app, drawn, tmp_path):
+    kept = kept_picture(picture_key(own_level(tmp_path).read_bytes()))
+    kept.parent.mkdir(parents=True)
+    kept.write_bytes(b"\x89PNG\r\n\x1a\n, and no more")
+    driver = open_app(small_level())
+    driver.app.open_gallery("mine")
+    while driver.app.gallery._unfilled:
+        driver.frames()
+    assert drawn == ["Mine"]
+    assert pygame.image.load(kept).get_size() == picture_cache.SIZE
+
+
+def test_where_pictures_cannot_be_kept_they_are_shown_all_the_same(open_app, drawn, tmp_path, monkeypatch):
+    own_level(tmp_path)
+    blocked = tmp_path / "cache"
+    blocked.write_text("a file where the folder should be")
+    driver = open_app(small_level())
+    driver.app.open_gallery("mine")
+    while driver.app.gallery._unfilled:
+        driver.frames()
+    assert driver.app.gallery.cards[0].picture is not None
+
+
+def test_keys_are_answered_while_a_picture_takes_long(open_app, monkeypatch, tmp_path):
+    def endless(level, seconds):
+        while True:
+            yield True
+
+    monkeypatch.setattr(gallery, "draw_in_slices", endless)
+    own_level(tmp_path, "First")
+    own_level(tmp_path, "Second")
+    driver = open_app(small_level())
+    driver.app.open_gallery("mine")
+    driver.key(pygame.K_RIGHT)
+    assert driver.app.ui.focus is driver.app.gallery.cards[0]
+    driver.key(pygame.K_RETURN)
+    assert driver.playback.level.name == driver.app.play.source.stem
+
+
+def test_old_pictures_are_removed_and_those_used_last_stay(tmp_path, monkeypatch):
+    monkeypatch.setattr(picture_cache, "KEPT", 2)
+    for age, name in enumerate(("old", "older", "oldest")):
+        (tmp_path / f"{name}.png").touch()
+
+        os.utime(tmp_path / f"{name}.png", (10_000 - age, 10_000 - age))
+    picture_cache.forget_old_pictures(tmp_path)
+    assert sorted(path.stem for path in tmp_path.iterdir()) == ["old", "older"]

@@ -1,0 +1,33 @@
+"""What holds in every test."""
+
+from weakref import WeakKeyDictionary
+
+import pytest
+
+from sandbox.physics.state import COLUMNS
+from sandbox.physics.world import World
+
+TOPOLOGY = [column.name for column in COLUMNS if column.topology]
+# Looks at one world that are made one after another, and ticks between two of them after that.
+FIRST_LOOKS, LATER = 10, 16
+
+
+@pytest.fixture(autouse=True, scope="session")
+def nothing_is_derived_from_a_topology_that_was_changed_behind_a_worlds_back():
+    """What a world keeps derived is made for the topology that it has: nobody writes those arrays but its methods."""
+    seen, looks, derived = WeakKeyDictionary(), WeakKeyDictionary(), World.derived
+
+    def checked(world, make):
+        looks[world] = looks.get(world, 0) + 1
+        if looks[world] <= FIRST_LOOKS or world.tick % LATER == 0:
+            version, arrays = seen.get(world, (-1, ()))
+            present = [getattr(world, name).tobytes() for name in TOPOLOGY]
+            if version == world.topology_version:
+                changed = [name for name, now, then in zip(TOPOLOGY, present, arrays, strict=True) if now != then]
+                assert not changed, f"{', '.join(changed)} written in place: use World.change"
+            seen[world] = world.topology_version, present
+        return derived(world, make)
+
+    World.derived = checked
+    yield
+    World.derived = derived

@@ -1,0 +1,166 @@
+"""What it takes to add something: a copy of the package gets it in as many files as the design says, and plays it."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+PLAY = """
+from pathlib import Path
+from sandbox.level.format.files import parse_level
+from sandbox.physics.step import step
+from sandbox.session.replay.reader import read_replay, read_script
+from sandbox.session.replay.verify import verify
+from sandbox.session.session import Session
+
+def level(more=""):
+    return (
+        '{"format": "spring-sandbox/level", "version": 1, "name": "Two",'
+        '"settings": {"solver": "iterative"' + more + '},'
+        '"bodies": [{"type": "rope", "id": "r", "start": [0, 0], "end": [2, 0], "segments": 2, "pin": ["start"]}]}'
+    ).encode()
+
+def played(level, commands="", ticks=20, undo=False):
+    Path("script.jsonl").write_text(commands)
+    session = Session(parse_level(level, "level"), read_script("script.jsonl"))
+    session.record_to(Path("run.replay"))
+    for tick in range(ticks):
+        if undo and tick == ticks // 2:
+            session.undo()
+        session.advance()
+    assert not session.messages, session.messages
+    session.stop_recording()
+    assert verify(read_replay("run.replay")) is None
+    assert verify(read_replay("run.replay"), start=0) is None
+    return session.world
+"""
+
+NUDGE = '''
+"""Particles are nudged."""
+
+from dataclasses import dataclass
+
+from sandbox.level.format.quantities import Velocity
+from sandbox.physics.world import World
+from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.named import ParticleSlot, particle_of
+
+
+@dataclass(frozen=True)
+class Nudge(Command):
+    """Add to a particle's velocity [m/s]."""
+
+    type = "nudge"
+    particle: ParticleSlot
+    by: Velocity
+
+    def carry_out(self, world: World) -> None:
+        if world.inverse_mass[self.particle] == 0.0:
+            raise CommandError(f"{particle_of(world, self.particle)} is pinned")
+        world.velocity[self.particle] += self.by
+'''
+
+
+@pytest.fixture
+def package(tmp_path):
+    """A copy of the package."""
+    shutil.copytree(ROOT / "sandbox", tmp_path / "sandbox", ignore=shutil.ignore_patterns("__pycache__"))
+    return tmp_path / "sandbox"
+
+
+def put(path, text, before=None):
+    """Write text into a file: the whole of a new one, before the line that contains `before`, or at the end."""
+    if before is None:
+        with path.open("a", encoding="utf-8") as file:
+            file.write(text)
+        return
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    place = next(number for number, line in enumerate(lines) if before in line)
+    path.write_text("".join([*lines[:place], text, *lines[place:]]), encoding="utf-8")
+
+
+def changed(package):
+    """Files of the copy that the package does not have, or has otherwise."""
+    files = [path.relative_to(package) for path in package.rglob("*.py")]
+    original = ROOT / "sandbox"
+    return sorted(
+        file.as_posix()
+        for file in files
+        if not (original / file).exists() or (original / file).read_bytes() != (package / file).read_bytes()
+    )
+
+
+def play(package, script):
+    """Run a script with the copy, interpreted; whatever it prints."""
+    environment = os.environ | {"PYTHONPATH": str(package.parent), "NUMBA_DISABLE_JIT": "1"}
+    ended = subprocess.run(
+        [sys.executable, "-c", PLAY + script],
+        cwd=package.parent, env=environment, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout.strip()
+
+
+def test_a_command_is_one_file(package):
+    put(package / "session/commands/nudging.py", NUDGE)
+    script = r"""
+line = '{"tick": 3, "command": {"type": "nudge", "particle": "r.end", "by": [0, 5]}}\n'
+still, nudged, undone = played(level()), played(level(), line), played(level(), line, undo=True)
+assert nudged.position[2, 1] > still.position[2, 1] + 0.1
+assert (undone.position == still.position).all()
+for name in ("r.start", "nobody"):
+    try:
+        played(level(), line.replace("r.end", name))
+    except ValueError as error:
+        print(error)
+"""
+    assert play(package, script).splitlines() == ["line 1: r.0 is pinned", "line 1: there is no particle 'nobody'"]
+    assert changed(package) == ["session/commands/nudging.py"]
+
+
+def test_a_level_setting_is_three_files(package):
+    put(package / "physics/settings.py", "    lift: float = 0.0\n", before="    drag: float = 0.0")
+    put(
+        package / "level/format/model.py",
+        '    lift: float = Field(default=0.0, ge=-1e6, le=1e6, description="Acceleration upward.")\n',
+        before="    drag: Drag = Field(",
+    )
+    put(
+        package / "physics/forces.py",
+        "    world.velocity[world.inverse_mass > 0.0, 1] += settings.lift * h\n",
+        before="    if settings.drag > 0.0:",
+    )
+    script = """
+from sandbox.physics.settings import WorldSettings
+from sandbox.physics.snapshot import state_hash
+from sandbox.physics.world import World
+fallen, risen = played(level()), played(level(', "lift": 20'))
+assert fallen.position[2, 1] < -0.1 and risen.position[2, 1] > 0.1
+assert state_hash(World(WorldSettings(lift=1.0))) != state_hash(World(WorldSettings()))
+try:
+    parse_level(level(', "lift": 1e7'), "level")
+except ValueError as error:
+    print(error)
+"""
+    assert "settings.lift" in play(package, script)
+    assert changed(package) == ["level/format/model.py", "physics/forces.py", "physics/settings.py"]
+
+
+def test_a_state_array_is_one_line(package):
+    line = '    charge = _array("charge", P, F64, "C", "its charge", guarded=True)\n'
+    put(package / "physics/state.py", line, before="    particle_a = ")
+    script = """
+from sandbox.physics.snapshot import hash_by_array, state_hash
+world = played(level())
+assert world.charge.tolist() == [0.0] * world.particle_count
+before = state_hash(world)
+world.change("charge", 2.0, 1)
+assert state_hash(world) != before and list(hash_by_array(world))[15] == "charge"
+"""
+    play(package, script)
+    assert changed(package) == ["physics/state.py"]
