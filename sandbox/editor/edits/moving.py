@@ -10,14 +10,11 @@ import numpy as np
 from sandbox.editor.document import Document, EditError, all_validated, check_places, check_terrain, subject, validated
 from sandbox.editor.edits.names import owner_of
 from sandbox.editor.edits.placement import (
-    Motion,
     Placed,
-    can_stretch,
     mapped_body,
     mapped_particle,
     mapped_terrain,
     shifted,
-    stretch,
 )
 from sandbox.editor.edits.remap import rebuilt
 from sandbox.editor.items import (
@@ -31,6 +28,8 @@ from sandbox.editor.items import (
     exchanged,
     keys,
 )
+from sandbox.editor.kinds.motion import Motion, stretch
+from sandbox.editor.kinds.table import editing
 from sandbox.editor.scene import Scene, make_scene, positions
 from sandbox.level.format.limits import COORDINATE_LIMIT
 from sandbox.level.format.model import Level, SpringDef
@@ -64,7 +63,7 @@ def scale(document: Document, sx: float, sy: float, centre: Point) -> Document:
 
 def can_scale_unevenly(document: Document) -> bool:
     """Whether everything selected can be made longer without being made higher as much."""
-    return all(can_stretch(body) for body in chosen_bodies(document.level, document.selection))
+    return all(editing(body).can_stretch() for body in chosen_bodies(document.level, document.selection))
 
 
 def mirror(document: Document, axis: Axis, centre: Point) -> Document:
