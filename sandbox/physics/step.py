@@ -45,9 +45,12 @@ def element_coefficients(world: World, parts: int | None = None) -> tuple[Floats
 
 def step(world: World) -> None:
     """Advance the world by one tick of 1 / tick_rate seconds."""
+    collisions = None
     if world.has_contacts:
         # Half of the physics, which a world in which nothing touches does without.
         from sandbox.physics.collision.collide import begin_collisions, collide, end_collisions, finish
+
+        collisions = begin_collisions(world)
     settings = world.settings
     solver = SOLVERS[settings.solver].schedule
     contain_inputs(world)
@@ -62,7 +65,6 @@ def step(world: World) -> None:
     # What a solver keeps is an impulse of one step: exact, as parts are a power of two.
     world.scale_impulses(settings.fewest_substeps / parts)
     world.contacts = None
-    collisions = begin_collisions(world)
     for _ in range(parts):
         before = Before(world.velocity.copy(), rest_length)
         apply_forces(world, h)
