@@ -15,6 +15,7 @@ from sandbox.app.widgets.fields import Field
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.moving import move, rotate, scale
 from sandbox.editor.tools.drawing_options import About, described, stepped
+from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import PLACE_DECIMALS
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 
@@ -72,7 +73,7 @@ class OptionsRow:
         hand, chosen = self._screen.pointer_tool, bool(self._screen.document.selection)
         items: list[Item] = []
         if isinstance(hand, DrawTool):
-            self._add_label(self._screen.tool.capitalize() if self._screen.tool != "box" else "Jelly", "@heading")
+            self._add_label(TOOLS[self._screen.tool].title.capitalize(), "@heading")
             items = [self._option(hand, name, about) for name, about in described(hand.drawing.options).items()]
         elif chosen:
             items = self._numbers()

@@ -1,26 +1,16 @@
-"""The drawing tools by name; those of loose particles, springs and pins are here, bodies have files of their own."""
+"""The tools of loose particles and springs, and of pins."""
 
 from dataclasses import replace
-from typing import Any
 
 from sandbox.editor.document import Document, EditError, select
 from sandbox.editor.edits.placing import add_particle, add_spring, set_pinned, weld
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene, make_scene
-from sandbox.editor.tools.drawing_bodies import (
-    BridgeDrawing,
-    GirderDrawing,
-    RingDrawing,
-    RopeDrawing,
-    WebDrawing,
-    WheelDrawing,
-    direction,
-    known_material,
-)
-from sandbox.editor.tools.drawing_jelly import BoxDrawing, CircleDrawing, PolygonDrawing
+from sandbox.editor.tools.drawing_bodies import direction, known_material
 from sandbox.editor.tools.drawing_options import ParticleOptions, PinOptions, SpringOptions
-from sandbox.editor.tools.drawing_terrain import GroundDrawing, LineDrawing, WallsDrawing
 from sandbox.editor.tools.drawing_tool import Drawing, staged
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen, draw_pin, draw_spring
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.limits import BODY_RADIUS
 from sandbox.level.format.model import ParticleDef
@@ -121,20 +111,10 @@ class PinDrawing(Drawing[PinOptions]):
             raise EditError(str(error.args[0])) from None
 
 
-DRAWINGS: dict[str, type[Drawing[Any]]] = {
-    "particle": ParticleDrawing,
-    "spring": SpringDrawing,
-    "rope": RopeDrawing,
-    "bridge": BridgeDrawing,
-    "girder": GirderDrawing,
-    "web": WebDrawing,
-    "box": BoxDrawing,
-    "circle": CircleDrawing,
-    "polygon": PolygonDrawing,
-    "wheel": WheelDrawing,
-    "ring": RingDrawing,
-    "pin": PinDrawing,
-    "ground": GroundDrawing,
-    "line": LineDrawing,
-    "walls": WallsDrawing,
-}
+def _draw_particle(pen: IconPen) -> None:
+    pen.disc(12, 12, 5)
+
+
+PARTICLE = EditorTool("particle", "A", "Particle", _draw_particle, ParticleDrawing)
+SPRING = EditorTool("spring", "S", "Spring", draw_spring, SpringDrawing)
+PIN = EditorTool("pin", "P", "Pin or unpin a particle", draw_pin, PinDrawing)
