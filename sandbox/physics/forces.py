@@ -1,10 +1,11 @@
 """What acts on particles before the springs do: gravity, the air, motors. To the springs it is work from outside."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
 from sandbox.physics.world import Floats, World
 
 # Below this moment of inertia [kg m^2] a group of particles has no direction to be turned in.
@@ -21,23 +22,40 @@ class Before(NamedTuple):
     rest_length: Floats
 
 
-@kernel
-def _add_gravity(velocity, inverse_mass, gravity_scale, active, gravity_x, gravity_y, h):  # type: ignore[no-untyped-def]
-    # v += g h for free particles, times their gravity scale.
-    for p in range(inverse_mass.shape[0]):
-        if active[p] and inverse_mass[p] > 0.0:
-            velocity[p, 0] += gravity_x * gravity_scale[p] * h
-            velocity[p, 1] += gravity_y * gravity_scale[p] * h
+class ForcedParticles(NamedTuple):
+    """The arrays of a world that gravity and the air read and change, see StateArrays; before [m/s]: room to copy."""
+
+    velocity: Floats
+    inverse_mass: Floats
+    gravity_scale: Floats
+    particle_active: NDArray[np.bool_]
+    before: Floats
 
 
 @kernel
-def _add_air(velocity, inverse_mass, active, wind_x, wind_y, drag, h):  # type: ignore[no-untyped-def]
-    # v' = v + h drag (wind - v'), implicit: v += (1 - 1 / (1 + drag h)) (wind - v), which never overshoots.
+def _add_gravity_and_air(
+    items: Any, gravity_x: float, gravity_y: float, wind_x: float, wind_y: float, drag: float, h: float
+) -> None:
+    # Of free particles: v += g h, times their gravity scale, then, with the air, v' = v + h drag (wind - v'), implicit:
+    # v += (1 - 1 / (1 + drag h)) (wind - v), which never overshoots. The velocities before are kept.
+    (particles,) = contents(items)
+    velocity = particles.velocity
     share = drag * h / (1.0 + drag * h)
-    for p in range(inverse_mass.shape[0]):
-        if active[p] and inverse_mass[p] > 0.0:
-            velocity[p, 0] += share * (wind_x - velocity[p, 0])
-            velocity[p, 1] += share * (wind_y - velocity[p, 1])
+    for p in range(particles.inverse_mass.shape[0]):
+        particles.before[p, 0] = velocity[p, 0]
+        particles.before[p, 1] = velocity[p, 1]
+        if particles.particle_active[p] and particles.inverse_mass[p] > 0.0:
+            velocity[p, 0] += gravity_x * particles.gravity_scale[p] * h
+            velocity[p, 1] += gravity_y * particles.gravity_scale[p] * h
+            if drag > 0.0:
+                velocity[p, 0] += share * (wind_x - velocity[p, 0])
+                velocity[p, 1] += share * (wind_y - velocity[p, 1])
+
+
+def _forced_particles(world: World) -> tuple[Any, Floats]:
+    before = np.zeros_like(world.velocity)
+    particles = world.velocity, world.inverse_mass, world.gravity_scale, world.particle_active
+    return bundle((ForcedParticles(*particles, before),)), before
 
 
 @inner_kernel
@@ -141,18 +159,16 @@ def _run_motors(  # type: ignore[no-untyped-def]
             _turn(mount, 0, count, position, velocity, mount_x, mount_y, -impulse * of_mount)
 
 
-def apply_forces(world: World, h: float) -> None:
+def apply_forces(world: World, h: float) -> Floats:
     """Bring the velocities of free particles from the start of a step of h [s] to where its springs begin.
 
     A motor's reaction goes to its hub and what springs join to it, so that momentum and angular momentum are kept;
-    where one of these is pinned, it goes to the ground.
+    where one of these is pinned, it goes to the ground. Returned: the velocities [m/s] (n, 2) at the start, until the
+    next call.
     """
     settings, motors = world.settings, world.driven.motors
-    _add_gravity(
-        world.velocity, world.inverse_mass, world.gravity_scale, world.particle_active, *settings.gravity, h
-    )  # fmt: skip
-    if settings.drag > 0.0:
-        _add_air(world.velocity, world.inverse_mass, world.particle_active, *settings.wind, settings.drag, h)
+    items, before = world.derived(_forced_particles)
+    _add_gravity_and_air(items, *settings.gravity, *settings.wind, settings.drag, h)
     if len(motors.hub):
         mark, mount = np.zeros((2, world.particle_count), dtype=np.int64)
         _run_motors(
@@ -160,3 +176,4 @@ def apply_forces(world: World, h: float) -> None:
             world.spring_active, world.material, motors.hub, motors.speed, motors.torque, motors.part,
             motors.rim_start, motors.rim, world.part_value, mark, mount, h,
         )  # fmt: skip
+    return before

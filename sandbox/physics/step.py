@@ -1,6 +1,8 @@
 """step(world): one tick on one screen. The order of its parts is part of the replay contract."""
 
-from collections.abc import Sequence
+import functools
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +18,9 @@ from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import halve, substep_count
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import Floats, World
+
+if TYPE_CHECKING:
+    from sandbox.physics.collision.collide import Collisions
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
 PHYSICS_VERSION = 1
@@ -43,11 +48,16 @@ def element_coefficients(world: World, parts: int | None = None) -> tuple[Floats
     return stiffness, damping
 
 
+@functools.cache
+def _collisions_entry() -> "Callable[[World], Collisions | None]":
+    # Half of the physics, which a world in which nothing touches does without.
+    from sandbox.physics.collision.collide import begin_collisions
+
+    return begin_collisions
+
+
 def step(world: World) -> None:
     """Advance the world by one tick of 1 / tick_rate seconds."""
-    if world.has_contacts:
-        # Half of the physics, which a world in which nothing touches does without.
-        from sandbox.physics.collision.collide import begin_collisions, collide, end_collisions, finish
     settings = world.settings
     solver = SOLVERS[settings.solver].schedule
     contain_inputs(world)
@@ -62,20 +72,19 @@ def step(world: World) -> None:
     # What a solver keeps is an impulse of one step: exact, as parts are a power of two.
     world.scale_impulses(settings.fewest_substeps / parts)
     world.contacts = None
-    collisions = begin_collisions(world)
+    collisions = _collisions_entry()(world) if world.has_contacts else None
     for _ in range(parts):
-        before = Before(world.velocity.copy(), rest_length)
-        apply_forces(world, h)
+        before = Before(apply_forces(world, h), rest_length)
         if collisions is not None:
-            world.contacts = collide(collisions, before.velocity, world.tick, h)
+            world.contacts = collisions.collide(before.velocity, world.tick, h)
         solver.solve(world, springs, elements, h, before)
         if collisions is not None:
-            finish(collisions, h)
+            collisions.finish(h)
         else:
             integrate(world.position, world.velocity, world.particle_active, h)
         rest_length = world.rest_length
     if collisions is not None:
-        end_collisions(world, collisions)
+        collisions.end(world)
     world.scale_impulses(parts / settings.fewest_substeps)
     world.rest_hands()
     world.tick += 1

@@ -138,6 +138,10 @@ class World(StateArrays):
         for slots in particles:
             self.energy_bank[slots] = BANK_UNOPENED
 
+    def drop_caches(self) -> None:
+        """Forget what solvers and contacts derive, which holds for interpreted kernels or for compiled ones alone."""
+        self.solver_cache = self.contact_cache = self.contacts = None
+
     @property
     def settings(self) -> WorldSettings:
         """Settings of a tick, replaced as a whole; another solver begins anew what solvers keep, auto the banks."""

@@ -2,9 +2,13 @@
 
 Some of its springs yield and break.
 
-python kernel_script.py SOLVER SUBSTEPS TICKS [--without-numba | --broken-numba | --without-cache]
+python kernel_script.py SOLVER SUBSTEPS TICKS [--without-numba | --broken-numba | --without-cache | --switch TICK]
+
+--switch: kernels are interpreted until this tick, counted over all worlds that follow one another.
 """
 
+import gc
+import inspect
 import os
 import sys
 import warnings
@@ -12,7 +16,35 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-MODES = ("--without-numba", "--broken-numba", "--without-cache")
+
+class Ticks:
+    """Advances worlds, and counts."""
+
+    def __init__(self, switch: int = -1):
+        self.switch, self.count = switch, 0
+
+    def advance(self, world) -> None:
+        from sandbox.physics.step import step
+
+        if self.count == self.switch:
+            switch(world)
+        self.count += 1
+        step(world)
+
+
+def switch(world) -> None:
+    """From interpreted kernels to compiled ones, of which none is left behind."""
+    from sandbox.physics import jit
+
+    before = [(kernel, kernel.held) for kernel in jit.KERNELS if kernel.role == "kernel"]
+    assert not jit.COMPILED and "numba" not in sys.modules and len(before) > 20
+    assert jit.switch_to_compiled()
+    world.drop_caches()
+    gc.collect()
+    for kernel, held in before:
+        assert kernel.held is not held
+        holders = [one for one in gc.get_referrers(held) if not isinstance(one, tuple) or one not in before]
+        assert all(holder is vars(sys.modules[__name__]) or inspect.isframe(holder) for holder in holders), kernel.name
 
 
 class Refusal:
@@ -29,6 +61,10 @@ def prepare(mode: str) -> None:
         sys.meta_path.insert(0, Refusal())
     elif mode == "--broken-numba":
         sys.modules["numba"] = None  # importing it raises ImportError, as a numba too old for this numpy does
+    elif mode == "--switch":
+        from sandbox.physics import jit
+
+        jit.start_interpreted()
     elif mode == "--without-cache":
         os.environ["NUMBA_CACHE_DIR"] = str(Path(__file__) / "not a folder")
         warnings.filterwarnings("ignore", "compiled kernels cannot be kept")
@@ -104,23 +140,21 @@ def touching_world(solver: str, substeps: int):
     return world
 
 
-def touches(solver: str, substeps: int, ticks: int):
+def touches(advance, solver: str, substeps: int, ticks: int):
     """Hash after each tick of a world in which things touch."""
     from sandbox.physics.snapshot import state_hash
-    from sandbox.physics.step import step
 
     world, met = touching_world(solver, substeps), 0
     for _ in range(ticks):
-        step(world)
+        advance(world)
         met += len(world.contact_particle)
         yield state_hash(world)
     assert met > 40
 
 
-def hashes(solver: str, substeps: int, ticks: int):
+def hashes(advance, solver: str, substeps: int, ticks: int):
     """Hash of the state after each tick of a script of hands, pins, cuts and sliders."""
     from sandbox.physics.snapshot import state_hash
-    from sandbox.physics.step import step
 
     world = busy_world(solver, substeps)
     for tick in range(ticks):
@@ -139,30 +173,30 @@ def hashes(solver: str, substeps: int, ticks: int):
             world.drive(1, -0.3)
         if tick == 24:
             world.set_coefficients(0.11, 0.05, None)
-        step(world)
+        advance(world)
         yield state_hash(world)
 
 
-def blow_up(solver: str, ticks: int):
+def blow_up(advance, solver: str, ticks: int):
     """Hash after each tick of a mistuned Hooke spring on its way to inf and NaN."""
     from sandbox.physics.snapshot import state_hash
-    from sandbox.physics.step import step
 
     world = busy_world(solver, 1)
     world.hooke_stiffness[5:9] = 1e9
     for _ in range(ticks):
-        step(world)
+        advance(world)
         yield state_hash(world)
 
 
 if __name__ == "__main__":
     warnings.simplefilter("error")
     chosen, substeps, ticks, *mode = sys.argv[1:]
-    for one in mode:
-        prepare(one)
+    if mode:
+        prepare(mode[0])
     from sandbox.physics.jit import COMPILED
 
+    advance = Ticks(int(mode[1]) if mode[:1] == ["--switch"] else -1).advance
     print("compiled" if COMPILED else "interpreted")
-    print("\n".join(hashes(chosen, substeps if substeps == "auto" else int(substeps), int(ticks))))
-    print("\n".join(touches(chosen, substeps if substeps == "auto" else int(substeps), int(ticks))))
-    print("\n".join(blow_up(chosen, 2 * int(ticks))))
+    print("\n".join(hashes(advance, chosen, substeps if substeps == "auto" else int(substeps), int(ticks))))
+    print("\n".join(touches(advance, chosen, substeps if substeps == "auto" else int(substeps), int(ticks))))
+    print("\n".join(blow_up(advance, chosen, 2 * int(ticks))))

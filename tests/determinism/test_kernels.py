@@ -56,3 +56,11 @@ def test_kernels_compile_uncached_where_no_cache_can_be_written():
     uncached = lines("single_pass", 1, "--without-cache")
     assert uncached[0] == "compiled"
     assert uncached[1:] == lines("single_pass", 1)[1:]
+
+
+@needs_numba
+@pytest.mark.parametrize(("solver", "tick"), [("single_pass", 0), ("direct", 17), ("direct", 53), ("iterative", 61)])
+def test_a_run_that_is_switched_between_two_ticks_from_interpreted_to_compiled_gives_the_same_bits(solver, tick):
+    switched = lines(solver, 1, "--switch", str(tick))
+    assert switched[0] == "interpreted"
+    assert switched[1:] == lines(solver, 1)[1:]

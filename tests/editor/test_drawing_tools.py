@@ -7,8 +7,9 @@ import pytest
 
 from sandbox.editor.document import Document, EditError, empty_level
 from sandbox.editor.items import Item
+from sandbox.editor.kinds.rope import RopeOptions
 from sandbox.editor.scene import make_scene
-from sandbox.editor.tools.drawing_options import RopeOptions, described, stepped
+from sandbox.editor.tools.drawing_options import described, stepped
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import Snap, snap
 from sandbox.level.build.build_world import build_world

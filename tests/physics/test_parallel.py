@@ -16,7 +16,7 @@ from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers.direct import solve
 from sandbox.physics.solvers.direct.solve import pattern_of
 from sandbox.physics.solvers.linear import dissection, parallel
-from sandbox.physics.solvers.linear.locks import LOCKS, give, take
+from sandbox.physics.solvers.linear.locks import give, has_locks, take
 from tests.bench import scenes
 from tests.physics.test_large import mesh, play, run
 
@@ -110,7 +110,7 @@ def test_a_fresh_process_computes_the_same_bits_of_halves(interpreted):
     assert fresh.stdout.strip() == hash_after_play(8)
 
 
-@pytest.mark.skipif(not LOCKS, reason="there is one thread only")
+@pytest.mark.skipif(not has_locks(), reason="there is one thread only")
 def test_the_second_thread_ends_with_the_pattern_that_it_serves(hired):
     world = mesh(13)
     run(world, 2)
@@ -124,7 +124,7 @@ def test_the_second_thread_ends_with_the_pattern_that_it_serves(hired):
     assert not hired[1].is_alive()
 
 
-@pytest.mark.skipif(not LOCKS, reason="there is one thread only")
+@pytest.mark.skipif(not has_locks(), reason="there is one thread only")
 def test_the_second_thread_takes_the_half_that_is_offered_and_touches_no_other_row():
     world, alone = mesh(14), mesh(14)
     fronts = pattern_of(world).matrix.fronts

@@ -8,7 +8,7 @@ import pytest
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.step import step, substep_coefficients, substep_time, warm_up
+from sandbox.physics.step import step, substep_coefficients, substep_time
 from sandbox.physics.substeps import halve
 from sandbox.physics.world import LAW_HOOKE, World
 from tests.support.physics_scenes import STILL, grid_with_diagonals, lengths, network, run, scaled
@@ -137,8 +137,3 @@ def test_a_tick_is_repeatable(solver):
         run(world, scaled(30, 5))
         hashes.add(state_hash(world))
     assert len(hashes) == 1
-
-
-def test_warming_up_leaves_nothing_to_compile():
-    warm_up()
-    warm_up()

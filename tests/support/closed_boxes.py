@@ -5,9 +5,8 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from sandbox.level.kinds.bodies import JellyDef
-from sandbox.level.kinds.outlines import edges
-from sandbox.level.kinds.shapes import expand, jelly_triangles
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.jelly import JellyDef
 from sandbox.physics.collision.outline import ALL_GROUPS, LINE
 from sandbox.physics.constraints import AREA
 from sandbox.physics.energy import (
@@ -74,9 +73,9 @@ def _add_body(to: World, generator: np.random.Generator, centre: tuple[float, fl
             {"type": "jelly", "id": "j", "shape": SHAPES[generator.integers(3)], "position": centre, "angle": way,
              "spacing": 0.25}
         )  # fmt: skip
-        points, pairs = expand(body)
-        sides, radius = edges(body, pairs), 0.06
-        triangles = jelly_triangles(body) if generator.integers(2) else []
+        made = expansion(body)
+        points, pairs, sides, radius = made.form, made.pairs, made.edges, 0.06
+        triangles = made.polygons() if generator.integers(2) else []
     to.add_particles(
         [f"{first}.{k}" for k in range(len(points))], points, radius=radius, mass=mass / len(points), owner=first,
         group=BODIES, collides=ALL_GROUPS, **touch,

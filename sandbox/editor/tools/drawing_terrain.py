@@ -1,16 +1,32 @@
 """The tools of terrain: solid ground, lines, and walls."""
 
+from dataclasses import dataclass
+from typing import Any
+
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.terrain import add_terrain, set_walls, with_corners
 from sandbox.editor.tools.drawing_bodies import direction, rounded
-from sandbox.editor.tools.drawing_options import SurfaceOptions
+from sandbox.editor.tools.drawing_options import OptionInfo, Options, option
 from sandbox.editor.tools.drawing_outline import HAND_TOLERANCE, OutlineDrawing
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.editor_tool import EditorTool
 from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Point, Snap
+from sandbox.level.format.limits import FRICTION_LIMIT
 from sandbox.level.format.model import TerrainDef, WallsDef
 from sandbox.level.kinds.polygon import simplified
+
+
+def _surface(label: str, text: str, most: float) -> Any:
+    return option(None, OptionInfo("number", label, text, "", 0.0, most, optional=True))
+
+
+@dataclass(frozen=True)
+class SurfaceOptions(Options):
+    """Terrain or walls; None: friction and restitution of the level's contacts."""
+
+    friction: float | None = _surface("friction", "Friction of its surface; empty = the level's.", FRICTION_LIMIT)
+    restitution: float | None = _surface("bounce", "Share of its speed that bounces; empty = the level's.", 1.0)
 
 
 class GroundDrawing(OutlineDrawing[SurfaceOptions]):

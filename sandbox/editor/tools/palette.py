@@ -1,6 +1,6 @@
 """The palette: all tools of the editor, in the order that a person sees them in."""
 
-from sandbox.editor.tools.body_tools import BODY_TOOLS
+from sandbox.editor.kinds.table import BODY_TOOLS
 from sandbox.editor.tools.drawing_particles import PARTICLE, PIN, SPRING
 from sandbox.editor.tools.drawing_terrain import GROUND, LINE, WALLS
 from sandbox.editor.tools.selecting import LASSO, SELECT

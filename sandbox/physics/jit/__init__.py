@@ -1,146 +1,228 @@
 """The only place that knows numba.
 
 Kernels are compiled with a disk cache, uncached where none can be written, and interpreted where numba is missing or
-does not work with this Python or numpy.
+does not work with this Python or numpy, where NUMBA_DISABLE_JIT is set, and after `start_interpreted` until
+`switch_to_compiled`. Which it is, COMPILED says; modules that hold it by name see it change.
 """
 
-import functools
 import importlib
 import os
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from types import ModuleType
 from typing import Any, TypeVar, cast
 
-import numpy as np
+from sandbox.physics.jit.interpreted import Unsigned
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-
-def _import_numba() -> Any:
-    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
-        return None
-    try:
-        import numba
-    except ImportError:  # also what an installed numba raises that is too old for this numpy
-        return None
-    return numba
-
-
-_numba = _import_numba()
-COMPILED = _numba is not None
-
-
-def _using_numba(name: str) -> Any:
-    """One of the modules of this folder that use inner parts of numba; None where this numba has others."""
-    if not COMPILED:
-        return None
-    try:
-        return importlib.import_module(f"{__name__}.{name}")
-    except (ImportError, AttributeError):
-        return None
-
-
-_cache, _lending, _linking = map(_using_numba, ("cache", "lending", "linking"))
-
+COMPILED: bool
 # Turns an index that is never negative into one that loops are vectorised for: of a signed one numba first asks whether
 # it counts from the end. Never mix the two in one sum: that makes a float.
-unsigned: Any = np.uint64 if COMPILED else int
+unsigned: Any
+# In kernels: the items of a bundle, as they were given to it.
+contents: Any
+
+_CHOSEN = ("COMPILED", "unsigned", "contents")
+_ENTRIES = ("kernel", "waiting_kernel", "scalar_kernel")
+# How kernels are made: the module `interpreted` or `compiled`.
+_way: Any = None
+_recording: str | None = None
+
+
+@dataclass(eq=False)
+class Kernel:
+    """One kernel of this process.
+
+    held: what modules hold of it. signatures: types of arguments, by their text, that calls were noted with, of an
+    interpreted one. group: under which name they were noted first.
+    """
+
+    role: str
+    function: Callable[..., Any]
+    held: Any = None
+    group: str = ""
+    signatures: dict[str, tuple[Any, ...]] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """Module and function."""
+        return f"{self.function.__module__}.{self.function.__qualname__}"
+
+    def note(self, *arguments: Any) -> None:
+        """While calls are recorded: remember the types of these arguments."""
+        if _recording is not None:
+            types = importlib.import_module(f"{__name__}.compiled").types_of(arguments)
+            self.group = self.group or _recording
+            self.signatures[str(types)] = types
+
+
+KERNELS: list[Kernel] = []
+# Functions of the interpreter that kernels call, and what modules hold of them.
+_INTERPRETER_FUNCTIONS: list[tuple[Any, tuple[str, ...]]] = []
+
+
+def _can_compile() -> bool:
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+        return False
+    try:
+        importlib.import_module("numba")
+    except ImportError:  # also what an installed numba raises that is too old for this numpy
+        return False
+    return True
+
+
+def _choose(compiled: bool) -> Any:
+    global _way
+    _way = importlib.import_module(f"{__name__}.{'compiled' if compiled else 'interpreted'}")
+    globals().update({name: getattr(_way, name) for name in _CHOSEN})
+    return _way
+
+
+def _chosen() -> Any:
+    return _way or _choose(_can_compile())
+
+
+def __getattr__(name: str) -> Any:
+    if name in _CHOSEN:
+        return getattr(_chosen(), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def start_interpreted() -> None:
+    """Interpret kernels, and import no numba, until `switch_to_compiled`; before any kernel is imported.
+
+    Raises:
+        RuntimeError: where kernels are compiled already.
+    """
+    if _way is not None and _way.COMPILED:
+        raise RuntimeError("kernels are compiled already")
+    _choose(False)
+
+
+def switch_to_compiled() -> bool:
+    """Compile kernels from now on, in every module that holds one, between two ticks; whether numba can.
+
+    The bits stay the same. A world that goes on drops what it derived: `World.drop_caches`.
+    """
+    if _chosen().COMPILED:
+        return True
+    if not _can_compile():
+        return False
+    given_contents = _way.contents
+    way = _choose(True)
+    new: dict[int, Any] = {id(given_contents): way.contents}
+    for k, (held, named) in enumerate(_INTERPRETER_FUNCTIONS):
+        _INTERPRETER_FUNCTIONS[k] = (way.interpreter_function(*named), named)
+        new[id(held)] = _INTERPRETER_FUNCTIONS[k][0]
+    old = [kernel.held for kernel in KERNELS]  # so that no new one has the identity of one before
+    for kernel in KERNELS:
+        given = kernel.held
+        kernel.held = new[id(given)] = way.make(kernel.role, kernel.function, kernel.note)
+    package = __name__.partition(".")[0]
+    for module in list(sys.modules.values()):
+        if isinstance(module, ModuleType) and module.__name__.partition(".")[0] == package:
+            _rebind(module, new)
+    del old
+    return True
+
+
+def _rebind(module: ModuleType, new: dict[int, Any]) -> None:
+    if module.__name__ == __name__ or module.__name__.startswith(f"{__name__}."):
+        return
+    for name, value in list(vars(module).items()):
+        if id(value) in new:
+            setattr(module, name, new[id(value)])
+        elif name in ("COMPILED", "unsigned"):
+            setattr(module, name, getattr(_way, name))
+        elif type(value) is Unsigned:
+            setattr(module, name, _way.unsigned(value))
+
+
+@contextmanager
+def recorded(group: str) -> Iterator[None]:
+    """While this lasts, interpreted kernels that are called note the types of their arguments, under a group's name."""
+    global _recording
+    _recording = group
+    try:
+        yield
+    finally:
+        _recording = None
+
+
+def entries() -> list[Kernel]:
+    """The kernels that Python calls."""
+    return [kernel for kernel in KERNELS if kernel.role in _ENTRIES]
+
+
+def expect(held: Any, *arguments: Any) -> None:
+    """Compile a kernel for such arguments, or load it, as a call would, which is not made."""
+    if _chosen().COMPILED:
+        held.compile(_way.types_of(arguments))
+    else:
+        next(kernel for kernel in KERNELS if kernel.held is held).note(*arguments)
+
+
+def compile_entry(kernel: Kernel, signature: tuple[Any, ...]) -> None:
+    """Compile an entry for some types of arguments and keep it, or load it; after `switch_to_compiled`."""
+    kernel.held.compile(signature)
+
+
+def load_kept() -> Iterator[str]:
+    """Load what is kept on disk of all entries, one at each step, whose name it gives; after `switch_to_compiled`."""
+    for kernel in entries() if _chosen().COMPILED else ():
+        for _ in _way.load_kept(kernel.held):
+            yield kernel.name
 
 
 def interpreter_function(name: str, result: str, *arguments: str) -> Any:
     """A function of Python's own C interface for compiled kernels, given the numba names of its types."""
-    # By name, so that a cached kernel finds it again in the next process; its address would not last.
-    kinds = _numba.types
-    return kinds.ExternalFunction(name, getattr(kinds, result)(*(getattr(kinds, kind) for kind in arguments)))
+    named = (name, result, *arguments)
+    _INTERPRETER_FUNCTIONS.append((_chosen().interpreter_function(*named), named))
+    return _INTERPRETER_FUNCTIONS[-1][0]
 
 
-def _viewed(item: Any) -> Any:
-    if isinstance(item, np.ndarray):
-        return memoryview(cast(Any, item))
-    if isinstance(item, tuple) and hasattr(item, "_make"):
-        return cast(Any, item)._make(map(_viewed, item))
-    return item
-
-
-def _interpreted(function: Function) -> Function:
-    """Run the kernel's own source on memory views, whose items are Python floats: the same IEEE doubles, 3x faster."""
-
-    @functools.wraps(function)
-    def call(*arguments: Any) -> Any:
-        return function(*map(_viewed, arguments))
-
-    return cast(Function, call)
-
-
-def _dispatcher(function: Function, **options: Any) -> Any:
-    # Determinism: never fastmath, never parallel. Kernels guard every divisor, so the error model decides nothing.
-    return _numba.njit(error_model="numpy", **options)(function)
-
-
-def _entry(function: Function, **options: Any) -> Function:
-    if _linking is not None:
-        options["pipeline_class"] = _linking.EntryCompiler
-    dispatcher = _dispatcher(function, **options)
-    if _cache is not None:
-        _cache.keep(dispatcher)
-    return cast(Function, dispatcher)
-
-
-def _part(function: Function, **options: Any) -> Function:
-    if _linking is not None:
-        options["pipeline_class"] = _linking.PartCompiler
-    dispatcher = _dispatcher(function, no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)
-    if _lending is not None and "inline" not in options:
-        _lending.lend_to(dispatcher)
-    return cast(Function, dispatcher)
-
-
-# Kernels hold no array longer than their call, so numba need not count who holds which: some 800 counts, 4 us, in a
-# step of the direct solver. One that makes an array, or keeps one, does not compile with this.
-_UNCOUNTED = {"_nrt": False}
+def _made(role: str, function: Function) -> Function:
+    kernel = Kernel(role, function)
+    kernel.held = _chosen().make(role, function, kernel.note)
+    KERNELS.append(kernel)
+    return cast(Function, kernel.held)
 
 
 def kernel(function: Function) -> Function:
     """Make `function` a kernel: scalars, contiguous arrays, named tuples of arrays, bundles in; same bits both ways."""
-    return _entry(function, **_UNCOUNTED) if COMPILED else _interpreted(function)
+    return _made("kernel", function)
 
 
 def inner_kernel(function: Function) -> Function:
     """Make `function` a part of kernels, which alone may call it: compiled sooner, with no entry for Python."""
-    return _part(function, **_UNCOUNTED) if COMPILED else function
+    return _made("inner_kernel", function)
 
 
 def inlined_kernel(function: Function) -> Function:
     """Make `function` a part of kernels that is written into them: no call, which copies every array's shape."""
-    return _part(function, inline="always", **_UNCOUNTED) if COMPILED else function
+    return _made("inlined_kernel", function)
 
 
 def scalar_kernel(function: Function) -> Function:
     """Make `function` a kernel that takes and gives scalars alone, to be called from other kernels."""
-    return _entry(function) if COMPILED else function
+    return _made("scalar_kernel", function)
 
 
 def waiting_kernel(function: Function) -> Function:
     """Make `function` a kernel for a thread of its own: others run meanwhile, and may be waited for."""
-    return _entry(function, nogil=True, **_UNCOUNTED) if COMPILED else _interpreted(function)
+    return _made("waiting_kernel", function)
 
 
 def bundle(items: tuple[Any, ...]) -> Any:
     """One argument for kernels in place of many that stay: arrays, and named tuples of them, there its `contents`.
 
     Otherwise a kernel unwraps each array at every call: 60 of them take 8 us, as long as 80 links of a rope. The bundle
-    holds what it was made of.
+    holds what it was made of; a copy of it would not.
 
     Raises:
         TypeError: for what is neither array nor tuple, and for arrays that are not contiguous.
     """
-    if _lending is not None:
-        return _lending.bundle(items)
-    return items if COMPILED else _viewed(items)
-
-
-def _contents(bundle: Any) -> Any:
-    return bundle
-
-
-# In kernels: the items of a bundle, as they were given to it.
-contents: Any = _lending.contents if _lending is not None else inner_kernel(_contents)
+    return _chosen().bundle(items)

@@ -83,12 +83,26 @@ class KernelCache(caching.NullCache):
 
     def _file_names(self, signature: Any, processor: tuple[Any, ...]) -> tuple[str, str]:
         """How the files of all versions of this kernel begin here, and the rest of this one's name."""
+        arguments = _short(*map(_type_text, getattr(signature, "args", signature)))
+        return f"{self._begin(processor)}{arguments}-", f"{digest_of_needs(self._kernel)}{_SUFFIX}"
+
+    def _begin(self, processor: tuple[Any, ...]) -> str:
         function = self._kernel.py_func
         name = f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}".replace("<", "").replace(">", "")
         versions = sys.implementation.cache_tag, numba.__version__, np.__version__
-        arguments = _short(*map(_type_text, getattr(signature, "args", signature)))
-        begin = f"{name}-{_short(function.__module__, *versions, *processor, arguments)}-"
-        return begin, f"{digest_of_needs(self._kernel)}{_SUFFIX}"
+        return f"{name}-{_short(function.__module__, *versions, *processor)}-"
+
+    def signatures(self, target_context: Any) -> list[tuple[Any, ...]]:
+        """The types of arguments for which this kernel is kept, as it is now."""
+        target_context.refresh()
+        end, found = f"-{digest_of_needs(self._kernel)}{_SUFFIX}", {}
+        for processor in _processors(target_context):
+            for folder in cache_folders():
+                for file in sorted(folder.glob(f"{glob.escape(self._begin(processor))}*{end}")):
+                    content = _read(file)
+                    if content is not None:
+                        found[file.name.removesuffix(end).rpartition("-")[2]] = pickle.loads(content)[3].args
+        return list(found.values())
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """What was compiled for these types of arguments, by any process; None where nothing of it can be used."""
@@ -112,15 +126,19 @@ class KernelCache(caching.NullCache):
 
     def _find(self, sig: Any, target_context: Any) -> Any:
         target_context.refresh()
-        own = target_context.codegen().magic_tuple()
-        # Shipped kernels are for any processor of the platform.
-        for processor in dict.fromkeys((own, (own[0], "generic", ""))):
+        for processor in _processors(target_context):
             name = "".join(self._file_names(sig, processor))
             for folder in cache_folders():
                 result = _load(folder / name, target_context)
                 if result is not None:
                     return result
         return None
+
+
+def _processors(target_context: Any) -> list[tuple[Any, ...]]:
+    # Shipped kernels are for any processor of the platform.
+    own = target_context.codegen().magic_tuple()
+    return list(dict.fromkeys((own, (own[0], "generic", ""))))
 
 
 def keep(kernel: Any) -> None:
@@ -151,11 +169,15 @@ def _keep(begin: str, name: str, content: bytes) -> None:
     _say_once(f"compiled kernels cannot be kept, and will be compiled again at the next start: {refusal}")
 
 
-def _load(path: Path, target_context: Any) -> Any:
+def _read(path: Path) -> bytes | None:
     try:
-        content = _unsealed(path.read_bytes())
+        return _unsealed(path.read_bytes())
     except OSError:
         return None
+
+
+def _load(path: Path, target_context: Any) -> Any:
+    content = _read(path)
     if content is None:
         return None
     try:

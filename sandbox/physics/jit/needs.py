@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 # Files of this folder that no machine code follows from.
-_ASIDE = ("cache.py", "needs.py")
+_ASIDE = ("__init__.py", "cache.py", "interpreted.py", "needs.py")
 
 
 @functools.cache

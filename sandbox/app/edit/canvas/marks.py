@@ -8,9 +8,9 @@ import pygame
 from sandbox.app.draw.camera import Camera, Point
 from sandbox.app.draw.colours import BACKGROUND, DRIVE, TEXT, mixed
 from sandbox.app.widgets.ui import Ui
-from sandbox.editor.driven import Driven, driven_parts
+from sandbox.editor.driven import DrivenParts, driven_parts
 from sandbox.editor.scene import Scene
-from sandbox.level.format.drives import HydraulicDef, MotorDef
+from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
 
 # Sizes in layout units: a badge, the shortest spring and the smallest wheel with a mark, the arrow of a motor.
 BADGE = 8.0
@@ -34,7 +34,7 @@ class DriveMarks:
     def __init__(self, ui: Ui) -> None:
         self._ui = ui
         self._of: tuple[object, object] | None = None
-        self._driven = Driven([], [], [])
+        self._driven = DrivenParts([], [], [])
 
     def draw(self, surface: pygame.Surface, camera: Camera, scene: Scene) -> None:
         """Draw the marks where the scene's particles are."""

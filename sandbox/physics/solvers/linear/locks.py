@@ -5,23 +5,25 @@ import ctypes
 from sandbox.physics.jit import COMPILED, inner_kernel, interpreter_function
 
 _NAMES = ("allocate_lock", "free_lock", "acquire_lock", "release_lock")
-# Whether there are any: interpreted kernels never wait for one another.
-LOCKS = COMPILED and all(hasattr(ctypes.pythonapi, f"PyThread_{name}") for name in _NAMES)
+_acquire = interpreter_function("PyThread_acquire_lock", "intc", "voidptr", "intc")
+_release = interpreter_function("PyThread_release_lock", "void", "voidptr")
 
-_acquire = interpreter_function("PyThread_acquire_lock", "intc", "voidptr", "intc") if LOCKS else None
-_release = interpreter_function("PyThread_release_lock", "void", "voidptr") if LOCKS else None
+
+def has_locks() -> bool:
+    """Whether there are any: interpreted kernels never wait for one another."""
+    return COMPILED and all(hasattr(ctypes.pythonapi, f"PyThread_{name}") for name in _NAMES)
 
 
 @inner_kernel
 def take(lock, wait):  # type: ignore[no-untyped-def]
     """Take a lock, waiting for it where `wait` is 1; whether it was had."""
-    return _acquire(lock, wait) == 1  # type: ignore[misc]
+    return _acquire(lock, wait) == 1
 
 
 @inner_kernel
 def give(lock):  # type: ignore[no-untyped-def]
     """Give a lock that is taken to whoever takes it next, in whatever thread."""
-    _release(lock)  # type: ignore[misc]
+    _release(lock)
 
 
 class Lock:

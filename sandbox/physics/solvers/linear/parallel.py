@@ -11,9 +11,9 @@ from threading import Thread
 
 import numpy as np
 
-from sandbox.physics.jit import inner_kernel, waiting_kernel
+from sandbox.physics.jit import expect, inner_kernel, waiting_kernel
 from sandbox.physics.solvers.linear.fronts import Fronts, eliminate_rows, factorise_fronts, substitute_fronts
-from sandbox.physics.solvers.linear.locks import LOCKS, Lock, give, take
+from sandbox.physics.solvers.linear.locks import Lock, give, has_locks, take
 from sandbox.physics.world import Floats, Slots
 
 # Multiplications that a second thread must take off a body's factorisation: each word to it takes some 0.02 ms, and on
@@ -125,7 +125,7 @@ def hire(owner: object, fronts: Fronts, change: Floats) -> Thread | None:
     It ends with `owner`, which must hold both while kernels use them. None where a thread would be of no use, or has
     nowhere to run; nothing else depends on it, and a process forked from this one does without.
     """
-    if not LOCKS or not fronts.fork.any() or _processor_count() < 2:
+    if not has_locks() or not fronts.fork.any() or _processor_count() < 2:
         return None
     offered, done = Lock(), Lock()
     fronts.call[:] = offered.handle, done.handle, NOTHING, 0
@@ -143,9 +143,4 @@ def _processor_count() -> int:
 
 def warm_up(fronts: Fronts, change: Floats) -> None:
     """Compile what a second thread runs."""
-    if LOCKS:
-        offered = Lock()
-        fronts.call[OFFERED] = offered.handle
-        offered.give()
-        _help(fronts, change)
-        fronts.call[OFFERED] = 0
+    expect(_help, fronts, change)
