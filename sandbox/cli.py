@@ -173,14 +173,14 @@ def _play(options: argparse.Namespace) -> int:
         level, replay = _level_or_replay(options.level or "rope_bridge_jelly")
         return _play_headless(level, replay)
     from sandbox.app.opening import open_app
-    from sandbox.app.wanted import Wanted
+    from sandbox.app.start_request import StartRequest
 
-    def find() -> Wanted:
+    def find() -> StartRequest:
         if options.level is None:
-            return Wanted()
+            return StartRequest()
         level, replay = _level_or_replay(options.level)
         source = Path(options.level) if not replay and Path(options.level).is_file() else None
-        return Wanted(None if replay else level, replay, source)
+        return StartRequest(None if replay else level, replay, source)
 
     return open_app(find, profile=options.profile, seconds=options.seconds, scale=options.scale)
 
@@ -397,9 +397,9 @@ def _edit(options: argparse.Namespace) -> int:
     if not has_display():
         raise Refused("the editor needs a display; without one, edit the level's JSON and try `sandbox check`")
     from sandbox.app.opening import open_app
-    from sandbox.app.wanted import Wanted
+    from sandbox.app.start_request import StartRequest
 
-    return open_app(lambda: Wanted(edit=options.level or ""), scale=options.scale)
+    return open_app(lambda: StartRequest(edit=options.level or ""), scale=options.scale)
 
 
 def _format(options: argparse.Namespace) -> int:

@@ -9,7 +9,7 @@ import pygame
 
 from sandbox.app.display import SCALE_RANGE, Display
 from sandbox.app.draw.colours import BACKGROUND, WARNING
-from sandbox.app.edit.documents import Documents
+from sandbox.app.edit.documents import DocumentActions
 from sandbox.app.edit.tour import Guide
 from sandbox.app.files import FileActions
 from sandbox.app.gallery import Gallery
@@ -22,10 +22,10 @@ from sandbox.app.play.playback import Playback
 from sandbox.app.play.status import NOTICES, Notice, StatusLine, draw_spinner
 from sandbox.app.preparing import Preparation
 from sandbox.app.profile import Profile
-from sandbox.app.progress import Progress
+from sandbox.app.progress import RunProgress
 from sandbox.app.screen import Screen
 from sandbox.app.shortcuts import Mode
-from sandbox.app.wanted import Wanted
+from sandbox.app.start_request import StartRequest
 from sandbox.app.widgets.dialogs import show_lines
 from sandbox.app.widgets.ui import Ui
 
@@ -48,9 +48,9 @@ class App:
         self.screen: Screen | None = None
         self.input = Input(self)
         self.files = FileActions(self)
-        self.documents = Documents(self)
+        self.documents = DocumentActions(self)
         self.guide = Guide(self, self.documents)
-        self._progress = Progress(self)
+        self._progress = RunProgress(self)
         self._own_actions = self._actions()
         self._figures = (0.0, 0.0)
         self._counted = [0.0, 0, 0, 0.0]
@@ -60,7 +60,7 @@ class App:
 
     # What is on the screen.
 
-    def open(self, wanted: Wanted) -> None:
+    def open(self, wanted: StartRequest) -> None:
         """Show what the program was started for."""
         if wanted.replay is not None:
             self.start(Playback(wanted.replay.level, wanted.replay))
@@ -272,7 +272,7 @@ class App:
         return " - ".join([*words, "Spring Sandbox"])
 
 
-def run_app(display: Display, wanted: Wanted, profile: Profile, seconds: float | None = None) -> None:
+def run_app(display: Display, wanted: StartRequest, profile: Profile, seconds: float | None = None) -> None:
     """Show what is wanted in the window and run until it is closed, or for so many seconds."""
     app = App(display, profile)
     app.guide.may_offer = True

@@ -14,7 +14,7 @@ from sandbox.app.display import has_display
 from sandbox.app.opening import open_app
 from sandbox.app.play.playback import Playback
 from sandbox.app.shortcuts import action_of, shortcuts
-from sandbox.app.wanted import Wanted
+from sandbox.app.start_request import StartRequest
 from sandbox.editor.storage.recent import remember
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import shipped_levels
@@ -402,7 +402,7 @@ def test_particles_that_are_no_longer_finite_are_left_out_and_counted(driver):
 
 
 def test_the_app_closes_after_the_given_time_and_prints_where_the_time_went(capsys, documents):
-    assert open_app(Wanted, profile=True, seconds=0.2) == 0
+    assert open_app(StartRequest, profile=True, seconds=0.2) == 0
     printed = capsys.readouterr().out
     parts = ("events", "ui", "flip", "frames a second", "without a new picture", "words in the window", "first page")
     assert all(part in printed for part in parts)

@@ -116,7 +116,7 @@ from sandbox.editor.document import Document, empty_level
 from sandbox.editor.edits.moving import move
 from sandbox.editor.items import items_of
 from sandbox.editor.scene import make_scene
-from sandbox.editor.tools.drawing import DRAWINGS
+from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.parse import parse_level
@@ -141,7 +141,7 @@ assert "## Ladder" in format_reference() and "- Ladder: rung by rung" in format_
 
 document = Document(level, frozenset(items_of(level)))
 assert make_scene(move(document, 1.0, 2.0).level).bounds() == (1.0, 0.5, 1.5, 2.0)
-drawing = DRAWINGS["ladder"]()
+drawing = TOOLS["ladder"].drawing()
 drawing.down(Snap((0.0, 0.0)))
 drawing.up(Snap((1.0, 0.0)))
 drawn = drawing.done(Document(empty_level())).level
