@@ -7,9 +7,9 @@ import numpy as np
 
 from sandbox.editor.items import Item
 from sandbox.editor.scene import Scene
-from sandbox.level.build.actuators import parts
-from sandbox.level.format.drives import HydraulicDef, MotorDef
-from sandbox.level.kinds.bodies import WheelDef
+from sandbox.level.build.actuators import actuators
+from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
+from sandbox.level.kinds.wheel import WheelDef
 
 
 class Driven(NamedTuple):
@@ -43,7 +43,7 @@ def driven_parts(scene: Scene) -> Driven:
 def restless(scene: Scene) -> Iterator[Item]:
     """Items that move by themselves: muscles, and wheels with a motor that runs from the start."""
     level = scene.level
-    running = {part.name for part in parts(level) if part.start_value}
+    running = {part.name for part in actuators(level) if part.start_value}
     for body in level.bodies:
         if (body.drive is not None and body.drive.amplitude) or body.id in running:
             yield Item("body", body.id)

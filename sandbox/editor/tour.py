@@ -3,9 +3,10 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from sandbox.editor.kinds.rope import RopeOptions
 from sandbox.editor.scene import Scene
-from sandbox.editor.tools.drawing_options import Options, ParticleOptions, RopeOptions
-from sandbox.level.kinds.bodies import RopeDef
+from sandbox.editor.tools.drawing_options import Options, ParticleOptions
+from sandbox.level.kinds.rope import RopeDef
 
 Point = tuple[float, float]
 

@@ -21,7 +21,7 @@ from sandbox.app.edit.edit_screen import EditScreen
 from sandbox.app.wanted import Wanted
 from sandbox.editor.document import empty_level
 from sandbox.level.format.model import Level, ParticleDef, SpringDef
-from sandbox.level.kinds.bodies import BoxShape, JellyDef
+from sandbox.level.kinds.jelly import BoxShape, JellyDef
 
 FRAME = 1.0 / 60.0  # [s]
 # How often everything is done; the figures are medians.

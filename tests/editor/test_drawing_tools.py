@@ -7,9 +7,10 @@ import pytest
 
 from sandbox.editor.document import Document, EditError, empty_level
 from sandbox.editor.items import Item
+from sandbox.editor.kinds.rope import RopeOptions
 from sandbox.editor.scene import make_scene
 from sandbox.editor.tools.drawing import DRAWINGS
-from sandbox.editor.tools.drawing_options import RopeOptions, described, stepped
+from sandbox.editor.tools.drawing_options import described, stepped
 from sandbox.editor.tools.snap import Snap, snap
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.canonical import level_text

@@ -15,7 +15,7 @@ from sandbox.editor.tools.drawing import DRAWINGS
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.build.build_world import build_world
 from sandbox.level.checks import CheckDef
-from sandbox.level.format.drives import MotorDef
+from sandbox.level.format.actuator_defs import MotorDef
 from sandbox.level.format.files import read_level
 from sandbox.level.format.model import (
     ContactsDef,
@@ -28,7 +28,10 @@ from sandbox.level.format.model import (
     WallsDef,
 )  # fmt: skip
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.bodies import BoxShape, BridgeDef, JellyDef, RopeDef, WheelDef
+from sandbox.level.kinds.bridge import BridgeDef
+from sandbox.level.kinds.jelly import BoxShape, JellyDef
+from sandbox.level.kinds.rope import RopeDef
+from sandbox.level.kinds.wheel import WheelDef
 from sandbox.physics.stability import report, spring_loads
 from tests.support.zoo import zoo
 

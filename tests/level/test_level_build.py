@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from sandbox.level.build.build_world import build_world
-from sandbox.level.build.expansion import expansion
 from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format.files import parse_level
-from sandbox.level.kinds.shapes import count, expand, form_count
+from sandbox.level.kinds.bodies import expansion
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from sandbox.physics.world import HAND_COUNT, LAW_HOOKE, LAW_NISSEN
@@ -126,7 +125,7 @@ def test_a_jelly_turns_counter_clockwise_about_its_centre():
 
 def test_trigonometry_is_rounded_before_it_places_anything():
     (turned,) = level_of(jelly({"box": [2, 2]}, angle=1.0)).bodies
-    corner = expand(turned)[0][0].tolist()
+    corner = expansion(turned).form[0].tolist()
     cosine, sine = round(math.cos(1.0), 12), round(math.sin(1.0), 12)
     assert corner == [-cosine + sine, -sine - cosine]
 
@@ -241,10 +240,9 @@ def test_negative_zeros_do_not_reach_the_world():
 @pytest.mark.parametrize("index", range(len(GOOD["bodies"])))
 def test_what_is_counted_before_is_what_is_built(index):
     body = parse_level(encoded(GOOD), "x.json").bodies[index]
-    points, pairs = expand(body)
     built = expansion(body)
-    assert form_count(body) == (len(points), len(pairs))
-    assert count(body) == (len(built.mass), len(built.pairs))
+    assert built.form_count == (len(built.form), len(built.form_pairs))
+    assert built.count == (len(built.mass), len(built.pairs))
 
 
 @pytest.mark.parametrize(

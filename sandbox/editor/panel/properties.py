@@ -16,8 +16,9 @@ from sandbox.editor.panel.field_info import About, abouts
 from sandbox.editor.panel.property import MIXED, Property, Section, part_properties, same, with_axes
 from sandbox.level.format.model import Level, ParticleDef, SpringDef, TerrainDef
 from sandbox.level.format.schema import TITLES
-from sandbox.level.kinds.bodies import SHAPES, BoxShape, CircleShape, JellyDef, PolygonShape, Shape, file_order
-from sandbox.level.kinds.shapes import count
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.body_def import file_order
+from sandbox.level.kinds.jelly import SHAPES, BoxShape, CircleShape, JellyDef, PolygonShape, Shape
 
 # Fields of terrain of which one is null.
 _OUTLINES = ("polyline", "polygon")
@@ -154,7 +155,7 @@ def _facts(level: Level, item: Item, part: Definition) -> list[Property]:
     if isinstance(part, SpringDef):
         facts.append(("name", "Name", f":{item.key}", "Name of the spring."))
     elif not isinstance(part, ParticleDef | TerrainDef):
-        particles, springs = count(part)
+        particles, springs = expansion(part).count
         facts.append(
             (
                 "size",
@@ -199,7 +200,7 @@ def _outline_properties(selection: Selection, pieces: Sequence[TerrainDef]) -> l
 
 def _shape_properties(selection: Selection, shapes: Sequence[Shape]) -> list[Property]:
     kind = same(_shape_kind(shape) for shape in shapes)
-    about = About("choice", "Shape", tooltip="The outline that is filled.", choices=SHAPES)
+    about = About("choice", "Shape", tooltip="The outline that is filled.", choices=tuple(SHAPES))
 
     def choose(document: Document, wanted: str) -> Document:
         return change_field(document, selection, "shape", partial(_as_shape, wanted))

@@ -1,4 +1,4 @@
-"""The drawing tools by name; those of loose particles, springs and pins are here, bodies have files of their own."""
+"""The drawing tools by name; here are those of loose particles, springs and pins, in editor/kinds those of bodies."""
 
 from dataclasses import replace
 from typing import Any
@@ -6,18 +6,9 @@ from typing import Any
 from sandbox.editor.document import Document, EditError, select
 from sandbox.editor.edits.placing import add_particle, add_spring, set_pinned, weld
 from sandbox.editor.items import Selection
+from sandbox.editor.kinds.table import BODY_DRAWINGS
 from sandbox.editor.scene import Scene, make_scene
-from sandbox.editor.tools.drawing_bodies import (
-    BridgeDrawing,
-    GirderDrawing,
-    RingDrawing,
-    RopeDrawing,
-    WebDrawing,
-    WheelDrawing,
-    direction,
-    known_material,
-)
-from sandbox.editor.tools.drawing_jelly import BoxDrawing, CircleDrawing, PolygonDrawing
+from sandbox.editor.tools.drawing_bodies import direction, known_material
 from sandbox.editor.tools.drawing_options import ParticleOptions, PinOptions, SpringOptions
 from sandbox.editor.tools.drawing_terrain import GroundDrawing, LineDrawing, WallsDrawing
 from sandbox.editor.tools.drawing_tool import Drawing, staged
@@ -124,15 +115,7 @@ class PinDrawing(Drawing[PinOptions]):
 DRAWINGS: dict[str, type[Drawing[Any]]] = {
     "particle": ParticleDrawing,
     "spring": SpringDrawing,
-    "rope": RopeDrawing,
-    "bridge": BridgeDrawing,
-    "girder": GirderDrawing,
-    "web": WebDrawing,
-    "box": BoxDrawing,
-    "circle": CircleDrawing,
-    "polygon": PolygonDrawing,
-    "wheel": WheelDrawing,
-    "ring": RingDrawing,
+    **BODY_DRAWINGS,
     "pin": PinDrawing,
     "ground": GroundDrawing,
     "line": LineDrawing,

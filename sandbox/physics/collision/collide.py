@@ -231,6 +231,28 @@ class Collisions:
     kept: KeptContacts = NOTHING_KEPT
     count: int = 0
 
+    def collide(self, start: Floats, tick: int, h: float) -> Contacts:
+        """Find the contacts of a step of h [s] and solve those of free particles; the others, returned, are a solver's.
+
+        start [m/s] (n, 2): the velocities before gravity and all else from outside.
+        """
+        count = _collide(self.items, start, tick, h)
+        while count == NO_ROOM:
+            _grow(self)
+            count = _collide(self.items, start, tick, h)
+        if count != len(self.solved.particle):
+            self.solved = Contacts._make([array[:count] for array in self.room.bound]) if count else NO_CONTACTS
+        return self.solved
+
+    def finish(self, h: float) -> None:
+        """Keep a step's contacts with their impulses, stop what would cross terrain, and move particles over h [s]."""
+        self.count = _finish(self.items, h)
+
+    def end(self, world: World) -> None:
+        """Make the contacts of a tick's last step those of the world's state."""
+        if self.count != len(self.kept.particle) or self.kept is NOTHING_KEPT:
+            _share_kept(world, self)
+
 
 def collisions_of(world: World) -> Collisions | None:
     """The scratch of a world's collisions, made anew where topology has changed; None: nothing can touch anything."""
@@ -284,7 +306,7 @@ def _grow(collisions: Collisions) -> None:
 
 
 def begin_collisions(world: World) -> Collisions | None:
-    """The scratch of the coming tick's collisions, with the contacts of the world's last step."""
+    """The collisions of the coming tick, with the contacts of the world's last step; None: nothing can touch."""
     collisions = collisions_of(world)
     if collisions is not None and world.contact_impulse is not collisions.kept.impulse:
         counts, count = collisions.room.counts, len(world.contact_particle)
@@ -302,32 +324,6 @@ def _share_kept(world: World, collisions: Collisions) -> None:
     count = collisions.count
     collisions.kept = KeptContacts._make([array[:count] for array in collisions.room.kept])
     world.keep_contacts(*collisions.kept)
-
-
-def collide(collisions: Collisions, start: Floats, tick: int, h: float) -> Contacts:
-    """Find the contacts of a step of h [s] and solve those of free particles; the others, returned, are a solver's.
-
-    start [m/s] (n, 2): the velocities before gravity and all else from outside.
-    """
-    count = _collide(collisions.items, start, tick, h)
-    while count == NO_ROOM:
-        _grow(collisions)
-        count = _collide(collisions.items, start, tick, h)
-    if count != len(collisions.solved.particle):
-        room = collisions.room.bound
-        collisions.solved = Contacts._make([array[:count] for array in room]) if count else NO_CONTACTS
-    return collisions.solved
-
-
-def finish(collisions: Collisions, h: float) -> None:
-    """Keep a step's contacts with their impulses, stop what would cross terrain, and move particles over h [s]."""
-    collisions.count = _finish(collisions.items, h)
-
-
-def end_collisions(world: World, collisions: Collisions) -> None:
-    """Make the contacts of a tick's last step those of the world's state."""
-    if collisions.count != len(collisions.kept.particle) or collisions.kept is NOTHING_KEPT:
-        _share_kept(world, collisions)
 
 
 def last_contacts(world: World) -> Contacts:

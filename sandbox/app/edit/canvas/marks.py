@@ -10,7 +10,7 @@ from sandbox.app.draw.colours import BACKGROUND, DRIVE, TEXT, mixed
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.driven import Driven, driven_parts
 from sandbox.editor.scene import Scene
-from sandbox.level.format.drives import HydraulicDef, MotorDef
+from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
 
 # Sizes in layout units: a badge, the shortest spring and the smallest wheel with a mark, the arrow of a motor.
 BADGE = 8.0
