@@ -1,4 +1,4 @@
-"""Driven: which parts of a scene are driven, and where a picture of the level says so."""
+"""DrivenParts: which parts of a scene are driven, and where a picture of the level says so."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -12,7 +12,7 @@ from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
 from sandbox.level.kinds.wheel import WheelDef
 
 
-class Driven(NamedTuple):
+class DrivenParts(NamedTuple):
     """Springs that are muscles, one for each body of them; hydraulics; hubs with motors, and inner radii [m]."""
 
     muscles: list[int]
@@ -20,10 +20,10 @@ class Driven(NamedTuple):
     motors: list[tuple[int, float, MotorDef]]
 
 
-def driven_parts(scene: Scene) -> Driven:
+def driven_parts(scene: Scene) -> DrivenParts:
     """Find what is driven in a scene."""
     level = scene.level
-    found = Driven([], [], [])
+    found = DrivenParts([], [], [])
     for index, body in enumerate(level.bodies):
         if body.drive is not None:
             start, end = np.searchsorted(scene.spring_item, [index, index + 1]).tolist()

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 from sandbox.editor.kinds.rope import RopeOptions
 from sandbox.editor.scene import Scene
-from sandbox.editor.tools.drawing_options import Options, ParticleOptions
+from sandbox.editor.tools.drawing_options import Options
+from sandbox.editor.tools.drawing_particles import ParticleOptions
 from sandbox.level.kinds.rope import RopeDef
 
 Point = tuple[float, float]

@@ -99,7 +99,7 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
         world.fit(Driven(("a",), muscles, hydraulics, motors), [1.0])
         step(world)
         if contacts:
-            from sandbox.physics.collision.outline import TERRAIN_GROUP
+            from sandbox.physics.collision.filter import TERRAIN_GROUP
 
             # Two loose ones that touch, and two on a spring, out of their reach.
             places = np.array([[0.0, 0.0], [0.0, 0.0], [0.5, 0.0], [0.7, 0.0]])

@@ -8,7 +8,7 @@ import pygame
 from sandbox.app.application import Application
 from sandbox.app.draw.colours import ACCENT, MUTED, TEXT, WARNING
 from sandbox.app.edit.canvas.pointer import DrawTool
-from sandbox.app.edit.documents import Documents
+from sandbox.app.edit.documents import DocumentActions
 from sandbox.app.edit.edit_screen import EditScreen
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.ui import Ui
@@ -35,7 +35,7 @@ Place = tuple[int, int]
 class Guide:
     """Offers the tour once, and leads through it; may_offer: whether a person is there to be asked."""
 
-    def __init__(self, app: Application, documents: Documents) -> None:
+    def __init__(self, app: Application, documents: DocumentActions) -> None:
         self._app, self._documents = app, documents
         self.may_offer = False
         self.tour: Tour | None = None

@@ -6,13 +6,13 @@ import pygame
 from pygame_gui.core import UIElement
 
 from sandbox.app.draw.colours import MUTED, Colour
-from sandbox.app.widgets.layout import Layout
+from sandbox.app.widgets.layout import WindowLayout
 
 
 class Painted(UIElement):
     """A widget that paints itself; subclasses give `paint`, and what mouse and keys do."""
 
-    def __init__(self, ui: Layout, rect: pygame.Rect, container: Any = None) -> None:
+    def __init__(self, ui: WindowLayout, rect: pygame.Rect, container: Any = None) -> None:
         super().__init__(
             rect, ui.manager, container or ui.root, starting_height=1, layer_thickness=1, element_id=["painted"]
         )
@@ -64,7 +64,7 @@ class TextBlock(Painted):
 
     def __init__(
         self,
-        ui: Layout,
+        ui: WindowLayout,
         rect: pygame.Rect,
         text: str,
         container: Any = None,

@@ -15,7 +15,7 @@ from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITe
 
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.widgets.fields import Choice, Field
-from sandbox.app.widgets.layout import Layout
+from sandbox.app.widgets.layout import WindowLayout
 from sandbox.app.widgets.painted import Painted
 
 # It warns of every label that is a pixel lower than its font: only people who lay out can do something about that.
@@ -52,7 +52,7 @@ class Sheet:
     widgets: list[UIElement] = default(default_factory=list)
 
 
-class Ui(Layout):
+class Ui(WindowLayout):
     """Widgets on a window of size [pixels]; positions and sizes given to it are layout units of `scale` pixels."""
 
     def __init__(self, size: tuple[int, int], scale: float, pixel_ratio: tuple[float, float] = (1.0, 1.0)) -> None:

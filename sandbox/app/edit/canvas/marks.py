@@ -8,7 +8,7 @@ import pygame
 from sandbox.app.draw.camera import Camera, Point
 from sandbox.app.draw.colours import BACKGROUND, DRIVE, TEXT, mixed
 from sandbox.app.widgets.ui import Ui
-from sandbox.editor.driven import Driven, driven_parts
+from sandbox.editor.driven import DrivenParts, driven_parts
 from sandbox.editor.scene import Scene
 from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
 
@@ -34,7 +34,7 @@ class DriveMarks:
     def __init__(self, ui: Ui) -> None:
         self._ui = ui
         self._of: tuple[object, object] | None = None
-        self._driven = Driven([], [], [])
+        self._driven = DrivenParts([], [], [])
 
     def draw(self, surface: pygame.Surface, camera: Camera, scene: Scene) -> None:
         """Draw the marks where the scene's particles are."""

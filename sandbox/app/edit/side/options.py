@@ -14,7 +14,8 @@ from sandbox.app.edit.side.rows import Picker, Row
 from sandbox.app.widgets.fields import Field
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.moving import move, rotate, scale
-from sandbox.editor.tools.drawing_options import About, described, stepped
+from sandbox.editor.tools.drawing_options import OptionInfo, described, stepped
+from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import PLACE_DECIMALS
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 
@@ -72,7 +73,7 @@ class OptionsRow:
         hand, chosen = self._screen.pointer_tool, bool(self._screen.document.selection)
         items: list[Item] = []
         if isinstance(hand, DrawTool):
-            self._add_label(self._screen.tool.capitalize() if self._screen.tool != "box" else "Jelly", "@heading")
+            self._add_label(TOOLS[self._screen.tool].title.capitalize(), "@heading")
             items = [self._option(hand, name, about) for name, about in described(hand.drawing.options).items()]
         elif chosen:
             items = self._numbers()
@@ -159,7 +160,7 @@ class OptionsRow:
             items.append(self._labelled(label, NUMBER_WIDTH, add, 2 * GAP if name in ("y", "height") else GAP))
         return items
 
-    def _option(self, hand: DrawTool, name: str, about: About) -> Item:
+    def _option(self, hand: DrawTool, name: str, about: OptionInfo) -> Item:
         if about.kind == "flag":
             width = self._text_width(about.label) + 22
             return width + LABEL_GAP, partial(self._add_flag, hand, name, about, width)
@@ -169,14 +170,14 @@ class OptionsRow:
             return self._labelled(label, MENU_WIDTH, partial(self._add_picker, hand, name, about))
         return self._labelled(label, ENTRY_WIDTH, partial(self._add_value, hand, name, about))
 
-    def _add_flag(self, hand: DrawTool, name: str, about: About, width: float) -> None:
+    def _add_flag(self, hand: DrawTool, name: str, about: OptionInfo, width: float) -> None:
         toggle = partial(self._toggle, hand, name)
         button = self._ui.button(self._rect(width), about.label, toggle, self.back, style="@segment", tip=about.text)
         self.flags[name] = button
         self._made.append(button)
         self._x += LABEL_GAP
 
-    def _add_value(self, hand: DrawTool, name: str, about: About) -> None:
+    def _add_value(self, hand: DrawTool, name: str, about: OptionInfo) -> None:
         tip = f"{about.text} The wheel or Up and Down change it."
         self._add_field(name, partial(self._type_option, hand, name, about), ENTRY_WIDTH, tip)
         self.fields[name].turn = partial(self._turn_option, hand, name, about)
@@ -187,7 +188,7 @@ class OptionsRow:
         if getattr(hand.drawing.options, name) not in materials:
             self._set(hand, name, materials[-1] if len(materials) > 1 else DEFAULT_MATERIAL)
 
-    def _add_picker(self, hand: DrawTool, name: str, about: About) -> None:
+    def _add_picker(self, hand: DrawTool, name: str, about: OptionInfo) -> None:
         picker = Picker(self._ui, self._rect(MENU_WIDTH), partial(self._choose, hand, name), self.back)
         picker.set_tooltip(about.text)
         self.menus[name] = picker
@@ -235,7 +236,7 @@ class OptionsRow:
     def _toggle(self, hand: DrawTool, name: str) -> None:
         self._set(hand, name, not getattr(hand.drawing.options, name))
 
-    def _type_option(self, hand: DrawTool, name: str, about: About, text: str) -> bool:
+    def _type_option(self, hand: DrawTool, name: str, about: OptionInfo, text: str) -> bool:
         if not text.strip():
             return self._set(hand, name, None)
         value = self._number(about.label, text)
@@ -245,7 +246,7 @@ class OptionsRow:
             return self._set(hand, name, int(value))
         return self._set(hand, name, value)
 
-    def _turn_option(self, hand: DrawTool, name: str, about: About, by: int) -> None:
+    def _turn_option(self, hand: DrawTool, name: str, about: OptionInfo, by: int) -> None:
         """Step a value up or down; a number of parts from the one that fits."""
         if name == hand.drawing.counted:
             hand.adjust(by)
