@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
-from sandbox.physics.world import Floats, World
+from sandbox.physics.world import Floats, Slots, World
 
 # Below this moment of inertia [kg m^2] a group of particles has no direction to be turned in.
 LEAST_INERTIA = 1e-150
@@ -20,6 +20,36 @@ class Before(NamedTuple):
 
     velocity: Floats
     rest_length: Floats
+
+
+class Masses(NamedTuple):
+    """What motors read of particles (n,), see StateArrays; they change the velocity."""
+
+    position: Floats
+    velocity: Floats
+    mass: Floats
+    inverse_mass: Floats
+
+
+class Joints(NamedTuple):
+    """What motors read of springs (m,), see StateArrays."""
+
+    particle_a: NDArray[np.int32]
+    particle_b: NDArray[np.int32]
+    active: NDArray[np.bool_]
+    material: NDArray[np.int32]
+
+
+class Wheels(NamedTuple):
+    """The wheels of all motors, see Motors, and how the driven parts are driven, -1..1."""
+
+    hub: Slots
+    speed: Floats
+    torque: Floats
+    part: Slots
+    rim_start: Slots
+    rim: Slots
+    part_value: Floats
 
 
 class ForcedParticles(NamedTuple):
@@ -59,8 +89,10 @@ def _forced_particles(world: World) -> tuple[Any, Floats]:
 
 
 @inner_kernel
-def _spin(group, first, last, position, velocity, mass, inverse_mass):  # type: ignore[no-untyped-def]
+def _spin(group: Slots, first: int, last: int, masses: Masses) -> tuple[float, float, float, float]:
     # Centre of mass, angular velocity about it and moment of inertia of a group; infinite (-1) where one is pinned.
+    # omega = sum m r x v / I,  I = sum m r^2
+    position, velocity, mass = masses.position, masses.velocity, masses.mass
     total = 0.0
     x = 0.0
     y = 0.0
@@ -68,7 +100,7 @@ def _spin(group, first, last, position, velocity, mass, inverse_mass):  # type: 
     v = 0.0
     for i in range(first, last):
         p = group[i]
-        if inverse_mass[p] == 0.0:
+        if masses.inverse_mass[p] == 0.0:
             return 0.0, 0.0, 0.0, -1.0
         total += mass[p]
         x += mass[p] * position[p, 0]
@@ -95,30 +127,30 @@ def _spin(group, first, last, position, velocity, mass, inverse_mass):  # type: 
 
 
 @inner_kernel
-def _turn(group, first, last, position, velocity, x, y, change):  # type: ignore[no-untyped-def]
+def _turn(group: Slots, first: int, last: int, masses: Masses, x: float, y: float, change: float) -> None:
     # Change a group's angular velocity about its centre of mass: no impulse along any direction, for sum m r = 0.
     for i in range(first, last):
         p = group[i]
-        dx = position[p, 0] - x
-        dy = position[p, 1] - y
-        velocity[p, 0] -= change * dy
-        velocity[p, 1] += change * dx
+        dx = masses.position[p, 0] - x
+        dy = masses.position[p, 1] - y
+        masses.velocity[p, 0] -= change * dy
+        masses.velocity[p, 1] += change * dx
 
 
 @inner_kernel
-def _find_mount(hub, stamp, particle_a, particle_b, spring_active, material, mark, mount):  # type: ignore[no-untyped-def]
+def _find_mount(hub: int, stamp: int, joints: Joints, mark: Slots, mount: Slots) -> int:
     # The hub and what springs join to it besides its wheel, which is marked with the stamp; how many they are.
     mount[0] = hub
     mark[hub] = stamp
     count = 1
-    for s in range(spring_active.shape[0]):
-        if not spring_active[s] or material[s] < 0:
+    for s in range(joints.active.shape[0]):
+        if not joints.active[s] or joints.material[s] < 0:
             continue
         other = -1
-        if particle_a[s] == hub:
-            other = particle_b[s]
-        elif particle_b[s] == hub:
-            other = particle_a[s]
+        if joints.particle_a[s] == hub:
+            other = joints.particle_b[s]
+        elif joints.particle_b[s] == hub:
+            other = joints.particle_a[s]
         if other >= 0 and mark[other] != stamp:
             mark[other] = stamp
             mount[count] = other
@@ -127,23 +159,20 @@ def _find_mount(hub, stamp, particle_a, particle_b, spring_active, material, mar
 
 
 @kernel
-def _run_motors(  # type: ignore[no-untyped-def]
-    position, velocity, mass, inverse_mass, particle_a, particle_b, spring_active, material, hub, speed, torque, part,
-    rim_start, rim, part_value, mark, mount, h,
-):  # fmt: skip
+def _run_motors(masses: Masses, joints: Joints, wheels: Wheels, mark: Slots, mount: Slots, h: float) -> None:
     # The angular impulse P [N m s] that brings the wheel to its speed against its mount, at most torque h:
     # P = (speed - (omega_wheel - omega_mount)) / (1 / I_wheel + 1 / I_mount), +P on the wheel and -P on the mount.
-    for k in range(hub.shape[0]):
-        value = part_value[part[k]]
+    rim, rim_start = wheels.rim, wheels.rim_start
+    for k in range(wheels.hub.shape[0]):
+        value = wheels.part_value[wheels.part[k]]
         if value == 0.0:
             continue
-        for i in range(rim_start[k], rim_start[k + 1]):
+        first, last = rim_start[k], rim_start[k + 1]
+        for i in range(first, last):
             mark[rim[i]] = k + 1
-        count = _find_mount(hub[k], k + 1, particle_a, particle_b, spring_active, material, mark, mount)
-        wheel_x, wheel_y, wheel_turn, wheel_inertia = _spin(
-            rim, rim_start[k], rim_start[k + 1], position, velocity, mass, inverse_mass
-        )
-        mount_x, mount_y, mount_turn, mount_inertia = _spin(mount, 0, count, position, velocity, mass, inverse_mass)
+        count = _find_mount(wheels.hub[k], k + 1, joints, mark, mount)
+        wheel_x, wheel_y, wheel_turn, wheel_inertia = _spin(rim, first, last, masses)
+        mount_x, mount_y, mount_turn, mount_inertia = _spin(mount, 0, count, masses)
         # Without anything to push against, as with a wheel all alone, a motor does nothing.
         if wheel_inertia == 0.0 or mount_inertia == 0.0:
             continue
@@ -151,12 +180,12 @@ def _run_motors(  # type: ignore[no-untyped-def]
         of_mount = 1.0 / mount_inertia if mount_inertia > 0.0 else 0.0
         if of_wheel + of_mount == 0.0:
             continue
-        impulse = (value * speed[k] - (wheel_turn - mount_turn)) / (of_wheel + of_mount)
-        impulse = min(max(impulse, -torque[k] * h), torque[k] * h)
+        impulse = (value * wheels.speed[k] - (wheel_turn - mount_turn)) / (of_wheel + of_mount)
+        impulse = min(max(impulse, -wheels.torque[k] * h), wheels.torque[k] * h)
         if of_wheel > 0.0:
-            _turn(rim, rim_start[k], rim_start[k + 1], position, velocity, wheel_x, wheel_y, impulse * of_wheel)
+            _turn(rim, first, last, masses, wheel_x, wheel_y, impulse * of_wheel)
         if of_mount > 0.0:
-            _turn(mount, 0, count, position, velocity, mount_x, mount_y, -impulse * of_mount)
+            _turn(mount, 0, count, masses, mount_x, mount_y, -impulse * of_mount)
 
 
 def apply_forces(world: World, h: float) -> Floats:
@@ -172,8 +201,11 @@ def apply_forces(world: World, h: float) -> Floats:
     if len(motors.hub):
         mark, mount = np.zeros((2, world.particle_count), dtype=np.int64)
         _run_motors(
-            world.position, world.velocity, world.mass, world.inverse_mass, world.particle_a, world.particle_b,
-            world.spring_active, world.material, motors.hub, motors.speed, motors.torque, motors.part,
-            motors.rim_start, motors.rim, world.part_value, mark, mount, h,
+            Masses(world.position, world.velocity, world.mass, world.inverse_mass),
+            Joints(world.particle_a, world.particle_b, world.spring_active, world.material),
+            Wheels(
+                motors.hub, motors.speed, motors.torque, motors.part, motors.rim_start, motors.rim, world.part_value
+            ),
+            mark, mount, h,
         )  # fmt: skip
     return before

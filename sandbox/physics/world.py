@@ -76,8 +76,6 @@ class World(StateArrays):
         self.hand_particle = -1
         self.hand_spring = -1
         self.terrain: Terrain = NO_TERRAIN
-        # The contacts of the present step; never state.
-        self.contacts: Any = None
         # What was taken back since somebody last looked, and the springs that broke in the last tick; never state.
         self.contained: list[Containment] = []
         self.broken: Slots = np.zeros(0, dtype=np.int64)

@@ -1,4 +1,4 @@
-"""A body kind is added by two new files and a line in two tables; this adds one to a copy of the package and plays it."""
+"""A body kind is added by two new files and a line in two tables: one is added to a copy of the package, and played."""
 
 import os
 import shutil
@@ -152,7 +152,7 @@ drawing = TOOLS["ladder"].drawing()
 for handle, x in ((drawing.down, 0.0), (drawing.up, 1.0)):
     handle(Snap((x, 0.0), "grid", None, "", (x, 0.0)))
 drawn = drawing.done(Document(empty_level())).level
-assert (drawn.bodies[0].type, len(build_world(drawn).position)) == ("ladder", 10)
+assert (drawn.bodies[0].type, len(make_scene(drawn).position)) == ("ladder", 10)
 print("played")
 """
 
@@ -177,9 +177,8 @@ def test_a_body_kind_of_four_files_is_read_played_moved_drawn_and_documented(pac
     models, editing = package / "level/kinds/bodies.py", package / "editor/kinds/table.py"
     inserted(models, "from sandbox.level.kinds.mesh import", "from sandbox.level.kinds.ladder import Ladder\n")
     inserted(models, "Mesh)\n", "Ladder, ")
-    inserted(
-        editing, "from sandbox.editor.kinds.mesh import", "from sandbox.editor.kinds.ladder import LadderEditing\n"
-    )
+    import_line = "from sandbox.editor.kinds.ladder import LadderEditing\n"
+    inserted(editing, "from sandbox.editor.kinds.mesh import", import_line)
     inserted(editing, '    "mesh":', '    "ladder": LadderEditing,\n')
     changed = [path for path in package.rglob("*.py") if before.get(path) != path.read_bytes()]
     assert len(changed) == 4

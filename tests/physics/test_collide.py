@@ -17,7 +17,10 @@ from tests.support.physics_scenes import run, scaled
 PIT = Chain([(-0.9, 6.0), (-0.9, 0.0), (0.9, 0.0), (0.9, 6.0)])
 
 
-def heap(count=scaled(60, 10), **settings):
+HEAP = scaled(60, 10)
+
+
+def heap(count=HEAP, **settings):
     """Discs that fall into a pit, beside a block of jelly."""
     w = world(PIT, **settings)
     generator = np.random.default_rng(4)
