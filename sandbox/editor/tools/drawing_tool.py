@@ -1,4 +1,4 @@
-"""Drawing: a pointer gesture that adds something to a level, with a ghost of what it would become.
+"""Drawing: what a drawing tool does, a pointer gesture that adds something to a level, with a ghost of it before.
 
 The app hands every pointer event on as a Snap, shows `ghost` and `hint`, and takes what `done` gives. A gesture of two
 points is a drag, or a click at each; Enter takes the pointer for the second, Escape gives up.
