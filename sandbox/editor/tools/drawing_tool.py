@@ -10,9 +10,9 @@ from typing import Any, ClassVar, Generic, cast
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.tools.drawing_options import AnyOptions, Options, changed, described
-from sandbox.editor.tools.snap import Point, Snap
+from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.model import ParticleDef
-from sandbox.level.format.quantities import replaced
+from sandbox.level.format.quantities import Point, replaced
 
 
 class Drawing(Generic[AnyOptions]):
