@@ -101,12 +101,16 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
         if contacts:
             from sandbox.physics.collision.filter import TERRAIN_GROUP
 
-            # Two loose ones that touch, and two on a spring, out of their reach.
+            # Two free ones that touch, and two on a spring, out of their reach.
             places = np.array([[0.0, 0.0], [0.0, 0.0], [0.5, 0.0], [0.7, 0.0]])
             world.add_particles(["d", "e", "f", "g"], places, group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
             world.add_springs(["u"], [5], [6])
             world.terrain = make_terrain([Chain([[-1.0, 0.0], [1.0, 0.0]])])
             step(world)
+            # And a world of free ones alone, which takes a way of its own.
+            free = World(world.settings)
+            free.add_particles(["a", "b"], np.zeros((2, 2)), group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
+            step(free)
     if "direct" in solvers:
         from sandbox.physics.solvers.direct.layout import layout_of
         from sandbox.physics.solvers.linear import parallel
