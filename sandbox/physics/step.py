@@ -49,8 +49,7 @@ def step(world: World) -> None:
     count = substep_count(world)
     h = substep_time(settings, count)
     # Solvers only read them, so a tick of one substep needs no copies.
-    tick_springs, tick_elements = (world.stiffness, world.damping), world.element_coefficients
-    springs, elements = tick_springs, tick_elements
+    springs, elements = (world.stiffness, world.damping), world.element_coefficients
     if count > 1:
         springs, elements = substep_coefficients(world, count), element_coefficients(world, count)
     # What a solver keeps is an impulse of one substep: exact, as their number is a power of two.
@@ -66,7 +65,7 @@ def step(world: World) -> None:
             forces = apply_forces(world, h)
             before = Before(forces.particles.before, rest_length)
             contacts = None if collisions is None else collisions.collide(forces, world.tick, h)
-            solver.solve(world, Substep(h, count, springs, elements, tick_springs, tick_elements, before), contacts)
+            solver.solve(world, Substep(h, count, springs, elements, before), contacts)
             if collisions is not None:
                 collisions.finish(h)
             else:

@@ -28,15 +28,13 @@ Pair = tuple[Floats, Floats]
 class Substep(NamedTuple):
     """What a solver is given: time step h [s] of one of so many substeps, Cs and Cd of springs and elements in it.
 
-    tick_springs, tick_elements: Cs and Cd of the whole tick. before: what the substep began with.
+    before: what the substep began with.
     """
 
     h: float
     substeps: int
     springs: Pair
     elements: Pair
-    tick_springs: Pair
-    tick_elements: Pair
     before: Before
 
 

@@ -10,7 +10,7 @@ from sandbox.physics.equation import capped, highest_coefficient, implicit_impul
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.energy_norm import load_range
 from sandbox.physics.solvers.direct.system import Constraints, Inputs, Matrix, Span, State, System
-from sandbox.physics.world import Floats
+from sandbox.physics.world import HIGHEST_OF_RING, TRIANGLE, Floats
 
 # A bend misses what was predicted by so much of this [rad], where an area is held against its own size.
 WHOLE_BEND = 1.0
@@ -46,7 +46,11 @@ def _load_constants(k: int, constraints: Constraints, state: State, inputs: Inpu
     constraints.stiffness[k] = stiffness
     constraints.damping[k] = damping
     if parts > 0:
-        load_range(k, constraints, inputs.tick_element_stiffness[s], inputs.tick_element_damping[s])
+        stiffness = state.element_stiffness[s]
+        damping = state.element_damping[s]
+        if constraints.first[k + 1] - constraints.first[k] > TRIANGLE:
+            stiffness, damping = capped(stiffness, damping, HIGHEST_OF_RING)
+        load_range(k, constraints, stiffness, damping)
     for axis in range(2):
         constraints.rest[k, axis] = state.element_rest[s, axis]
     for c in range(constraints.first[k], constraints.first[k + 1]):

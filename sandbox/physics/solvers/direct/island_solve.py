@@ -45,7 +45,7 @@ from sandbox.physics.solvers.direct.motion import copy, hold_spin, scale
 from sandbox.physics.solvers.direct.response import load_block
 from sandbox.physics.solvers.direct.shape_matching import release_shape
 from sandbox.physics.solvers.direct.step_body import AHEAD, LINEAR_SOLVES, MISFIT_RATE, open_body
-from sandbox.physics.solvers.direct.system import Inputs, Rows, Span, State, System, span_of
+from sandbox.physics.solvers.direct.system import InputArrays, Inputs, Rows, Span, State, System, span_of
 from sandbox.physics.world import Floats, World
 
 # Sweeps over the contacts for each linear solve. More costs time, fewer leaves piles soft and restless.
@@ -208,12 +208,14 @@ def _begin_again(islands: BodyIslands, system: System, share: float) -> None:
 
 @kernel
 def _solve_islands(
-    contacts: Contacts, lent_room: Any, lent_system: Any, lent_state: Any, inputs: Inputs, parts: int, h: float
-) -> None:
+    contacts: Contacts, lent_room: Any, lent_system: Any, lent_state: Any, stiffness: Floats, damping: Floats,
+    element_stiffness: Floats, element_damping: Floats, start: Floats, start_length: Floats, parts: int, h: float,
+) -> None:  # fmt: skip
     # Load all rows, and bring what contacts touch to the end of a step of h [s].
     (system,) = contents(lent_system)
     (state,) = contents(lent_state)
     (touch,) = contents(lent_room)
+    inputs = Inputs(stiffness, damping, element_stiffness, element_damping, start, start_length)
     islands, terms, delassus = touch.islands, touch.terms, touch.delassus
     load_rows(system, state, inputs, h)
     load_biases(contacts, terms, h)
@@ -260,10 +262,10 @@ def _islands_of(world: World) -> IslandRoom:
 
 
 def solve_touched(
-    contacts: Contacts, world: World, layout: SystemLayout, state: Any, inputs: Inputs, parts: int, h: float
+    contacts: Contacts, world: World, layout: SystemLayout, state: Any, inputs: InputArrays, parts: int, h: float
 ) -> None:
     """Solve the islands of what contacts touch, and mark their bodies as touched; see `solve`."""
     room = world.derived(_islands_of)
     find_body_islands(contacts, state, layout.lent, room.lent)
     room.fit(contacts)
-    _solve_islands(contacts, room.lent, layout.lent, state, inputs, parts, h)
+    _solve_islands(contacts, room.lent, layout.lent, state, *inputs, parts, h)

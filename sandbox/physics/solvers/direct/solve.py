@@ -18,16 +18,20 @@ from sandbox.physics.solvers.direct.step_body import open_body, step_body
 from sandbox.physics.solvers.direct.system import Inputs, State, span_of
 from sandbox.physics.solvers.single_pass import apply_explicit
 from sandbox.physics.substeps import Substep
-from sandbox.physics.world import World
+from sandbox.physics.world import Floats, World
 
 _STATE = attrgetter(*State._fields)
 
 
 @kernel
-def _solve_bodies(lent_system: Any, lent_state: Any, inputs: Inputs, touched: bool, parts: int, h: float) -> None:
+def _solve_bodies(
+    lent_system: Any, lent_state: Any, stiffness: Floats, damping: Floats, element_stiffness: Floats,
+    element_damping: Floats, start: Floats, start_length: Floats, touched: bool, parts: int, h: float,
+) -> None:  # fmt: skip
     # What nothing touches, and s += 0.3 (v' - s) of all; touched: some bodies are, and rows are loaded.
     (system,) = contents(lent_system)
     (state,) = contents(lent_state)
+    inputs = Inputs(stiffness, damping, element_stiffness, element_damping, start, start_length)
     bodies, rows, springs = system.bodies, system.rows, system.springs
     if not touched:
         load_rows(system, state, inputs, h)
@@ -62,10 +66,10 @@ def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
         apply_explicit(world, layout.hooke, substep.springs, substep.h)
     state = world.derived(_lent_state)
     touched = contacts is not None and len(contacts.particle) > 0
-    inputs = Inputs(*substep.springs, *substep.elements, *substep.tick_springs, *substep.tick_elements, *substep.before)
+    inputs = (*substep.springs, *substep.elements, *substep.before)
     parts = substep.substeps if world.settings.substeps == AUTO else 0
     if contacts is not None and touched:
         from sandbox.physics.solvers.direct.island_solve import solve_touched
 
         solve_touched(contacts, world, layout, state, inputs, parts, substep.h)
-    _solve_bodies(layout.lent, state, inputs, touched, parts, substep.h)
+    _solve_bodies(layout.lent, state, *inputs, touched, parts, substep.h)

@@ -65,7 +65,7 @@ def load_springs(
             underdamped = True
         springs.norm[k] = restoring
         if parts > 0:
-            load_range(k, springs, inputs.tick_stiffness[s], inputs.tick_damping[s])
+            load_range(k, springs, state.stiffness[s], state.damping[s])
             springs.norm[k] = mass * springs.least[k] / (parts * parts)
             springs.norm_excess[k] = mass * (springs.most[k] - springs.least[k]) / (parts * parts)
             if springs.most[k] > springs.least[k]:

@@ -19,7 +19,10 @@ Flags = NDArray[np.bool_]
 
 
 class State(NamedTuple):
-    """The arrays of a world that a step reads, and of which it writes four: see StateArrays; and the terrain."""
+    """The arrays of a world that a step reads, and of which it writes four: see StateArrays; and the terrain.
+
+    stiffness and damping are Cs and Cd of a whole tick.
+    """
 
     position: Floats
     velocity: Floats
@@ -30,15 +33,19 @@ class State(NamedTuple):
     particle_active: Flags
     collides: Slots
     rest_length: Floats
+    stiffness: Floats
+    damping: Floats
     material: NDArray[np.int32]
     tension: Floats
     element_rest: Floats
+    element_stiffness: Floats
+    element_damping: Floats
     corner_weight: Floats
     terrain: Terrain
 
 
 class Inputs(NamedTuple):
-    """What a substep is given: Cs and Cd of springs (m,) and elements (t,), those of the whole tick, its start.
+    """What a substep is given: Cs and Cd of springs (m,) and elements (t,) in it, and its start.
 
     start [m/s] (n, 2), start_length [m] (m,): velocities and rest lengths before forces and drives.
     """
@@ -47,12 +54,12 @@ class Inputs(NamedTuple):
     damping: Floats
     element_stiffness: Floats
     element_damping: Floats
-    tick_stiffness: Floats
-    tick_damping: Floats
-    tick_element_stiffness: Floats
-    tick_element_damping: Floats
     start: Floats
     start_length: Floats
+
+
+# The same as plain arguments, which Python passes at half the price.
+InputArrays = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
 
 
 class Bodies(NamedTuple):
