@@ -184,8 +184,8 @@ def test_a_level_setting_is_three_files(package):
     )
     put(
         package / "physics/forces.py",
-        "    world.velocity[world.inverse_mass > 0.0, 1] += settings.lift * h\n",
-        before="    if settings.drag > 0.0:",
+        "    world.velocity[world.inverse_mass > 0.0, 1] += world.settings.lift * h\n",
+        before="    if len(motors.hub):",
     )
     script = """
 from sandbox.physics.settings import WorldSettings

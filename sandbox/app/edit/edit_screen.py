@@ -327,12 +327,12 @@ class EditScreen:
 
     def press_cursor(self) -> None:
         """Click at the keyboard cursor; without one, end what is drawn."""
-        hand = self.pointer_tool
+        tool = self.pointer_tool
         if self.cursor is not None:
-            hand.down(self.cursor, 0, 1)
-            hand.up(self.cursor, 0)
-        elif isinstance(hand, DrawTool):
-            hand.finish()
+            tool.down(self.cursor, 0, 1)
+            tool.up(self.cursor, 0)
+        elif isinstance(tool, DrawTool):
+            tool.finish()
 
     # A frame.
 

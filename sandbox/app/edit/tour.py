@@ -208,8 +208,8 @@ class Guide:
 
     def _arrow_across(self, surface: pygame.Surface) -> None:
         editor, view = self._documents.editor, self._viewport()
-        hand = editor.pointer_tool if editor is not None else None
-        if not isinstance(hand, DrawTool) or hand.drawing.under_way:
+        tool = editor.pointer_tool if editor is not None else None
+        if not isinstance(tool, DrawTool) or tool.drawing.under_way:
             return
         head, y = self._app.ui.px(9), view.top + round(view.height * 0.45)
         start, end = view.left + view.width // 4, view.right - view.width // 4

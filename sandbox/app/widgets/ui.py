@@ -16,7 +16,7 @@ from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITe
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.widgets.fields import Choice, Field
 from sandbox.app.widgets.layout import WindowLayout
-from sandbox.app.widgets.painted import Painted
+from sandbox.app.widgets.painted import ENTER_KEYS, Painted
 
 # It warns of every label that is a pixel lower than its font: only people who lay out can do something about that.
 warnings.filterwarnings("ignore", message="Label Rect is too small", module="pygame_gui")
@@ -25,7 +25,6 @@ warnings.filterwarnings("ignore", message="Label Rect is too small", module="pyg
 SHEET_HEIGHT = 40
 # Delay and interval of a key that is held down [ms].
 KEY_REPEAT = (400, 40)
-ENTER_KEYS = (pygame.K_RETURN, pygame.K_KP_ENTER)
 ANSWERS = (
     pygame_gui.UI_BUTTON_PRESSED,
     pygame_gui.UI_DROP_DOWN_MENU_CHANGED,

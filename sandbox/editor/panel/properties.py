@@ -10,11 +10,12 @@ from sandbox.editor.document import Document
 from sandbox.editor.edits.additions import add_object
 from sandbox.editor.edits.fields import change_field, set_field, with_tuples
 from sandbox.editor.edits.names import owner_of
-from sandbox.editor.edits.terrain import FORMS, Form, Point, corners_of, form_of, outlined, with_corners
+from sandbox.editor.edits.terrain import FORMS, Form, corners_of, form_of, outlined, with_corners
 from sandbox.editor.items import Definition, Item, Selection, chosen_definitions, chosen_items
 from sandbox.editor.panel.field_info import FieldInfo, abouts
 from sandbox.editor.panel.property import MIXED, Property, Section, part_properties, same, with_axes
 from sandbox.level.format.model import Level, ParticleDef, SpringDef, TerrainDef
+from sandbox.level.format.quantities import Point
 from sandbox.level.format.schema import TITLES
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import file_order

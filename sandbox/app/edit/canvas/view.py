@@ -89,14 +89,14 @@ class View:
         self._painter.paint(surface, screen.camera, part)
 
     def _draw_marks(self, surface: pygame.Surface) -> None:
-        screen, hand = self._screen, self._screen.pointer_tool
-        hand.draw(surface)
-        under = hand.hovered if isinstance(hand, SelectTool) and hand.matrix is None else None
+        screen, tool = self._screen, self._screen.pointer_tool
+        tool.draw(surface)
+        under = tool.hovered if isinstance(tool, SelectTool) and tool.matrix is None else None
         if under is not None and under not in screen.document.selection:
             self._painter.paint_hovered(surface, screen.camera, screen.scene, under)
         if screen.cursor is not None:
             draw_cursor(surface, screen.camera.to_pixels(screen.cursor), screen.scale)
         if self._spot is not None:
             draw_spot(surface, screen.camera.to_pixels(self._spot[0]), self._spot[1], screen.scale)
-        if hand.measure and screen.pointer is not None:
-            draw_label(surface, screen.ui, screen.pointer, hand.measure, screen.camera.viewport)
+        if tool.measure and screen.pointer is not None:
+            draw_label(surface, screen.ui, screen.pointer, tool.measure, screen.camera.viewport)
