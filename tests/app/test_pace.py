@@ -1,5 +1,6 @@
 """Whether a level is played while its kernels are interpreted."""
 
+import threading
 from collections import deque
 
 from sandbox.app import pace
@@ -52,16 +53,19 @@ def test_a_run_that_becomes_slow_is_stopped_after_a_while_and_a_slow_tick_alone_
 
 
 def test_a_trial_that_is_no_longer_wanted_ends_after_its_tick(monkeypatch):
+    in_first_tick, is_ended = threading.Event(), threading.Event()
     ticks = []
 
     def advance(session):
         ticks.append(session)
-        found.end()
+        in_first_tick.set()
+        is_ended.wait()
 
-    created = Pace.__init__
     monkeypatch.setattr(pace.Session, "advance", advance)
-    monkeypatch.setattr(pace.threading.Thread, "start", lambda thread: None)
-    found = object.__new__(Pace)
-    created(found, small_level())
-    found._try()
+    found = Pace(small_level())
+    in_first_tick.wait()
+    assert not found.end()
+    is_ended.set()
+    found.wait()
+    assert found.end() and not found.holds
     assert len(ticks) == 1 < TRIAL_TICKS

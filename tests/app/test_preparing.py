@@ -164,7 +164,8 @@ jit.start_interpreted()
 import sandbox.app.preparing as preparing
 from sandbox.app.app import App
 from sandbox.app.display import Display
-from sandbox.app.wanted import Wanted
+from sandbox.app.start_request import StartRequest
+
 from sandbox.level.format.files import load_level
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
@@ -173,7 +174,7 @@ from pathlib import Path
 preparing.is_prepared = lambda: True
 ticks = []
 app = App(Display(1.0))
-app.open(Wanted(load_level("rope")))
+app.open(StartRequest(load_level("rope")))
 switched = app._switched
 app.preparation._switched = lambda: (ticks.append(app._tick), switched())
 app.play.playback.session.record_to(Path(sys.argv[1]))
