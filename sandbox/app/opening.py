@@ -35,6 +35,11 @@ class _Work(threading.Thread):
 
     def run(self) -> None:
         try:
+            from sandbox.physics import jit
+
+            # A process that has kernels already goes on with them.
+            if not jit.KERNELS:
+                jit.start_interpreted()
             import sandbox.app.app  # noqa: F401
 
             self.wanted = self._find()

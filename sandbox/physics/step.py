@@ -1,7 +1,6 @@
 """step(world): one tick on one screen. The order of its parts is part of the replay contract."""
 
-import functools
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,12 +31,13 @@ if TYPE_CHECKING:
 PHYSICS_VERSION = 1
 
 
-@functools.cache
-def _collisions_entry() -> "Callable[[World], Collisions | None]":
+def _collisions(world: World) -> "Collisions | None":
+    if not world.has_contacts:
+        return None
     # Half of the physics, which a world in which nothing touches does without.
-    from sandbox.physics.collision.collide import begin_collisions
+    from sandbox.physics.collision.collide import collisions_of
 
-    return begin_collisions
+    return collisions_of(world)
 
 
 def step(world: World) -> None:
@@ -54,8 +54,11 @@ def step(world: World) -> None:
     if count > 1:
         springs, elements = substep_coefficients(world, count), element_coefficients(world, count)
     # What a solver keeps is an impulse of one substep: exact, as their number is a power of two.
-    world.scale_impulses(settings.fewest_substeps / count)
-    collisions = _collisions_entry()(world) if world.has_contacts else None
+    scale = settings.fewest_substeps / count
+    world.scale_impulses(scale)
+    collisions = world.derived(_collisions)
+    if collisions is not None:
+        collisions.begin(world)
     for _ in range(count):
         before = Before(apply_forces(world, h), rest_length)
         contacts = None if collisions is None else collisions.collide(before.velocity, world.tick, h)
@@ -67,7 +70,7 @@ def step(world: World) -> None:
         rest_length = world.rest_length
     if collisions is not None:
         collisions.end(world)
-    world.scale_impulses(count / settings.fewest_substeps)
+    world.scale_impulses(1.0 / scale)
     world.rest_hands()
     world.tick += 1
     contain_outcome(world)

@@ -13,6 +13,7 @@ import pytest
 from sandbox.app.display import has_display
 from sandbox.app.opening import open_app
 from sandbox.app.play.playback import Playback
+from sandbox.app.preparing import Preparation
 from sandbox.app.shortcuts import action_of, shortcuts
 from sandbox.app.start_request import StartRequest
 from sandbox.editor.storage.recent import remember
@@ -409,16 +410,18 @@ def test_the_app_closes_after_the_given_time_and_prints_where_the_time_went(caps
 
 
 def delayed_contacts(driver, monkeypatch):
-    """Preparation of contacts that takes until the event is set."""
+    """Contacts that are loaded once the event is set."""
     touching = threading.Event()
-    thread = threading.Thread(target=touching.wait, daemon=True)
-    thread.start()
-    monkeypatch.setattr(driver.app.preparation, "_contacts", thread)
+    driver.app.preparation.finish()
+    monkeypatch.setattr("sandbox.app.preparing.warm_up", lambda contacts=True: contacts and touching.wait())
+    monkeypatch.setattr(driver.app, "preparation", Preparation())
+    driver.app.preparation.finish()
     return touching
 
 
 def test_a_level_in_which_things_touch_waits_until_contacts_are_prepared(driver, monkeypatch):
     touching = delayed_contacts(driver, monkeypatch)
+    driver.frames()
     assert driver.app.ready
     driver.app.start(Playback(small_level(contacts={})))
     for _ in range(5):

@@ -1,4 +1,4 @@
-"""A body kind is added by two new files and a line in two tables: one is added to a copy of the package, and played."""
+"""A body kind is two new files and a line in two tables: one is added to a copy of the package, and played."""
 
 import os
 import shutil
@@ -100,15 +100,16 @@ class LadderDrawing(BodyDrawing[LadderOptions]):
         return {"position": points[0].point, "width": length(points), "segments": self.options.segments}
 
 
-def _draw_ladder(pen: IconPen) -> None:
-    pen.line((8, 3), (8, 21))
-    pen.line((16, 3), (16, 21))
+def draw_ladder(pen: IconPen) -> None:
+    """Two rails."""
+    for x in (8, 16):
+        pen.line((x, 3), (x, 21))
 
 
 class LadderEditing(BodyEditing[LadderDef]):
     """A ladder hangs straight down."""
 
-    tools: ClassVar = (EditorTool("ladder", "Shift+L", "Ladder", _draw_ladder, LadderDrawing),)
+    tools: ClassVar = (EditorTool("ladder", "Shift+K", "Ladder", draw_ladder, LadderDrawing),)
     formless = frozenset({"particle_mass", "pin"})
 
     def mapped(self, motion: Motion) -> dict[str, Any]:
@@ -120,7 +121,7 @@ import json
 
 from sandbox import build_world, step
 from sandbox.editor.document import Document, empty_level
-from sandbox.editor.edits.moving import move, scale
+from sandbox.editor.edits.moving import move
 from sandbox.editor.items import items_of
 from sandbox.editor.scene import make_scene
 from sandbox.editor.tools.palette import TOOLS
@@ -149,10 +150,10 @@ assert "## Ladder" in format_reference() and "- Ladder: rung by rung" in format_
 document = Document(level, frozenset(items_of(level)))
 assert make_scene(move(document, 1.0, 2.0).level).bounds() == (1.0, 0.5, 1.5, 2.0)
 drawing = TOOLS["ladder"].drawing()
-for handle, x in ((drawing.down, 0.0), (drawing.up, 1.0)):
-    handle(Snap((x, 0.0), "grid", None, "", (x, 0.0)))
+drawing.down(Snap((0.0, 0.0)))
+drawing.up(Snap((1.0, 0.0)))
 drawn = drawing.done(Document(empty_level())).level
-assert (drawn.bodies[0].type, len(make_scene(drawn).position)) == ("ladder", 10)
+assert (drawn.bodies[0].type, build_world(drawn).particle_slot("ladder.9")) == ("ladder", 9)
 print("played")
 """
 
@@ -176,9 +177,10 @@ def test_a_body_kind_of_four_files_is_read_played_moved_drawn_and_documented(pac
     (package / "editor/kinds/ladder.py").write_text(EDITOR_KIND.lstrip(), encoding="utf-8")
     models, editing = package / "level/kinds/bodies.py", package / "editor/kinds/table.py"
     inserted(models, "from sandbox.level.kinds.mesh import", "from sandbox.level.kinds.ladder import Ladder\n")
-    inserted(models, "Mesh)\n", "Ladder, ")
-    import_line = "from sandbox.editor.kinds.ladder import LadderEditing\n"
-    inserted(editing, "from sandbox.editor.kinds.mesh import", import_line)
+    inserted(models, "Mesh)", "Ladder, ")
+    inserted(
+        editing, "from sandbox.editor.kinds.mesh import", "from sandbox.editor.kinds.ladder import LadderEditing\n"
+    )
     inserted(editing, '    "mesh":', '    "ladder": LadderEditing,\n')
     changed = [path for path in package.rglob("*.py") if before.get(path) != path.read_bytes()]
     assert len(changed) == 4

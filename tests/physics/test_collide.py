@@ -17,12 +17,9 @@ from tests.support.physics_scenes import run, scaled
 PIT = Chain([(-0.9, 6.0), (-0.9, 0.0), (0.9, 0.0), (0.9, 6.0)])
 
 
-HEAP = scaled(60, 10)
-
-
-def heap(count=HEAP, **settings):
+def heap(**settings):
     """Discs that fall into a pit, beside a block of jelly."""
-    w = world(PIT, **settings)
+    w, count = world(PIT, **settings), scaled(60, 10)
     generator = np.random.default_rng(4)
     k = np.arange(count)
     points = np.stack([-0.7 + 0.28 * (k % 6), 0.5 + 0.25 * (k // 6)], axis=1)

@@ -344,7 +344,7 @@ class EditScreen:
             at = self.cursor if self.cursor is not None else None if pointer is None else self.camera.to_world(pointer)
             self.pointer_tool.hover(at, pygame.key.get_mods())
         with profile.part("lint"):
-            self.watch.update(frame_time)
+            self.watch.update(frame_time, ready)
         self.bar.show(self)
         self.palette.show(self.tool)
         self.options.refresh()

@@ -231,6 +231,19 @@ class Collisions:
     kept: KeptContacts = NOTHING_KEPT
     count: int = 0
 
+    def begin(self, world: World) -> None:
+        """Take over the contacts of the world's last step, where they are not those of the last tick already."""
+        if world.contact_impulse is self.kept.impulse:
+            return
+        self.count = self.room.counts[KEPT] = len(world.contact_particle)
+        if self.count > len(self.room.kept.particle):
+            _grow(self)
+        room = self.room.kept
+        room.particle[: self.count] = world.contact_particle
+        room.feature[: self.count] = world.contact_feature
+        room.impulse[: self.count] = world.contact_impulse
+        _share_kept(world, self)
+
     def collide(self, start: Floats, tick: int, h: float) -> Contacts:
         """Find the contacts of a step of h [s] and solve those of free particles; the others, returned, are a solver's.
 
@@ -303,21 +316,6 @@ def _grow(collisions: Collisions) -> None:
     new.particle[:count], new.feature[:count], new.impulse[:count] = old.kept
     collisions.solved, collisions.kept = NO_CONTACTS, NOTHING_KEPT
     _bundle_up(collisions)
-
-
-def begin_collisions(world: World) -> Collisions | None:
-    """The collisions of the coming tick, with the contacts of the world's last step; None: nothing can touch."""
-    collisions = collisions_of(world)
-    if collisions is not None and world.contact_impulse is not collisions.kept.impulse:
-        counts, count = collisions.room.counts, len(world.contact_particle)
-        counts[KEPT] = collisions.count = count
-        if count > len(collisions.room.kept.particle):
-            _grow(collisions)
-        room = collisions.room.kept
-        room.particle[:count] = world.contact_particle
-        room.feature[:count], room.impulse[:count] = world.contact_feature, world.contact_impulse
-        _share_kept(world, collisions)
-    return collisions
 
 
 def _share_kept(world: World, collisions: Collisions) -> None:

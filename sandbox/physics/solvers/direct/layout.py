@@ -37,6 +37,7 @@ class SystemLayout:
     hooke (m,): springs of Hooke's law, which are no part of it. lent: the system as one argument for kernels.
     """
 
+    has_bodies: bool
     has_hooke: bool
     hooke: NDArray[np.bool_]
     system: System
@@ -111,7 +112,8 @@ def make_layout(world: World) -> SystemLayout:
         matrix,
         _lay_out_goals(constraints, constraint_body, len(first_rows), world.corner_form[constraints.corner]),
     )
-    return SystemLayout(bool((kind == LAW_HOOKE).any()), kind == LAW_HOOKE, system, bundle((system,)))
+    hooke = kind == LAW_HOOKE
+    return SystemLayout(len(system.bodies.lowest) > 0, bool(hooke.any()), hooke, system, bundle((system,)))
 
 
 def _eliminate(
