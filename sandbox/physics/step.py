@@ -9,7 +9,7 @@ from sandbox.physics.actuators import Driven, Hydraulics, Motors, Muscles, Strai
 from sandbox.physics.breaking import yield_and_break
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_springs
-from sandbox.physics.forces import Before, apply_forces
+from sandbox.physics.forces import Before, apply_forces, forces_of
 from sandbox.physics.integrate import integrate
 from sandbox.physics.sanitise import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
@@ -59,15 +59,19 @@ def step(world: World) -> None:
     collisions = world.derived(_collisions)
     if collisions is not None:
         collisions.begin(world)
-    for _ in range(count):
-        before = Before(apply_forces(world, h), rest_length)
-        contacts = None if collisions is None else collisions.collide(before.velocity, world.tick, h)
-        solver.solve(world, Substep(h, count, springs, elements, tick_springs, tick_elements, before), contacts)
-        if collisions is not None:
-            collisions.finish(h)
-        else:
-            integrate(world.position, world.velocity, world.particle_active, h)
-        rest_length = world.rest_length
+    if collisions is not None and collisions.is_free and not len(world.driven.motors.hub):
+        collisions.step_free(forces_of(world), count, solver.follows, world.tick, h)
+    else:
+        for _ in range(count):
+            forces = apply_forces(world, h)
+            before = Before(forces.particles.before, rest_length)
+            contacts = None if collisions is None else collisions.collide(forces, world.tick, h)
+            solver.solve(world, Substep(h, count, springs, elements, tick_springs, tick_elements, before), contacts)
+            if collisions is not None:
+                collisions.finish(h)
+            else:
+                integrate(world.position, world.velocity, world.particle_active, h)
+            rest_length = world.rest_length
     if collisions is not None:
         collisions.end(world)
     world.scale_impulses(1.0 / scale)

@@ -37,7 +37,6 @@ class SystemLayout:
     hooke (m,): springs of Hooke's law, which are no part of it. lent: the system as one argument for kernels.
     """
 
-    has_bodies: bool
     has_hooke: bool
     hooke: NDArray[np.bool_]
     system: System
@@ -113,7 +112,7 @@ def make_layout(world: World) -> SystemLayout:
         _lay_out_goals(constraints, constraint_body, len(first_rows), world.corner_form[constraints.corner]),
     )
     hooke = kind == LAW_HOOKE
-    return SystemLayout(len(system.bodies.lowest) > 0, bool(hooke.any()), hooke, system, bundle((system,)))
+    return SystemLayout(bool(hooke.any()), hooke, system, bundle((system,)))
 
 
 def _eliminate(

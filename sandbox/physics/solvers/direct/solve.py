@@ -9,9 +9,10 @@ from typing import Any
 
 from sandbox.physics.collision.types import Contacts
 from sandbox.physics.equation import implicit_spring_constant
-from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
+from sandbox.physics.integrate import follow
+from sandbox.physics.jit import bundle, contents, kernel
 from sandbox.physics.settings import AUTO
-from sandbox.physics.solvers.direct.families import SLOW_SHARE, load_rows
+from sandbox.physics.solvers.direct.families import load_rows
 from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.physics.solvers.direct.step_body import open_body, step_body
 from sandbox.physics.solvers.direct.system import Inputs, State, span_of
@@ -41,23 +42,7 @@ def _solve_bodies(lent_system: Any, lent_state: Any, inputs: Inputs, touched: bo
             state.velocity[rows.particle[r], 1] = rows.trial[r, 1]
         for k in range(span.first_spring, span.last_spring):
             state.tension[springs.slot[k]] = springs.tension[k]
-    _follow(state)
-
-
-@inner_kernel
-def _follow(state: State) -> None:
-    # s += 0.3 (v' - s)
-    for p in range(state.particle_active.shape[0]):
-        if state.particle_active[p]:
-            state.slow_velocity[p, 0] += SLOW_SHARE * (state.velocity[p, 0] - state.slow_velocity[p, 0])
-            state.slow_velocity[p, 1] += SLOW_SHARE * (state.velocity[p, 1] - state.slow_velocity[p, 1])
-
-
-@kernel
-def _solve_no_bodies(lent_state: Any) -> None:
-    # Of a world of free particles, which nothing holds.
-    (state,) = contents(lent_state)
-    _follow(state)
+    follow(state.velocity, state.slow_velocity, state.particle_active)
 
 
 def _lent_state(world: World) -> Any:
@@ -77,9 +62,6 @@ def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
         apply_explicit(world, layout.hooke, substep.springs, substep.h)
     state = world.derived(_lent_state)
     touched = contacts is not None and len(contacts.particle) > 0
-    if not touched and not layout.has_bodies:
-        _solve_no_bodies(state)
-        return
     inputs = Inputs(*substep.springs, *substep.elements, *substep.tick_springs, *substep.tick_elements, *substep.before)
     parts = substep.substeps if world.settings.substeps == AUTO else 0
     if contacts is not None and touched:
