@@ -183,6 +183,18 @@ def _plan(work: Work, first: int, last: int, h: float) -> tuple[int, float]:
 
 
 @inner_kernel
+def _bias(bounce: float, gap: float, small: float, softness: float, pushes: bool) -> tuple[float, float]:
+    # The velocity b [m/s] by which a contact is to end apart from its surfaces staying together, and how soft it is.
+    if bounce >= 0.0:
+        return -bounce, 0.0
+    if gap > 0.0:
+        return gap / small, 0.0
+    if pushes:
+        return max(OVERLAP_SHARE * gap / small, -FASTEST_PUSH), softness
+    return 0.0, 0.0
+
+
+@inner_kernel
 def _begin(work: Work, first: int, last: int, scale: float) -> None:
     # The impulses that contacts bring along, as those of a small step; pushed: what they add to the velocities.
     row = work.constraint
@@ -239,18 +251,10 @@ def _iterate(
         along = nx * ux + ny * uy
         mass = row[i, MASS]
         old = row[i, ALONG]
-        soft = 0.0
-        if row[i, BOUNCE] >= 0.0:
-            bias = -row[i, BOUNCE]
-        elif gap > 0.0:
-            if is_last and row[i, RESTITUTION] > 0.0 and along < -SLOWEST_BOUNCE:
-                continue
-            bias = gap / small
-        elif pushes:
-            bias = max(OVERLAP_SHARE * gap / small, -FASTEST_PUSH)
-            soft = softness
-        else:
-            bias = 0.0
+        bounce = row[i, BOUNCE]
+        if is_last and not bounce >= 0.0 and gap > 0.0 and row[i, RESTITUTION] > 0.0 and along < -SLOWEST_BOUNCE:
+            continue
+        bias, soft = _bias(bounce, gap, small, softness, pushes)
         change = (along + bias) * mass
         if pushes:
             change = (change + soft * old) / (1.0 + soft)
