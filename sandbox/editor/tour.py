@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 from sandbox.editor.kinds.rope import RopeOptions
 from sandbox.editor.scene import Scene
-from sandbox.editor.tools.drawing_options import Options, ParticleOptions
+from sandbox.editor.tools.drawing_options import Options
+from sandbox.editor.tools.drawing_particles import ParticleOptions
+from sandbox.level.format.quantities import Point
 from sandbox.level.kinds.rope import RopeDef
-
-Point = tuple[float, float]
 
 # From this slack on a rope hangs visibly, and from this mass on its weight bends it [kg].
 ENOUGH_SLACK = 0.1

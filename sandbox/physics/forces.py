@@ -1,11 +1,13 @@
 """What acts on particles before the springs do: gravity, the air, motors. To the springs it is work from outside."""
 
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
+from sandbox.physics.settings import WorldSettings
 from sandbox.physics.world import Floats, Slots, World
 
 # Below this moment of inertia [kg m^2] a group of particles has no direction to be turned in.
@@ -53,23 +55,41 @@ class Wheels(NamedTuple):
 
 
 class ForcedParticles(NamedTuple):
-    """The arrays of a world that gravity and the air read and change, see StateArrays; before [m/s]: room to copy."""
+    """The arrays of a world that gravity and the air read and change, see StateArrays.
+
+    before [m/s] (n, 2): the velocities at the start of the step. numbers (5,): gravity [m/s^2], wind [m/s], drag [1/s].
+    """
 
     velocity: Floats
     inverse_mass: Floats
     gravity_scale: Floats
     particle_active: NDArray[np.bool_]
     before: Floats
+    numbers: Floats
 
 
-@kernel
-def _add_gravity_and_air(
-    items: Any, gravity_x: float, gravity_y: float, wind_x: float, wind_y: float, drag: float, h: float
-) -> None:
-    # Of free particles: v += g h, times their gravity scale, then, with the air, v' = v + h drag (wind - v'), implicit:
-    # v += (1 - 1 / (1 + drag h)) (wind - v), which never overshoots. The velocities before are kept.
-    (particles,) = contents(items)
+@dataclass(eq=False)
+class Forces:
+    """The scratch of a world's forces, and it as one argument; settings: those whose numbers are in it."""
+
+    particles: ForcedParticles
+    items: Any
+    settings: WorldSettings | None = None
+
+
+@inner_kernel
+def add_gravity_and_air(particles: ForcedParticles, h: float) -> None:
+    """Bring velocities of free particles from the start of a step of h [s] to where motors begin; keep those before.
+
+    v += g h, times their gravity scale; then, with the air, v' = v + h drag (wind - v'), implicit:
+    v += (1 - 1 / (1 + drag h)) (wind - v), which never overshoots.
+    """
     velocity = particles.velocity
+    gravity_x = particles.numbers[0]
+    gravity_y = particles.numbers[1]
+    wind_x = particles.numbers[2]
+    wind_y = particles.numbers[3]
+    drag = particles.numbers[4]
     share = drag * h / (1.0 + drag * h)
     for p in range(particles.inverse_mass.shape[0]):
         particles.before[p, 0] = velocity[p, 0]
@@ -82,10 +102,25 @@ def _add_gravity_and_air(
                 velocity[p, 1] += share * (wind_y - velocity[p, 1])
 
 
-def _forced_particles(world: World) -> tuple[Any, Floats]:
-    before = np.zeros_like(world.velocity)
-    particles = world.velocity, world.inverse_mass, world.gravity_scale, world.particle_active
-    return bundle((ForcedParticles(*particles, before),)), before
+@kernel
+def _add_gravity_and_air(items: Any, h: float) -> None:
+    (particles,) = contents(items)
+    add_gravity_and_air(particles, h)
+
+
+def forces_of(world: World) -> Forces:
+    """The scratch of a world's forces, with the numbers of its present settings."""
+    forces, settings = world.derived(_make_forces), world.settings
+    if forces.settings is not settings:
+        forces.particles.numbers[:] = (*settings.gravity, *settings.wind, settings.drag)
+        forces.settings = settings
+    return forces
+
+
+def _make_forces(world: World) -> Forces:
+    arrays = world.velocity, world.inverse_mass, world.gravity_scale, world.particle_active
+    particles = ForcedParticles(*arrays, np.zeros_like(world.velocity), np.zeros(5))
+    return Forces(particles, bundle((particles,)))
 
 
 @inner_kernel
@@ -188,16 +223,15 @@ def _run_motors(masses: Masses, joints: Joints, wheels: Wheels, mark: Slots, mou
             _turn(mount, 0, count, masses, mount_x, mount_y, -impulse * of_mount)
 
 
-def apply_forces(world: World, h: float) -> Floats:
+def apply_forces(world: World, h: float) -> Forces:
     """Bring the velocities of free particles from the start of a step of h [s] to where its springs begin.
 
     A motor's reaction goes to its hub and what springs join to it, so that momentum and angular momentum are kept;
-    where one of these is pinned, it goes to the ground. Returned: the velocities [m/s] (n, 2) at the start, until the
-    next call.
+    where one of these is pinned, it goes to the ground. The forces that are returned keep the velocities before.
     """
-    settings, motors = world.settings, world.driven.motors
-    items, before = world.derived(_forced_particles)
-    _add_gravity_and_air(items, *settings.gravity, *settings.wind, settings.drag, h)
+    motors = world.driven.motors
+    forces = forces_of(world)
+    _add_gravity_and_air(forces.items, h)
     if len(motors.hub):
         mark, mount = np.zeros((2, world.particle_count), dtype=np.int64)
         _run_motors(
@@ -208,4 +242,4 @@ def apply_forces(world: World, h: float) -> Floats:
             ),
             mark, mount, h,
         )  # fmt: skip
-    return before
+    return forces

@@ -1,7 +1,6 @@
 """step(world): one tick on one screen. The order of its parts is part of the replay contract."""
 
-import functools
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +9,7 @@ from sandbox.physics.actuators import Driven, Hydraulics, Motors, Muscles, Strai
 from sandbox.physics.breaking import yield_and_break
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_springs
-from sandbox.physics.forces import Before, apply_forces
+from sandbox.physics.forces import Before, apply_forces, forces_of
 from sandbox.physics.integrate import integrate
 from sandbox.physics.sanitise import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
@@ -32,12 +31,13 @@ if TYPE_CHECKING:
 PHYSICS_VERSION = 1
 
 
-@functools.cache
-def _collisions_entry() -> "Callable[[World], Collisions | None]":
+def _collisions(world: World) -> "Collisions | None":
+    if not world.has_contacts:
+        return None
     # Half of the physics, which a world in which nothing touches does without.
-    from sandbox.physics.collision.collide import begin_collisions
+    from sandbox.physics.collision.collide import collisions_of
 
-    return begin_collisions
+    return collisions_of(world)
 
 
 def step(world: World) -> None:
@@ -53,20 +53,27 @@ def step(world: World) -> None:
     if count > 1:
         springs, elements = substep_coefficients(world, count), element_coefficients(world, count)
     # What a solver keeps is an impulse of one substep: exact, as their number is a power of two.
-    world.scale_impulses(settings.fewest_substeps / count)
-    collisions = _collisions_entry()(world) if world.has_contacts else None
-    for _ in range(count):
-        before = Before(apply_forces(world, h), rest_length)
-        contacts = None if collisions is None else collisions.collide(before.velocity, world.tick, h)
-        solver.solve(world, Substep(h, count, springs, elements, before), contacts)
-        if collisions is not None:
-            collisions.finish(h)
-        else:
-            integrate(world.position, world.velocity, world.particle_active, h)
-        rest_length = world.rest_length
+    scale = settings.fewest_substeps / count
+    world.scale_impulses(scale)
+    collisions = world.derived(_collisions)
+    if collisions is not None:
+        collisions.begin(world)
+    if collisions is not None and collisions.is_free and not len(world.driven.motors.hub):
+        collisions.step_free(forces_of(world), count, solver.follows, world.tick, h)
+    else:
+        for _ in range(count):
+            forces = apply_forces(world, h)
+            before = Before(forces.particles.before, rest_length)
+            contacts = None if collisions is None else collisions.collide(forces, world.tick, h)
+            solver.solve(world, Substep(h, count, springs, elements, before), contacts)
+            if collisions is not None:
+                collisions.finish(h)
+            else:
+                integrate(world.position, world.velocity, world.particle_active, h)
+            rest_length = world.rest_length
     if collisions is not None:
         collisions.end(world)
-    world.scale_impulses(count / settings.fewest_substeps)
+    world.scale_impulses(1.0 / scale)
     world.rest_hands()
     world.tick += 1
     contain_outcome(world)
@@ -91,14 +98,18 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
         world.fit(Driven(("a",), muscles, hydraulics, motors), [1.0])
         step(world)
         if contacts:
-            from sandbox.physics.collision.outline import TERRAIN_GROUP
+            from sandbox.physics.collision.filter import TERRAIN_GROUP
 
-            # Two loose ones that touch, and two on a spring, out of their reach.
+            # Two free ones that touch, and two on a spring, out of their reach.
             places = np.array([[0.0, 0.0], [0.0, 0.0], [0.5, 0.0], [0.7, 0.0]])
             world.add_particles(["d", "e", "f", "g"], places, group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
             world.add_springs(["u"], [5], [6])
             world.terrain = make_terrain([Chain([[-1.0, 0.0], [1.0, 0.0]])])
             step(world)
+            # And a world of free ones alone, which takes a way of its own.
+            free = World(world.settings)
+            free.add_particles(["a", "b"], np.zeros((2, 2)), group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
+            step(free)
     if "direct" in solvers:
         from sandbox.physics.solvers.direct.layout import layout_of
         from sandbox.physics.solvers.linear import parallel

@@ -137,8 +137,8 @@ class World(StateArrays):
             self.energy_bank[slots] = BANK_UNOPENED
 
     def drop_caches(self) -> None:
-        """Forget what solvers and contacts derive, which holds for interpreted kernels or for compiled ones alone."""
-        self.solver_cache = self.contact_cache = self.contacts = None
+        """Forget what was derived, which holds for interpreted kernels or for compiled ones alone."""
+        self._derived.clear()
 
     @property
     def settings(self) -> WorldSettings:

@@ -11,7 +11,7 @@ from sandbox.editor.items import Item, items_of
 from sandbox.editor.lint.finding import LISTED, connected_parts
 from sandbox.editor.lint.lint import findings
 from sandbox.editor.scene import make_scene
-from sandbox.editor.tools.drawing import DRAWINGS
+from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.build.build_world import build_world
 from sandbox.level.checks import CheckDef
@@ -295,7 +295,7 @@ def test_a_large_level_is_searched_in_many_slices():
 def test_the_tools_draw_nothing_that_the_lint_complains_about():
     document = Document(empty_level())
     for index, tool in enumerate(("rope", "bridge", "girder", "web")):
-        drawing = DRAWINGS[tool]()
+        drawing = TOOLS[tool].drawing()
         drawing.down(Snap((0.0, 10.0 * index)))
         drawing.up(Snap((3.0, 10.0 * index)))
         document = drawing.done(document)

@@ -1,4 +1,4 @@
-"""A body kind is added by two new files and a line in two tables: one is added to a copy of the package, and played."""
+"""A body kind is two new files and a line in two tables: one is added to a copy of the package, and played."""
 
 import os
 import shutil
@@ -74,6 +74,8 @@ from sandbox.editor.kinds.editing import BodyEditing
 from sandbox.editor.kinds.motion import Motion
 from sandbox.editor.tools.drawing_bodies import BodyDrawing, length
 from sandbox.editor.tools.drawing_options import BodyOptions, count_option, mass_option, material_option
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.kinds.ladder import LadderDef
 
@@ -98,10 +100,16 @@ class LadderDrawing(BodyDrawing[LadderOptions]):
         return {"position": points[0].point, "width": length(points), "segments": self.options.segments}
 
 
+def draw_ladder(pen: IconPen) -> None:
+    """Two rails."""
+    for x in (8, 16):
+        pen.line((x, 3), (x, 21))
+
+
 class LadderEditing(BodyEditing[LadderDef]):
     """A ladder hangs straight down."""
 
-    drawings: ClassVar = {"ladder": LadderDrawing}
+    tools: ClassVar = (EditorTool("ladder", "Shift+K", "Ladder", draw_ladder, LadderDrawing),)
     formless = frozenset({"particle_mass", "pin"})
 
     def mapped(self, motion: Motion) -> dict[str, Any]:
@@ -113,10 +121,10 @@ import json
 
 from sandbox import build_world, step
 from sandbox.editor.document import Document, empty_level
-from sandbox.editor.edits.moving import move, scale
+from sandbox.editor.edits.moving import move
 from sandbox.editor.items import items_of
 from sandbox.editor.scene import make_scene
-from sandbox.editor.tools.drawing import DRAWINGS
+from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.parse import parse_level
@@ -141,11 +149,11 @@ assert "## Ladder" in format_reference() and "- Ladder: rung by rung" in format_
 
 document = Document(level, frozenset(items_of(level)))
 assert make_scene(move(document, 1.0, 2.0).level).bounds() == (1.0, 0.5, 1.5, 2.0)
-drawing = DRAWINGS["ladder"]()
-for handle, x in ((drawing.down, 0.0), (drawing.up, 1.0)):
-    handle(Snap((x, 0.0), "grid", None, "", (x, 0.0)))
+drawing = TOOLS["ladder"].drawing()
+drawing.down(Snap((0.0, 0.0)))
+drawing.up(Snap((1.0, 0.0)))
 drawn = drawing.done(Document(empty_level())).level
-assert (drawn.bodies[0].type, len(build_world(drawn).position)) == ("ladder", 10)
+assert (drawn.bodies[0].type, build_world(drawn).particle_slot("ladder.9")) == ("ladder", 9)
 print("played")
 """
 
@@ -169,9 +177,10 @@ def test_a_body_kind_of_four_files_is_read_played_moved_drawn_and_documented(pac
     (package / "editor/kinds/ladder.py").write_text(EDITOR_KIND.lstrip(), encoding="utf-8")
     models, editing = package / "level/kinds/bodies.py", package / "editor/kinds/table.py"
     inserted(models, "from sandbox.level.kinds.mesh import", "from sandbox.level.kinds.ladder import Ladder\n")
-    inserted(models, "Mesh)\n", "Ladder, ")
-    import_line = "from sandbox.editor.kinds.ladder import LadderEditing\n"
-    inserted(editing, "from sandbox.editor.kinds.mesh import", import_line)
+    inserted(models, "Mesh)", "Ladder, ")
+    inserted(
+        editing, "from sandbox.editor.kinds.mesh import", "from sandbox.editor.kinds.ladder import LadderEditing\n"
+    )
     inserted(editing, '    "mesh":', '    "ladder": LadderEditing,\n')
     changed = [path for path in package.rglob("*.py") if before.get(path) != path.read_bytes()]
     assert len(changed) == 4

@@ -12,7 +12,7 @@ from sandbox.level.format.files import read_level, shipped_levels
 from sandbox.level.format.parse import parse_level
 from sandbox.level.format.salvage import salvage
 from sandbox.level.kinds.bodies import expansion
-from sandbox.physics.collision.outline import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
+from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.step import step
 
 SQUARE = [[0, 0], [4, 0], [4, -1], [0, -1]]

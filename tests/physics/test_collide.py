@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from sandbox.physics.collision import collide
-from sandbox.physics.collision.collide import collisions_of, last_contacts
+from sandbox.physics.collision.collide import Collisions, collisions_of, last_contacts
 from sandbox.physics.collision.types import NO_CONTACTS
 from sandbox.physics.snapshot import restore, state_hash, take
+from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
 from tests.support.contact_scenes import add_discs, add_jelly, world
@@ -17,17 +18,15 @@ from tests.support.physics_scenes import run, scaled
 PIT = Chain([(-0.9, 6.0), (-0.9, 0.0), (0.9, 0.0), (0.9, 6.0)])
 
 
-HEAP = scaled(60, 10)
-
-
-def heap(count=HEAP, **settings):
-    """Discs that fall into a pit, beside a block of jelly."""
-    w = world(PIT, **settings)
+def heap(jelly=True, **settings):
+    """Discs that fall into a pit, with a block of jelly or alone."""
+    w, count = world(PIT, **settings), scaled(60, 10)
     generator = np.random.default_rng(4)
     k = np.arange(count)
     points = np.stack([-0.7 + 0.28 * (k % 6), 0.5 + 0.25 * (k // 6)], axis=1)
     add_discs(w, points + generator.uniform(0.0, 0.05, points.shape), radius=generator.uniform(0.07, 0.11, count))
-    add_jelly(w, (0.0, 3.5), size=(0.3, 0.3))
+    if jelly:
+        add_jelly(w, (0.0, 3.5), size=(0.3, 0.3))
     return w
 
 
@@ -41,13 +40,14 @@ def hashes(w, ticks):
 
 
 @pytest.mark.parametrize("substeps", [1, 4])
-def test_a_run_whose_arrays_grow_on_the_way_has_the_bits_of_one_with_room_from_the_start(monkeypatch, substeps):
+@pytest.mark.parametrize("jelly", [False, True])
+def test_a_run_whose_arrays_grow_on_the_way_has_the_bits_of_one_with_room_from_the_start(monkeypatch, substeps, jelly):
     ticks = scaled(120, 30)
     monkeypatch.setattr(collide, "LEAST_ROOM", 5000)
-    ample = hashes(heap(substeps=substeps), ticks)
+    ample = hashes(heap(jelly, substeps=substeps), ticks)
     monkeypatch.setattr(collide, "LEAST_ROOM", 1)
     monkeypatch.setattr(collide, "MORE_ROOM", 1)
-    w = heap(substeps=substeps)
+    w = heap(jelly, substeps=substeps)
     rooms = []
     for expected in ample:
         step(w)
@@ -115,3 +115,11 @@ def test_the_contacts_of_the_last_step_are_those_of_the_state():
     w.cut([0])
     assert len(last_contacts(w).gap) == 0
     assert last_contacts(world()) is NO_CONTACTS
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_world_in_which_nothing_is_held_has_the_bits_of_one_that_is_taken_part_by_part(solver, monkeypatch):
+    ticks = scaled(90, 20)
+    expected = hashes(heap(jelly=False, solver=solver, substeps=2, drag=0.3, wind=(2.0, 0.5)), ticks)
+    monkeypatch.setattr(Collisions, "is_free", property(lambda self: False, lambda self, value: None), raising=False)
+    assert hashes(heap(jelly=False, solver=solver, substeps=2, drag=0.3, wind=(2.0, 0.5)), ticks) == expected

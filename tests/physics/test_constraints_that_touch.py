@@ -5,7 +5,7 @@ import pytest
 
 from sandbox.physics.actuators import StrainLimits
 from sandbox.physics.breaking import yield_and_break
-from sandbox.physics.collision.outline import ALL_GROUPS, LINE
+from sandbox.physics.collision.filter import ALL_GROUPS, LINE
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.energy import total_energy
 from sandbox.physics.settings import AUTO

@@ -7,7 +7,7 @@ import numpy as np
 
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.jelly import JellyDef
-from sandbox.physics.collision.outline import ALL_GROUPS, LINE
+from sandbox.physics.collision.filter import ALL_GROUPS, LINE
 from sandbox.physics.constraints import AREA
 from sandbox.physics.energy import (
     gravity_energy,

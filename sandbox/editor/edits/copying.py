@@ -18,10 +18,8 @@ from sandbox.level.format.canonical import level_text
 from sandbox.level.format.limits import DEFAULT_MATERIAL, PARTICLE_LIMIT, SPRING_LIMIT
 from sandbox.level.format.model import Level, Material, NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.parse import parse_level
-from sandbox.level.format.quantities import replaced
+from sandbox.level.format.quantities import Point, replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
-
-Point = tuple[float, float]
 
 
 def copy_text(document: Document) -> str:

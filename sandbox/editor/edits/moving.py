@@ -33,10 +33,9 @@ from sandbox.editor.kinds.table import editing
 from sandbox.editor.scene import Scene, make_scene, positions
 from sandbox.level.format.limits import COORDINATE_LIMIT
 from sandbox.level.format.model import Level, SpringDef
-from sandbox.level.format.quantities import replaced
+from sandbox.level.format.quantities import Point, replaced
 from sandbox.level.kinds.geometry import Points
 
-Point = tuple[float, float]
 Edge = Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]
 Axis = Literal["x", "y"]
 

@@ -1,10 +1,9 @@
 """BodyEditing: what the editor adds to a kind of body; each kind has a file of its own beside this one."""
 
-from collections.abc import Mapping
 from typing import Any, ClassVar, Generic, TypeVar
 
 from sandbox.editor.kinds.motion import Motion
-from sandbox.editor.tools.drawing_tool import Drawing
+from sandbox.editor.tools.editor_tool import EditorTool
 from sandbox.level.kinds.body_def import BodyDef
 
 Body = TypeVar("Body", bound=BodyDef)
@@ -13,8 +12,8 @@ Body = TypeVar("Body", bound=BodyDef)
 class BodyEditing(Generic[Body]):
     """One body of a kind in the editor: where it goes when the plane is moved, and how its kind is drawn."""
 
-    # Drawing tools that make such a body, by name.
-    drawings: ClassVar[Mapping[str, type[Drawing[Any]]]] = {}
+    # Tools that draw such a body, in the order of the palette.
+    tools: ClassVar[tuple[EditorTool, ...]] = ()
     # Fields that its form does not depend on, beside those of every body.
     formless: ClassVar[frozenset[str]] = frozenset()
 

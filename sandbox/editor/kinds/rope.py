@@ -7,14 +7,16 @@ from sandbox.editor.kinds.editing import BodyEditing
 from sandbox.editor.kinds.motion import Motion, stretch
 from sandbox.editor.tools.drawing_bodies import LineDrawing, fitting_count, length, rounded
 from sandbox.editor.tools.drawing_options import (
-    About,
     LineOptions,
+    OptionInfo,
     count_option,
     flag_option,
     mass_option,
     material_option,
     option,
 )
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.kinds.rope import RopeDef
 
@@ -32,7 +34,9 @@ class RopeOptions(LineOptions):
     segments: int | None = count_option("links", "Number of links; empty = links of about 0.25 m.", 1)
     slack: float = option(
         0.0,
-        About("number", "slack", "How much longer it is than the way from end to end, 0.1 = 10 %.", "", *SLACK_RANGE),
+        OptionInfo(
+            "number", "slack", "How much longer it is than the way from end to end, 0.1 = 10 %.", "", *SLACK_RANGE
+        ),
     )
     particle_mass: float = mass_option(1.0)
     end_mass: float | None = mass_option(None, "end mass", "Mass of the last particle; empty = as the others.")
@@ -61,10 +65,17 @@ class RopeDrawing(LineDrawing[RopeOptions]):
         return {**self.ends(points), "end_mass": self.options.end_mass, "rest_length": rest}
 
 
+def _draw_rope(pen: IconPen) -> None:
+    points = [(4 + 4 * k, 6 + 11 * (1 - ((k - 2) / 2) ** 2)) for k in range(5)]
+    pen.line(*points)
+    for x, y in points:
+        pen.disc(x, y, 2.3)
+
+
 class RopeEditing(BodyEditing[RopeDef]):
     """A rope goes where its ends go."""
 
-    drawings: ClassVar = {"rope": RopeDrawing}
+    tools: ClassVar = (EditorTool("rope", "R", "Rope", _draw_rope, RopeDrawing),)
     formless = frozenset({"particle_mass", "end_mass", "rest_length", "pin", "bending"})
 
     def can_stretch(self) -> bool:

@@ -11,7 +11,6 @@ from sandbox.editor.kinds.ring import RingEditing
 from sandbox.editor.kinds.rope import RopeEditing
 from sandbox.editor.kinds.web import WebEditing
 from sandbox.editor.kinds.wheel import WheelEditing
-from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.level.kinds.body_def import BodyDef
 
 EDITING: dict[str, type[BodyEditing[Any]]] = {
@@ -24,10 +23,8 @@ EDITING: dict[str, type[BodyEditing[Any]]] = {
     "ring": RingEditing,
     "mesh": MeshEditing,
 }
-# Drawing tools of all kinds, by name.
-BODY_DRAWINGS: dict[str, type[Drawing[Any]]] = {
-    name: drawing for each in EDITING.values() for name, drawing in each.drawings.items()
-}
+# Tools of all kinds, in the order of the palette.
+BODY_TOOLS = tuple(tool for each in EDITING.values() for tool in each.tools)
 
 
 def editing(body: BodyDef) -> BodyEditing[Any]:

@@ -15,6 +15,8 @@ from sandbox.editor.tools.drawing_options import (
     material_option,
     size_option,
 )
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.wheel import WheelDef
@@ -44,7 +46,7 @@ class WheelDrawing(RoundDrawing[WheelOptions]):
     counted = "segments"
 
     def fitting(self, points: list[Snap]) -> int:
-        """About 0.5 m of rim to each spoke; an even number, as the box around an odd one is crooked."""
+        """OptionInfo 0.5 m of rim to each spoke; an even number, as the box around an odd one is crooked."""
         return 2 * fitting_count(2.0 * math.pi * length(points), 2.0 * RIM_LENGTH, SPOKES[0] // 2, SPOKES[1] // 2)
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:
@@ -66,10 +68,17 @@ class WheelDrawing(RoundDrawing[WheelOptions]):
         return f"radius {length(points):.3g} m, {self._spokes(points)} spokes"
 
 
+def _draw_wheel(pen: IconPen) -> None:
+    pen.disc(12, 12, 9.5, 2.6)
+    pen.disc(12, 12, 2.6)
+    for k in range(6):
+        pen.line((12, 12), (12 + 8 * math.cos(math.tau * k / 6), 12 + 8 * math.sin(math.tau * k / 6)), width=1.4)
+
+
 class WheelEditing(BodyEditing[WheelDef]):
     """A wheel stays round; in a mirror its motor turns the other way."""
 
-    drawings: ClassVar = {"wheel": WheelDrawing}
+    tools: ClassVar = (EditorTool("wheel", "Q", "Wheel with a hub", _draw_wheel, WheelDrawing),)
     formless = frozenset({"particle_mass", "hub_mass", "pin", "motor"})
 
     def mapped(self, motion: Motion) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from sandbox.editor.document import Document
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene
 from sandbox.level.format.model import Level
-from sandbox.physics.collision.outline import TERRAIN_GROUP
+from sandbox.physics.collision.filter import TERRAIN_GROUP
 
 Severity = Literal["error", "warning", "hint"]
 Slots = NDArray[np.int64]

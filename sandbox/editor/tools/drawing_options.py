@@ -9,7 +9,6 @@ from sandbox.editor.document import EditError
 from sandbox.level.format.limits import (
     COORDINATE_LIMIT,
     DEFAULT_MATERIAL,
-    FRICTION_LIMIT,
     MASS_RANGE,
     PARTICLE_LIMIT,
 )
@@ -21,7 +20,7 @@ SIGNED_STEP = 0.05
 
 
 @dataclass(frozen=True)
-class About:
+class OptionInfo:
     """What a person is told of an option: kind, label, tooltip, unit, and least and most value (both included).
 
     optional: None is a value too, "choose one that fits the size".
@@ -36,38 +35,34 @@ class About:
     optional: bool = False
 
 
-def option(default: Any, about: About) -> Any:
+def option(default: Any, about: OptionInfo) -> Any:
     """An option and what a person is told of it."""
     return field(default=default, metadata={"about": about})
 
 
 def count_option(label: str, text: str, least: int, default: int | None = None) -> Any:
     """A number of parts; None: as many as fit the size."""
-    return option(default, About("count", label, text, "", least, PARTICLE_LIMIT, optional=default is None))
+    return option(default, OptionInfo("count", label, text, "", least, PARTICLE_LIMIT, optional=default is None))
 
 
 def mass_option(default: float | None, label: str = "mass", text: str = "Mass of each particle.") -> Any:
     """A mass [kg]; None: as the others."""
-    return option(default, About("number", label, text, "kg", *MASS_RANGE, optional=default is None))
+    return option(default, OptionInfo("number", label, text, "kg", *MASS_RANGE, optional=default is None))
 
 
 def size_option(label: str, text: str) -> Any:
     """A length [m] that may be left to the drawing."""
-    return option(None, About("number", label, text, "m", 1e-6, optional=True))
-
-
-def _surface(label: str, text: str, most: float) -> Any:
-    return option(None, About("number", label, text, "", 0.0, most, optional=True))
+    return option(None, OptionInfo("number", label, text, "m", 1e-6, optional=True))
 
 
 def flag_option(default: bool, label: str, text: str) -> Any:
     """Yes or no."""
-    return option(default, About("flag", label, text))
+    return option(default, OptionInfo("flag", label, text))
 
 
 def material_option(default: str = DEFAULT_MATERIAL) -> Any:
     """The material of the springs."""
-    return option(default, About("material", "material", "Material of the springs."))
+    return option(default, OptionInfo("material", "material", "Material of the springs."))
 
 
 @dataclass(frozen=True)
@@ -90,40 +85,10 @@ class LineOptions(BodyOptions):
     pin_end: bool
 
 
-@dataclass(frozen=True)
-class PinOptions(Options):
-    """A pin has none."""
-
-
-@dataclass(frozen=True)
-class ParticleOptions(Options):
-    """A loose particle."""
-
-    mass: float = mass_option(1.0, text="Mass.")
-    radius: float = option(0.05, About("number", "radius", "Radius of the drawn disc.", "m"))
-    pinned: bool = flag_option(False, "pinned", "Hold it where it is.")
-
-
-@dataclass(frozen=True)
-class SpringOptions(Options):
-    """A loose spring, and the particles that it gets where it ends at none."""
-
-    material: str = material_option()
-    mass: float = mass_option(1.0, text="Mass of the particle that an end in empty space gets.")
-
-
-@dataclass(frozen=True)
-class SurfaceOptions(Options):
-    """Terrain or walls; None: friction and restitution of the level's contacts."""
-
-    friction: float | None = _surface("friction", "Friction of its surface; empty = the level's.", FRICTION_LIMIT)
-    restitution: float | None = _surface("bounce", "Share of its speed that bounces; empty = the level's.", 1.0)
-
-
 AnyOptions = TypeVar("AnyOptions", bound=Options)
 
 
-def described(options: Options) -> dict[str, About]:
+def described(options: Options) -> dict[str, OptionInfo]:
     """What a person is told of each option, by its name, in order."""
     return {each.name: each.metadata["about"] for each in fields(options)}
 
@@ -142,7 +107,7 @@ def changed(options: AnyOptions, name: str, value: Any) -> AnyOptions:
     return _replace(options, **{name: value})
 
 
-def stepped(about: About, value: float | None, by: int) -> float:
+def stepped(about: OptionInfo, value: float | None, by: int) -> float:
     """The value one step up or down from another, within its limits: 1, 2, 5, 10, ... or, of counts, the next.
 
     None steps to the least count, or to 1.

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene
+from sandbox.level.format.quantities import Point
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.geometry import turn
 
-Point = tuple[float, float]
 Kind = Literal["particle", "end", "corner", "edge", "angle", "grid", "free"]
 
 # Directions from the anchor that a line is drawn to.

@@ -10,7 +10,7 @@ from sandbox.level.format.limits import BODY_RADIUS
 from sandbox.level.format.model import ContactsDef, Level, ParticleDef
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.physics.actuators import Surface
-from sandbox.physics.collision.outline import ALL_GROUPS, TERRAIN_GROUP
+from sandbox.physics.collision.filter import ALL_GROUPS, TERRAIN_GROUP
 from sandbox.physics.terrain import NO_TERRAIN, Chain, Terrain, make_terrain
 
 # Names of the groups that exist in every level: that of terrain and walls, and that of bodies which name none.

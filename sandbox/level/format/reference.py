@@ -77,7 +77,7 @@ _NAMES = f"""\
 {_GENERATION}
 - A pinned particle starts at rest, whatever its velocity.
 
-## Touching
+## Collisions
 
 - Things touch where the level has `contacts`, `walls` or `terrain`. A contact pushes and never pulls. Contacts are
   found anew in every step, along the way that each particle goes in it, so that what is fast does not pass.
@@ -121,7 +121,7 @@ _NAMES = f"""\
   are. A spring that would lose its length so is refused.
 """
 
-_DRIVEN = """\
+_ACTUATORS = """\
 ## What breaks, yields and is driven
 
 - Strain is `(length - rest length) / rest length`, of every spring with a rest length above 0, taken once, at the end
@@ -163,7 +163,7 @@ _MISTAKES = [
 
 def format_reference() -> str:
     """The reference as Markdown."""
-    return "\n".join([_INTRO, *_tables(), _NAMES, _DRIVEN, _limits(), _errors()])
+    return "\n".join([_INTRO, *_tables(), _NAMES, _ACTUATORS, _limits(), _errors()])
 
 
 def _tables() -> Iterator[str]:

@@ -13,7 +13,7 @@ from sandbox.level.format.limits import COORDINATE_LIMIT
 from sandbox.level.format.quantities import Description
 from sandbox.level.kinds.body_def import BendingDef, BodyDef
 from sandbox.level.kinds.geometry import Pairs, Points, distances
-from sandbox.physics.collision.outline import LINE
+from sandbox.physics.collision.filter import LINE
 
 Body = TypeVar("Body", bound=BodyDef)
 Floats = NDArray[np.float64]

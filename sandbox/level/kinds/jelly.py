@@ -16,7 +16,7 @@ from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import NO_POLYGONS, Expansion
 from sandbox.level.kinds.geometry import Pairs, Points, turn
 from sandbox.level.kinds.polygon import BORDER, grid_bounds, is_simple, largest_part, polygon_grid
-from sandbox.physics.collision.outline import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
+from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 
 
 class BoxShape(Description):

@@ -20,12 +20,14 @@ class Solver:
     """One solver: another is a module in this folder, and a line in SOLVERS.
 
     proven_limit: whether the limits of `stability` hold for it. bounded: whether it needs none, because it tests the
-    energy of every step.
+    energy of every step. follows: whether it keeps the slow part of velocities, which is all that it does to particles
+    that nothing holds.
     """
 
     module: str
     proven_limit: bool
     bounded: bool
+    follows: bool = False
 
     @cached_property
     def solve(self) -> "Callable[[World, Substep, Contacts | None], None]":
@@ -48,5 +50,5 @@ class Solver:
 SOLVERS = {
     "single_pass": Solver("single_pass", proven_limit=True, bounded=False),
     "iterative": Solver("iterative", proven_limit=False, bounded=False),
-    "direct": Solver("direct.solve", proven_limit=False, bounded=True),
+    "direct": Solver("direct.solve", proven_limit=False, bounded=True, follows=True),
 }

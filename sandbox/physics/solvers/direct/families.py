@@ -4,6 +4,7 @@ Each family loops over its own arrays; what calls them knows spans alone. Anothe
 else in this room.
 """
 
+from sandbox.physics.integrate import SLOW_SHARE
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.constraint_terms import (
     assemble_constraints,
@@ -31,8 +32,6 @@ from sandbox.physics.solvers.direct.system import Inputs, Span, State, System
 from sandbox.physics.solvers.linear.fronts import clear_fronts
 from sandbox.physics.world import Floats
 
-# s += SLOW_SHARE (v' - s), per step. Higher leaves fast vibration undamped, lower damps slow turning.
-SLOW_SHARE = 0.3
 # The velocities foreseen before a first solve are v + CHANGE_AHEAD (v - s): of an even change, s lags behind by that of
 # 1 / CHANGE_AHEAD steps. Without it, or with less, smooth turning takes two solves where one is enough.
 CHANGE_AHEAD = SLOW_SHARE / (1.0 - SLOW_SHARE)

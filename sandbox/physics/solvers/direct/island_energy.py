@@ -5,7 +5,7 @@ forces in the step is that of their impulses at the mean of the velocities v and
 is stored, up to a limit, in the energy banks of bodies and particles; to push apart what penetrates is paid from there.
 """
 
-from sandbox.physics.collision.outline import TERRAIN_GROUP
+from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.terrain_clamp import STOPS, stopped
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.jit import inner_kernel

@@ -111,7 +111,8 @@ def make_layout(world: World) -> SystemLayout:
         matrix,
         _lay_out_goals(constraints, constraint_body, len(first_rows), world.corner_form[constraints.corner]),
     )
-    return SystemLayout(bool((kind == LAW_HOOKE).any()), kind == LAW_HOOKE, system, bundle((system,)))
+    hooke = kind == LAW_HOOKE
+    return SystemLayout(bool(hooke.any()), hooke, system, bundle((system,)))
 
 
 def _eliminate(

@@ -1,4 +1,7 @@
-"""Delassus blocks W = P A^-1 P^T [1/kg] of factored bodies: how particles P that contacts touch answer to impulses."""
+"""Response: the Delassus operator W = P A^-1 P^T [1/kg] of factored bodies, in blocks.
+
+It says how particles P that contacts touch answer to impulses.
+"""
 
 from sandbox.physics.jit import inner_kernel, unsigned
 from sandbox.physics.solvers.contact.gauss_seidel import Delassus

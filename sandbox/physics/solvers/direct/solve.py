@@ -9,9 +9,10 @@ from typing import Any
 
 from sandbox.physics.collision.types import Contacts
 from sandbox.physics.equation import implicit_spring_constant
+from sandbox.physics.integrate import follow
 from sandbox.physics.jit import bundle, contents, kernel
 from sandbox.physics.settings import AUTO
-from sandbox.physics.solvers.direct.families import SLOW_SHARE, load_rows
+from sandbox.physics.solvers.direct.families import load_rows
 from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.physics.solvers.direct.step_body import open_body, step_body
 from sandbox.physics.solvers.direct.system import Inputs, State, span_of
@@ -45,10 +46,7 @@ def _solve_bodies(
             state.velocity[rows.particle[r], 1] = rows.trial[r, 1]
         for k in range(span.first_spring, span.last_spring):
             state.tension[springs.slot[k]] = springs.tension[k]
-    for p in range(state.particle_active.shape[0]):
-        if state.particle_active[p]:
-            state.slow_velocity[p, 0] += SLOW_SHARE * (state.velocity[p, 0] - state.slow_velocity[p, 0])
-            state.slow_velocity[p, 1] += SLOW_SHARE * (state.velocity[p, 1] - state.slow_velocity[p, 1])
+    follow(state.velocity, state.slow_velocity, state.particle_active)
 
 
 def _lent_state(world: World) -> Any:
@@ -67,9 +65,9 @@ def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
     if layout.has_hooke:
         apply_explicit(world, layout.hooke, substep.springs, substep.h)
     state = world.derived(_lent_state)
+    touched = contacts is not None and len(contacts.particle) > 0
     inputs = (*substep.springs, *substep.elements, *substep.before)
     parts = substep.substeps if world.settings.substeps == AUTO else 0
-    touched = contacts is not None and len(contacts.particle) > 0
     if contacts is not None and touched:
         from sandbox.physics.solvers.direct.island_solve import solve_touched
 
