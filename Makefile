@@ -31,6 +31,7 @@ $(BIN)/python:
 
 $(VENV)/installed: $(BIN)/python pyproject.toml
 	$(BIN)/python -m pip install --quiet --editable .
+	$(BIN)/python -m compileall -q sandbox
 	touch $@
 
 $(VENV)/installed-dev: $(BIN)/python pyproject.toml

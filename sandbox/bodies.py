@@ -6,7 +6,7 @@ Values are validated where they are made: tuples for lists, and ValidationError 
 
 from sandbox.level.checks import CheckDef
 from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.drives import HydraulicDef, MotorDef, MuscleDef
+from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef, MuscleDef
 from sandbox.level.format.files import parse_level, write_level
 from sandbox.level.format.limits import FORMAT, VERSION
 from sandbox.level.format.model import (
@@ -20,20 +20,15 @@ from sandbox.level.format.model import (
     TerrainDef,
     WallsDef,
 )
-from sandbox.level.kinds.bodies import (
-    BendingDef,
-    BoxShape,
-    BridgeDef,
-    CircleShape,
-    GirderDef,
-    JellyDef,
-    MeshDef,
-    PolygonShape,
-    RingDef,
-    RopeDef,
-    WebDef,
-    WheelDef,
-)
+from sandbox.level.kinds.body_def import BendingDef
+from sandbox.level.kinds.bridge import BridgeDef
+from sandbox.level.kinds.girder import GirderDef
+from sandbox.level.kinds.jelly import BoxShape, CircleShape, JellyDef, PolygonShape
+from sandbox.level.kinds.mesh import MeshDef
+from sandbox.level.kinds.ring import RingDef
+from sandbox.level.kinds.rope import RopeDef
+from sandbox.level.kinds.web import WebDef
+from sandbox.level.kinds.wheel import WheelDef
 
 __all__ = [
     "FORMAT",

@@ -133,8 +133,14 @@ def _parser() -> argparse.ArgumentParser:
     edit = command("edit", _edit, "open the level editor: a level, or an empty sheet")
     edit.add_argument("level", nargs="?", metavar="LEVEL")
     edit.add_argument("--scale", type=scale, help="size of the widgets, 0.5 to 4; default: the display's own")
+    _add_prepare_options(command("prepare", _prepare, "compile the physics, as the first start would"))
     command("schema", _schema, "print the JSON Schema of level files")
     return parser
+
+
+def _add_prepare_options(prepare: argparse.ArgumentParser) -> None:
+    prepare.add_argument("level", nargs="?", metavar="LEVEL", help="only what this level needs")
+    prepare.add_argument("--processes", type=count, metavar="N", help="at a time; default: one a processor, at most 4")
 
 
 def _level(name: str) -> "Level":
@@ -173,14 +179,14 @@ def _play(options: argparse.Namespace) -> int:
         level, replay = _level_or_replay(options.level or "rope_bridge_jelly")
         return _play_headless(level, replay)
     from sandbox.app.opening import open_app
-    from sandbox.app.wanted import Wanted
+    from sandbox.app.start_request import StartRequest
 
-    def find() -> Wanted:
+    def find() -> StartRequest:
         if options.level is None:
-            return Wanted()
+            return StartRequest()
         level, replay = _level_or_replay(options.level)
         source = Path(options.level) if not replay and Path(options.level).is_file() else None
-        return Wanted(None if replay else level, replay, source)
+        return StartRequest(None if replay else level, replay, source)
 
     return open_app(find, profile=options.profile, seconds=options.seconds, scale=options.scale)
 
@@ -397,9 +403,9 @@ def _edit(options: argparse.Namespace) -> int:
     if not has_display():
         raise Refused("the editor needs a display; without one, edit the level's JSON and try `sandbox check`")
     from sandbox.app.opening import open_app
-    from sandbox.app.wanted import Wanted
+    from sandbox.app.start_request import StartRequest
 
-    return open_app(lambda: Wanted(edit=options.level or ""), scale=options.scale)
+    return open_app(lambda: StartRequest(edit=options.level or ""), scale=options.scale)
 
 
 def _format(options: argparse.Namespace) -> int:
@@ -418,4 +424,20 @@ def _schema(options: argparse.Namespace) -> int:
     from sandbox.level.format.schema import schema
 
     print(json.dumps(schema(), indent=2))
+    return EXIT_OK
+
+
+def _prepare(options: argparse.Namespace) -> int:
+    level = _level(options.level) if options.level else None
+    from sandbox.app.compiling import GROUPS, compile_all, note_prepared, usual_processes
+
+    groups = GROUPS if level is None or level.has_contacts else GROUPS[:1]
+    solvers = None if level is None else (level.settings.solver,)
+    with Progress(0, "kernel") as bar:
+        succeeded = compile_all(options.processes or usual_processes(), groups, solvers, bar.show)
+    if not succeeded:
+        raise Refused("numba cannot compile everything here; `sandbox play` tries again and says why")
+    if level is None:
+        note_prepared()
+    print("the physics is compiled" if level is None else f"all that {level.name} needs is compiled")
     return EXIT_OK

@@ -176,6 +176,12 @@ class Progress:
         if self._bar is not None:
             self._bar.update(count)
 
+    def show(self, done: int, total: int) -> None:
+        """So many units are done, of as many as are known by now."""
+        if self._bar is not None:
+            self._bar.total = total
+        self.update(done - self.done)
+
     @contextmanager
     def aside(self) -> Iterator[None]:
         """Print other lines in here, which the bar makes room for."""

@@ -66,6 +66,58 @@ class Nudge(Command):
 '''
 
 
+TRIANGLE = '''
+"""The tool that draws triangles."""
+
+import math
+from dataclasses import dataclass
+
+from sandbox.editor.document import Document
+from sandbox.editor.edits.placing import add_spring
+from sandbox.editor.tools.drawing_options import Options, mass_option
+from sandbox.editor.tools.drawing_particles import new_particle
+from sandbox.editor.tools.drawing_tool import Drawing
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
+from sandbox.editor.tools.snap import Snap
+
+
+@dataclass(frozen=True)
+class TriangleOptions(Options):
+    """A triangle."""
+
+    mass: float = mass_option(1.0)
+
+
+class TriangleDrawing(Drawing[TriangleOptions]):
+    """A side from end to end, and a corner on its left."""
+
+    defaults = TriangleOptions()
+    start_hint = "Drag along a side"
+
+    def placed(self, document: Document, points: list[Snap]) -> Document:
+        (ax, ay), (bx, by) = points[0].point, points[1].point
+        high = math.sqrt(0.75)
+        top = ((ax + bx) / 2 - (by - ay) * high, (ay + by) / 2 + (bx - ax) * high)
+        for at in (*points, Snap(top)):
+            document = new_particle(document, at, self.options.mass)
+        names = [particle.id for particle in document.level.particles[-3:]]
+        for end, other in zip(names, names[1:] + names[:1]):
+            document = add_spring(document, end, other)
+        return document
+
+    def joins(self, index: int) -> bool:
+        return False
+
+
+def _draw_triangle(pen: IconPen) -> None:
+    pen.shape((4, 20), (20, 20), (12, 6))
+
+
+TRIANGLE = EditorTool("triangle", "Shift+A", "Triangle", _draw_triangle, TriangleDrawing)
+'''
+
+
 @pytest.fixture
 def package(tmp_path):
     """A copy of the package."""
@@ -132,8 +184,8 @@ def test_a_level_setting_is_three_files(package):
     )
     put(
         package / "physics/forces.py",
-        "    world.velocity[world.inverse_mass > 0.0, 1] += settings.lift * h\n",
-        before="    if settings.drag > 0.0:",
+        "    world.velocity[world.inverse_mass > 0.0, 1] += world.settings.lift * h\n",
+        before="    if len(motors.hub):",
     )
     script = """
 from sandbox.physics.settings import WorldSettings
@@ -164,3 +216,40 @@ assert state_hash(world) != before and list(hash_by_array(world))[15] == "charge
 """
     play(package, script)
     assert changed(package) == ["physics/state.py"]
+
+
+def test_an_editor_tool_is_one_file_and_its_place_in_the_palette(package):
+    shutil.copytree(ROOT / "assets", package / "_shipped/assets", dirs_exist_ok=True)
+    put(package / "editor/tools/drawing_triangle.py", TRIANGLE)
+    palette = package / "editor/tools/palette.py"
+    put(palette, "from sandbox.editor.tools.drawing_triangle import TRIANGLE\n", before="import LASSO")
+    palette.write_text(palette.read_text(encoding="utf-8").replace(" PIN, GROUND", " TRIANGLE, PIN, GROUND"))
+    script = f"""
+import sys
+sys.path.append({str(ROOT)!r})
+import pytest
+from tests.app.conftest import Driver
+import pygame
+from sandbox.app.shortcuts import tip_of
+for name in ("user_data_dir", "user_documents_dir", "user_cache_dir"):
+    pytest.MonkeyPatch().setattr(f"platformdirs.{{name}}", lambda *_, **__: "person")
+driver = Driver(parse_level(level(), "level"))
+driver.app.documents.new()
+driver.frames(2)
+driver.click_widget(driver.editor.palette.tools["triangle"])
+assert list(driver.editor.palette.tools).index("triangle") == 13
+driver.fill(driver.editor.options.fields["mass"], "3")
+driver.drag((0, 0), (1, 0), (2, 0))
+driver.key(pygame.K_v)
+driver.key(pygame.K_a, pygame.KMOD_SHIFT)
+driver.drag((-3, 0), (-2, 0))
+drawn = driver.editor.document.level
+assert [particle.mass for particle in drawn.particles] == [3.0] * 6 and len(drawn.springs) == 6
+driver.app.close()
+print(tip_of("tool_triangle", "edit"), driver.editor.history.labels, sep="\\n")
+"""
+    assert play(package, script).splitlines() == [
+        "Triangle  [Shift+A]",
+        "['New', 'Draw triangle', 'Draw triangle']",
+    ]
+    assert changed(package) == ["editor/tools/drawing_triangle.py", "editor/tools/palette.py"]

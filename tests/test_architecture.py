@@ -193,3 +193,24 @@ def test_no_function_is_longer_than_60_lines():
         and node.end_lineno - node.lineno + 1 > LONGEST_FUNCTION
     }
     assert long == {}
+
+
+def shared(names):
+    """Those of the names in (name, place) pairs that stand for several places, with these."""
+    places = {}
+    for name, place in names:
+        places.setdefault(name, []).append(place)
+    return {name: found for name, found in places.items() if len(found) > 1}
+
+
+def test_no_two_classes_have_one_name():
+    classes = (
+        (node.name, name) for name, tree in sources().items() for node in tree.body if type(node) is ast.ClassDef
+    )
+    assert shared(classes) == {}
+
+
+def test_no_two_files_of_a_room_have_one_name():
+    files = (((room(name), name.rpartition(".")[2]), name) for name in sources() if name.count(".") > 1)
+    folders = {name.rpartition(".")[0] for name in sources()}
+    assert shared((key, name) for key, name in files if name not in folders) == {}

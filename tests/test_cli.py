@@ -281,9 +281,38 @@ def test_an_error_without_a_file_is_not_blamed_on_standard_output(rope, monkeypa
     assert _lines(capsys) == ([], ["the system refuses: Cannot allocate memory"])
 
 
+def compiling(monkeypatch, succeeds):
+    """What `prepare` asks children for; none is started."""
+    asked = []
+
+    def compile_all(processes, groups, solvers, report):
+        asked.append((processes, groups, solvers))
+        report(1, 2)
+        return succeeds
+
+    monkeypatch.setattr("sandbox.app.compiling.compile_all", compile_all)
+    monkeypatch.setattr("sandbox.app.compiling.note_prepared", lambda: asked.append("noted"))
+    return asked
+
+
+def test_prepare_compiles_everything_or_what_one_level_needs(monkeypatch, rope, capsys):
+    asked = compiling(monkeypatch, True)
+    assert main(["prepare", "--processes", "3"]) == 0
+    assert asked == [(3, ("basics", "contacts"), None), "noted"]
+    asked.clear()
+    assert main(["prepare", rope]) == main(["prepare", "dominoes"]) == 0
+    assert [call[1:] for call in asked] == [(("basics",), ("iterative",)), (("basics", "contacts"), ("direct",))]
+    assert capsys.readouterr().out.splitlines()[-1] == "all that Dominoes needs is compiled"
+
+
+def test_prepare_that_does_not_succeed_says_so(monkeypatch, capsys):
+    assert compiling(monkeypatch, False) == [] and main(["prepare"]) == 2
+    assert "cannot compile" in capsys.readouterr().err
+
+
 COMMANDS = {
     "play": ["rope"], "run": ["rope", "--ticks", "1"], "replay": ["x.jsonl"], "check": ["rope"],
-    "render": ["rope", "-o", "x.png"], "format": ["x.json"], "edit": [], "schema": [],
+    "render": ["rope", "-o", "x.png"], "format": ["x.json"], "edit": [], "prepare": [], "schema": [],
 }  # fmt: skip
 
 

@@ -9,7 +9,7 @@ import pygame
 
 from sandbox.app.display import SCALE_RANGE, Display
 from sandbox.app.draw.colours import BACKGROUND, WARNING
-from sandbox.app.edit.documents import Documents
+from sandbox.app.edit.documents import DocumentActions
 from sandbox.app.edit.tour import Guide
 from sandbox.app.files import FileActions
 from sandbox.app.gallery import Gallery
@@ -19,18 +19,20 @@ from sandbox.app.input import Input
 from sandbox.app.loop import FRAME_RATE
 from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.playback import Playback
-from sandbox.app.play.status import NOTICES, Notice, StatusLine, draw_spinner
+from sandbox.app.play.status import NOTICES, Notice, StatusLine, draw_bar, draw_spinner
 from sandbox.app.preparing import Preparation
 from sandbox.app.profile import Profile
-from sandbox.app.progress import Progress
+from sandbox.app.progress import RunProgress
 from sandbox.app.screen import Screen
 from sandbox.app.shortcuts import Mode
-from sandbox.app.wanted import Wanted
+from sandbox.app.start_request import StartRequest
 from sandbox.app.widgets.dialogs import show_lines
 from sandbox.app.widgets.ui import Ui
 
 # How often the status figures and the window title change [s].
 FIGURES_EVERY = 0.5
+# A run that waits for kernels no longer than this [s] says nothing of it.
+WAIT_UNSEEN = 0.3
 
 
 class App:
@@ -48,19 +50,21 @@ class App:
         self.screen: Screen | None = None
         self.input = Input(self)
         self.files = FileActions(self)
-        self.documents = Documents(self)
+        self.documents = DocumentActions(self)
         self.guide = Guide(self, self.documents)
-        self._progress = Progress(self)
+        self._progress = RunProgress(self)
         self._own_actions = self._actions()
         self._figures = (0.0, 0.0)
         self._counted = [0.0, 0, 0, 0.0]
         self._seconds = 0.0
         self._build_ui()
-        self.preparation = Preparation()
+        self.preparation = Preparation(self._switched)
+        # How long the run on the screen has been waiting for kernels [s].
+        self._waited = 0.0
 
     # What is on the screen.
 
-    def open(self, wanted: Wanted) -> None:
+    def open(self, wanted: StartRequest) -> None:
         """Show what the program was started for."""
         if wanted.replay is not None:
             self.start(Playback(wanted.replay.level, wanted.replay))
@@ -210,9 +214,11 @@ class App:
             self.input.process(events)
             if self.display.refresh():
                 self.rebuild()
-        self.ready = self.preparation.is_ready(self.play is not None and self.play.has_contacts)
+        self._prepare(frame_time)
         if self.screen is not None:
+            tick, began = self._tick, time.thread_time()
             self.screen.update(frame_time, self.input.pointer_over_world(), self.profile, self.ready)
+            self.preparation.note(self._tick - tick, time.thread_time() - began)
         with self.profile.part("ui"):
             self.status.update(frame_time)
             self.documents.update()
@@ -226,6 +232,21 @@ class App:
         spent = time.perf_counter() - started
         self.profile.milliseconds["frame"].append(1e3 * spent)
         self._count(frame_time, spent)
+
+    @property
+    def _tick(self) -> int:
+        return self.play.playback.session.tick if self.play is not None else 0
+
+    def _prepare(self, frame_time: float) -> None:
+        play = self.play
+        contacts = play is not None and play.has_contacts
+        self.preparation.update(None if play is None else play.playback.level, contacts)
+        self.ready = self.preparation.may_play(contacts)
+        self._waited = 0.0 if self.ready else self._waited + frame_time
+
+    def _switched(self) -> None:
+        if self.play is not None:
+            self.play.playback.session.world.drop_caches()
 
     def _draw(self) -> None:
         surface = self.display.surface
@@ -246,9 +267,16 @@ class App:
             if (self.screen is None or self.ui.has_sheet) and not self.ui.shows_page:
                 self.status.draw_notices(surface, 16.0)
             # A level can be drawn before the physics is there.
-            if not self.ready and self.mode == "play":
-                detail = "Only the first start takes some seconds."
-                draw_spinner(surface, self.ui, self._seconds, "Preparing the physics", detail)
+            if self._waited > WAIT_UNSEEN and self.play is not None:
+                self._draw_waiting(surface)
+
+    def _draw_waiting(self, surface: pygame.Surface) -> None:
+        done, total = self.preparation.progress
+        if total and done < total:
+            draw_bar(surface, self.ui, done / total, f"Warming up: {done} of {total} parts of the physics")
+        else:
+            detail = "Only the first start takes some seconds."
+            draw_spinner(surface, self.ui, self._seconds, "Warming up", detail)
 
     def _count(self, frame_time: float, spent: float) -> None:
         counted = self._counted
@@ -257,7 +285,7 @@ class App:
         counted[3] += spent
         if counted[0] < FIGURES_EVERY:
             return
-        tick = self.play.playback.session.tick if self.play is not None else 0
+        tick = self._tick
         ticks = max(0.0, tick - counted[2])
         self._figures = (ticks / counted[0], 1e3 * counted[3] / counted[1])
         self._counted = [0.0, 0, tick, 0.0]
@@ -272,7 +300,7 @@ class App:
         return " - ".join([*words, "Spring Sandbox"])
 
 
-def run_app(display: Display, wanted: Wanted, profile: Profile, seconds: float | None = None) -> None:
+def run_app(display: Display, wanted: StartRequest, profile: Profile, seconds: float | None = None) -> None:
     """Show what is wanted in the window and run until it is closed, or for so many seconds."""
     app = App(display, profile)
     app.guide.may_offer = True

@@ -11,7 +11,7 @@ os.environ.setdefault("SDL_VIDEO_X11_WMCLASS", "spring-sandbox")
 import pygame
 
 from sandbox.app.draw.colours import ACCENT
-from sandbox.app.widgets.icons import icon
+from sandbox.app.widgets.icons import ICONS, painted_icon
 
 # Window at scale 1, and the smallest that everything fits in.
 WINDOW_SIZE = (1280, 720)
@@ -52,7 +52,7 @@ class Display:
             os.environ.setdefault("SDL_FRAMEBUFFER_ACCELERATION", "0")
         self.window = pygame.Window("Spring Sandbox", size, resizable=True, allow_high_dpi=True)
         self.window.minimum_size = SMALLEST_WINDOW
-        self.window.set_icon(icon("spring", ICON_SIZE, ACCENT))
+        self.window.set_icon(painted_icon(ICONS["spring"], ICON_SIZE, ACCENT))
         self.surface = self.window.get_surface()
         self._shown_size = self.size
         self.fullscreen = False

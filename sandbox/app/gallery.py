@@ -23,8 +23,8 @@ from sandbox.app.picture_cache import (
     picture_key,
 )
 from sandbox.app.recordings import saved_recordings
-from sandbox.app.widgets.painted import Lit, wrapped
-from sandbox.app.widgets.ui import ENTER_KEYS, Ui
+from sandbox.app.widgets.painted import Lit, Pressable, wrapped
+from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.recent import recent_levels
 from sandbox.level.faults.level_error import LevelError, one_line
 from sandbox.level.format.files import parse_level, read_bytes, shipped_levels
@@ -51,7 +51,7 @@ LIGHT_LEVELS = (
 )  # fmt: skip
 
 
-class Card(Lit):
+class Card(Lit, Pressable):
     """One thing to open: a picture where there is one, a name, a line of text."""
 
     def __init__(
@@ -103,20 +103,9 @@ class Card(Lit):
             card.blit(self.picture, inset)
         pygame.draw.line(card, LINE, (1, height), (width - 2, height))
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Open on a click."""
-        pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
-        if pressed and self.hover_point(*self.ui.manager.calculate_scaled_mouse_position(event.pos)):
-            self.action()
-            return True
-        return False
-
-    def press_key(self, event: pygame.event.Event) -> bool:
-        """Open on Enter or Space."""
-        if event.key in (*ENTER_KEYS, pygame.K_SPACE):
-            self.action()
-            return True
-        return False
+    def press(self) -> None:
+        """Open it."""
+        self.action()
 
 
 class Gallery:

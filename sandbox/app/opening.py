@@ -17,7 +17,7 @@ from sandbox.app.display import Display
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, MUTED, TEXT, mixed
 from sandbox.app.loop import FRAME_RATE
 from sandbox.app.profile import Profile
-from sandbox.app.wanted import Wanted
+from sandbox.app.start_request import StartRequest
 
 CLOSING = (pygame.QUIT, pygame.WINDOWCLOSE)
 # Sizes in layout units.
@@ -27,14 +27,19 @@ TITLE_SIZE, LINE_SIZE = 30, 14
 class _Work(threading.Thread):
     """Imports the app and finds out what is wanted of it."""
 
-    def __init__(self, find: Callable[[], Wanted]) -> None:
+    def __init__(self, find: Callable[[], StartRequest]) -> None:
         super().__init__(daemon=True)
         self._find = find
-        self.wanted: Wanted | None = None
+        self.wanted: StartRequest | None = None
         self.error: BaseException | None = None
 
     def run(self) -> None:
         try:
+            from sandbox.physics import jit
+
+            # A process that has kernels already goes on with them.
+            if not jit.KERNELS:
+                jit.start_interpreted()
             import sandbox.app.app  # noqa: F401
 
             self.wanted = self._find()
@@ -42,7 +47,7 @@ class _Work(threading.Thread):
             self.error = error
 
 
-class _Words:
+class _StartPicture:
     """The name of the program, and a ring that turns."""
 
     def __init__(self, scale: float) -> None:
@@ -75,7 +80,7 @@ def _font(name: str, size: int) -> pygame.font.Font:
 
 
 def open_app(
-    find: Callable[[], Wanted], *, profile: bool = False, seconds: float | None = None, scale: float | None = None
+    find: Callable[[], StartRequest], *, profile: bool = False, seconds: float | None = None, scale: float | None = None
 ) -> int:
     """Open the window and run until it is closed, or for so many seconds; returns the exit code.
 
@@ -101,9 +106,9 @@ def open_app(
     return 0
 
 
-def _wait(display: Display, times: Profile, work: _Work) -> Wanted | None:
+def _wait(display: Display, times: Profile, work: _Work) -> StartRequest | None:
     """Show words until the work is done; None where the window was closed."""
-    words, clock = _Words(display.scale), pygame.time.Clock()
+    words, clock = _StartPicture(display.scale), pygame.time.Clock()
     began = time.perf_counter()
     while True:
         with times.part("frame"):

@@ -1,38 +1,134 @@
-"""Preparation: the physics is compiled on threads of its own, so that no tick waits for it in a playing window."""
+"""Preparation: kernels are interpreted at first; the app switches to compiled ones as soon as they are ready.
 
+Nothing is compiled on the thread that draws. What is not in the cache is compiled by child processes, or on a thread of
+its own where they cannot; what is in it is loaded on that thread, while the window goes on drawing.
+"""
+
+import importlib
 import threading
+from collections.abc import Callable, Iterator
 
-from sandbox.app.draw.lines import warm_up_lines
+from sandbox.app.compiling import GROUPS, Crew, is_prepared, note_prepared, usual_processes, warm_up_rest
+from sandbox.app.pace import Pace
+from sandbox.level.format.model import Level
+from sandbox.physics import jit
 from sandbox.physics.step import warm_up
 
 
 class Preparation:
-    """Prepares what every level needs, and what things that touch need, as much again, once that is asked for."""
+    """Gets kernels ready, a step at each `update`; switched: called between two ticks, once kernels are compiled.
 
-    def __init__(self) -> None:
-        self._basics = threading.Thread(target=_prepare_basics, daemon=True)
-        self._basics.start()
-        self._contacts: threading.Thread | None = None
+    Runs go on with the same bits, but what their worlds have derived until then has to be dropped.
+    """
+
+    def __init__(self, switched: Callable[[], object] = lambda: None) -> None:
+        self._switched = switched
+        self._ready: set[str] = set()
+        self._crew: Crew | None = None
+        self._thread: threading.Thread | None = None
+        self._error: BaseException | None = None
+        self._has_contacts = False
+        self._wants_contacts = False
+        self._pace: Pace | None = None
+        self._trials: list[Pace] = []
+        self._steps = self._prepare()
+
+    # What the app asks.
+
+    def update(self, level: Level | None = None, contacts: bool = False) -> None:
+        """Go on a step, between two ticks of the run of a level; contacts: one in which things touch."""
+        self._has_contacts = contacts
+        self._wants_contacts = self._wants_contacts or contacts
+        if level is not None and not jit.COMPILED and (self._pace is None or self._pace.level is not level):
+            self._pace = Pace(level)
+            self._trials.append(self._pace)
+        next(self._steps, None)
+        if self._error is not None:
+            raise self._error
 
     def is_ready(self, contacts: bool) -> bool:
-        """Whether a run can begin; contacts: one in which things touch, which is prepared from then on."""
-        if self._basics.is_alive():
-            return False
-        return not contacts or not self._prepare_contacts().is_alive()
+        """Whether kernels are; contacts: those too that only things that touch need, which are loaded from then on."""
+        self._wants_contacts = self._wants_contacts or contacts
+        return set(GROUPS if contacts else GROUPS[:1]) <= self._ready
+
+    def may_play(self, contacts: bool) -> bool:
+        """Whether the run of the level that `update` was told of can go on, if need be with interpreted kernels."""
+        return self.is_ready(contacts) or (not jit.COMPILED and self._pace is not None and self._pace.holds)
+
+    def note(self, ticks: int, seconds: float) -> None:
+        """Take into account that so many ticks of that run took so many seconds."""
+        if not jit.COMPILED and self._pace is not None:
+            self._pace.note(ticks, seconds)
+
+    @property
+    def progress(self) -> tuple[int, int]:
+        """How many kernels are compiled, and how many are to be; 0 of 0 where that is not known."""
+        return (0, 0) if self._crew is None else self._crew.progress
 
     def finish(self, contacts: bool = False) -> None:
-        """Wait until a run can begin."""
-        self._basics.join()
-        if contacts:
-            self._prepare_contacts().join()
+        """Wait until kernels are ready."""
+        while not self.is_ready(contacts):
+            self.update(contacts=contacts)
+            if self._thread is not None:
+                self._thread.join()
 
-    def _prepare_contacts(self) -> threading.Thread:
-        if self._contacts is None:
-            self._contacts = threading.Thread(target=warm_up, daemon=True)
-            self._contacts.start()
-        return self._contacts
+    # What it does.
+
+    def _prepare(self) -> Iterator[None]:
+        if not jit.COMPILED:
+            yield from self._compile()
+            yield from self._on_thread(_import_numba)
+            while not self._may_switch():
+                yield
+            if not jit.switch_to_compiled():
+                self._ready.update(GROUPS)
+                return
+            self._switched()
+        for group, load in zip(GROUPS, (_load_basics, warm_up), strict=True):
+            while group == "contacts" and not self._wants_contacts:
+                yield
+            while self._crew is not None and not self._crew.has([group]):
+                yield
+            yield from self._on_thread(load)
+            self._ready.add(group)
+        if self._crew is not None and not self._crew.has_failed:
+            note_prepared()
+
+    def _compile(self) -> Iterator[None]:
+        """Let children compile, until all is there that the run on the screen needs."""
+        if is_prepared():
+            return
+        self._crew = Crew(usual_processes())
+        while not self._crew.has(GROUPS if self._has_contacts else GROUPS[:1]):
+            yield
+
+    def _may_switch(self) -> bool:
+        """Whether no trial is in the midst of a tick."""
+        self._trials = [trial for trial in self._trials if not trial.end()]
+        return not self._trials
+
+    def _on_thread(self, work: Callable[[], object]) -> Iterator[None]:
+        def run() -> None:
+            try:
+                work()
+            except BaseException as error:
+                self._error = error
+
+        self._thread = threading.Thread(target=run, daemon=True)
+        self._thread.start()
+        while self._thread.is_alive():
+            yield
+        self._thread = None
 
 
-def _prepare_basics() -> None:
+def _import_numba() -> None:
+    # What the switch would import, on the thread that draws; where it cannot be, the switch says so.
+    try:
+        importlib.import_module("sandbox.physics.jit.compiled")
+    except ImportError:
+        return
+
+
+def _load_basics() -> None:
     warm_up(contacts=False)
-    warm_up_lines()
+    warm_up_rest()

@@ -1,4 +1,4 @@
-"""Progress: a card with a bar while a run is played again, so that the window never looks dead."""
+"""RunProgress: a card with a bar while a run is played again, so that the window never looks dead."""
 
 import time
 
@@ -14,7 +14,7 @@ DRAWN_EVERY = 0.05
 NEW_AFTER = 1.0
 
 
-class Progress:
+class RunProgress:
     """Called with ticks done and ticks in all while a session steps again."""
 
     def __init__(self, app: Application) -> None:

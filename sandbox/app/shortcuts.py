@@ -6,6 +6,8 @@ from typing import Literal
 
 import pygame
 
+from sandbox.editor.tools.palette import TOOLS
+
 Mode = Literal["play", "edit"]
 
 
@@ -23,6 +25,12 @@ class Shortcut:
     mode: Mode | None = None
 
 
+def _tools(group: str) -> tuple[Shortcut, ...]:
+    """What takes up the tools of a group of the editor's."""
+    tools = (tool for tool in TOOLS.values() if tool.group == group)
+    return tuple(Shortcut(tool.action, (tool.key,), tool.label, group, "edit") for tool in tools)
+
+
 SHORTCUTS = (
     Shortcut("tool_drag", ("D", "1"), "Drag tool: hold and move particles", "Tools", "play"),
     Shortcut("tool_pin", ("P", "2"), "Pin tool: pin or unpin a particle", "Tools", "play"),
@@ -33,26 +41,11 @@ SHORTCUTS = (
     Shortcut("keep", ("Ctrl+K",), "Keep some of the run in the document", "Files", "play"),
     Shortcut("undo", ("Ctrl+Z",), "Undo a drag, cut, pin or slider move", "Tools", "play"),
     Shortcut("redo", ("Ctrl+Y", "Ctrl+Shift+Z"), "Redo", "Tools", "play"),
-    Shortcut("tool_select", ("V",), "Select and move", "Draw", "edit"),
-    Shortcut("tool_lasso", ("L",), "Select by a lasso", "Draw", "edit"),
-    Shortcut("tool_particle", ("A",), "Particle", "Draw", "edit"),
-    Shortcut("tool_spring", ("S",), "Spring", "Draw", "edit"),
-    Shortcut("tool_rope", ("R",), "Rope", "Draw", "edit"),
-    Shortcut("tool_bridge", ("B",), "Bridge", "Draw", "edit"),
-    Shortcut("tool_girder", ("G",), "Girder", "Draw", "edit"),
-    Shortcut("tool_web", ("W",), "Web", "Draw", "edit"),
-    Shortcut("tool_box", ("J",), "Jelly: a box", "Draw", "edit"),
-    Shortcut("tool_circle", ("O",), "Jelly: a disc", "Draw", "edit"),
-    Shortcut("tool_polygon", ("Y",), "Jelly: freehand or corner by corner", "Draw", "edit"),
-    Shortcut("tool_wheel", ("Q",), "Wheel with a hub", "Draw", "edit"),
-    Shortcut("tool_ring", ("Shift+O",), "Ring with air inside: a balloon", "Draw", "edit"),
-    Shortcut("tool_pin", ("P",), "Pin or unpin a particle", "Draw", "edit"),
+    *_tools("Draw"),
     Shortcut("", ("+", "-"), "While drawing: more or fewer parts", "Draw", "edit"),
     Shortcut("finish", ("Ctrl+Enter",), "End what is drawn at the pointer", "Draw", "edit"),
     Shortcut("cancel", ("Escape",), "Give up; then: nothing selected", "Draw", "edit"),
-    Shortcut("tool_ground", ("D",), "Solid ground", "Terrain", "edit"),
-    Shortcut("tool_line", ("C",), "A line with two sides", "Terrain", "edit"),
-    Shortcut("tool_walls", ("Shift+D",), "Walls all round", "Terrain", "edit"),
+    *_tools("Terrain"),
     Shortcut("", ("Delete",), "After a click on a corner: take it out", "Terrain", "edit"),
     Shortcut("play", ("E",), "Play, and back here again", "Edit", "edit"),
     Shortcut("undo", ("Ctrl+Z",), "Undo", "Edit", "edit"),

@@ -9,13 +9,13 @@ from pydantic import ValidationError
 
 from sandbox.editor.items import Item, Kind, Selection, keys
 from sandbox.level.faults.level_error import LevelError, shown
-from sandbox.level.faults.validate import check_level, outline_faults
+from sandbox.level.faults.validate import check_level
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.limits import FILE_LIMIT, FORMAT, VERSION
 from sandbox.level.format.messages import worded
 from sandbox.level.format.model import Level, NissenMaterial
 from sandbox.level.format.quantities import Described, Description, replaced
-from sandbox.level.kinds.bodies import AnyBody
+from sandbox.level.kinds.bodies import AnyBody, expansion
 
 # Below this many definitions and listed points, 209 bytes of a file's limit each, the text of a level is not measured.
 MEASURED_SIZE = 40_000
@@ -87,7 +87,7 @@ def check_terrain(level: Level) -> None:
 def check_places(bodies: Iterable[AnyBody]) -> None:
     """Raise EditError where one of the bodies, sound but for where it lies, reaches beyond the world."""
     for body in bodies:
-        for path, fault in outline_faults("", body):
+        for path, fault in expansion(body).outline_faults(""):
             raise EditError(f"{subject(body)}: {path.removeprefix('.')}: {fault}")
 
 

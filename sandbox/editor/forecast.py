@@ -11,7 +11,7 @@ from collections.abc import Generator, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.driven import restless
+from sandbox.editor.actuators import driven_items
 from sandbox.editor.items import Selection
 from sandbox.editor.lint.finding import called, falling_particles
 from sandbox.editor.scene import make_scene
@@ -85,7 +85,7 @@ class Forecast:
         if not moving:
             self.position, self.at_rest = scene.position, True
             return
-        driven = next(restless(scene), None)
+        driven = next(driven_items(scene), None)
         if driven is not None:
             self._trouble = f"{called(driven)} is driven, and never comes to rest; play it to see"
             self.at_rest = False

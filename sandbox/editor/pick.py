@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene
 from sandbox.level.format.model import Level
+from sandbox.level.format.quantities import Point
 
-Point = tuple[float, float]
 Box = tuple[float, float, float, float]
 Ends = tuple[NDArray[np.float64], ...]
 Mode = Literal["replace", "add", "subtract", "toggle"]

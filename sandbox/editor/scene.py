@@ -11,16 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.editor.items import Item, Selection, items_of
-from sandbox.level.build.actuators import given_length
-from sandbox.level.build.expansion import Expansion, expansion
 from sandbox.level.build.layout import Layout
+from sandbox.level.build.plan import Plan, kept_plan
+from sandbox.level.build.surfaces import surfaces_of
 from sandbox.level.build.welds import united
 from sandbox.level.format.limits import BODY_RADIUS, DEFAULT_MATERIAL
 from sandbox.level.format.model import Level, ParticleDef
-from sandbox.level.format.quantities import replaced
-from sandbox.level.format.surfaces import surfaces_of
-from sandbox.level.kinds.bodies import AnyBody, JellyDef, RingDef, WebDef, WheelDef
-from sandbox.level.kinds.shapes import distances
+from sandbox.level.kinds.bodies import AnyBody, expansion
+from sandbox.level.kinds.expansion import Expansion
+from sandbox.level.kinds.geometry import distances
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
@@ -31,7 +30,7 @@ Box = tuple[float, float, float, float]
 class _Joined(NamedTuple):
     """What bodies expand to, and its arrays one after the other; of a body that has an origin, about that."""
 
-    made: list[Expansion]
+    made: list[Expansion[Any]]
     counts: list[int]
     position: Floats
     mass: Floats
@@ -83,12 +82,13 @@ class Collision(NamedTuple):
 class _Names:
     """Who has which name: the same in every scene whose items and counts are the same."""
 
-    def __init__(self, level: Level, items: tuple[Item, ...], counts: list[int]) -> None:
-        self.level, self.items, self.counts = level, items, counts
+    def __init__(self, level: Level, items: tuple[Item, ...], plan: Plan) -> None:
+        self.level, self.items, self.plan = level, items, plan
+        self.counts = [made.form_count[0] for made in plan.bodies]
 
-    @cached_property
+    @property
     def layout(self) -> Layout:
-        return Layout(self.level, self.counts)
+        return self.plan.layout
 
     @cached_property
     def item_index(self) -> dict[Item, int]:
@@ -120,7 +120,7 @@ class _Parts:
 
     bodies: _Joined
     origin: Floats  # (k, 2) [m] of each body
-    forms: dict[tuple[Any, ...], Expansion]
+    forms: dict[tuple[Any, ...], Expansion[Any]]
     loose: _Loose
     names: _Names
     links: _Links
@@ -266,20 +266,21 @@ def make_scene(level: Level, before: Scene | None = None) -> Scene:
 
 def _parts(level: Level, before: Scene | None) -> _Parts:
     if before is None:
-        made, origin, forms = _expand(level, {}, {})
+        plan = kept_plan(level) or Plan(level)
+        made, origin, forms = _shared(level, dict(zip(map(id, level.bodies), plan.bodies, strict=True)), {})
         bodies, loose = _joined(made), _loose(level)
-        names = _Names(level, items_of(level), bodies.counts)
+        names = _Names(level, items_of(level), plan)
         return _Parts(bodies, origin, forms, loose, names, _links(level, names), _ground(level))
     old = before.parts
     bodies, origin, forms = old.bodies, old.origin, old.forms
     if level.bodies is not before.level.bodies:
         known = dict(zip(map(id, before.level.bodies), bodies.made, strict=True))
-        made, origin, forms = _expand(level, known, forms)
+        made, origin, forms = _shared(level, known, forms)
         is_same = len(made) == len(bodies.made) and all(map(is_, made, bodies.made))
         bodies = bodies if is_same else _joined(made)
     loose = old.loose if level.particles is before.level.particles else _loose(level)
     same_names = old.names.serve(level, bodies.counts)
-    names = old.names if same_names else _Names(level, items_of(level), bodies.counts)
+    names = old.names if same_names else _Names(level, items_of(level), Plan(level, bodies.made))
     same_links = same_names and level.springs is before.level.springs and level.materials is before.level.materials
     links = old.links if same_links else _links(level, names)
     ground = old.ground if level.terrain is before.level.terrain else _ground(level)
@@ -304,14 +305,14 @@ def _ground(level: Level) -> _Ground:
     )
 
 
-def _joined(made: list[Expansion]) -> _Joined:
-    counts = [len(each.mass) for each in made]
+def _joined(made: list[Expansion[Any]]) -> _Joined:
+    counts = [each.form_count[0] for each in made]
     firsts = np.cumsum([0, *counts]).tolist()
     none = np.zeros((0, 2), dtype=np.int64)
     return _Joined(
         made=made,
         counts=counts,
-        position=np.concatenate([np.zeros((0, 2)), *(each.position for each in made)]),
+        position=np.concatenate([np.zeros((0, 2)), *(_about_origin(each) for each in made)]),
         mass=np.concatenate([np.zeros(0), *(each.mass for each in made)]),
         pinned=np.concatenate([np.zeros(0, dtype=np.bool_), *(each.pinned for each in made)]),
         pairs=np.concatenate([none, *(each.pairs + first for each, first in zip(made, firsts, strict=False))]),
@@ -347,7 +348,7 @@ def _links(level: Level, names: _Names) -> _Links:
     materials = tuple({DEFAULT_MATERIAL: None} | dict.fromkeys(level.materials))
     index = {name: number for number, name in enumerate(materials)}
     slots = [(names.layout.slot(spring.a), names.layout.slot(spring.b)) for spring in level.springs]
-    lengths = map(given_length, level.springs)
+    lengths = (spring.given_length for spring in level.springs)
     given = [np.nan if length is None else length for length in lengths]
     return _Links(
         ends=np.array(slots, dtype=np.int64).reshape(-1, 2),
@@ -357,14 +358,18 @@ def _links(level: Level, names: _Names) -> _Links:
     )
 
 
-def _expand(
-    level: Level, known: dict[int, Expansion], old_forms: dict[tuple[Any, ...], Expansion]
-) -> tuple[list[Expansion], Floats, dict[tuple[Any, ...], Expansion]]:
+def _about_origin(made: Expansion[Any]) -> Floats:
+    return made.local_form[0] if made.body.pose is None else made.position
+
+
+def _shared(
+    level: Level, known: dict[int, Expansion[Any]], old_forms: dict[tuple[Any, ...], Expansion[Any]]
+) -> tuple[list[Expansion[Any]], Floats, dict[tuple[Any, ...], Expansion[Any]]]:
     """Expansions of the bodies and their origins [m] (k, 2); a form is shared by all bodies that have it.
 
     known: expansions by the identity of the body, which are taken over, as are the old forms.
     """
-    forms: dict[tuple[Any, ...], Expansion] = {}
+    forms: dict[tuple[Any, ...], Expansion[Any]] = {}
     made, origin = [], []
     for body in level.bodies:
         key = _form_key(body)
@@ -373,16 +378,15 @@ def _expand(
             origin.append((0.0, 0.0))
             continue
         if key not in forms:
-            forms[key] = old_forms[key] if key in old_forms else expansion(replaced(body, position=(0.0, 0.0)))
+            forms[key] = old_forms.get(key) or known.get(id(body)) or expansion(body)
         made.append(forms[key])
-        # A form about (0, 0) moved by its position has the very bits of one that is expanded there.
         origin.append(body.__dict__["position"])
     return made, np.array(origin, dtype=np.float64).reshape(-1, 2), forms
 
 
 def _form_key(body: AnyBody) -> tuple[Any, ...] | None:
     """All that shapes a body but its place; None where a move alters more than one point."""
-    if not isinstance(body, JellyDef | RingDef | WebDef | WheelDef) or body.pose is not None:
+    if "position" not in body.__dict__ or body.pose is not None:
         return None
     return type(body), *(value for name, value in body.__dict__.items() if name not in _PLACED)
 

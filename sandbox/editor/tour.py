@@ -3,11 +3,12 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from sandbox.editor.kinds.rope import RopeOptions
 from sandbox.editor.scene import Scene
-from sandbox.editor.tools.drawing_options import Options, ParticleOptions, RopeOptions
-from sandbox.level.kinds.bodies import RopeDef
-
-Point = tuple[float, float]
+from sandbox.editor.tools.drawing_options import Options
+from sandbox.editor.tools.drawing_particles import ParticleOptions
+from sandbox.level.format.quantities import Point
+from sandbox.level.kinds.rope import RopeDef
 
 # From this slack on a rope hangs visibly, and from this mass on its weight bends it [kg].
 ENOUGH_SLACK = 0.1

@@ -4,7 +4,7 @@ import numpy as np
 
 from sandbox.physics.constraints import element_values
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.step import element_coefficients, substep_coefficients, substep_time
+from sandbox.physics.substeps import element_coefficients, substep_coefficients, substep_time
 from sandbox.physics.world import HAND_MATERIAL, LAW_HOOKE, Floats, World
 
 # The energy of what blew up is inf or NaN, and no fault.
@@ -39,7 +39,7 @@ def spring_energy(world: World) -> float:
     """
     h = substep_time(world.settings)
     stiffness, damping = substep_coefficients(world)
-    nissen = SOLVERS[world.settings.solver].schedule.spring_constant(stiffness, damping, reduced_masses(world), h)
+    nissen = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, reduced_masses(world), h)
     constant = np.where(world.law == LAW_HOOKE, world.hooke_stiffness, nissen)
     error = spring_lengths(world) - world.rest_length
     springs = np.sum((constant * error * error)[world.spring_active & (world.material != HAND_MATERIAL)])
@@ -50,7 +50,7 @@ def spring_energy(world: World) -> float:
 def element_energies(world: World) -> Floats:
     """Energy [J] of every element (t,), k C^2 / 2 with the k that the world's solver gives it; 0 where inactive."""
     value, mass, _ = measure_elements(world)
-    constant = SOLVERS[world.settings.solver].schedule.spring_constant(
+    constant = SOLVERS[world.settings.solver].spring_constant(
         *element_coefficients(world), mass, substep_time(world.settings)
     )
     return np.asarray(0.5 * constant * value * value)

@@ -3,19 +3,33 @@
     J = -(Cs x / h + Cd u) m_r          impulse along the spring [N s]
 
 with distance error x [m], velocity error u [m/s], reduced mass m_r [kg], time step h [s], Cs and Cd in 0..1.
+
+That is its explicit form, on the velocity error u before the step. For 0 < Cd < 1 it is, for one spring, identical to
+the implicit form, on the velocity error u' after the step, in which springs of a network can be solved together:
+
+    J = -K (u' + beta x / h),   K = m_r Cd / (1 - Cd) [kg],   beta = Cs / Cd
+
+Areas, bends, contacts and the hand obey the same equation: C(x) with gradient g has dC/dt for u, and 1 / (g W g^T) for
+m_r.
 """
 
 import math
 from decimal import ROUND_FLOOR, Context
+from typing import Any
+
+import numpy as np
 
 from sandbox.physics.jit import scalar_kernel
 
 # Below this separation [m] a spring has no direction of its own; squares of smaller numbers underflow.
 SHORTEST = 1e-150
+# The implicit form caps Cd here, and Cs with it: nearer to 1 springs stretch less, but steps are rejected more often
+# and damp more.
+HIGHEST_COEFFICIENT = 1.0 - 1e-7
 
 
 @scalar_kernel
-def reduced_mass(inverse_a, inverse_b):  # type: ignore[no-untyped-def]
+def reduced_mass(inverse_a: float, inverse_b: float) -> float:
     """Reduced mass [kg] of two particles from their inverse masses [1/kg]; 0 where both are pinned."""
     # m_r = 1 / (w_a + w_b)
     total = inverse_a + inverse_b
@@ -25,14 +39,66 @@ def reduced_mass(inverse_a, inverse_b):  # type: ignore[no-untyped-def]
 
 
 @scalar_kernel
-def spring_impulse(stiffness, damping, distance_error, velocity_error, mass, h):  # type: ignore[no-untyped-def]
+def spring_impulse(
+    stiffness: float, damping: float, distance_error: float, velocity_error: float, mass: float, h: float
+) -> float:
     """Impulse [N s] of one spring along its direction (Nissen 2019, impulse-based spring)."""
     # J = -(Cs x / h + Cd u) m_r
     return -(stiffness * distance_error / h + damping * velocity_error) * mass
 
 
 @scalar_kernel
-def direction(dx, dy, du, dv):  # type: ignore[no-untyped-def]
+def highest_coefficient(parts: int) -> float:
+    """Where Cd of one of so many substeps is capped, so that a rigid spring has the k of a step in one part."""
+    return 1.0 - (1.0 - HIGHEST_COEFFICIENT) * (parts * parts)
+
+
+@scalar_kernel
+def capped(stiffness: float, damping: float, highest: float) -> tuple[float, float]:
+    """Cs and Cd, with both at most `highest` where Cd is above it: so Cs = Cd = 1 keeps beta = 1."""
+    if damping > highest:
+        return min(stiffness, highest), highest
+    return stiffness, damping
+
+
+@scalar_kernel
+def implicit_masses(stiffness: float, damping: float, mass: float) -> tuple[float, float]:
+    """K and K beta [kg] of a spring whose effective mass is `mass` [kg]; K beta needs no division by Cd."""
+    # K = m Cd / (1 - Cd);  K beta = m Cs / (1 - Cd)
+    stiffness, damping = capped(stiffness, damping, HIGHEST_COEFFICIENT)
+    return mass * damping / (1.0 - damping), mass * stiffness / (1.0 - damping)
+
+
+@scalar_kernel
+def implicit_impulse(stiff: float, restoring: float, growth: float, error: float, h: float) -> float:
+    """Impulse [N s] of the implicit form, with K and K beta [kg] and the velocity error `growth` [m/s] of the step."""
+    # J = -(K (x' - x) / h + K beta x / h)
+    return -(stiff * growth + restoring * error / h)
+
+
+@scalar_kernel
+def implicit_update(impulse: float, velocity_error: float, response: float, softness: float) -> float:
+    """What a sweep makes of an impulse [N s]: velocity_error [m/s] after it, its bias added; see `gauss_seidel`.
+
+    response [1/kg] = J W J^T; softness [1/kg] = response (1 - Cd) / Cd = 1 / K.
+    """
+    # J - (u + b + J / K) / (W + 1 / K)
+    return impulse - (velocity_error + softness * impulse) / (response + softness)
+
+
+def explicit_spring_constant(stiffness: Any, damping: Any, mass: Any, h: float) -> Any:
+    """k [N/m] of springs under the explicit form: Cs m_r / h^2."""
+    return stiffness * mass / (h * h)
+
+
+def implicit_spring_constant(stiffness: Any, damping: Any, mass: Any, h: float) -> Any:
+    """k [N/m] of springs under the implicit form: Cs m_r / ((1 - Cd) h^2), with both capped as there."""
+    highest = np.where(damping > HIGHEST_COEFFICIENT, np.minimum(stiffness, HIGHEST_COEFFICIENT), stiffness)
+    return highest * mass / ((1.0 - np.minimum(damping, HIGHEST_COEFFICIENT)) * h * h)
+
+
+@scalar_kernel
+def direction(dx: float, dy: float, du: float, dv: float) -> tuple[float, float, float]:
     """Unit vector and length [m] of the separation (dx, dy) between particles of relative velocity (du, dv).
 
     Coincident particles take the direction in which they separate, or +x when they do not move apart at all.
@@ -48,7 +114,7 @@ def direction(dx, dy, du, dv):  # type: ignore[no-untyped-def]
 
 
 @scalar_kernel
-def half_step(stiffness, damping):  # type: ignore[no-untyped-def]
+def half_step(stiffness: float, damping: float) -> tuple[float, float]:
     """Cs and Cd of half the time step that leave the spring's motion from tick to tick as it was.
 
     The map keeps 0..1, Cs <= Cd, and (1, 1); it preserves the eigenvalues of one spring's step.

@@ -4,6 +4,18 @@ from sandbox.physics.collision.types import Flags
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.state import Floats
 
+# s += SLOW_SHARE (v' - s), per step. Higher leaves fast vibration undamped, lower damps slow turning.
+SLOW_SHARE = 0.3
+
+
+@inner_kernel
+def follow(velocity: Floats, slow_velocity: Floats, active: Flags) -> None:
+    """Let the slow part of velocities follow them: s += SLOW_SHARE (v' - s)."""
+    for p in range(active.shape[0]):
+        if active[p]:
+            slow_velocity[p, 0] += SLOW_SHARE * (velocity[p, 0] - slow_velocity[p, 0])
+            slow_velocity[p, 1] += SLOW_SHARE * (velocity[p, 1] - slow_velocity[p, 1])
+
 
 @inner_kernel
 def advance(position: Floats, velocity: Floats, active: Flags, h: float) -> None:

@@ -19,7 +19,7 @@ from sandbox.physics.world import World
 # energies stay finite; a mistuned spring that passes it is frozen there.
 ABSURD = 1e18
 # What is guarded of springs and elements.
-_CONSTANTS = [(column.name, column.width) for column in GUARDED if column.family is not Family.PARTICLE]
+_CONSTANTS = [column for column in GUARDED if column.family is not Family.PARTICLE]
 
 
 class CheckedArrays(NamedTuple):
@@ -126,14 +126,14 @@ def contain_inputs(world: World) -> None:
         lowest = -ABSURD if values.ndim == 2 else 0.0
         bad = _outside(values, lowest) | ((values == 0.0) if name == "mass" else False)
         _freeze(world, bad, name)
-    for name, width in _CONSTANTS:
-        values = getattr(world, name)
-        lowest = -ABSURD if width > 1 else 0.0
+    for column in _CONSTANTS:
+        name, stored = column.name, column.stored
+        lowest = -ABSURD if column.width > 1 else 0.0
         highest = 1.0 if name.endswith(("stiffness", "damping")) and "hooke" not in name else ABSURD
-        for slot in np.flatnonzero(_outside(values, lowest, highest)).tolist():
+        for slot in np.flatnonzero(_outside(getattr(world, name), lowest, highest)).tolist():
             world.change(name, world.good[name][slot], slot)
-            owner = world.slot_name(name, slot)
-            world.contained.append(Containment(world.tick, name, owner, frozen=False))
+            owner = world.slot_name(stored, slot)
+            world.contained.append(Containment(world.tick, stored, owner, frozen=False))
 
 
 def contain_outcome(world: World) -> None:

@@ -20,8 +20,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.energy import measure_elements, reduced_masses
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.step import substep_time
-from sandbox.physics.substeps import halve
+from sandbox.physics.substeps import halve, substep_time
 from sandbox.physics.world import LAW_HOOKE, Floats, World
 
 # (Cs + 2 Cd) times an eigenvalue stays below this, or the mode grows; from the linear theory, not a setting.

@@ -1,6 +1,7 @@
 """step(world): one tick on one screen. The order of its parts is part of the replay contract."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -8,77 +9,71 @@ from sandbox.physics.actuators import Driven, Hydraulics, Motors, Muscles, Strai
 from sandbox.physics.breaking import yield_and_break
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_springs
-from sandbox.physics.forces import Before, apply_forces
+from sandbox.physics.forces import Before, apply_forces, forces_of
 from sandbox.physics.integrate import integrate
 from sandbox.physics.sanitise import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.substeps import halve, substep_count
+from sandbox.physics.substeps import (
+    Substep,
+    element_coefficients,
+    substep_coefficients,
+    substep_count,
+    substep_time,
+)
 from sandbox.physics.terrain import Chain, make_terrain
-from sandbox.physics.world import Floats, World
+from sandbox.physics.world import World
+
+if TYPE_CHECKING:
+    from sandbox.physics.collision.collide import Collisions
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
 PHYSICS_VERSION = 1
 
 
-def substep_time(settings: WorldSettings, parts: int | None = None) -> float:
-    """Time step h [s] of one of `parts` substeps (None: of the fewest that the settings give a tick)."""
-    return 1.0 / (settings.tick_rate * (parts or settings.fewest_substeps))
+def _collisions(world: World) -> "Collisions | None":
+    if not world.has_contacts:
+        return None
+    # Half of the physics, which a world in which nothing touches does without.
+    from sandbox.physics.collision.collide import collisions_of
 
-
-def substep_coefficients(world: World, parts: int | None = None) -> tuple[Floats, Floats]:
-    """Cs and Cd (m,) of one substep, which leave every spring's motion from tick to tick as its Cs and Cd say.
-
-    parts: substeps in the tick (None: the fewest that the settings give it).
-    """
-    stiffness, damping = world.stiffness.copy(), world.damping.copy()
-    halve(stiffness, damping, parts or world.settings.fewest_substeps)
-    return stiffness, damping
-
-
-def element_coefficients(world: World, parts: int | None = None) -> tuple[Floats, Floats]:
-    """Cs and Cd (t,) of elements, as `substep_coefficients` gives those of springs."""
-    stiffness, damping = (values.copy() for values in world.element_coefficients)
-    halve(stiffness, damping, parts or world.settings.fewest_substeps)
-    return stiffness, damping
+    return collisions_of(world)
 
 
 def step(world: World) -> None:
     """Advance the world by one tick of 1 / tick_rate seconds."""
-    collisions = None
-    if world.has_contacts:
-        # Half of the physics, which a world in which nothing touches does without.
-        from sandbox.physics.collision.collide import begin_collisions, collide, end_collisions, finish
-
-        collisions = begin_collisions(world)
     settings = world.settings
-    solver = SOLVERS[settings.solver].schedule
+    solver = SOLVERS[settings.solver]
     contain_inputs(world)
     rest_length = drive_springs(world)
-    parts = substep_count(world)
-    h = substep_time(settings, parts)
-    # Solvers only read them, so a tick in one part needs no copies.
-    springs = world.stiffness, world.damping
-    elements = world.element_coefficients
-    if parts > 1:
-        springs, elements = substep_coefficients(world, parts), element_coefficients(world, parts)
-    # What a solver keeps is an impulse of one step: exact, as parts are a power of two.
-    world.scale_impulses(settings.fewest_substeps / parts)
-    world.contacts = None
-    for _ in range(parts):
-        before = Before(world.velocity.copy(), rest_length)
-        apply_forces(world, h)
-        if collisions is not None:
-            world.contacts = collide(collisions, before.velocity, world.tick, h)
-        solver.solve(world, springs, elements, h, before)
-        if collisions is not None:
-            finish(collisions, h)
-        else:
-            integrate(world.position, world.velocity, world.particle_active, h)
-        rest_length = world.rest_length
+    count = substep_count(world)
+    h = substep_time(settings, count)
+    # Solvers only read them, so a tick of one substep needs no copies.
+    springs, elements = (world.stiffness, world.damping), world.element_coefficients
+    if count > 1:
+        springs, elements = substep_coefficients(world, count), element_coefficients(world, count)
+    # What a solver keeps is an impulse of one substep: exact, as their number is a power of two.
+    scale = settings.fewest_substeps / count
+    world.scale_impulses(scale)
+    collisions = world.derived(_collisions)
     if collisions is not None:
-        end_collisions(world, collisions)
-    world.scale_impulses(parts / settings.fewest_substeps)
+        collisions.begin(world)
+    if collisions is not None and collisions.is_free and not len(world.driven.motors.hub):
+        collisions.step_free(forces_of(world), count, solver.follows, world.tick, h)
+    else:
+        for _ in range(count):
+            forces = apply_forces(world, h)
+            before = Before(forces.particles.before, rest_length)
+            contacts = None if collisions is None else collisions.collide(forces, world.tick, h)
+            solver.solve(world, Substep(h, count, springs, elements, before), contacts)
+            if collisions is not None:
+                collisions.finish(h)
+            else:
+                integrate(world.position, world.velocity, world.particle_active, h)
+            rest_length = world.rest_length
+    if collisions is not None:
+        collisions.end(world)
+    world.scale_impulses(1.0 / scale)
     world.rest_hands()
     world.tick += 1
     contain_outcome(world)
@@ -103,20 +98,24 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
         world.fit(Driven(("a",), muscles, hydraulics, motors), [1.0])
         step(world)
         if contacts:
-            from sandbox.physics.collision.outline import TERRAIN_GROUP
+            from sandbox.physics.collision.filter import TERRAIN_GROUP
 
-            # Two loose ones that touch, and two on a spring, out of their reach.
+            # Two free ones that touch, and two on a spring, out of their reach.
             places = np.array([[0.0, 0.0], [0.0, 0.0], [0.5, 0.0], [0.7, 0.0]])
             world.add_particles(["d", "e", "f", "g"], places, group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
             world.add_springs(["u"], [5], [6])
             world.terrain = make_terrain([Chain([[-1.0, 0.0], [1.0, 0.0]])])
             step(world)
+            # And a world of free ones alone, which takes a way of its own.
+            free = World(world.settings)
+            free.add_particles(["a", "b"], np.zeros((2, 2)), group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
+            step(free)
     if "direct" in solvers:
-        from sandbox.physics.solvers.direct.solve import pattern_of
+        from sandbox.physics.solvers.direct.layout import layout_of
         from sandbox.physics.solvers.linear import parallel
         from sandbox.physics.solvers.linear.dissection import dissect
 
         # That is too small a body to be dissected by itself, or to need a second thread.
         dissect(np.array([0]), np.array([1]), world.position)
-        pattern = pattern_of(world)
-        parallel.warm_up(pattern.matrix.fronts, pattern.rows.change)
+        system = layout_of(world).system
+        parallel.warm_up(system.matrix.fronts, system.rows.change)

@@ -1,37 +1,86 @@
-"""Parts of a tick: coefficients of a part, and how many parts a tick takes where that is left to it ("auto").
+"""Substeps of a tick: what one is given, and how many a tick takes where that is left to it ("auto").
 
 The choice is a pure function of the state at the tick's start, of + - * / and comparisons alone.
 """
 
+from typing import NamedTuple
+
 import numpy as np
+from numpy.typing import NDArray
 
 from sandbox.physics.equation import half_step
+from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
-from sandbox.physics.settings import AUTO
-from sandbox.physics.world import HAND_COUNT, World
+from sandbox.physics.settings import AUTO, WorldSettings
+from sandbox.physics.world import HAND_COUNT, Floats, World
 
-# No tick chooses more parts than this. 4 leaves a rope dragged at 20 m/s at a stretch above 1e-2, 16 doubles the time.
+# No tick chooses more substeps than this. 4 leaves a rope dragged at 20 m/s at a stretch above 1e-2, 16 doubles the
+# time.
 MOST_AUTO = 8
-# The ends of a spring move by at most this share of its rest length against each other in a part. A link that turns
+# The ends of a spring move by at most this share of its rest length against each other in a substep. A link that turns
 # over within one step is beyond any linear solve; a smaller share costs time on every swing.
 LARGEST_TURN = 0.5
 
+# Cs and Cd of springs (m,) or elements (t,).
+Pair = tuple[Floats, Floats]
+
+
+class Substep(NamedTuple):
+    """What a solver is given: time step h [s] of one of so many substeps, Cs and Cd of springs and elements in it.
+
+    before: what the substep began with.
+    """
+
+    h: float
+    substeps: int
+    springs: Pair
+    elements: Pair
+    before: Before
+
+
+def substep_time(settings: WorldSettings, count: int | None = None) -> float:
+    """Time step h [s] of one of `count` substeps (None: of the fewest that the settings give a tick)."""
+    return 1.0 / (settings.tick_rate * (count or settings.fewest_substeps))
+
+
+def substep_coefficients(world: World, count: int | None = None) -> Pair:
+    """Cs and Cd (m,) of one substep, which leave every spring's motion from tick to tick as its Cs and Cd say.
+
+    count: substeps in the tick (None: the fewest that the settings give it).
+    """
+    return _halved((world.stiffness, world.damping), count or world.settings.fewest_substeps)
+
+
+def element_coefficients(world: World, count: int | None = None) -> Pair:
+    """Cs and Cd (t,) of elements, as `substep_coefficients` gives those of springs."""
+    return _halved(world.element_coefficients, count or world.settings.fewest_substeps)
+
+
+def _halved(coefficients: Pair, count: int) -> Pair:
+    # Of nothing there is nothing to copy, which takes a fifth of the tick of a few discs.
+    if not len(coefficients[0]):
+        return coefficients
+    stiffness, damping = (values.copy() for values in coefficients)
+    halve(stiffness, damping, count)
+    return stiffness, damping
+
 
 @kernel
-def halve(stiffness, damping, substeps):  # type: ignore[no-untyped-def]
+def halve(stiffness: Floats, damping: Floats, substeps: int) -> None:
     """Turn Cs and Cd (m,) of a tick into those of a substep, in place; substeps is a power of two."""
     # One exact halving of h at a time.
     for s in range(stiffness.shape[0]):
-        parts = 1
-        while parts < substeps:
+        count = 1
+        while count < substeps:
             stiffness[s], damping[s] = half_step(stiffness[s], damping[s])
-            parts *= 2
+            count *= 2
 
 
 @kernel
-def _fastest_turn(  # type: ignore[no-untyped-def]
-    velocity, inverse_mass, particle_a, particle_b, rest_length, spring_active, hand_spring, hands, h, shortest
-):
+def _fastest_turn(
+    velocity: Floats, inverse_mass: Floats, particle_a: NDArray[np.int32], particle_b: NDArray[np.int32],
+    rest_length: Floats, spring_active: NDArray[np.bool_], hand_spring: int, hands: int, h: float, shortest: Floats,
+) -> float:  # fmt: skip
     # Largest ((|v_b - v_a| h) / L)^2; a hand's spring, which has no length, counts by the shortest spring at its end.
     largest = 0.0
     for s in range(rest_length.shape[0]):
@@ -65,19 +114,19 @@ def _fastest_turn(  # type: ignore[no-untyped-def]
 
 
 def substep_count(world: World) -> int:
-    """Parts of the coming tick: as set, or, for "auto", the fewest (1, 2, 4, 8) in which no spring turns too far.
+    """Substeps of the coming tick: as set, or, for "auto", the fewest (1, 2, 4, 8) in which no spring turns too far.
 
     Looked at are the springs' ends as they move at the tick's start, cursors of hands and moved pins included.
     """
     if world.settings.substeps != AUTO:
         return world.settings.substeps
-    # A whole tick's turn, halved at each doubling of the parts.
+    # A whole tick's turn, halved at each doubling of the substeps.
     hands = HAND_COUNT if world.hand_spring >= 0 else 0
     turn = _fastest_turn(
         world.velocity, world.inverse_mass, world.particle_a, world.particle_b, world.rest_length, world.spring_active,
         world.hand_spring, hands, 1.0 / world.settings.tick_rate, np.zeros(HAND_COUNT),
     )  # fmt: skip
-    parts = 1
-    while parts < MOST_AUTO and not turn <= (LARGEST_TURN * parts) * (LARGEST_TURN * parts):
-        parts *= 2
-    return parts
+    count = 1
+    while count < MOST_AUTO and not turn <= (LARGEST_TURN * count) * (LARGEST_TURN * count):
+        count *= 2
+    return count

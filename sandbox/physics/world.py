@@ -76,8 +76,6 @@ class World(StateArrays):
         self.hand_particle = -1
         self.hand_spring = -1
         self.terrain: Terrain = NO_TERRAIN
-        # The contacts of the present step; never state.
-        self.contacts: Any = None
         # What was taken back since somebody last looked, and the springs that broke in the last tick; never state.
         self.contained: list[Containment] = []
         self.broken: Slots = np.zeros(0, dtype=np.int64)
@@ -139,8 +137,8 @@ class World(StateArrays):
             self.energy_bank[slots] = BANK_UNOPENED
 
     def drop_caches(self) -> None:
-        """Forget what solvers and contacts derive, which holds for interpreted kernels or for compiled ones alone."""
-        self.solver_cache = self.contact_cache = self.contacts = None
+        """Forget what was derived, which holds for interpreted kernels or for compiled ones alone."""
+        self._derived.clear()
 
     @property
     def settings(self) -> WorldSettings:

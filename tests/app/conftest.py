@@ -12,7 +12,7 @@ import pytest
 
 from sandbox.app.app import App
 from sandbox.app.display import Display
-from sandbox.app.wanted import Wanted
+from sandbox.app.start_request import StartRequest
 from sandbox.level.format.files import parse_level
 from tests.support.person import VirtualScreen
 
@@ -43,7 +43,7 @@ class Driver:
 
     def __init__(self, level=None, replay=None):
         self.app = App(Display(1.0))
-        self.app.open(Wanted(level, replay))
+        self.app.open(StartRequest(level, replay))
         self.frames(2)
 
     @property

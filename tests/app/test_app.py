@@ -13,8 +13,9 @@ import pytest
 from sandbox.app.display import has_display
 from sandbox.app.opening import open_app
 from sandbox.app.play.playback import Playback
+from sandbox.app.preparing import Preparation
 from sandbox.app.shortcuts import action_of, shortcuts
-from sandbox.app.wanted import Wanted
+from sandbox.app.start_request import StartRequest
 from sandbox.editor.storage.recent import remember
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import shipped_levels
@@ -402,23 +403,25 @@ def test_particles_that_are_no_longer_finite_are_left_out_and_counted(driver):
 
 
 def test_the_app_closes_after_the_given_time_and_prints_where_the_time_went(capsys, documents):
-    assert open_app(Wanted, profile=True, seconds=0.2) == 0
+    assert open_app(StartRequest, profile=True, seconds=0.2) == 0
     printed = capsys.readouterr().out
     parts = ("events", "ui", "flip", "frames a second", "without a new picture", "words in the window", "first page")
     assert all(part in printed for part in parts)
 
 
 def delayed_contacts(driver, monkeypatch):
-    """Preparation of contacts that takes until the event is set."""
+    """Contacts that are loaded once the event is set."""
     touching = threading.Event()
-    thread = threading.Thread(target=touching.wait, daemon=True)
-    thread.start()
-    monkeypatch.setattr(driver.app.preparation, "_contacts", thread)
+    driver.app.preparation.finish()
+    monkeypatch.setattr("sandbox.app.preparing.warm_up", lambda contacts=True: contacts and touching.wait())
+    monkeypatch.setattr(driver.app, "preparation", Preparation())
+    driver.app.preparation.finish()
     return touching
 
 
 def test_a_level_in_which_things_touch_waits_until_contacts_are_prepared(driver, monkeypatch):
     touching = delayed_contacts(driver, monkeypatch)
+    driver.frames()
     assert driver.app.ready
     driver.app.start(Playback(small_level(contacts={})))
     for _ in range(5):

@@ -18,7 +18,8 @@ from sandbox.app.loop import LONGEST_FRAME, SPEEDS, TickClock
 from sandbox.app.play.playback import Playback, interpolated
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import Level
-from sandbox.level.kinds.bodies import BoxShape, JellyDef, RingDef
+from sandbox.level.kinds.jelly import BoxShape, JellyDef
+from sandbox.level.kinds.ring import RingDef
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.snapshot import take
 from sandbox.session.session import Session

@@ -6,7 +6,12 @@ import pygame
 import pytest
 
 from sandbox.editor.tools.drawing_options import described
-from sandbox.level.kinds.bodies import BridgeDef, GirderDef, JellyDef, RopeDef, WebDef, WheelDef
+from sandbox.level.kinds.bridge import BridgeDef
+from sandbox.level.kinds.girder import GirderDef
+from sandbox.level.kinds.jelly import JellyDef
+from sandbox.level.kinds.rope import RopeDef
+from sandbox.level.kinds.web import WebDef
+from sandbox.level.kinds.wheel import WheelDef
 
 CTRL = pygame.KMOD_CTRL
 

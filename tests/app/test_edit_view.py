@@ -9,7 +9,7 @@ import pytest
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import BACKGROUND
 from sandbox.app.edit.actions import MENU
-from sandbox.app.edit.canvas.canvas import PLAIN_FROM, Chosen, ScenePainter
+from sandbox.app.edit.canvas.canvas import PLAIN_FROM, ScenePainter, SelectionMasks
 from sandbox.app.edit.canvas.handles import Handles
 from sandbox.app.shortcuts import shortcuts
 from sandbox.editor.scene import make_scene
@@ -53,7 +53,7 @@ def test_a_large_scene_is_drawn_plainly_at_once_and_smoothly_afterwards():
     scene = make_scene(small_level(bodies=LARGE))
     assert len(scene.particle_a) > PLAIN_FROM
     camera = Camera((0.0, 0.0), 100.0, (0, 0, 640, 480))
-    painter, chosen = ScenePainter(1.0), Chosen.of(scene, frozenset())
+    painter, chosen = ScenePainter(1.0), SelectionMasks.of(scene, frozenset())
     surface = pygame.Surface((640, 480), 0, 32)
 
     def drawn():

@@ -6,7 +6,7 @@ import pytest
 from sandbox.app.display import Display
 from sandbox.app.draw.colours import BACKGROUND, TEXT
 from sandbox.app.opening import open_app
-from sandbox.app.wanted import Wanted
+from sandbox.app.start_request import StartRequest
 from tests.app.conftest import small_level
 
 
@@ -28,7 +28,7 @@ def test_words_are_in_the_window_before_anything_is_looked_for(pictures, capsys)
     def find():
         colours = {tuple(pictures[0].get_at((x, y)))[:3] for x in range(400, 880) for y in range(280, 340)}
         found.append(colours)
-        return Wanted(small_level())
+        return StartRequest(small_level())
 
     assert open_app(find, profile=True, seconds=0.0) == 0
     assert {BACKGROUND, TEXT} <= found[0]
@@ -51,7 +51,7 @@ def test_closing_the_window_early_ends_the_program(pictures, monkeypatch):
     monkeypatch.setattr("sandbox.app.app.run_app", lambda *_: pytest.fail("the app was opened"))
     pygame.display.init()
     pygame.event.post(pygame.event.Event(pygame.QUIT))
-    assert open_app(lambda: Wanted(small_level())) == 0
+    assert open_app(lambda: StartRequest(small_level())) == 0
 
 
 def test_keys_pressed_while_the_words_are_shown_reach_the_app(pictures, monkeypatch):
@@ -59,7 +59,7 @@ def test_keys_pressed_while_the_words_are_shown_reach_the_app(pictures, monkeypa
 
     def find():
         pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_h, mod=0, unicode="h", scancode=0))
-        return Wanted(small_level())
+        return StartRequest(small_level())
 
     monkeypatch.setattr("sandbox.app.app.run_app", lambda *_: seen.extend(pygame.event.get(pygame.KEYDOWN)))
     assert open_app(find) == 0

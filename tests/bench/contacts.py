@@ -4,16 +4,21 @@ Run by hand: python -m tests.bench.contacts. Times are of the process, in millis
 code 1 where a limit is broken.
 """
 
+import functools
 import itertools
 import math
 import statistics
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 
 import numpy as np
 import pymunk
 
+from sandbox.physics import jit
+from sandbox.physics.collision.collide import last_contacts
 from sandbox.physics.collision.outline import outline_of
 from sandbox.physics.energy import kinetic_energy
 from sandbox.physics.step import step
@@ -83,6 +88,14 @@ def pymunk_heap(count: int, columns: int) -> pymunk.Space:
     return space
 
 
+def time_of(tick: Callable[[], object], ticks: int) -> float:
+    """Time [ms] of a tick among so many, which are too short for the clock one by one."""
+    began = time.process_time()
+    for _ in range(ticks):
+        tick()
+    return 1e3 * (time.process_time() - began) / ticks
+
+
 def times_of(tick: Callable[[], object], ticks: int) -> list[float]:
     """Time [ms] of each tick."""
     spent = []
@@ -117,7 +130,7 @@ def settles(table: Table, name: str, built: World, other: pymunk.Space | None = 
         if other is not None:
             theirs += times_of(lambda: other.step(1.0 / 60.0), 1)
         peak = max(peak, kinetic_energy(built))
-    share, contacts = kinetic_energy(built) / peak, built.contacts
+    share, contacts = kinetic_energy(built) / peak, last_contacts(built)
     smaller = np.where(contacts.end_a < 0, np.inf, built.radius[contacts.end_a])
     deepest = float(np.max(-contacts.gap / np.minimum(built.radius[contacts.particle], smaller), initial=0.0))
     before = built.position.copy()
@@ -127,6 +140,55 @@ def settles(table: Table, name: str, built: World, other: pymunk.Space | None = 
     table.add(
         name, ("energy / peak", share, 1e-4), ("overlap / radius", deepest, 0.05), ("creep [mm/s]", creep, 1.0),
         ("tick [ms]", median, most_time), ("95 % [ms]", float(np.quantile(spent, 0.95)), math.inf), *peer,
+    )  # fmt: skip
+
+
+@contextmanager
+def counted_entries(spent: list[float]) -> Iterator[None]:
+    """Add the calls of compiled kernels that Python makes, and their time [ms], to spent meanwhile."""
+    entries = {id(entry.held) for entry in jit.KERNELS if entry.role in jit._ENTRIES}
+    modules = [module for name, module in sys.modules.items() if name.startswith("sandbox.physics.")]
+    held = [(module, name, item) for module in modules for name, item in vars(module).items() if id(item) in entries]
+
+    def call(entry: Callable[..., object], *arguments: object) -> object:
+        began = time.process_time()
+        result = entry(*arguments)
+        spent[1] += 1e3 * (time.process_time() - began)
+        spent[0] += 1
+        return result
+
+    for module, name, item in held:
+        setattr(module, name, functools.partial(call, item))
+    try:
+        yield
+    finally:
+        for module, name, item in held:
+            setattr(module, name, item)
+
+
+def costs(table: Table, count: int, columns: int, substeps: int, most: float) -> None:
+    """A tick of a heap at rest over as many steps of pymunk, run in turns; kernels called in it, Python's share of it.
+
+    Best of blocks of some ticks: what else the machine does makes each longer.
+    """
+    built, other = heap(count, columns), pymunk_heap(count, columns)
+    built.settings = replace(built.settings, substeps=substeps)
+    for _ in range(400):
+        step(built)
+        other.step(1.0 / 60.0)
+    block, ours, theirs = max(1, 200 // count), [], []
+    for _ in range(40):
+        ours.append(time_of(lambda: step(built), block))
+        theirs.append(substeps * time_of(lambda: other.step(1.0 / 60.0 / substeps), block * substeps))
+    ticks, spent = 20 * block, [0.0, 0.0]
+    whole = ticks * time_of(lambda: step(built), ticks)
+    with counted_entries(spent):
+        time_of(lambda: step(built), ticks)
+    table.add(
+        f"heap of {count:,} discs at rest, {substeps} substep{'s' if substeps > 1 else ''}",
+        ("over pymunk's", min(ours) / min(theirs), most),
+        ("median", statistics.median(ours) / statistics.median(theirs), math.inf), ("tick [ms]", min(ours), math.inf),
+        ("kernels called", spent[0] / ticks, math.inf), ("Python's share", 1.0 - spent[1] / whole, math.inf),
     )  # fmt: skip
 
 
@@ -214,6 +276,9 @@ def main() -> int:
     """Print the table; 1 where a limit is broken."""
     table = Table()
     print("| scene | figures |\n|---|---|")
+    for count, columns, most in ((5, 3, 2.0), (20, 6, 1.2), (100, 12, 1.0), (500, 24, 1.0), (2000, 40, 1.0)):
+        for substeps in (1, 4):
+            costs(table, count, columns, substeps, most)
     settles(table, "heap of 2,000 discs", heap(2000, 40), pymunk_heap(2000, 40))
     for seed in range(1, 6):
         settles(table, f"heap of 500 discs, seed {seed}", heap(500, 24, seed))

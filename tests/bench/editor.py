@@ -18,10 +18,10 @@ import pygame
 from sandbox.app.app import App
 from sandbox.app.display import Display
 from sandbox.app.edit.edit_screen import EditScreen
-from sandbox.app.wanted import Wanted
+from sandbox.app.start_request import StartRequest
 from sandbox.editor.document import empty_level
 from sandbox.level.format.model import Level, ParticleDef, SpringDef
-from sandbox.level.kinds.bodies import BoxShape, JellyDef
+from sandbox.level.kinds.jelly import BoxShape, JellyDef
 
 FRAME = 1.0 / 60.0  # [s]
 # How often everything is done; the figures are medians.
@@ -122,7 +122,7 @@ class Maker:
 def measure(level: Level, page: str) -> dict[str, float]:
     """Medians [ms] of what a maker does to a whole level, with a page of the panel open."""
     app = App(Display(1.0))
-    app.open(Wanted(level))
+    app.open(StartRequest(level))
     try:
         app.warming.join()
         app.documents.edit_level(level)

@@ -135,14 +135,14 @@ def energies(graphs: Graphs, count: int, *, start: bool = False) -> Floats:
     h = 1.0 / world.settings.tick_rate
     inverse = world.inverse_mass[world.particle_a] + world.inverse_mass[world.particle_b]
     mass = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
-    constant = SOLVERS[world.settings.solver].schedule.spring_constant(world.stiffness, world.damping, mass, h)
+    constant = SOLVERS[world.settings.solver].spring_constant(world.stiffness, world.damping, mass, h)
     if world.settings.substeps == AUTO:
         constant = extremes(world.stiffness, world.damping)[start] * mass / (h * h)
     separation = world.position[world.particle_b] - world.position[world.particle_a]
     error = np.sqrt(np.sum(separation**2, axis=1)) - world.rest_length
     value, effective, _ = measure_elements(world)
     stiffness, damping = world.element_coefficients
-    of_elements = SOLVERS[world.settings.solver].schedule.spring_constant(stiffness, damping, effective, h)
+    of_elements = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, effective, h)
     if world.settings.substeps == AUTO:
         of_elements = extremes(stiffness, damping)[start] * effective / (h * h)
     moving = np.where(world.inverse_mass > 0.0, world.mass * np.sum(world.velocity**2, axis=1), 0.0)

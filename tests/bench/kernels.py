@@ -16,7 +16,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.solvers import single_pass
-from sandbox.physics.step import element_coefficients, step, substep_coefficients, substep_time
+from sandbox.physics.step import step
+from sandbox.physics.substeps import Substep, element_coefficients, substep_coefficients, substep_time
 from tests.support.physics_scenes import grid_with_diagonals
 
 SIDE = 32
@@ -31,9 +32,10 @@ def seconds_per_pass(passes: int) -> float:
     springs, elements = substep_coefficients(world), element_coefficients(world)
     h, times = substep_time(world.settings), []
     before = Before(world.velocity, world.rest_length)
+    substep = Substep(h, 1, springs, elements, before)
     for _ in range(passes):
         start = time.perf_counter()
-        single_pass.solve(world, springs, elements, h, before)
+        single_pass.solve(world, substep, None)
         times.append(time.perf_counter() - start)
     return statistics.median(times)
 

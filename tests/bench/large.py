@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sandbox.physics.solvers.direct.system import make_pattern
+from sandbox.physics.solvers.direct.layout import make_layout
 from sandbox.physics.step import step, warm_up
 from sandbox.physics.world import Floats
 from tests.bench import scenes
@@ -45,7 +45,7 @@ def row(side: int, seconds: int, with_pymunk: bool) -> str:
     world = scene.world()
     peer = pymunk_setting(1, 10).build(scene) if with_pymunk else None
     first = milliseconds(lambda: step(world))
-    symbolic = milliseconds(lambda: make_pattern(world))
+    symbolic = milliseconds(lambda: make_layout(world))
     start = scenes.total_energy(world)
     times, peer_times, squares = [], [], []
     ticks = 60 * seconds

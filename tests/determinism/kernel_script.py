@@ -122,7 +122,7 @@ def busy_world(solver: str, substeps: int):
 
 def touching_world(solver: str, substeps: int):
     """Discs that fall on a mesh whose springs are edges, between terrain and walls."""
-    from sandbox.physics.collision.outline import ALL_GROUPS, LINE
+    from sandbox.physics.collision.filter import ALL_GROUPS, LINE
     from sandbox.physics.terrain import Chain, make_terrain
 
     world = busy_world(solver, substeps)

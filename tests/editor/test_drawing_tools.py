@@ -7,9 +7,10 @@ import pytest
 
 from sandbox.editor.document import Document, EditError, empty_level
 from sandbox.editor.items import Item
+from sandbox.editor.kinds.rope import RopeOptions
 from sandbox.editor.scene import make_scene
-from sandbox.editor.tools.drawing import DRAWINGS
-from sandbox.editor.tools.drawing_options import RopeOptions, described, stepped
+from sandbox.editor.tools.drawing_options import described, stepped
+from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import Snap, snap
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.canonical import level_text
@@ -51,7 +52,7 @@ def click(drawing, document, point):
 
 
 def drawn(tool, document, start, end, **options):
-    drawing = DRAWINGS[tool](reach=REACH)
+    drawing = TOOLS[tool].drawing(reach=REACH)
     for name, value in options.items():
         drawing.set_option(name, value)
     return drag(drawing, document, start, end)
@@ -64,7 +65,7 @@ def last_body(document):
 @pytest.mark.parametrize("tool", TWO_POINTS)
 def test_a_drag_and_two_clicks_draw_the_same_and_what_is_drawn_can_be_saved_and_is_selected(tool, empty):
     dragged = drawn(tool, empty, (1.0, 2.0), (4.0, 3.0))
-    drawing = DRAWINGS[tool](reach=REACH)
+    drawing = TOOLS[tool].drawing(reach=REACH)
     assert click(drawing, empty, (1.0, 2.0)) is None
     clicked = click(drawing, empty, (4.0, 3.0))
     assert clicked == dragged
@@ -76,7 +77,7 @@ def test_a_drag_and_two_clicks_draw_the_same_and_what_is_drawn_can_be_saved_and_
 
 @pytest.mark.parametrize("tool", TWO_POINTS)
 def test_the_ghost_follows_the_pointer_from_the_first_point_on_and_is_what_will_be_drawn(tool, empty):
-    drawing = DRAWINGS[tool](reach=REACH)
+    drawing = TOOLS[tool].drawing(reach=REACH)
     drawing.move(at(empty, (1.0, 2.0)))
     assert drawing.ghost(empty) is None
     drawing.down(at(empty, (1.0, 2.0)))
@@ -92,7 +93,7 @@ def test_the_ghost_follows_the_pointer_from_the_first_point_on_and_is_what_will_
 
 @pytest.mark.parametrize("tool", TWO_POINTS)
 def test_escape_gives_up_and_enter_ends_at_the_pointer(tool, empty):
-    drawing = DRAWINGS[tool](reach=REACH)
+    drawing = TOOLS[tool].drawing(reach=REACH)
     drawing.finish()
     assert drawing.done(empty) is None
     click(drawing, empty, (1.0, 2.0))
@@ -108,7 +109,7 @@ def test_escape_gives_up_and_enter_ends_at_the_pointer(tool, empty):
 
 @pytest.mark.parametrize("tool", TWO_POINTS)
 def test_an_end_on_the_start_is_refused_with_a_hint_and_the_gesture_goes_on(tool, empty):
-    drawing = DRAWINGS[tool](reach=REACH)
+    drawing = TOOLS[tool].drawing(reach=REACH)
     click(drawing, empty, (1.0, 2.0))
     assert click(drawing, empty, (1.0, 2.0)) is None
     assert "move it away" in drawing.hint
@@ -116,7 +117,7 @@ def test_an_end_on_the_start_is_refused_with_a_hint_and_the_gesture_goes_on(tool
 
 
 def test_a_hand_that_shakes_on_the_edge_of_a_grid_has_clicked_and_not_dragged(empty):
-    drawing = DRAWINGS["rope"](reach=REACH)
+    drawing = TOOLS["rope"].drawing(reach=REACH)
     scene = make_scene(empty.level)
     drawing.down(snap(scene, (0.249, 0.0), 0.0, 0.5))
     drawing.up(snap(scene, (0.251, 0.0), 0.0, 0.5))
@@ -136,7 +137,7 @@ def test_slack_makes_a_rope_longer_than_its_way(empty):
 
 
 def test_options_stay_for_the_next_drawing_and_adjust_counts_from_what_fits(empty):
-    drawing = DRAWINGS["rope"](reach=REACH)
+    drawing = TOOLS["rope"].drawing(reach=REACH)
     drawing.down(at(empty, (0.0, 0.0)))
     drawing.move(at(empty, (3.0, 0.0)))
     drawing.adjust(+3)
@@ -149,7 +150,7 @@ def test_options_stay_for_the_next_drawing_and_adjust_counts_from_what_fits(empt
 
 
 def test_an_option_out_of_range_is_refused_in_one_line_and_changes_nothing(empty):
-    drawing = DRAWINGS["rope"]()
+    drawing = TOOLS["rope"].drawing()
     before = drawing.options
     for name, value in (("segments", 0), ("segments", 2.5), ("particle_mass", -1.0), ("particle_mass", None)):
         with pytest.raises(EditError) as refused:
@@ -159,7 +160,7 @@ def test_an_option_out_of_range_is_refused_in_one_line_and_changes_nothing(empty
 
 
 def test_what_is_too_large_is_refused_in_one_line_and_the_ghost_says_why(empty):
-    drawing = DRAWINGS["rope"](reach=REACH)
+    drawing = TOOLS["rope"].drawing(reach=REACH)
     drawing.down(Snap((0.0, 0.0)))
     drawing.move(Snap((2e6, 0.0)))
     assert drawing.ghost(empty) is None
@@ -171,7 +172,7 @@ def test_what_is_too_large_is_refused_in_one_line_and_the_ghost_says_why(empty):
 
 
 def test_ends_on_particles_are_joined_to_them_and_not_pinned(with_deck):
-    drawing = DRAWINGS["rope"](reach=REACH)
+    drawing = TOOLS["rope"].drawing(reach=REACH)
     drawing.set_option("pin_end", True)
     drawing.down(at(with_deck, (2.0, 0.05)))
     drawing.move(at(with_deck, (2.0, -3.0)))
@@ -185,7 +186,7 @@ def test_ends_on_particles_are_joined_to_them_and_not_pinned(with_deck):
 
 
 def test_a_joined_ghost_is_shown_without_the_rest_of_the_level(with_deck):
-    drawing = DRAWINGS["rope"](reach=REACH)
+    drawing = TOOLS["rope"].drawing(reach=REACH)
     drawing.down(at(with_deck, (2.0, 0.05)))
     drawing.move(at(with_deck, (2.0, -3.0)))
     ghost = drawing.ghost(with_deck)
@@ -197,7 +198,7 @@ def test_a_joined_ghost_is_shown_without_the_rest_of_the_level(with_deck):
 
 def test_a_weight_clicked_onto_the_end_of_a_rope_becomes_part_of_it(empty):
     document = drawn("rope", empty, (0.0, 5.0), (0.0, 2.0))
-    drawing = DRAWINGS["particle"](reach=REACH)
+    drawing = TOOLS["particle"].drawing(reach=REACH)
     drawing.set_option("mass", 1000.0)
     document = click(drawing, document, (0.05, 2.0))
     assert document.level.welds == (("rope.end", "particle"),)
@@ -206,7 +207,7 @@ def test_a_weight_clicked_onto_the_end_of_a_rope_becomes_part_of_it(empty):
 
 
 def test_a_particle_shows_under_the_pointer_before_the_click(empty):
-    drawing = DRAWINGS["particle"](reach=REACH)
+    drawing = TOOLS["particle"].drawing(reach=REACH)
     assert drawing.ghost(empty) is None
     drawing.move(at(empty, (2.0, 3.0)))
     ghost = drawing.ghost(empty)
@@ -244,7 +245,7 @@ def test_the_first_spoke_points_at_the_pointer_so_that_rim_and_centre_can_join(t
 def test_the_corner_of_a_box_joins_and_the_rim_of_a_circle_does_not(with_deck):
     document = drawn("box", with_deck, (4.0, 0.0), (6.0, 1.0))
     assert document.level.welds == (("bridge.end", "jelly.0"),)
-    drawing = DRAWINGS["circle"](reach=REACH)
+    drawing = TOOLS["circle"].drawing(reach=REACH)
     drawing.down(at(with_deck, (6.0, 0.0)))
     drawing.move(at(with_deck, (4.0, 0.0)))
     assert "joins" not in drawing.hint
@@ -260,7 +261,7 @@ def test_a_jelly_is_eight_cells_across_and_a_long_one_no_finer_than_it_can_be(em
 
 
 def test_a_box_without_height_is_refused(empty):
-    drawing = DRAWINGS["box"](reach=REACH)
+    drawing = TOOLS["box"].drawing(reach=REACH)
     drawing.down(at(empty, (0.0, 0.0)))
     drawing.move(at(empty, (4.0, 0.0)))
     assert drawing.ghost(empty) is None
@@ -276,7 +277,7 @@ def corners_of(body):
 
 @pytest.mark.parametrize("closing", ["click", "enter"])
 def test_a_polygon_is_clicked_corner_by_corner_and_closed(closing, empty):
-    drawing = DRAWINGS["polygon"](reach=REACH)
+    drawing = TOOLS["polygon"].drawing(reach=REACH)
     for corner in CORNERS:
         assert click(drawing, empty, corner) is None
     assert drawing.ghost(empty) is not None
@@ -290,7 +291,7 @@ def test_a_polygon_is_clicked_corner_by_corner_and_closed(closing, empty):
 
 
 def test_a_polygon_that_crosses_itself_is_not_closed_and_its_last_corner_can_be_taken_back(empty):
-    drawing = DRAWINGS["polygon"](reach=REACH)
+    drawing = TOOLS["polygon"].drawing(reach=REACH)
     for corner in [(0.0, 0.0), (4.0, 0.0), (0.0, 3.0), (4.0, 3.0)]:
         click(drawing, empty, corner)
     assert drawing.ghost(empty) is None
@@ -303,7 +304,7 @@ def test_a_polygon_that_crosses_itself_is_not_closed_and_its_last_corner_can_be_
 
 
 def test_an_outline_in_one_stroke_is_simplified_and_closed_where_the_stroke_ends(empty):
-    drawing = DRAWINGS["polygon"](reach=REACH)
+    drawing = TOOLS["polygon"].drawing(reach=REACH)
     turns = np.linspace(0.0, 2.0 * math.pi, 400)[:-1]
     stroke = [(3.0 * math.cos(turn), 2.0 * math.sin(turn)) for turn in turns]
     drawing.down(Snap((3.0, 0.0)))
@@ -316,7 +317,7 @@ def test_an_outline_in_one_stroke_is_simplified_and_closed_where_the_stroke_ends
 
 
 def test_a_stroke_that_crosses_itself_is_refused_with_a_hint(empty):
-    drawing = DRAWINGS["polygon"](reach=REACH)
+    drawing = TOOLS["polygon"].drawing(reach=REACH)
     drawing.down(Snap((0.0, 0.0)))
     for point in [(4.0, 0.0), (0.0, 3.0), (4.0, 3.0)]:
         drawing.move(Snap(point))
@@ -327,7 +328,7 @@ def test_a_stroke_that_crosses_itself_is_refused_with_a_hint(empty):
 
 
 def test_a_click_pins_a_particle_of_any_body_and_another_lets_it_go(with_deck):
-    drawing = DRAWINGS["pin"](reach=REACH)
+    drawing = TOOLS["pin"].drawing(reach=REACH)
     drawing.move(at(with_deck, (2.0, 0.0)))
     ghost = drawing.ghost(with_deck)
     assert ghost.level.particles[0].pinned
@@ -342,7 +343,7 @@ def test_a_click_pins_a_particle_of_any_body_and_another_lets_it_go(with_deck):
 
 def test_a_pin_in_empty_space_is_refused(with_deck):
     with pytest.raises(EditError, match="no particle here"):
-        click(DRAWINGS["pin"](reach=REACH), with_deck, (2.0, 5.0))
+        click(TOOLS["pin"].drawing(reach=REACH), with_deck, (2.0, 5.0))
 
 
 def test_a_material_that_a_level_does_not_have_is_the_default_one(empty):

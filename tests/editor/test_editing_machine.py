@@ -24,7 +24,9 @@ from sandbox.level.checks import CheckDef
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.model import Level, NissenMaterial, ParticleDef, TerrainDef, WallsDef
 from sandbox.level.format.parse import parse_level
-from sandbox.level.kinds.bodies import JellyDef, RopeDef, WheelDef
+from sandbox.level.kinds.jelly import JellyDef
+from sandbox.level.kinds.rope import RopeDef
+from sandbox.level.kinds.wheel import WheelDef
 from sandbox.physics.step import step
 from tests.support.zoo import zoo
 

@@ -28,7 +28,7 @@ from sandbox.level.checks import CheckDef
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.model import NissenMaterial, ParticleDef
 from sandbox.level.format.parse import parse_level
-from sandbox.level.kinds.bodies import RopeDef
+from sandbox.level.kinds.rope import RopeDef
 from tests.support.zoo import zoo
 
 STEEL = NissenMaterial(stiffness=0.2, damping=0.3)

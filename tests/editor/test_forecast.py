@@ -9,7 +9,7 @@ from sandbox.editor.forecast import Forecast
 from sandbox.editor.items import Item
 from sandbox.editor.scene import make_scene
 from sandbox.level.build.build_world import build_world
-from sandbox.level.format.drives import MotorDef, MuscleDef
+from sandbox.level.format.actuator_defs import MotorDef, MuscleDef
 from sandbox.level.format.model import (
     HookeMaterial,
     Level,
@@ -20,7 +20,9 @@ from sandbox.level.format.model import (
     TerrainDef,
 )
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.bodies import BoxShape, JellyDef, RopeDef, WheelDef
+from sandbox.level.kinds.jelly import BoxShape, JellyDef
+from sandbox.level.kinds.rope import RopeDef
+from sandbox.level.kinds.wheel import WheelDef
 from sandbox.physics.step import step
 
 STEEL = NissenMaterial(stiffness=1.0, damping=1.0)

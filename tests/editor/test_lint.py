@@ -11,11 +11,11 @@ from sandbox.editor.items import Item, items_of
 from sandbox.editor.lint.finding import LISTED, connected_parts
 from sandbox.editor.lint.lint import findings
 from sandbox.editor.scene import make_scene
-from sandbox.editor.tools.drawing import DRAWINGS
+from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.build.build_world import build_world
 from sandbox.level.checks import CheckDef
-from sandbox.level.format.drives import MotorDef
+from sandbox.level.format.actuator_defs import MotorDef
 from sandbox.level.format.files import read_level
 from sandbox.level.format.model import (
     ContactsDef,
@@ -28,7 +28,10 @@ from sandbox.level.format.model import (
     WallsDef,
 )  # fmt: skip
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.bodies import BoxShape, BridgeDef, JellyDef, RopeDef, WheelDef
+from sandbox.level.kinds.bridge import BridgeDef
+from sandbox.level.kinds.jelly import BoxShape, JellyDef
+from sandbox.level.kinds.rope import RopeDef
+from sandbox.level.kinds.wheel import WheelDef
 from sandbox.physics.stability import report, spring_loads
 from tests.support.zoo import zoo
 
@@ -292,7 +295,7 @@ def test_a_large_level_is_searched_in_many_slices():
 def test_the_tools_draw_nothing_that_the_lint_complains_about():
     document = Document(empty_level())
     for index, tool in enumerate(("rope", "bridge", "girder", "web")):
-        drawing = DRAWINGS[tool]()
+        drawing = TOOLS[tool].drawing()
         drawing.down(Snap((0.0, 10.0 * index)))
         drawing.up(Snap((3.0, 10.0 * index)))
         document = drawing.done(document)

@@ -13,7 +13,10 @@ from sandbox.editor.items import Item, items_of
 from sandbox.editor.scene import make_scene
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import ParticleDef
-from sandbox.level.kinds.bodies import BridgeDef, CircleShape, GirderDef, JellyDef, RopeDef
+from sandbox.level.kinds.bridge import BridgeDef
+from sandbox.level.kinds.girder import GirderDef
+from sandbox.level.kinds.jelly import CircleShape, JellyDef
+from sandbox.level.kinds.rope import RopeDef
 from tests.support.zoo import zoo
 
 BODIES = [body.id for body in zoo().bodies]

@@ -6,7 +6,8 @@ from sandbox.editor.items import Item
 from sandbox.editor.pick import combined, item_at, items_in_box, items_in_lasso, items_of_material, particle_at
 from sandbox.editor.scene import make_scene
 from sandbox.level.format.model import Level, ParticleDef, SpringDef
-from sandbox.level.kinds.bodies import BoxShape, JellyDef, RopeDef
+from sandbox.level.kinds.jelly import BoxShape, JellyDef
+from sandbox.level.kinds.rope import RopeDef
 from tests.support.zoo import zoo
 
 BALL, SMALL, LINK, CUBE, ROPE = (

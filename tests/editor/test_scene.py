@@ -8,7 +8,9 @@ from sandbox.editor.edits.moving import move
 from sandbox.editor.items import Item, items_of
 from sandbox.editor.scene import make_scene
 from sandbox.level.build.build_world import build_world
-from sandbox.level.format.files import read_level, shipped_levels
+from sandbox.level.build.plan import kept_plan
+from sandbox.level.format.canonical import level_text
+from sandbox.level.format.files import parse_level, read_level, shipped_levels
 from tests.support.zoo import zoo
 
 
@@ -81,3 +83,10 @@ def test_all_items_are_selected_by_mask():
     scene = make_scene(zoo())
     assert scene.particles_of(frozenset(items_of(scene.level))).all()
     assert scene.springs_of(frozenset([Item("spring", 0), Item("body", "rope")])).sum() == 6
+
+
+def test_the_scene_of_a_level_that_was_read_takes_the_expansions_of_its_check(monkeypatch):
+    level = parse_level(level_text(zoo()).encode(), "zoo.json")
+    monkeypatch.setattr("sandbox.level.build.plan.expansion", lambda body: pytest.fail(body.id))
+    monkeypatch.setattr("sandbox.editor.scene.expansion", lambda body: pytest.fail(body.id))
+    assert make_scene(level).parts.names.plan is kept_plan(level)

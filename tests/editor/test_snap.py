@@ -8,7 +8,7 @@ from sandbox.editor.items import Item
 from sandbox.editor.scene import make_scene
 from sandbox.editor.tools.snap import snap
 from sandbox.level.format.model import Level, ParticleDef
-from sandbox.level.kinds.bodies import RopeDef
+from sandbox.level.kinds.rope import RopeDef
 
 
 @pytest.fixture(scope="module")

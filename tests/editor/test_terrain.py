@@ -24,7 +24,7 @@ from sandbox.editor.items import Item
 from sandbox.editor.panel.properties import properties
 from sandbox.editor.pick import corner_at, item_at, items_in_box, items_in_lasso
 from sandbox.editor.scene import make_scene
-from sandbox.editor.tools.drawing import DRAWINGS
+from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import Snap, snap
 from sandbox.level.format.model import TerrainDef, WallsDef
 from tests.support.zoo import zoo
@@ -48,7 +48,7 @@ def corners(document, index=0):
 
 def clicked(tool, *points, finish=False, document=None):
     """What a tool draws by a click at each of points [m]."""
-    drawing = DRAWINGS[tool](reach=0.05)
+    drawing = TOOLS[tool].drawing(reach=0.05)
     for point in points:
         drawing.down(Snap(point))
         drawing.up(Snap(point))
@@ -89,7 +89,7 @@ def test_ground_is_drawn_by_clicks_and_closed_on_its_first_corner_by_a_double_cl
         assert document.level.terrain[0].polygon == triangle
         assert document.selection == {GROUND}
     assert clicked("ground", *triangle) is None
-    drawing = DRAWINGS["ground"](reach=0.05)
+    drawing = TOOLS["ground"].drawing(reach=0.05)
     for point in ((0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 2.0)):
         drawing.down(Snap(point))
         drawing.up(Snap(point))
@@ -109,7 +109,7 @@ def test_a_line_ends_where_it_is_ended_and_may_be_a_loop_and_cross_itself():
 
 
 def test_a_line_by_hand_goes_to_the_very_end_of_the_stroke():
-    drawing = DRAWINGS["line"](reach=0.05)
+    drawing = TOOLS["line"].drawing(reach=0.05)
     stroke = [(0.1 * k, math.sin(0.3 * k)) for k in range(30)] + [(2.0, 0.1)]
     drawing.down(Snap(stroke[0]))
     for point in stroke[1:]:
@@ -120,7 +120,7 @@ def test_a_line_by_hand_goes_to_the_very_end_of_the_stroke():
 
 
 def test_walls_are_drawn_from_corner_to_corner_with_the_surface_that_the_tool_has():
-    drawing = DRAWINGS["walls"](reach=0.05)
+    drawing = TOOLS["walls"].drawing(reach=0.05)
     drawing.set_option("friction", 0.25)
     drawing.down(Snap((3.0, 4.0)))
     drawing.move(Snap((-1.0, 1.0)))

@@ -9,8 +9,12 @@ from pydantic import ValidationError
 from sandbox.level.build.build_world import build_world
 from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format.files import parse_level
-from sandbox.level.kinds.bodies import BendingDef, JellyDef, MeshDef, RingDef, RopeDef
-from sandbox.level.kinds.shapes import jelly_triangles
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.body_def import BendingDef
+from sandbox.level.kinds.jelly import JellyDef
+from sandbox.level.kinds.mesh import MeshDef
+from sandbox.level.kinds.ring import RingDef
+from sandbox.level.kinds.rope import RopeDef
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.energy import measure_elements
 
@@ -36,7 +40,7 @@ SHAPES = [
 def test_triangles_of_a_jelly_are_counter_clockwise_and_do_not_overlap(shape):
     body = JellyDef.model_validate_json(json.dumps(jelly(shape, angle=0.4)))
     world = world_of(jelly(shape, angle=0.4))
-    triangles = jelly_triangles(body)
+    triangles = expansion(body).polygons()
     assert len(triangles) == world.element_count
     assert np.all(world.element_kind == AREA)
     assert world.element_rest[:, 0] == pytest.approx(np.full(len(triangles), 0.25**2 / 2))

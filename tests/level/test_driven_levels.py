@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from sandbox.level.build.actuators import driving_keys, parts
+from sandbox.level.build.actuators import actuators, driving_keys
 from sandbox.level.build.build_world import build_world
 from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format.canonical import level_text
@@ -102,7 +102,7 @@ def test_a_welded_particle_is_pulled_as_both_were():
 
 def test_keys_drive_parts_forward_and_backward():
     assert driving_keys(full()) == {"d": [(0, 1.0), (2, 1.0)], "a": [(0, -1.0)]}
-    assert [part.name for part in parts(full())] == ["w", "v", ":0", ":2"]
+    assert [actuator.name for actuator in actuators(full())] == ["w", "v", ":0", ":2"]
 
 
 HYDRAULIC = {"shortest": 1, "longest": 2, "rate": 1}

@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 from sandbox.level.build.build_world import build_world
-from sandbox.level.build.expansion import expansion
+from sandbox.level.build.plan import kept_plan
 from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format.files import parse_level
-from sandbox.level.kinds.shapes import count, expand, form_count
+from sandbox.level.format.model import Level
+from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.polygon import polygon_grid
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from sandbox.physics.world import HAND_COUNT, LAW_HOOKE, LAW_NISSEN
@@ -126,7 +129,7 @@ def test_a_jelly_turns_counter_clockwise_about_its_centre():
 
 def test_trigonometry_is_rounded_before_it_places_anything():
     (turned,) = level_of(jelly({"box": [2, 2]}, angle=1.0)).bodies
-    corner = expand(turned)[0][0].tolist()
+    corner = expansion(turned).form[0].tolist()
     cosine, sine = round(math.cos(1.0), 12), round(math.sin(1.0), 12)
     assert corner == [-cosine + sine, -sine - cosine]
 
@@ -241,10 +244,9 @@ def test_negative_zeros_do_not_reach_the_world():
 @pytest.mark.parametrize("index", range(len(GOOD["bodies"])))
 def test_what_is_counted_before_is_what_is_built(index):
     body = parse_level(encoded(GOOD), "x.json").bodies[index]
-    points, pairs = expand(body)
     built = expansion(body)
-    assert form_count(body) == (len(points), len(pairs))
-    assert count(body) == (len(built.mass), len(built.pairs))
+    assert built.form_count == (len(built.form), len(built.form_pairs))
+    assert built.count == (len(built.mass), len(built.pairs))
 
 
 @pytest.mark.parametrize(
@@ -271,3 +273,24 @@ def test_a_level_made_in_python_is_checked_before_it_is_built():
     broken = level.model_copy(update={"bodies": (level.bodies[0].model_copy(update={"segments": 10**12}),)})
     with pytest.raises(LevelError, match=r'level "n": bodies\.0\.segments: brings the level above 100,000 particles'):
         build_world(broken)
+
+
+def test_a_level_that_is_read_and_built_fills_its_polygons_once(monkeypatch):
+    filled = []
+
+    def counted(*given):
+        filled.append(given)
+        return polygon_grid(*given)
+
+    monkeypatch.setattr("sandbox.level.kinds.jelly.polygon_grid", counted)
+    level = level_of(jelly({"polygon": [[0, 0], [4, 0], [0, 4]]}), contacts={})
+    world = build_world(level)
+    assert (world.particle_slot("j.14"), len(filled)) == (14, 1)
+
+
+def test_the_plan_of_a_level_is_no_part_of_what_it_says():
+    level = parse_level(encoded(GOOD), "x.json")
+    assert level == Level.model_validate_json(encoded(GOOD))
+    assert kept_plan(level) is not None
+    assert kept_plan(level.model_copy()) is None
+    assert kept_plan(replaced(level, name="another")) is None

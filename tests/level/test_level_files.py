@@ -21,7 +21,7 @@ from sandbox.level.format.files import (
     shipped_levels,
     write_level,
 )
-from sandbox.level.kinds.shapes import form_count
+from sandbox.level.kinds.bodies import expansion
 from sandbox.physics.snapshot import state_hash
 from tests.support.malformed_levels import GOOD, encoded
 
@@ -271,7 +271,7 @@ def changed_bodies(draw, name, material):
     """Any body, perhaps with pins, cuts and a pose."""
     body = draw(bodies(name, material))
     head = {"format": "spring-sandbox/level", "version": 1, "name": "n", "materials": {material: {}}}
-    particles, springs = form_count(parse_level(encoded({**head, "bodies": [body]}), "x.json").bodies[0])
+    particles, springs = expansion(parse_level(encoded({**head, "bodies": [body]}), "x.json").bodies[0]).form_count
     changes = some(
         {},
         pinned=st.lists(st.integers(0, particles - 1), max_size=4),

@@ -7,7 +7,7 @@ from sandbox.level.checks import CheckDef, check_ticks, evaluate
 from sandbox.level.format.files import LevelError, parse_level
 from sandbox.level.format.limits import DEFAULT_SOLVER
 from sandbox.level.format.model import NissenMaterial, Settings
-from sandbox.level.kinds.bodies import RopeDef
+from sandbox.level.kinds.rope import RopeDef
 from sandbox.physics.solvers import SOLVERS
 from tests.support.malformed_levels import GOOD, changed, encoded
 

@@ -11,9 +11,8 @@ from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import read_level, shipped_levels
 from sandbox.level.format.parse import parse_level
 from sandbox.level.format.salvage import salvage
-from sandbox.level.kinds.outlines import edges
-from sandbox.level.kinds.shapes import expand
-from sandbox.physics.collision.outline import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
+from sandbox.level.kinds.bodies import expansion
+from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.step import step
 
 SQUARE = [[0, 0], [4, 0], [4, -1], [0, -1]]
@@ -96,8 +95,8 @@ def test_bodies_touch_terrain_and_each_other_unless_they_say_otherwise():
 )
 def test_the_outline_of_a_jelly_is_closed_and_has_it_on_its_left(shape):
     body = level(bodies=[{"type": "jelly", "id": "j", "shape": shape, "spacing": 0.25}]).bodies[0]
-    points, pairs = expand(body)
-    kind = edges(body, pairs)
+    made = expansion(body)
+    points, pairs, kind = made.form, made.pairs, made.edges
     a = np.where(kind == SOLID_RIGHT, pairs[:, 1], pairs[:, 0])
     b = np.where(kind == SOLID_RIGHT, pairs[:, 0], pairs[:, 1])
     outline = (kind == SOLID_LEFT) | (kind == SOLID_RIGHT)
@@ -110,4 +109,4 @@ def test_the_outline_of_a_jelly_is_closed_and_has_it_on_its_left(shape):
 
 def test_every_spring_of_a_rope_is_a_line():
     body = level(bodies=[{"type": "rope", "id": "r", "start": [0, 0], "end": [1, 0], "segments": 5}]).bodies[0]
-    assert np.all(edges(body, expand(body)[1]) == LINE)
+    assert np.all(expansion(body).edges == LINE)

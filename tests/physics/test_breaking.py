@@ -5,12 +5,13 @@ import pytest
 
 from sandbox.physics.actuators import NEVER, Driven, Muscles, StrainLimits
 from sandbox.physics.energy import kinetic_energy, reduced_masses, spring_lengths
+from sandbox.physics.equation import implicit_spring_constant
 from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.direct import solve
 from sandbox.physics.solvers.direct.energy_norm import extremes
-from sandbox.physics.step import step, substep_coefficients, substep_time
+from sandbox.physics.step import step
+from sandbox.physics.substeps import substep_coefficients, substep_time
 from tests.support.physics_scenes import girder, network, random_graph, rope, run, scaled
 
 FAST = {"single_pass": (0.2, 0.2), "iterative": (0.5, 0.9), "direct": (0.9, 0.95)}
@@ -143,7 +144,7 @@ def held(world):
     if world.settings.substeps == AUTO:
         constant = reduced_masses(world) * extremes(world.stiffness, world.damping)[0] / (h * h)
     else:
-        constant = solve.spring_constant(*substep_coefficients(world), reduced_masses(world), h)
+        constant = implicit_spring_constant(*substep_coefficients(world), reduced_masses(world), h)
     error = (spring_lengths(world) - world.rest_length) * world.spring_active
     return kinetic_energy(world) + 0.5 * np.sum(constant * error * error) + world.energy_bank.clip(min=0.0).sum()
 

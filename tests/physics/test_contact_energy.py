@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.collision.outline import LINE
+from sandbox.physics.collision.filter import LINE
 from sandbox.physics.energy import kinetic_energy, total_energy
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain

@@ -11,8 +11,8 @@ from sandbox.physics.jit import COMPILED
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.direct import system
-from sandbox.physics.solvers.direct.solve import pattern_of
+from sandbox.physics.solvers.direct import layout
+from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.physics.stability import coefficient_limits, report
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE, World
@@ -278,7 +278,7 @@ def energy_and_work(world: World) -> tuple[float, float]:
     inverse = world.inverse_mass[world.particle_a] + world.inverse_mass[world.particle_b]
     # A hand's spring has the mass of the whole body that it holds; here there is one.
     mass = np.where(world.material == -1, world.mass[free].sum(), 1.0 / np.where(inverse > 0.0, inverse, np.inf))
-    constant = SOLVERS["direct"].schedule.spring_constant(world.stiffness, world.damping, mass, h) * world.spring_active
+    constant = SOLVERS["direct"].spring_constant(world.stiffness, world.damping, mass, h) * world.spring_active
 
     def energy(velocity, position) -> float:
         error = np.sqrt(np.sum((position[world.particle_b] - position[world.particle_a]) ** 2, axis=1))
@@ -360,8 +360,8 @@ def test_the_stability_report_says_what_the_energy_test_proves():
 
 def test_a_matrix_too_large_for_its_table_of_updates_gives_the_same_bits(monkeypatch):
     ends = []
-    for largest in (system.LARGEST_TABLE, 1):
-        monkeypatch.setattr(system, "LARGEST_TABLE", largest)
+    for largest in (layout.LARGEST_TABLE, 1):
+        monkeypatch.setattr(layout, "LARGEST_TABLE", largest)
         ends.append(state_hash(run(scenes.lattice(6).world(), 10)))
     assert ends[0] == ends[1]
 
@@ -369,7 +369,7 @@ def test_a_matrix_too_large_for_its_table_of_updates_gives_the_same_bits(monkeyp
 def test_the_factor_solves_what_a_dense_solver_solves():
     world = energy_gate.random_graphs("any Cs, Cd", 1.0, 3, seed=5).world
     run(world, 1)
-    made = pattern_of(world)
+    made = layout_of(world).system
     matrix, rows, springs, bodies = made.matrix, made.rows, made.springs, made.bodies
     assert sorted(rows.particle.tolist()) == sorted(set(world.particle_a.tolist()) | set(world.particle_b.tolist()))
     count = len(matrix.diagonal)
@@ -383,8 +383,8 @@ def test_the_factor_solves_what_a_dense_solver_solves():
             factor[2 * i : 2 * i + 2, 2 * j : 2 * j + 2] = matrix.lower[at].reshape(2, 2)
     dense = np.diag(np.repeat(rows.mass[:count], 2))
     for k in range(bodies.spring_start[-1]):
-        normal, across = springs.normal[k], springs.across[k]
-        block = across * np.eye(2) + (springs.along[k] - across) * np.outer(normal, normal)
+        normal, transverse = springs.normal[k], springs.transverse[k]
+        block = transverse * np.eye(2) + (springs.stiff[k] - transverse) * np.outer(normal, normal)
         ends = [2 * r for r in (springs.row_a[k], springs.row_b[k]) if r < count]
         for one in ends:
             for other in ends:

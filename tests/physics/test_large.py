@@ -10,7 +10,7 @@ import pytest
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
-from sandbox.physics.solvers.direct.solve import pattern_of
+from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.physics.solvers.linear import dissection, parallel
 from sandbox.physics.step import step
 from sandbox.physics.world import World
@@ -24,7 +24,7 @@ def run(world: World, ticks: int) -> World:
 
 
 def by_fronts(world: World) -> bool:
-    return len(pattern_of(world).matrix.fronts.first) > 0
+    return len(layout_of(world).system.matrix.fronts.first) > 0
 
 
 def mesh(seed: int, count: int = 500) -> World:
@@ -67,8 +67,8 @@ def play(world: World, ticks: int) -> World:
 @pytest.mark.parametrize("seed", [1, 2])
 def test_every_front_holds_all_that_its_rows_are_joined_to(seed):
     world = mesh(seed)
-    pattern = pattern_of(world)
-    fronts, springs = pattern.matrix.fronts, pattern.springs
+    system = layout_of(world).system
+    fronts, springs = system.matrix.fronts, system.springs
     borders = np.split(fronts.border, fronts.border_start[1:-1])
     own = [list(range(first, last)) for first, last in zip(fronts.first, fronts.last, strict=True)]
     rows = [[*eliminated, *border.tolist()] for eliminated, border in zip(own, borders, strict=True)]
@@ -90,7 +90,7 @@ def test_the_order_follows_from_springs_pins_and_creation_alone():
     for particle in (50,):
         built.pin(particle)
     built.cut([333, 10, 200])
-    assert np.array_equal(pattern_of(played).rows.particle, pattern_of(built).rows.particle)
+    assert np.array_equal(layout_of(played).system.rows.particle, layout_of(built).system.rows.particle)
     assert not np.array_equal(played.position, built.position)
 
 

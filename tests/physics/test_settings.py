@@ -1,5 +1,7 @@
 """Settings of a world: checked where they are made."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -38,3 +40,8 @@ def test_the_solvers_that_can_be_named_are_those_that_there_are():
 
 def test_a_world_and_a_level_that_name_no_solver_have_the_same_one():
     assert World().settings.solver == Settings().solver == DEFAULT_SOLVER == "direct"
+
+
+def test_a_levels_settings_are_those_of_a_world_with_the_same_defaults():
+    assert list(Settings.model_fields) == [field.name for field in dataclasses.fields(WorldSettings)]
+    assert WorldSettings(**dict(Settings())) == WorldSettings()

@@ -8,8 +8,8 @@ import pytest
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.step import step, substep_coefficients, substep_time
-from sandbox.physics.substeps import halve
+from sandbox.physics.step import step
+from sandbox.physics.substeps import halve, substep_coefficients, substep_time
 from sandbox.physics.world import LAW_HOOKE, World
 from tests.support.physics_scenes import STILL, grid_with_diagonals, lengths, network, run, scaled
 

@@ -7,7 +7,7 @@ import pytest
 
 from sandbox.level.format.parse import parse_level
 from sandbox.physics.snapshot import state_hash
-from sandbox.physics.state import Family, family_of
+from sandbox.physics.state import BY_STORED, Family, family_of
 from sandbox.session.commands import AddParticle, CutSprings, SetDrive, apply
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
@@ -130,7 +130,7 @@ def test_a_recording_of_a_level_that_begins_empty_verifies_from_its_middle(tmp_p
 def test_a_fault_of_one_bit_in_a_contact_or_a_driven_part_is_named(recorded, array):
     def disturb(world):
         if world.tick == 137:
-            values = getattr(world, array)
+            values = getattr(world, BY_STORED[array].name)
             place = (0, 1) if values.ndim == 2 else 0
             values[place] = np.nextafter(values[place], np.inf) if values.dtype.kind == "f" else values[place] ^ 1
 

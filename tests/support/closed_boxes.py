@@ -5,10 +5,9 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from sandbox.level.kinds.bodies import JellyDef
-from sandbox.level.kinds.outlines import edges
-from sandbox.level.kinds.shapes import expand, jelly_triangles
-from sandbox.physics.collision.outline import ALL_GROUPS, LINE
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.jelly import JellyDef
+from sandbox.physics.collision.filter import ALL_GROUPS, LINE
 from sandbox.physics.constraints import AREA
 from sandbox.physics.energy import (
     gravity_energy,
@@ -19,9 +18,9 @@ from sandbox.physics.energy import (
     spring_lengths,
 )
 from sandbox.physics.settings import AUTO
+from sandbox.physics.solvers.direct.energy_bank import UNDERDAMPED_BANK_SHARE
 from sandbox.physics.solvers.direct.energy_norm import extremes
-from sandbox.physics.solvers.direct.solve import BOUNCY_BANK_SHARE
-from sandbox.physics.step import substep_time
+from sandbox.physics.substeps import substep_time
 from sandbox.physics.terrain import Chain
 from sandbox.physics.world import World
 from tests.support.contact_scenes import BODIES, add_discs, world
@@ -74,9 +73,9 @@ def _add_body(to: World, generator: np.random.Generator, centre: tuple[float, fl
             {"type": "jelly", "id": "j", "shape": SHAPES[generator.integers(3)], "position": centre, "angle": way,
              "spacing": 0.25}
         )  # fmt: skip
-        points, pairs = expand(body)
-        sides, radius = edges(body, pairs), 0.06
-        triangles = jelly_triangles(body) if generator.integers(2) else []
+        made = expansion(body)
+        points, pairs, sides, radius = made.form, made.pairs, made.edges, 0.06
+        triangles = made.polygons() if generator.integers(2) else []
     to.add_particles(
         [f"{first}.{k}" for k in range(len(points))], points, radius=radius, mass=mass / len(points), owner=first,
         group=BODIES, collides=ALL_GROUPS, **touch,
@@ -125,7 +124,7 @@ def allowed(box: Box) -> float:
     of = box.world
     speed = np.sqrt(np.sum(of.velocity**2, axis=1))
     step_error = 0.5 / 60.0 * 9.81 * float(np.sum(of.mass * (speed + FASTEST)))
-    return box.energy * (1.0 + BOUNCY_BANK_SHARE if box.bouncy else 1.0) + step_error
+    return box.energy * (1.0 + UNDERDAMPED_BANK_SHARE if box.bouncy else 1.0) + step_error
 
 
 def outside(of: World) -> int:

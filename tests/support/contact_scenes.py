@@ -4,10 +4,9 @@ import math
 
 import numpy as np
 
-from sandbox.level.kinds.bodies import JellyDef
-from sandbox.level.kinds.outlines import edges
-from sandbox.level.kinds.shapes import expand
-from sandbox.physics.collision.outline import ALL_GROUPS, LINE
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.jelly import JellyDef
+from sandbox.physics.collision.filter import ALL_GROUPS, LINE
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import World
@@ -39,7 +38,8 @@ def add_jelly(to: World, position, *, size=(0.9, 0.9), angle=0.0, stiffness=0.9,
     body = JellyDef.model_validate(
         {"type": "jelly", "id": "j", "shape": {"box": size}, "position": position, "angle": angle, "spacing": 0.1}
     )
-    points, pairs = expand(body)
+    made = expansion(body)
+    points, pairs = made.form, made.pairs
     first = to.particle_count
     to.add_particles(
         [f"jelly.{first + k}" for k in range(len(points))], points, velocity=velocity, radius=0.025, friction=0.5,
@@ -47,7 +47,7 @@ def add_jelly(to: World, position, *, size=(0.9, 0.9), angle=0.0, stiffness=0.9,
     )  # fmt: skip
     to.add_springs(
         [f"jelly:{to.spring_count + k}" for k in range(len(pairs))], pairs[:, 0] + first, pairs[:, 1] + first,
-        stiffness=stiffness, damping=damping, edge=edges(body, pairs),
+        stiffness=stiffness, damping=damping, edge=made.edges,
     )  # fmt: skip
     return slice(first, first + len(points))
 

@@ -136,11 +136,11 @@ def _has_plain_pixels(surface: pygame.Surface) -> bool:
 
 
 class Canvas:
-    """Draws many lines, discs and triangles on a surface; compiled: whether kernels do it, usually if they are."""
+    """Draws many lines, discs and triangles on a surface; compiled: whether kernels do it, if they are."""
 
-    def __init__(self, surface: pygame.Surface, compiled: bool | None = None) -> None:
+    def __init__(self, surface: pygame.Surface, compiled: bool = True) -> None:
         self.surface = surface
-        self.compiled = (COMPILED if compiled is None else compiled) and _has_plain_pixels(surface)
+        self.compiled = compiled and COMPILED and _has_plain_pixels(surface)
 
     def lines(self, ends: NDArray[np.float64], colours: NDArray[np.int64], width: float) -> None:
         """Draw segments (m, 4) = x1, y1, x2, y2 [pixels] in colours (m,) 0xRRGGBB, width [pixels]."""
@@ -213,7 +213,9 @@ def _rgb(colour: int) -> tuple[int, int, int]:
 
 def warm_up_lines() -> None:
     """Compile the drawing kernels, or load them from the cache."""
-    canvas = Canvas(pygame.Surface((8, 8), 0, 32), compiled=True)
+    canvas = Canvas(pygame.Surface((8, 8), 0, 32))
+    # Interpreted ones are called too, so that it can be noted what they are called with.
+    canvas.compiled = True
     canvas.lines(np.array([[1.0, 1.0, 6.0, 5.0]]), np.array([0xFFFFFF]), 2.0)
     canvas.plain_lines(np.array([[1.0, 1.0, 6.0, 5.0]]), np.array([0xFFFFFF]))
     canvas.discs(np.array([[3.0, 3.0]]), np.array([2.0]), np.array([0xFFFFFF]))

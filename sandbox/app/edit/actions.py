@@ -8,7 +8,6 @@ from typing import Literal
 from sandbox.app.application import Application
 from sandbox.app.draw.camera import Box
 from sandbox.app.draw.colours import material_colours
-from sandbox.app.edit.bar import TOOLS
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.edit.clipboard import Clipboard
 from sandbox.app.edit.editing import Editing
@@ -23,6 +22,7 @@ from sandbox.editor.edits.moving import align, distribute, mirror
 from sandbox.editor.edits.placing import unweld
 from sandbox.editor.items import Item
 from sandbox.editor.pick import items_of_material
+from sandbox.editor.tools.palette import TOOLS
 
 # A copy is put this many steps of the grid to the right of and below what it is of.
 COPY_STEPS = 2
@@ -41,8 +41,10 @@ Place = Literal["front", "forward", "backward", "back"]
 def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dict[str, Callable[[], object]]:
     """The actions of a screen."""
     documents = app.documents
-    actions: dict[str, Callable[[], object]] = {f"tool_{name}": partial(screen.choose_tool, name) for name in TOOLS}
-    return actions | {
+    tools: dict[str, Callable[[], object]] = {
+        tool.action: partial(screen.choose_tool, name) for name, tool in TOOLS.items()
+    }
+    return tools | {
         "play": documents.play,
         "undo": lambda: _step(screen, -1),
         "redo": lambda: _step(screen, 1),

@@ -6,17 +6,15 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DISABLED, TEXT, Colour
+from sandbox.app.edit.edit_icons import EDIT_ICONS
 from sandbox.app.edit.editing import Editing
 from sandbox.app.play.toolbar import BAR_HEIGHT, BUTTON, GAP, ICON, ROOM_FOR_NAME
 from sandbox.app.shortcuts import tip_of
-from sandbox.app.widgets.icons import icon
+from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.ui import Ui, set_icon
+from sandbox.editor.tools.icons import Icon
+from sandbox.editor.tools.palette import TOOLS
 
-# Tools in the order of the palette; the picture of each has its name.
-TOOLS = (
-    "select", "lasso", "particle", "spring", "rope", "bridge", "girder", "web", "box", "circle", "polygon", "wheel",
-    "ring", "pin", "ground", "line", "walls",
-)  # fmt: skip
 # Groups of actions from the left, and those at the right end, with their pictures.
 LEFT = (
     (("play", "play"),),
@@ -40,20 +38,20 @@ class _Buttons:
     def __init__(self, ui: Ui, press: Callable[[str], None], back: Any, size: float) -> None:
         self._ui, self._press, self._back, self._size = ui, press, back, size
         self.by_action: dict[str, Any] = {}
-        self._pictures: dict[str, str] = {}
-        self._icons: dict[tuple[str, Colour], pygame.Surface] = {}
+        self._icons: dict[str, Icon] = {}
+        self._painted: dict[tuple[str, Colour], pygame.Surface] = {}
         self._shown: dict[str, Colour] = {}
 
-    def add(self, action: str, picture: str, x: float, y: float) -> None:
+    def add(self, action: str, icon: Icon, x: float, y: float) -> None:
         """A button of an action at a place [layout units]."""
         ui = self._ui
-        self._pictures[action] = picture
+        self._icons[action] = icon
         self.by_action[action] = ui.button(
             ui.rect(x, y, self._size, self._size),
             "",
             lambda: self._press(action),
             self._back,
-            icon=self._icon(picture, TEXT),
+            icon=self._icon(action, TEXT),
             tip=tip_of(action, "edit"),
             style="@quiet",
         )
@@ -74,15 +72,16 @@ class _Buttons:
             return
         self._shown[action] = colour
         button = self.by_action[action]
-        set_icon(button, self._icon(self._pictures[action], colour))
+        set_icon(button, self._icon(action, colour))
         (button.enable if enabled else button.disable)()
         (button.select if on else button.unselect)()
 
-    def _icon(self, name: str, colour: Colour) -> pygame.Surface:
-        key = (name, colour)
-        if key not in self._icons:
-            self._icons[key] = icon(name, self._ui.px(ICON * self._size / BUTTON), colour)
-        return self._icons[key]
+    def _icon(self, action: str, colour: Colour) -> pygame.Surface:
+        key = (action, colour)
+        if key not in self._painted:
+            size = self._ui.px(ICON * self._size / BUTTON)
+            self._painted[key] = painted_icon(self._icons[action], size, colour)
+        return self._painted[key]
 
 
 class Bar:
@@ -99,7 +98,7 @@ class Bar:
         x, y = MARGIN, (BAR_HEIGHT - size) / 2
         for group in LEFT:
             for action, picture in group:
-                self.buttons.add(action, picture, x, y)
+                self.buttons.add(action, EDIT_ICONS[picture], x, y)
                 x += pitch
             x += gaps / len(LEFT)
         right = width - MARGIN - (len(RIGHT) + 1) * pitch
@@ -108,7 +107,7 @@ class Bar:
             self.title = ui.label(ui.rect(x + 8, 0, right - x - 16, BAR_HEIGHT), "", self.back, "@title")
         self._name = ""
         for action, picture in RIGHT:
-            self.buttons.add(action, picture, right, y)
+            self.buttons.add(action, EDIT_ICONS[picture], right, y)
             right += pitch
         self.buttons.add_text("help", "?", right, y)
 
@@ -137,11 +136,11 @@ class Palette:
         pitch = min(BUTTON + GAP, (height - 8) / len(TOOLS))
         size = min(BUTTON, pitch - 2)
         self._buttons = _Buttons(ui, press, self.back, size)
-        for index, name in enumerate(TOOLS):
-            self._buttons.add(f"tool_{name}", name, (width - size) / 2, 6 + index * pitch)
-        self.tools = {name: self._buttons.by_action[f"tool_{name}"] for name in TOOLS}
+        for index, tool in enumerate(TOOLS.values()):
+            self._buttons.add(tool.action, tool.icon, (width - size) / 2, 6 + index * pitch)
+        self.tools = {name: self._buttons.by_action[tool.action] for name, tool in TOOLS.items()}
 
     def show(self, tool: str) -> None:
         """Mark the tool in use."""
-        for name in TOOLS:
-            self._buttons.show(f"tool_{name}", on=name == tool)
+        for name, each in TOOLS.items():
+            self._buttons.show(each.action, on=name == tool)

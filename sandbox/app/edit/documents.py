@@ -1,4 +1,4 @@
-"""Documents: the level that the editor has open: new, opened, saved, played, and found again after a crash."""
+"""DocumentActions: the level that the editor has open: new, opened, saved, played, and found again after a crash."""
 
 import os
 from collections.abc import Callable
@@ -25,7 +25,7 @@ NAME_LIMIT = 200
 OFFERED = 5
 
 
-class Documents:
+class DocumentActions:
     """What the app does with the level that is edited; `editor` is its screen, also while it is played."""
 
     def __init__(self, app: Application) -> None:

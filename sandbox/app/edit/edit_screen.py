@@ -37,7 +37,8 @@ from sandbox.editor.items import Selection
 from sandbox.editor.lint.finding import Finding
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.storage.level_file import LevelFile
-from sandbox.editor.tools.drawing import DRAWINGS
+from sandbox.editor.tools.palette import TOOLS
+from sandbox.editor.tools.selecting import LASSO
 from sandbox.editor.tools.snap import Snap, snap
 
 # Sizes in layout units.
@@ -79,9 +80,8 @@ class EditScreen:
         self.watch = Watch(self)
         self.clipboard = Clipboard(self, app.documents.edit_level)
         self.pointer_tools: dict[str, PointerTool] = {
-            "select": SelectTool(self, lasso=False),
-            "lasso": SelectTool(self, lasso=True),
-            **{name: DrawTool(self, drawing(), f"Draw {name}") for name, drawing in DRAWINGS.items()},
+            name: DrawTool(self, tool.drawing(), f"Draw {name}") if tool.drawing else SelectTool(self, tool is LASSO)
+            for name, tool in TOOLS.items()
         }
         self.actions: dict[str, Callable[[], object]] = edit_actions(self, app, self.clipboard)
         self.fit()
@@ -327,12 +327,12 @@ class EditScreen:
 
     def press_cursor(self) -> None:
         """Click at the keyboard cursor; without one, end what is drawn."""
-        hand = self.pointer_tool
+        tool = self.pointer_tool
         if self.cursor is not None:
-            hand.down(self.cursor, 0, 1)
-            hand.up(self.cursor, 0)
-        elif isinstance(hand, DrawTool):
-            hand.finish()
+            tool.down(self.cursor, 0, 1)
+            tool.up(self.cursor, 0)
+        elif isinstance(tool, DrawTool):
+            tool.finish()
 
     # A frame.
 
@@ -344,7 +344,7 @@ class EditScreen:
             at = self.cursor if self.cursor is not None else None if pointer is None else self.camera.to_world(pointer)
             self.pointer_tool.hover(at, pygame.key.get_mods())
         with profile.part("lint"):
-            self.watch.update(frame_time)
+            self.watch.update(frame_time, ready)
         self.bar.show(self)
         self.palette.show(self.tool)
         self.options.refresh()
@@ -375,7 +375,7 @@ class EditScreen:
         """What to do next, where the pointer is, and what the level has."""
         scene, selection = self.scene, self.document.selection
         parts: list[tuple[str, Colour]] = [
-            (self.tool if self.tool != "box" else "jelly", ACCENT),
+            (TOOLS[self.tool].title, ACCENT),
             (self.pointer_tool.hint, TEXT),
         ]
         errors = sum(finding.severity == "error" for finding in self.findings)

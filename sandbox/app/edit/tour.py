@@ -8,7 +8,7 @@ import pygame
 from sandbox.app.application import Application
 from sandbox.app.draw.colours import ACCENT, MUTED, TEXT, WARNING
 from sandbox.app.edit.canvas.pointer import DrawTool
-from sandbox.app.edit.documents import Documents
+from sandbox.app.edit.documents import DocumentActions
 from sandbox.app.edit.edit_screen import EditScreen
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.ui import Ui
@@ -35,7 +35,7 @@ Place = tuple[int, int]
 class Guide:
     """Offers the tour once, and leads through it; may_offer: whether a person is there to be asked."""
 
-    def __init__(self, app: Application, documents: Documents) -> None:
+    def __init__(self, app: Application, documents: DocumentActions) -> None:
         self._app, self._documents = app, documents
         self.may_offer = False
         self.tour: Tour | None = None
@@ -208,8 +208,8 @@ class Guide:
 
     def _arrow_across(self, surface: pygame.Surface) -> None:
         editor, view = self._documents.editor, self._viewport()
-        hand = editor.pointer_tool if editor is not None else None
-        if not isinstance(hand, DrawTool) or hand.drawing.under_way:
+        tool = editor.pointer_tool if editor is not None else None
+        if not isinstance(tool, DrawTool) or tool.drawing.under_way:
             return
         head, y = self._app.ui.px(9), view.top + round(view.height * 0.45)
         start, end = view.left + view.width // 4, view.right - view.width // 4

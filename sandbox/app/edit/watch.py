@@ -36,8 +36,8 @@ class Watch:
         self.forecast = None
         self._level = None
 
-    def update(self, frame_time: float) -> None:
-        """Go on with both for a moment."""
+    def update(self, frame_time: float, ready: bool = True) -> None:
+        """Go on with both for a moment; ready: kernels are there, or a forecast would take many frames at a time."""
         level = self._screen.document.level
         if level is not self._level:
             self._level, self._since = level, 0.0
@@ -50,7 +50,7 @@ class Watch:
             self._is_told = False
             self.forecast = Forecast(level) if self.forecasts and self._screen.scene.items else None
         self._look()
-        if self.forecast is not None and self.forecast.advance(SLICE) and not self._is_told:
+        if ready and self.forecast is not None and self.forecast.advance(SLICE) and not self._is_told:
             self._is_told = True
             self._screen.say(f"{self.forecast.text}.")
 

@@ -8,7 +8,7 @@ import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED, TEXT, Colour
 from sandbox.app.shortcuts import tip_of
-from sandbox.app.widgets.icons import icon
+from sandbox.app.widgets.icons import ICONS, painted_icon
 from sandbox.app.widgets.ui import Ui, set_icon
 
 # Sizes in layout units.
@@ -96,7 +96,7 @@ class Toolbar:
     def _icon(self, name: str, colour: Colour) -> pygame.Surface:
         key = (name, colour)
         if key not in self._icons:
-            self._icons[key] = icon(name, self._ui.px(ICON), colour)
+            self._icons[key] = painted_icon(ICONS[name], self._ui.px(ICON), colour)
         return self._icons[key]
 
     def _place(self, width: float) -> pygame.Rect:

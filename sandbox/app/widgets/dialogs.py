@@ -24,13 +24,14 @@ Choice = tuple[str, Callable[[], object]]
 
 
 def _box(
-    ui: Ui, height: float, close: Callable[[], None], again: Again, is_question: bool = False
+    ui: Ui, title: str, height: float, close: Callable[[], None], again: Again, is_question: bool = False
 ) -> tuple[Any, Any, float]:
-    """A modal box in the middle: the sheet, the box and its width in layout units."""
+    """A modal box with a title in the middle: the sheet, the box and its width in layout units."""
     width, tall = ui.units
     box_width = min(WIDTH, width - 40)
     sheet = ui.open_sheet(close, again=again, is_question=is_question)
     box = ui.panel(ui.rect((width - box_width) / 2, max((tall - height) / 2, 10), box_width, height), sheet, "@dialog")
+    ui.label(ui.rect(MARGIN, MARGIN - 6, box_width - 2 * MARGIN, 28), title, box, "@title")
     return sheet, box, box_width
 
 
@@ -51,8 +52,7 @@ def show_lines(ui: Ui, title: str, lines: list[str], other: Choice | None = None
     def again(other_ui: Ui) -> None:
         show_lines(other_ui, title, lines, other)
 
-    sheet, box, width = _box(ui, height, close, again)
-    ui.label(ui.rect(MARGIN, MARGIN - 6, width - 2 * MARGIN, 28), title, box, "@title")
+    sheet, box, width = _box(ui, title, height, close, again)
     place = ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN, height - MARGIN * 2 - 84)
     TextBlock(ui, place, "\n".join(shown), box, 13.0, TEXT)
     bottom = height - MARGIN - 34
@@ -103,9 +103,8 @@ def ask(
     def again(other_ui: Ui) -> None:
         ask(other_ui, title, hint, field.entry.get_text(), verb, answer, other, then)
 
-    sheet, box, width = _box(ui, height, close, again)
+    sheet, box, width = _box(ui, title, height, close, again)
     inside = width - 2 * MARGIN
-    ui.label(ui.rect(MARGIN, MARGIN - 6, inside, 28), title, box, "@title")
     ui.label(ui.rect(MARGIN, MARGIN + 26, inside, 20), hint, box, "@muted")
     field = ui.field(ui.rect(MARGIN, MARGIN + 52, inside, 34), text, lambda _: True, box, 400)
     field.enter = take
@@ -137,9 +136,8 @@ def choose(
     def again(other_ui: Ui) -> None:
         choose(other_ui, title, text, choices, columns, is_question=is_question)
 
-    sheet, box, width = _box(ui, height, close, again, is_question)
+    sheet, box, width = _box(ui, title, height, close, again, is_question)
     inside = width - 2 * MARGIN
-    ui.label(ui.rect(MARGIN, MARGIN - 6, inside, 28), title, box, "@title")
     TextBlock(ui, ui.rect(MARGIN, MARGIN + 32, inside, lines * LINE_HEIGHT + 4), text, box, 13.0, TEXT)
     top, buttons = MARGIN + 40 + lines * LINE_HEIGHT, []
     wide = (inside - 10 * (columns - 1)) / columns
@@ -166,8 +164,7 @@ def choose_row(ui: Ui, title: str, rows: Sequence[Row], take: Callable[[int], ob
     def again(other_ui: Ui) -> None:
         choose_row(other_ui, title, rows, take)
 
-    sheet, box, width = _box(ui, height, close, again)
-    ui.label(ui.rect(MARGIN, MARGIN - 6, width - 2 * MARGIN, 28), title, box, "@title")
+    sheet, box, width = _box(ui, title, height, close, again)
     listed = RowList(ui, ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN, tall), do, box, at_once=False)
     listed.show_rows(rows, None)
     ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="@quiet")
@@ -199,9 +196,8 @@ def fill_in(
         typed = [(label, entry.entry.get_text()) for (label, _), entry in zip(fields, entries, strict=True)]
         fill_in(other_ui, title, hint, typed, verb, answer)
 
-    sheet, box, width = _box(ui, height, close, again)
+    sheet, box, width = _box(ui, title, height, close, again)
     inside = width - 2 * MARGIN
-    ui.label(ui.rect(MARGIN, MARGIN - 6, inside, 28), title, box, "@title")
     ui.label(ui.rect(MARGIN, MARGIN + 26, inside, 20), hint, box, "@muted")
     entries = []
     for index, (label, text) in enumerate(fields):

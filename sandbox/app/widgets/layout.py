@@ -1,11 +1,11 @@
-"""Layout: the window that widgets stand in, its scale and its fonts."""
+"""WindowLayout: the window that widgets stand in, its scale and its fonts."""
 
 import pygame
 
 from sandbox.app.widgets.theme import Manager, plain_font, scaled_theme
 
 
-class Layout:
+class WindowLayout:
     """A window of size [pixels]; positions and sizes given to it are layout units of `scale` pixels."""
 
     def __init__(self, size: tuple[int, int], scale: float, pixel_ratio: tuple[float, float] = (1.0, 1.0)) -> None:

@@ -1,18 +1,20 @@
 """Painted: widgets that paint themselves, for what pygame_gui has not."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 import pygame
 from pygame_gui.core import UIElement
 
 from sandbox.app.draw.colours import MUTED, Colour
-from sandbox.app.widgets.layout import Layout
+from sandbox.app.widgets.layout import WindowLayout
+
+ENTER_KEYS = (pygame.K_RETURN, pygame.K_KP_ENTER)
 
 
 class Painted(UIElement):
     """A widget that paints itself; subclasses give `paint`, and what mouse and keys do."""
 
-    def __init__(self, ui: Layout, rect: pygame.Rect, container: Any = None) -> None:
+    def __init__(self, ui: WindowLayout, rect: pygame.Rect, container: Any = None) -> None:
         super().__init__(
             rect, ui.manager, container or ui.root, starting_height=1, layer_thickness=1, element_id=["painted"]
         )
@@ -29,6 +31,36 @@ class Painted(UIElement):
     def press_key(self, event: pygame.event.Event) -> bool:
         """React to a key while focused; True where the key is used."""
         return False
+
+    def is_press(self, event: pygame.event.Event) -> bool:
+        """Whether an event is a press of the left button on the widget."""
+        if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1:
+            return False
+        return bool(self.hover_point(*self.ui.manager.calculate_scaled_mouse_position(event.pos)))
+
+
+class Pressable(Painted):
+    """A painted widget that a click presses, and while it is focused a key."""
+
+    press_keys: ClassVar[tuple[int, ...]] = (*ENTER_KEYS, pygame.K_SPACE)
+
+    def press(self) -> None:
+        """What a press does."""
+        raise NotImplementedError
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Press on a click."""
+        if not self.is_press(event):
+            return False
+        self.press()
+        return True
+
+    def press_key(self, event: pygame.event.Event) -> bool:
+        """Press by a key."""
+        if event.key not in self.press_keys:
+            return False
+        self.press()
+        return True
 
 
 class Lit(Painted):
@@ -64,7 +96,7 @@ class TextBlock(Painted):
 
     def __init__(
         self,
-        ui: Layout,
+        ui: WindowLayout,
         rect: pygame.Rect,
         text: str,
         container: Any = None,

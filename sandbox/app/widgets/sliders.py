@@ -69,15 +69,14 @@ class LogSlider(Painted):
 
     def process_event(self, event: pygame.event.Event) -> bool:
         """Follow the mouse."""
-        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self.enabled:
-            if self.hover_point(*self.ui.manager.calculate_scaled_mouse_position(event.pos)):
-                self.dragging = True
-                self._follow(event.pos)
-                return True
-        elif event.type == pygame.MOUSEMOTION and self.dragging:
+        if self.enabled and self.is_press(event):
+            self.dragging = True
             self._follow(event.pos)
             return True
-        elif event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self.dragging:
+        if event.type == pygame.MOUSEMOTION and self.dragging:
+            self._follow(event.pos)
+            return True
+        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self.dragging:
             self.dragging = False
             self._done()
             return True

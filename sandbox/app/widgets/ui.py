@@ -15,8 +15,8 @@ from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITe
 
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.widgets.fields import Choice, Field
-from sandbox.app.widgets.layout import Layout
-from sandbox.app.widgets.painted import Painted
+from sandbox.app.widgets.layout import WindowLayout
+from sandbox.app.widgets.painted import ENTER_KEYS, Painted
 
 # It warns of every label that is a pixel lower than its font: only people who lay out can do something about that.
 warnings.filterwarnings("ignore", message="Label Rect is too small", module="pygame_gui")
@@ -25,7 +25,6 @@ warnings.filterwarnings("ignore", message="Label Rect is too small", module="pyg
 SHEET_HEIGHT = 40
 # Delay and interval of a key that is held down [ms].
 KEY_REPEAT = (400, 40)
-ENTER_KEYS = (pygame.K_RETURN, pygame.K_KP_ENTER)
 ANSWERS = (
     pygame_gui.UI_BUTTON_PRESSED,
     pygame_gui.UI_DROP_DOWN_MENU_CHANGED,
@@ -52,7 +51,7 @@ class Sheet:
     widgets: list[UIElement] = default(default_factory=list)
 
 
-class Ui(Layout):
+class Ui(WindowLayout):
     """Widgets on a window of size [pixels]; positions and sizes given to it are layout units of `scale` pixels."""
 
     def __init__(self, size: tuple[int, int], scale: float, pixel_ratio: tuple[float, float] = (1.0, 1.0)) -> None:

@@ -11,12 +11,12 @@ from sandbox.editor.edits.fields import change_items
 from sandbox.editor.items import Definition, Item
 from sandbox.editor.panel.typed import significant
 from sandbox.editor.scene import Scene, make_scene
-from sandbox.level.build.expansion import masses
-from sandbox.level.format.drives import HydraulicDef, MotorDef, MuscleDef
+from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef, MuscleDef
 from sandbox.level.format.limits import TORQUE_LIMIT
 from sandbox.level.format.model import SpringDef
-from sandbox.level.kinds.bodies import BendingDef, WheelDef
-from sandbox.level.kinds.shapes import form_count
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.body_def import BendingDef
+from sandbox.level.kinds.wheel import WheelDef
 
 # A new muscle swings by this share of its length, once in so many ticks: a second, at 60 ticks in one.
 MUSCLE = MuscleDef(amplitude=0.2, period=60)
@@ -46,7 +46,7 @@ def add_object(document: Document, items: Iterable[Item], field: str) -> Documen
 def _motor(part: Definition, _: Scene | None) -> MotorDef:
     if not isinstance(part, WheelDef):
         raise EditError("only a wheel has a motor")
-    weight = WEIGHT * float(np.sum(masses(part, form_count(part)[0])))
+    weight = WEIGHT * float(np.sum(expansion(part).mass))
     torque = min(significant(MOTOR_SHARE * weight * part.radius, DIGITS), TORQUE_LIMIT)
     return MotorDef(speed=MOTOR_SPEED, torque=torque)
 

@@ -13,7 +13,7 @@ from sandbox.level.format.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL
 from sandbox.level.format.model import NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody
-from sandbox.level.kinds.shapes import Points
+from sandbox.level.kinds.geometry import Points
 from sandbox.physics.world import World
 
 _ANOTHER = "what was played is not the level as it is now"

@@ -18,11 +18,8 @@ from sandbox.level.format.canonical import level_text
 from sandbox.level.format.limits import DEFAULT_MATERIAL, PARTICLE_LIMIT, SPRING_LIMIT
 from sandbox.level.format.model import Level, Material, NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.parse import parse_level
-from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.bodies import AnyBody
-from sandbox.level.kinds.shapes import count as count_body
-
-Point = tuple[float, float]
+from sandbox.level.format.quantities import Point, replaced
+from sandbox.level.kinds.bodies import AnyBody, expansion
 
 
 def copy_text(document: Document) -> str:
@@ -119,7 +116,7 @@ def _repeated(document: Document, count: int) -> Level:
 
 def _size(level: Level, part: int) -> int:
     loose = (level.particles, level.springs)[part]
-    return len(loose) + sum(count_body(body)[part] for body in level.bodies)
+    return len(loose) + sum(expansion(body).count[part] for body in level.bodies)
 
 
 def _arrayed(document: Document, copies: list[Level]) -> Document:
@@ -161,7 +158,7 @@ def _inserted(level: Level, copies: Iterable[Level]) -> tuple[Level, Selection]:
 
 def _renamed(copy: Level, ids: set[str], groups: set[str], materials: dict[str, Material]) -> Level:
     """A level with free ids and groups, made of `materials`; all three grow by what it brings."""
-    old = [part.id for part in (*copy.bodies, *copy.particles, *copy.terrain)]
+    old = [part.id for items in (copy.bodies, copy.particles, copy.terrain) for part in items]
     names = dict(zip(old, free_ids(ids, old), strict=True))
     parts = sorted(taken_groups(copy))
     group_names: dict[str | None, str | None] = {None: None, **dict(zip(parts, free_ids(groups, parts), strict=True))}

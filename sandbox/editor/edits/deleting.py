@@ -8,11 +8,12 @@ from sandbox.editor.edits.grouping import taken_groups
 from sandbox.editor.edits.names import free_ids, owner_of, rewired, taken_ids
 from sandbox.editor.items import Item, chosen_bodies, keys
 from sandbox.editor.scene import make_scene
-from sandbox.level.build.expansion import Expansion, expansion, named_particles
 from sandbox.level.format.limits import BODY_RADIUS, COORDINATE_LIMIT
 from sandbox.level.format.model import ParticleDef, SpringDef
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.shapes import Points, distances
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.expansion import Expansion
+from sandbox.level.kinds.geometry import Points, distances
 
 # A rest length is taken as placed where both differ by no more than this share: above rounding, below what is seen.
 SAME_LENGTH = 1e-12
@@ -56,7 +57,7 @@ def break_apart(document: Document) -> Document:
         # An id holds no dot, so "deck.20" becomes "deck 20"; of a very long name less is left.
         ids = free_ids(taken, [f"{body.id[:240]} {index}" for index in range(len(made.mass))])
         names |= {f"{body.id}.{index}": name for index, name in enumerate(ids)}
-        names |= {f"{body.id}.{part}": ids[index] for part, index in named_particles(body).items()}
+        names |= {f"{body.id}.{part}": ids[index] for part, index in made.named_particles.items()}
         first = scene.slot(f"{body.id}.0")
         particle = ParticleDef(
             id="-",

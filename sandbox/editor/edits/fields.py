@@ -10,15 +10,16 @@ from sandbox.editor.document import Document, EditError, checked, first_fault, s
 from sandbox.editor.edits.names import renamed, rewired, taken_ids
 from sandbox.editor.edits.remap import rebuilt
 from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles, chosen_terrain
+from sandbox.editor.kinds.table import EDITING, editing
 from sandbox.level.faults.level_error import shown
 from sandbox.level.format.limits import VERSION
 from sandbox.level.format.model import Level, ParticleDef, TerrainDef
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.bodies import AnyBody, BodyDef, RopeDef
+from sandbox.level.kinds.bodies import AnyBody
+from sandbox.level.kinds.body_def import BodyDef
 
 # Fields of bodies that their form does not depend on; a change of any other may take pins, cuts and references along.
-_FORMLESS = frozenset(BodyDef.model_fields) | {"particle_mass", "end_mass", "hub_mass", "masses", "velocities"}
-_FORMLESS |= {"pin", "rest_length", "motor", "area", "inflation", "bending"}
+_FORMLESS = frozenset(BodyDef.model_fields).union(*(each.formless for each in EDITING.values()))
 # Parts of a level that other edits change.
 _NO_FIELDS = frozenset(
     set(Level.model_fields)
@@ -139,16 +140,14 @@ def with_tuples(value: Any) -> Any:
 
 
 def _with_field(part: Definition, field: str, value: Any) -> Definition:
-    changes = {field: value}
-    if isinstance(part, RopeDef) and field == "segments" and part.rest_length is not None:
-        changes["rest_length"] = part.rest_length * part.segments / value
+    changes = editing(part).with_field(field, value) if isinstance(part, BodyDef) else {field: value}
     new = replaced(part, **changes)
     return validated(new) if len(changes) > 1 else new
 
 
 def _named_part(level: Level, item: Item) -> AnyBody | ParticleDef | TerrainDef:
     selection: Selection = frozenset([item])
-    parts = [
+    parts: list[AnyBody | ParticleDef | TerrainDef] = [
         *chosen_bodies(level, selection), *chosen_particles(level, selection), *chosen_terrain(level, selection),
     ]  # fmt: skip
     if not parts:

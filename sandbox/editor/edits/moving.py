@@ -10,14 +10,11 @@ import numpy as np
 from sandbox.editor.document import Document, EditError, all_validated, check_places, check_terrain, subject, validated
 from sandbox.editor.edits.names import owner_of
 from sandbox.editor.edits.placement import (
-    Motion,
     Placed,
-    can_stretch,
     mapped_body,
     mapped_particle,
     mapped_terrain,
     shifted,
-    stretch,
 )
 from sandbox.editor.edits.remap import rebuilt
 from sandbox.editor.items import (
@@ -31,14 +28,14 @@ from sandbox.editor.items import (
     exchanged,
     keys,
 )
+from sandbox.editor.kinds.motion import Motion, stretch
+from sandbox.editor.kinds.table import editing
 from sandbox.editor.scene import Scene, make_scene, positions
-from sandbox.level.build.actuators import given_length
 from sandbox.level.format.limits import COORDINATE_LIMIT
 from sandbox.level.format.model import Level, SpringDef
-from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.shapes import Points
+from sandbox.level.format.quantities import Point, replaced
+from sandbox.level.kinds.geometry import Points
 
-Point = tuple[float, float]
 Edge = Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]
 Axis = Literal["x", "y"]
 
@@ -65,7 +62,7 @@ def scale(document: Document, sx: float, sy: float, centre: Point) -> Document:
 
 def can_scale_unevenly(document: Document) -> bool:
     """Whether everything selected can be made longer without being made higher as much."""
-    return all(can_stretch(body) for body in chosen_bodies(document.level, document.selection))
+    return all(editing(body).can_stretch() for body in chosen_bodies(document.level, document.selection))
 
 
 def mirror(document: Document, axis: Axis, centre: Point) -> Document:
@@ -183,7 +180,7 @@ def _inside_springs(level: Level, selection: Selection) -> Selection:
     return frozenset(
         Item("spring", index)
         for index, spring in enumerate(level.springs)
-        if given_length(spring) is not None and owner_of(spring.a) in owners and owner_of(spring.b) in owners
+        if spring.given_length is not None and owner_of(spring.a) in owners and owner_of(spring.b) in owners
     )
 
 

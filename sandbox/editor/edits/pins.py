@@ -3,20 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.build.expansion import expansion
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.bodies import AnyBody
+from sandbox.level.kinds.bodies import AnyBody, expansion
 
 Mask = NDArray[np.bool_]
-
-# What `pin` of a body can hold, by the kinds that have it.
-_ENDS = {
-    "rope": ("start", "end"),
-    "bridge": ("start", "end"),
-    "girder": ("start", "end"),
-    "web": ("rim",),
-    "wheel": ("hub",),
-}
 
 
 def pins_of(body: AnyBody) -> Mask:
@@ -28,7 +18,7 @@ def with_pins(body: AnyBody, pinned: Mask) -> AnyBody:
     """The body with those particles (n,) held and no others; an end that was named stays so where all of it is held."""
     named = np.zeros(len(pinned), dtype=np.bool_)
     changes = {}
-    if body.type in _ENDS:
+    if "pin" in body.__dict__:
         kept = []
         for end in body.__dict__["pin"]:
             held = pins_of(replaced(body, pin=(end,), pinned=(), cut=(), pose=None))

@@ -11,8 +11,7 @@ from sandbox.editor.scene import Scene, make_scene
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.model import Level, ParticleDef, SpringDef
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.bodies import AnyBody
-from sandbox.level.kinds.shapes import form_count
+from sandbox.level.kinds.bodies import AnyBody, expansion
 
 
 def add_body(document: Document, body: AnyBody) -> Document:
@@ -108,7 +107,7 @@ def cut_springs(document: Document, names: Iterable[str]) -> Document:
     level = document.level
     cut: dict[str, set[int]] = {}
     gone: set[int] = set()
-    bodies = {body.id: form_count(body)[1] for body in level.bodies}
+    bodies = {body.id: expansion(body).form_count[1] for body in level.bodies}
     for name in names:
         owner, _, text = name.rpartition(":")
         limit = bodies.get(owner, 0) if owner else len(level.springs)

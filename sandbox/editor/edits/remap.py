@@ -8,12 +8,11 @@ from numpy.typing import NDArray
 
 from sandbox.editor.document import EditError, check_bodies, checked, subject
 from sandbox.editor.edits.names import rewired
-from sandbox.level.build.expansion import named_particles
 from sandbox.level.format.limits import COORDINATE_LIMIT
 from sandbox.level.format.model import Level
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.bodies import AnyBody
-from sandbox.level.kinds.shapes import Pairs, Points, expand
+from sandbox.level.kinds.bodies import AnyBody, expansion
+from sandbox.level.kinds.geometry import Pairs, Points
 
 Indices = NDArray[np.int64]
 
@@ -42,8 +41,8 @@ def rebuilt(level: Level, bodies: Mapping[str, AnyBody], images: Mapping[str, Po
         if new is not old:
             new, goes = _fitted(old, new, (images or {}).get(old.id), sorted(set(used[old.id].values())))
             if goes is not None:
-                names = {index: name for name, index in named_particles(new).items()}
-                named = named_particles(old)
+                names = {index: name for name, index in expansion(new).named_particles.items()}
+                named = expansion(old).named_particles
                 # A name stays a name where it can.
                 parts[old.id] = {
                     part: names.get(goes[index], str(goes[index])) if part in named else str(goes[index])
@@ -61,7 +60,7 @@ def rebuilt(level: Level, bodies: Mapping[str, AnyBody], images: Mapping[str, Po
 
 def _used(level: Level, bodies: Mapping[str, AnyBody]) -> dict[str, dict[str, int]]:
     """By body, the parts after the dot of the references to it, with the indices of their particles."""
-    named = {body.id: named_particles(body) for body in level.bodies if body.id in bodies}
+    named = {body.id: expansion(body).named_particles for body in level.bodies if body.id in bodies}
     used: dict[str, dict[str, int]] = {name: {} for name in named}
 
     def note(reference: str) -> str:
@@ -76,8 +75,9 @@ def _used(level: Level, bodies: Mapping[str, AnyBody]) -> dict[str, dict[str, in
 
 def _fitted(old: AnyBody, new: AnyBody, image: Points | None, used: list[int]) -> tuple[AnyBody, dict[int, int] | None]:
     """The new body with pins, cuts and pose of the old, and where used particles go to; None = all stay."""
-    old_form, old_pairs = expand(old)
-    form, pairs = expand(new)
+    before, after = expansion(old), expansion(new)
+    old_form, old_pairs = before.form, before.form_pairs
+    form, pairs = after.form, after.form_pairs
     pose = None if new.pose is None else np.array(new.pose)
     if image is None:
         shift = None if pose is None else pose - old_form

@@ -9,9 +9,8 @@ from sandbox.editor.edits.names import free_id
 from sandbox.editor.items import Definition, Item, Selection, changed
 from sandbox.level.faults.level_error import shown
 from sandbox.level.format.model import Level, TerrainDef, WallsDef
-from sandbox.level.format.quantities import replaced
+from sandbox.level.format.quantities import Point, replaced
 
-Point = tuple[float, float]
 Corners = tuple[Point, ...]
 Form = Literal["line", "solid"]
 FORMS: tuple[Form, ...] = ("line", "solid")

@@ -12,7 +12,7 @@ from sandbox.editor.lint.finding import Finding, Remedy, Rule, called, place_of
 from sandbox.editor.scene import Scene
 from sandbox.level.format.limits import BODY_RADIUS
 from sandbox.level.format.model import Level
-from sandbox.physics.collision.outline import TERRAIN_GROUP
+from sandbox.physics.collision.filter import TERRAIN_GROUP
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]

@@ -11,7 +11,7 @@ from sandbox.editor.document import Document
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene
 from sandbox.level.format.model import Level
-from sandbox.physics.collision.outline import TERRAIN_GROUP
+from sandbox.physics.collision.filter import TERRAIN_GROUP
 
 Severity = Literal["error", "warning", "hint"]
 Slots = NDArray[np.int64]
@@ -116,7 +116,7 @@ def falling_particles(level: Level, scene: Scene) -> Generator[None, None, tuple
 
 def _scales(level: Level, scene: Scene) -> NDArray[np.float64]:
     """How many times gravity pulls at each particle (n,)."""
-    scales = [part.gravity_scale for part in (*level.bodies, *level.particles)]
+    scales = [part.gravity_scale for parts in (level.bodies, level.particles) for part in parts]
     return np.array(scales, dtype=np.float64)[scene.particle_item]
 
 

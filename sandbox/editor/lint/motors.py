@@ -5,7 +5,7 @@ import numpy as np
 from sandbox.editor.items import Item
 from sandbox.editor.lint.finding import Finding, Rule, called, place_of
 from sandbox.editor.scene import Scene
-from sandbox.level.kinds.bodies import WheelDef
+from sandbox.level.kinds.wheel import WheelDef
 
 
 def idle_motors(scene: Scene) -> Rule:

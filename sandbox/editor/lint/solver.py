@@ -5,7 +5,8 @@ from numpy.typing import NDArray
 
 from sandbox.editor.lint.finding import Finding, Rule, called, middle_of, place_of
 from sandbox.editor.scene import Scene
-from sandbox.level.build.build_world import add_elements, coefficients
+from sandbox.level.build.constraints import add_constraints
+from sandbox.level.build.materials import coefficients
 from sandbox.level.format.model import Level, NissenMaterial
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
@@ -47,7 +48,7 @@ def _network(level: Level, scene: Scene) -> World:
     for name, values in coefficients(scene.material, materials).items():
         setattr(world, name, values)
     world.position, world.energy_bank = scene.position, np.zeros(count)
-    add_elements(world, scene.parts.names.layout, level, scene.parts.bodies.made, first, materials)
+    add_constraints(world, scene.parts.names.layout, level, scene.parts.bodies.made, first, materials)
     return world
 
 

@@ -55,7 +55,7 @@ _TITLES = {
 
 
 @dataclass(frozen=True)
-class About:
+class FieldInfo:
     """A field: kind, title, unit, limits (both included but where `above`), tooltip, choices, whether null is a value.
 
     empty: what null stands for. A `point` is of two numbers; `flags` are any number of the choices, `pairs`
@@ -76,7 +76,7 @@ class About:
 
 
 @cache
-def abouts(model: type[BaseModel]) -> dict[str, About]:
+def abouts(model: type[BaseModel]) -> dict[str, FieldInfo]:
     """What is known of every field of a model, by name, in its order."""
     fields = model.model_json_schema()["properties"]
     return {name: _about(name, fields[name], _part(field.annotation)) for name, field in model.model_fields.items()}
@@ -94,7 +94,7 @@ def title_of(field: str) -> str:
     return _TITLES.get(field, field.replace("_", " ").capitalize())
 
 
-def _about(name: str, schema: dict[str, Any], part: type[BaseModel] | None) -> About:
+def _about(name: str, schema: dict[str, Any], part: type[BaseModel] | None) -> FieldInfo:
     variants = [each for each in schema.get("anyOf", []) if each.get("type") != "null"]
     optional = any(each.get("type") == "null" for each in schema.get("anyOf", []))
     # Of several alternatives, each of which is a value, the table of choices says all.
@@ -104,7 +104,7 @@ def _about(name: str, schema: dict[str, Any], part: type[BaseModel] | None) -> A
     kind = "part" if part is not None else _kind(name, value)
     text = schema.get("description", "").replace("null = ", "empty = ").replace("`", "")
     empty = _EMPTY.search(text)
-    about = About(
+    about = FieldInfo(
         kind=kind,
         title="Held particles" if name == "pinned" and kind == "list" else title_of(name),
         unit=value.get("unit", value.get("items", {}).get("unit", "")),
@@ -116,7 +116,7 @@ def _about(name: str, schema: dict[str, Any], part: type[BaseModel] | None) -> A
         empty=_SHORTER.get(empty[1], empty[1].replace("_", " ")) if empty and optional else "",
         model=part,
     )
-    return About(**{**about.__dict__, "tooltip": _tooltip(about, text)})
+    return FieldInfo(**{**about.__dict__, "tooltip": _tooltip(about, text)})
 
 
 def _constant(value: dict[str, Any]) -> tuple[str, ...]:
@@ -144,7 +144,7 @@ def _kind(name: str, value: dict[str, Any]) -> Kind:
     return kinds.get(value.get("type", ""), "text")
 
 
-def _tooltip(about: About, description: str) -> str:
+def _tooltip(about: FieldInfo, description: str) -> str:
     """The description, and the limits of a number."""
     if about.kind not in ("number", "integer", "point") or (about.low is None and about.high is None):
         return description

@@ -14,8 +14,7 @@ from sandbox.editor.scene import make_scene
 from sandbox.level.checks import PARTICLE_METRICS, CheckDef
 from sandbox.level.format.model import Level, Settings
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.bodies import AnyBody
-from sandbox.level.kinds.shapes import count
+from sandbox.level.kinds.bodies import AnyBody, expansion
 
 # Walls of a level in which nothing is yet [m]; around something they leave this share of its size, and of at least 1 m.
 FIRST_ROOM = (-6.0, 0.0, 6.0, 6.0)
@@ -115,7 +114,7 @@ def _some_particle(document: Document) -> str | None:
     bodies: Sequence[AnyBody] = [*chosen_bodies(level, selection), *(() if selection else level.bodies)]
     if loose:
         return loose[0].id
-    return f"{bodies[0].id}.{count(bodies[0])[0] - 1}" if bodies else None
+    return f"{bodies[0].id}.{expansion(bodies[0]).count[0] - 1}" if bodies else None
 
 
 def add_check(document: Document) -> Document:

@@ -10,14 +10,16 @@ from sandbox.editor.document import Document
 from sandbox.editor.edits.additions import add_object
 from sandbox.editor.edits.fields import change_field, set_field, with_tuples
 from sandbox.editor.edits.names import owner_of
-from sandbox.editor.edits.terrain import FORMS, Form, Point, corners_of, form_of, outlined, with_corners
+from sandbox.editor.edits.terrain import FORMS, Form, corners_of, form_of, outlined, with_corners
 from sandbox.editor.items import Definition, Item, Selection, chosen_definitions, chosen_items
-from sandbox.editor.panel.field_info import About, abouts
+from sandbox.editor.panel.field_info import FieldInfo, abouts
 from sandbox.editor.panel.property import MIXED, Property, Section, part_properties, same, with_axes
 from sandbox.level.format.model import Level, ParticleDef, SpringDef, TerrainDef
+from sandbox.level.format.quantities import Point
 from sandbox.level.format.schema import TITLES
-from sandbox.level.kinds.bodies import SHAPES, BoxShape, CircleShape, JellyDef, PolygonShape, Shape, file_order
-from sandbox.level.kinds.shapes import count
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.body_def import file_order
+from sandbox.level.kinds.jelly import SHAPES, BoxShape, CircleShape, JellyDef, PolygonShape, Shape
 
 # Fields of terrain of which one is null.
 _OUTLINES = ("polyline", "polygon")
@@ -77,7 +79,7 @@ def _summary(kinds: Iterable[type], parts: Sequence[Definition]) -> str:
     return ", ".join(words)
 
 
-def _common(kinds: Iterable[Any], number: int) -> dict[str, About]:
+def _common(kinds: Iterable[Any], number: int) -> dict[str, FieldInfo]:
     """The fields that all kinds have alike, with the limits that hold for all."""
     first, *others = (abouts(kind) for kind in kinds)
     found = {}
@@ -90,13 +92,13 @@ def _common(kinds: Iterable[Any], number: int) -> dict[str, About]:
     return found
 
 
-def _objects(kinds: Iterable[Any]) -> dict[str, About]:
+def _objects(kinds: Iterable[Any]) -> dict[str, FieldInfo]:
     """The fields of any of the kinds that hold an object or none."""
     known = (about for kind in kinds for about in abouts(kind).items())
     return {name: about for name, about in known if about.kind == "part"}
 
 
-def _object_properties(items: dict[Item, Definition], name: str, about: About) -> list[Property]:
+def _object_properties(items: dict[Item, Definition], name: str, about: FieldInfo) -> list[Property]:
     """The properties of an object that some items may have."""
     holders = {item: part for item, part in items.items() if name in part.__dict__}
     chosen = frozenset(holders)
@@ -110,11 +112,11 @@ def _object_properties(items: dict[Item, Definition], name: str, about: About) -
     return part_properties(name, about, [part.__dict__[name] for part in holders.values()], change, add)
 
 
-def _alike(one: About, other: About) -> bool:
+def _alike(one: FieldInfo, other: FieldInfo) -> bool:
     return (one.kind, one.unit, one.choices, one.optional) == (other.kind, other.unit, other.choices, other.optional)
 
 
-def _made(selection: Selection, parts: Sequence[Definition], name: str, about: About) -> list[Property]:
+def _made(selection: Selection, parts: Sequence[Definition], name: str, about: FieldInfo) -> list[Property]:
     """The properties of a field: more than one of a shape."""
     if about.kind == "form":
         return _shape_properties(selection, [part.shape for part in parts if isinstance(part, JellyDef)])
@@ -154,7 +156,7 @@ def _facts(level: Level, item: Item, part: Definition) -> list[Property]:
     if isinstance(part, SpringDef):
         facts.append(("name", "Name", f":{item.key}", "Name of the spring."))
     elif not isinstance(part, ParticleDef | TerrainDef):
-        particles, springs = count(part)
+        particles, springs = expansion(part).count
         facts.append(
             (
                 "size",
@@ -166,7 +168,7 @@ def _facts(level: Level, item: Item, part: Definition) -> list[Property]:
     joints = [f"{a} = {b}" for a, b in level.welds if item.key in (owner_of(a), owner_of(b))]
     if joints and item.kind != "spring":
         facts.append(("welds", "Joined", ", ".join(joints), "Particles that are one with another's."))
-    return [Property(name, About("text", title, tooltip=tip), text) for name, title, text, tip in facts]
+    return [Property(name, FieldInfo("text", title, tooltip=tip), text) for name, title, text, tip in facts]
 
 
 def _counted(number: int, noun: str) -> str:
@@ -178,7 +180,7 @@ def _counted(number: int, noun: str) -> str:
 
 def _outline_properties(selection: Selection, pieces: Sequence[TerrainDef]) -> list[Property]:
     """Whether it is a line or solid, and its corners."""
-    kind = About("choice", "Kind", tooltip="A line with two sides, or solid inside.", choices=FORMS)
+    kind = FieldInfo("choice", "Kind", tooltip="A line with two sides, or solid inside.", choices=FORMS)
 
     def choose(document: Document, wanted: Form) -> Document:
         return outlined(document, selection, lambda piece: with_corners(piece, corners_of(piece), wanted))
@@ -199,7 +201,7 @@ def _outline_properties(selection: Selection, pieces: Sequence[TerrainDef]) -> l
 
 def _shape_properties(selection: Selection, shapes: Sequence[Shape]) -> list[Property]:
     kind = same(_shape_kind(shape) for shape in shapes)
-    about = About("choice", "Shape", tooltip="The outline that is filled.", choices=SHAPES)
+    about = FieldInfo("choice", "Shape", tooltip="The outline that is filled.", choices=tuple(SHAPES))
 
     def choose(document: Document, wanted: str) -> Document:
         return change_field(document, selection, "shape", partial(_as_shape, wanted))

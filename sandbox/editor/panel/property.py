@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any, Final
 
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.panel.field_info import About, abouts
+from sandbox.editor.panel.field_info import FieldInfo, abouts
 from sandbox.editor.panel.typed import (
     line_text,
     list_text,
@@ -48,7 +48,7 @@ class Property:
     """
 
     field: str
-    about: About
+    about: FieldInfo
     value: Any
     write: Callable[[Document, Any], Document] | None = None
     axes: tuple[str, str] = _AXES
@@ -104,7 +104,7 @@ class Section:
     properties: tuple[Property, ...]
 
 
-def _text(about: About, value: Any) -> str:
+def _text(about: FieldInfo, value: Any) -> str:
     if value is None:
         return ""
     if about.kind in ("number", "integer"):
@@ -130,7 +130,11 @@ def with_axes(value: Sequence[float | None], old: Sequence[float]) -> tuple[floa
 
 
 def part_properties(
-    name: str, about: About, values: Sequence[Description | None], change: Change, add: Callable[[Document], Document]
+    name: str,
+    about: FieldInfo,
+    values: Sequence[Description | None],
+    change: Change,
+    add: Callable[[Document], Document],
 ) -> list[Property]:
     """Whether there is an object that a field may hold, and where all have one the fields of that.
 

@@ -1,4 +1,4 @@
-"""Drawings of bodies from point to point: rope, bridge, girder, web, wheel; each joins the particles it is drawn on."""
+"""What drawings of bodies have in common: along a line, or from a centre; each joins the particles it is drawn on."""
 
 import math
 from collections.abc import Sequence
@@ -9,35 +9,25 @@ from pydantic import ValidationError
 
 from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.edits.placing import add_body
-from sandbox.editor.tools.drawing_options import (
-    JellyOptions,
-    RingOptions,
-    RopeOptions,
-    TrussOptions,
-    WebOptions,
-    WheelOptions,
-)
+from sandbox.editor.tools.drawing_options import BodyOptions, LineOptions
 from sandbox.editor.tools.drawing_tool import Drawing
-from sandbox.editor.tools.sizing import links, ring_parts, rings, truss_cells, wheel_spokes
 from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap
-from sandbox.level.build.expansion import named_particles
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.messages import worded
 from sandbox.level.format.quantities import replaced
-from sandbox.level.kinds.bodies import KINDS, AnyBody
-from sandbox.level.kinds.shapes import expand
+from sandbox.level.kinds.bodies import KINDS, AnyBody, expansion
 
-BodyOptions = TypeVar(
-    "BodyOptions", bound=RopeOptions | TrussOptions | WebOptions | WheelOptions | RingOptions | JellyOptions
-)
-LineOptions = TypeVar("LineOptions", bound=RopeOptions | TrussOptions)
-RoundOptions = TypeVar("RoundOptions", bound=WebOptions | WheelOptions | RingOptions)
+AnyBodyOptions = TypeVar("AnyBodyOptions", bound=BodyOptions)
+AnyLineOptions = TypeVar("AnyLineOptions", bound=LineOptions)
 
 # A particle this near to the point that was asked for stands on it; beyond the rounding of places and angles [m].
 SAME_PLACE = 1e-5
-# An equilateral cell of a girder is so high, in cell lengths.
-EQUILATERAL = math.sqrt(3.0) / 2.0
 ANGLE_DECIMALS = 9
+
+
+def fitting_count(size: float, part: float, least: int, most: int) -> int:
+    """How many parts [m] fit a size [m], within limits: fewer are too coarse to bend, more are asked for by number."""
+    return min(max(round(size / part), least), most)
 
 
 def rounded(value: float) -> float:
@@ -45,7 +35,7 @@ def rounded(value: float) -> float:
     return round(value, PLACE_DECIMALS)
 
 
-class BodyDrawing(Drawing[BodyOptions], Generic[BodyOptions]):
+class BodyDrawing(Drawing[AnyBodyOptions], Generic[AnyBodyOptions]):
     """A drawing that adds a body and welds it to the particles that its points are on."""
 
     kind: str
@@ -78,8 +68,9 @@ def joined(document: Document, points: Sequence[Snap]) -> Document:
         return document
     level, body = document.level, document.level.bodies[-1]
     welds = []
-    names = {index: name for name, index in named_particles(body).items()}
-    places = expand(body)[0]
+    made = expansion(body)
+    names = {index: name for name, index in made.named_particles.items()}
+    places = made.form
     for point in points:
         x, y = (places - point.point).T
         distance = x * x + y * y
@@ -100,7 +91,7 @@ def length(points: list[Snap]) -> float:
     return math.dist(points[0].point, points[1].point) if len(points) == 2 else 0.0
 
 
-class LineDrawing(BodyDrawing[LineOptions], Generic[LineOptions]):
+class LineDrawing(BodyDrawing[AnyLineOptions], Generic[AnyLineOptions]):
     """A body from a start to an end, held where it should be and joins nothing."""
 
     counted = "segments"
@@ -127,60 +118,7 @@ class LineDrawing(BodyDrawing[LineOptions], Generic[LineOptions]):
         return f"{direction(points)}, {self.segments(points)} {self.parts}"
 
 
-class RopeDrawing(LineDrawing[RopeOptions]):
-    """A rope; slack makes it longer than the way from end to end."""
-
-    defaults = RopeOptions()
-    kind = "rope"
-    parts = "links"
-    start_hint = "Drag from the rope's start to its end, or click both"
-
-    def fitting(self, points: list[Snap]) -> int:
-        """Links of about 0.25 m."""
-        return links(length(points))
-
-    def fields(self, points: list[Snap]) -> dict[str, Any]:
-        """A rope's own fields."""
-        rest = None
-        if self.options.slack != 0.0:
-            rest = rounded((1.0 + self.options.slack) * length(points) / self.segments(points))
-        return {**self.ends(points), "end_mass": self.options.end_mass, "rest_length": rest}
-
-
-class BridgeDrawing(LineDrawing[TrussOptions]):
-    """A bridge along its top row."""
-
-    defaults = TrussOptions()
-    kind = "bridge"
-    start_hint = "Drag along the top of the bridge, or click both ends"
-
-    def fitting(self, points: list[Snap]) -> int:
-        """Cells of about 0.5 m."""
-        return truss_cells(length(points))
-
-    def fields(self, points: list[Snap]) -> dict[str, Any]:
-        """A bridge's own fields."""
-        height = self.options.height
-        if height is None:
-            height = rounded(length(points) / self.segments(points))
-        return {**self.ends(points), "height": height}
-
-
-class GirderDrawing(BridgeDrawing):
-    """A girder along its first row; the second lies to the right of the way."""
-
-    kind = "girder"
-    start_hint = "Drag along the girder, or click both ends"
-
-    def fields(self, points: list[Snap]) -> dict[str, Any]:
-        """A girder's own fields."""
-        height = self.options.height
-        if height is None:
-            height = rounded(EQUILATERAL * length(points) / self.segments(points))
-        return {**self.ends(points), "height": height}
-
-
-class RoundDrawing(BodyDrawing[RoundOptions], Generic[RoundOptions]):
+class RoundDrawing(BodyDrawing[AnyBodyOptions], Generic[AnyBodyOptions]):
     """A round body from its centre to a point of its rim, where its first spoke points."""
 
     start_hint = "Drag from the centre to the rim, or click both"
@@ -194,80 +132,3 @@ class RoundDrawing(BodyDrawing[RoundOptions], Generic[RoundOptions]):
             "angle": round(math.atan2(rim_y - y, rim_x - x), ANGLE_DECIMALS),
             "radius": rounded(length(points)),
         }
-
-
-class WebDrawing(RoundDrawing[WebOptions]):
-    """A web."""
-
-    defaults = WebOptions()
-    kind = "web"
-    counted = "spokes"
-
-    def fields(self, points: list[Snap]) -> dict[str, Any]:
-        """A web's own fields."""
-        pin = ("rim",) if self.options.pin_rim else ()
-        return {**self.disc(points), "spokes": self.options.spokes, "rings": self._rings(points), "pin": pin}
-
-    def _rings(self, points: list[Snap]) -> int:
-        return rings(length(points)) if self.options.rings is None else self.options.rings
-
-    def sizes(self, points: list[Snap]) -> str:
-        """Radius and numbers of parts."""
-        return f"radius {length(points):.3g} m, {self.options.spokes} spokes, {self._rings(points)} rings"
-
-
-class WheelDrawing(RoundDrawing[WheelOptions]):
-    """A wheel; its hub may be held, or joins the particle that it is drawn on."""
-
-    defaults = WheelOptions()
-    kind = "wheel"
-    counted = "segments"
-
-    def fitting(self, points: list[Snap]) -> int:
-        """About 0.5 m of rim to each spoke."""
-        return wheel_spokes(length(points))
-
-    def fields(self, points: list[Snap]) -> dict[str, Any]:
-        """A wheel's own fields."""
-        thickness = self.options.thickness
-        return {
-            **self.disc(points),
-            "thickness": rounded(length(points) / 4.0) if thickness is None else thickness,
-            "segments": self._spokes(points),
-            "hub_mass": self.options.hub_mass,
-            "pin": ("hub",) if self.options.pin_hub and points[0].name is None else (),
-        }
-
-    def _spokes(self, points: list[Snap]) -> int:
-        return self.fitting(points) if self.options.segments is None else self.options.segments
-
-    def sizes(self, points: list[Snap]) -> str:
-        """Radius and number of spokes."""
-        return f"radius {length(points):.3g} m, {self._spokes(points)} spokes"
-
-
-class RingDrawing(RoundDrawing[RingOptions]):
-    """A ring with air inside; of what it is drawn on it joins only what is on its rim."""
-
-    defaults = RingOptions()
-    kind = "ring"
-    counted = "segments"
-
-    def joins(self, index: int) -> bool:
-        """There is no particle in its centre."""
-        return index == 1
-
-    def fitting(self, points: list[Snap]) -> int:
-        """Parts of about 0.25 m."""
-        return ring_parts(length(points))
-
-    def fields(self, points: list[Snap]) -> dict[str, Any]:
-        """A ring's own fields."""
-        return {**self.disc(points), "segments": self._parts(points), "inflation": self.options.inflation}
-
-    def _parts(self, points: list[Snap]) -> int:
-        return self.fitting(points) if self.options.segments is None else self.options.segments
-
-    def sizes(self, points: list[Snap]) -> str:
-        """Radius and number of parts."""
-        return f"radius {length(points):.3g} m, {self._parts(points)} parts"

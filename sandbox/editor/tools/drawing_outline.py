@@ -5,7 +5,8 @@ from typing import Generic
 
 from sandbox.editor.tools.drawing_options import AnyOptions
 from sandbox.editor.tools.drawing_tool import Drawing
-from sandbox.editor.tools.snap import Point, Snap
+from sandbox.editor.tools.snap import Snap
+from sandbox.level.format.quantities import Point
 from sandbox.level.kinds.polygon import is_simple, simplified
 
 # A line drawn by hand is simplified by up to this part of the reach: what a person cannot see.

@@ -1,14 +1,33 @@
-"""Drawings of terrain: solid ground, lines, and walls."""
+"""The tools of terrain: solid ground, lines, and walls."""
+
+from dataclasses import dataclass
+from typing import Any
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.terrain import add_terrain, set_walls, with_corners
 from sandbox.editor.tools.drawing_bodies import direction, rounded
-from sandbox.editor.tools.drawing_options import SurfaceOptions
+from sandbox.editor.tools.drawing_options import OptionInfo, Options, option
 from sandbox.editor.tools.drawing_outline import HAND_TOLERANCE, OutlineDrawing
 from sandbox.editor.tools.drawing_tool import Drawing
-from sandbox.editor.tools.snap import Point, Snap
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
+from sandbox.editor.tools.snap import Snap
+from sandbox.level.format.limits import FRICTION_LIMIT
 from sandbox.level.format.model import TerrainDef, WallsDef
+from sandbox.level.format.quantities import Point
 from sandbox.level.kinds.polygon import simplified
+
+
+def _surface(label: str, text: str, most: float) -> Any:
+    return option(None, OptionInfo("number", label, text, "", 0.0, most, optional=True))
+
+
+@dataclass(frozen=True)
+class SurfaceOptions(Options):
+    """Terrain or walls; None: friction and restitution of the level's contacts."""
+
+    friction: float | None = _surface("friction", "Friction of its surface; empty = the level's.", FRICTION_LIMIT)
+    restitution: float | None = _surface("bounce", "Share of its speed that bounces; empty = the level's.", 1.0)
 
 
 class GroundDrawing(OutlineDrawing[SurfaceOptions]):
@@ -28,7 +47,7 @@ class GroundDrawing(OutlineDrawing[SurfaceOptions]):
         return TerrainDef(id=name, friction=self.options.friction, restitution=self.options.restitution)
 
 
-class LineDrawing(GroundDrawing):
+class TerrainLineDrawing(GroundDrawing):
     """A line of terrain, with two sides; a click on its first corner makes a loop of it."""
 
     start_hint = "Click corner after corner, or draw the line in one stroke"
@@ -87,3 +106,27 @@ class WallsDrawing(Drawing[SurfaceOptions]):
 def _corner(point: Snap) -> Point:
     x, y = point.point
     return rounded(x), rounded(y)
+
+
+def _draw_ground(pen: IconPen) -> None:
+    pen.shape((3, 20), (3, 13), (8, 8.5), (12, 12), (17, 6), (21, 11), (21, 20))
+
+
+def _draw_line(pen: IconPen) -> None:
+    points = ((3, 8), (8, 13), (15, 11), (21, 6))
+    pen.line(*points)
+    for x, y in ((5, 12.5), (9.5, 15), (14, 14), (18.5, 11)):
+        pen.line((x, y), (x - 2.4, y + 4), width=1.4)
+
+
+def _draw_walls(pen: IconPen) -> None:
+    pen.line((6.5, 6.5), (17.5, 6.5), (17.5, 17.5), (6.5, 17.5), (6.5, 6.5))
+    for at in (8, 12, 16):
+        for a, b in (((at, 4.5), (at - 2, 2.5)), ((at, 19.5), (at + 2, 21.5))):
+            pen.line(a, b, width=1.4)
+            pen.line(a[::-1], b[::-1], width=1.4)
+
+
+GROUND = EditorTool("ground", "D", "Solid ground", _draw_ground, GroundDrawing, "Terrain")
+LINE = EditorTool("line", "C", "A line with two sides", _draw_line, TerrainLineDrawing, "Terrain")
+WALLS = EditorTool("walls", "Shift+D", "Walls all round", _draw_walls, WallsDrawing, "Terrain")

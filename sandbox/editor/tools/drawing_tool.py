@@ -1,4 +1,4 @@
-"""Drawing: a pointer gesture that adds something to a level, with a ghost of what it would become.
+"""Drawing: what a drawing tool does, a pointer gesture that adds something to a level, with a ghost of it before.
 
 The app hands every pointer event on as a Snap, shows `ghost` and `hint`, and takes what `done` gives. A gesture of two
 points is a drag, or a click at each; Enter takes the pointer for the second, Escape gives up.
@@ -10,9 +10,9 @@ from typing import Any, ClassVar, Generic, cast
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.tools.drawing_options import AnyOptions, Options, changed, described
-from sandbox.editor.tools.snap import Point, Snap
+from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.model import ParticleDef
-from sandbox.level.format.quantities import replaced
+from sandbox.level.format.quantities import Point, replaced
 
 
 class Drawing(Generic[AnyOptions]):

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene
-from sandbox.level.build.expansion import named_particles
-from sandbox.level.kinds.shapes import turn
+from sandbox.level.format.quantities import Point
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.geometry import turn
 
-Point = tuple[float, float]
 Kind = Literal["particle", "end", "corner", "edge", "angle", "grid", "free"]
 
 # Directions from the anchor that a line is drawn to.
@@ -133,7 +133,7 @@ def _ends(scene: Scene, near: NDArray[np.int64]) -> dict[int, str]:
         first = int(np.searchsorted(scene.particle_item, item))
         if item < len(scene.level.bodies):
             body = scene.level.bodies[item]
-            ends |= {first + index: f"{body.id}.{part}" for part, index in named_particles(body).items()}
+            ends |= {first + index: f"{body.id}.{part}" for part, index in expansion(body).named_particles.items()}
         else:
             ends[first] = str(scene.items[item].key)
     return {slot: ends[slot] for slot in near.tolist() if slot in ends}

@@ -1,14 +1,23 @@
-"""Driven parts of a level: which there are, in the order of their slots, and which keys drive them."""
+"""Actuators of a level: which there are, in the order of their slots, which keys control them, and their arrays."""
 
 from dataclasses import dataclass
+from typing import Any
 
-from sandbox.level.format.drives import HydraulicDef, MotorDef
-from sandbox.level.format.model import Level, SpringDef
-from sandbox.level.kinds.bodies import WheelDef
+import numpy as np
+
+from sandbox.level.build.plan import Plan
+from sandbox.level.build.welds import Slots
+from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
+from sandbox.level.format.model import Level
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.expansion import Expansion
+from sandbox.physics.actuators import Driven, Hydraulics, Motors, Muscles
+from sandbox.physics.driving import drive_muscles
+from sandbox.physics.world import World
 
 
 @dataclass(frozen=True)
-class Part:
+class Actuator:
     """A wheel with a motor, named by its id, or a loose spring with a hydraulic, named `:k`; owner: its index."""
 
     name: str
@@ -22,15 +31,15 @@ class Part:
         return 0.0 if keyed or isinstance(self.drive, HydraulicDef) else 1.0
 
 
-def parts(level: Level) -> list[Part]:
-    """The driven parts of a level: motors in the order of their wheels, then hydraulics in that of the springs."""
+def actuators(level: Level) -> list[Actuator]:
+    """The actuators of a level: motors in the order of their wheels, then hydraulics in that of the springs."""
     wheels = [
-        Part(body.id, index, body.motor)
+        Actuator(body.id, index, motor)
         for index, body in enumerate(level.bodies)
-        if isinstance(body, WheelDef) and body.motor is not None
+        if (motor := expansion(body).motor) is not None
     ]
     springs = [
-        Part(f":{index}", index, spring.hydraulic)
+        Actuator(f":{index}", index, spring.hydraulic)
         for index, spring in enumerate(level.springs)
         if spring.hydraulic is not None
     ]
@@ -38,17 +47,50 @@ def parts(level: Level) -> list[Part]:
 
 
 def driving_keys(level: Level) -> dict[str, list[tuple[int, float]]]:
-    """What each key drives: numbers of parts, with the value of each."""
+    """What each key controls: numbers of actuators, with the value of each."""
     result: dict[str, list[tuple[int, float]]] = {}
-    for number, part in enumerate(parts(level)):
+    for number, part in enumerate(actuators(level)):
         for key, value in ((part.drive.key, 1.0), (part.drive.reverse_key, -1.0)):
             if key is not None:
                 result.setdefault(key, []).append((number, value))
     return result
 
 
-def given_length(spring: SpringDef) -> float | None:
-    """Rest length [m] that a loose spring is given; None = as placed."""
-    if spring.rest_length is None and spring.hydraulic is not None:
-        return spring.hydraulic.shortest
-    return spring.rest_length
+def add_actuators(world: World, level: Level, plan: Plan, slots: Slots) -> None:
+    """Give the world its muscles, hydraulics and motors; slots: what each particle before welds becomes."""
+    found = actuators(level)
+    owners = [plan.layout.owners[each.name] for each in found if isinstance(each.drive, MotorDef)]
+    motors = [each.drive for each in found if isinstance(each.drive, MotorDef)]
+    rims = [slots[owner.first + 1 : owner.first + owner.size] for owner in owners]
+    turning = Motors(
+        hub=slots[np.array([owner.first for owner in owners], dtype=np.int64)],
+        speed=np.array([motor.speed for motor in motors], dtype=np.float64),
+        torque=np.array([motor.torque for motor in motors], dtype=np.float64),
+        part=np.arange(len(motors), dtype=np.int64),
+        rim_start=np.cumsum([0, *map(len, rims)], dtype=np.int64),
+        rim=np.concatenate([*rims, np.zeros(0, dtype=np.int64)]),
+    )
+    hydraulics = [each.drive for each in found if isinstance(each.drive, HydraulicDef)]
+    first_loose = sum(len(made.pairs) for made in plan.bodies)
+    holders = [each.owner for each in found if isinstance(each.drive, HydraulicDef)]
+    lifting = Hydraulics(
+        spring=first_loose + np.array(holders, dtype=np.int64),
+        shortest=np.array([hydraulic.shortest for hydraulic in hydraulics], dtype=np.float64),
+        longest=np.array([hydraulic.longest for hydraulic in hydraulics], dtype=np.float64),
+        rate=np.array([hydraulic.rate for hydraulic in hydraulics], dtype=np.float64),
+        part=len(motors) + np.arange(len(hydraulics), dtype=np.int64),
+    )
+    names = tuple(each.name for each in found)
+    equipment = Driven(names, _muscles(level, plan.bodies), lifting, turning)
+    world.fit(equipment, [each.start_value for each in found])
+    drive_muscles(world, 0)
+
+
+def _muscles(level: Level, bodies: list[Expansion[Any]]) -> Muscles:
+    """The muscles of every spring, of the bodies in file order and then of the loose springs."""
+    waves = [body.drive for body in level.bodies] + [spring.drive for spring in level.springs]
+    counts = [len(made.pairs) for made in bodies] + [1] * len(level.springs)
+    rows = [(0.0, 0, 0.0) if wave is None else (wave.amplitude, wave.period, wave.phase) for wave in waves]
+    amplitude, period, phase = (np.repeat(column, counts) for column in np.array(rows).reshape(-1, 3).T)
+    spring = np.flatnonzero(period)
+    return Muscles(spring, amplitude[spring], period[spring].astype(np.int64), phase[spring])

@@ -3,11 +3,10 @@
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from sandbox.level.build.expansion import named_particles
 from sandbox.level.faults.level_error import shown, suggestion
-from sandbox.level.format.model import Level
+from sandbox.level.kinds.expansion import Expansion
 
 _INDEX = re.compile(r"0|[1-9][0-9]{0,8}")
 
@@ -24,18 +23,20 @@ class Owner(NamedTuple):
 class Layout:
     """Slots by name, as they are before welds: particles of bodies in file order, then loose particles.
 
-    counts: particles of each body. Names that are taken twice keep their first owner; `repeated` lists the others.
+    bodies: what those of the first ids expand to. Names that are taken twice keep their first owner; `repeated` lists
+    the others.
     """
 
-    def __init__(self, level: Level, counts: Sequence[int]) -> None:
+    def __init__(self, body_ids: Sequence[str], bodies: Sequence[Expansion[Any]], particle_ids: Sequence[str]) -> None:
         self.owners: dict[str, Owner] = {}
         self.repeated: list[tuple[str, str]] = []
         first = 0
-        for index, (body, count) in enumerate(zip(level.bodies, counts, strict=True)):
-            self._add("bodies", index, body.id, Owner(first, count, named_particles(body)))
+        for index, (name, body) in enumerate(zip(body_ids, bodies, strict=True)):
+            count = body.form_count[0]
+            self._add("bodies", index, name, Owner(first, count, body.named_particles))
             first += count
-        for index, particle in enumerate(level.particles):
-            self._add("particles", index, particle.id, Owner(first, 1, loose=True))
+        for index, name in enumerate(particle_ids):
+            self._add("particles", index, name, Owner(first, 1, loose=True))
             first += 1
         self.particle_count = first
 

@@ -1,25 +1,25 @@
-"""What no single field tells of driven parts: lengths that do not fit each other, keys that say two things."""
+"""What no single field tells of actuators: lengths that do not fit each other, keys that say two things."""
 
 from collections.abc import Iterator
 
-from sandbox.level.build.actuators import parts
+from sandbox.level.build.actuators import actuators
 from sandbox.level.faults.level_error import Fault, shown
-from sandbox.level.format.drives import HydraulicDef
+from sandbox.level.format.actuator_defs import HydraulicDef
 from sandbox.level.format.limits import MOTOR_LIMIT
 from sandbox.level.format.model import Level, SpringDef
 
 
-def driven_faults(level: Level) -> Iterator[Fault]:
-    """Every fault of a level's muscles, hydraulics and motors that their fields alone do not show."""
+def actuator_faults(level: Level) -> Iterator[Fault]:
+    """Every fault of the muscles, hydraulics and motors that their fields alone do not show."""
     for index, spring in enumerate(level.springs):
         if spring.hydraulic is not None:
             yield from _hydraulic(f"springs.{index}", spring, spring.hydraulic)
     motors = 0
-    for part in parts(level):
-        is_spring = isinstance(part.drive, HydraulicDef)
-        path = f"springs.{part.owner}.hydraulic" if is_spring else f"bodies.{part.owner}.motor"
-        if part.drive.key is not None and part.drive.key == part.drive.reverse_key:
-            yield f"{path}.reverse_key", f"{shown(part.drive.key)} is the key as well; name another"
+    for actuator in actuators(level):
+        is_spring = isinstance(actuator.drive, HydraulicDef)
+        path = f"springs.{actuator.owner}.hydraulic" if is_spring else f"bodies.{actuator.owner}.motor"
+        if actuator.drive.key is not None and actuator.drive.key == actuator.drive.reverse_key:
+            yield f"{path}.reverse_key", f"{shown(actuator.drive.key)} is the key as well; name another"
         motors += not is_spring
         if motors == MOTOR_LIMIT + 1 and not is_spring:
             yield path, f"brings the level above {MOTOR_LIMIT} motors; take some out"

@@ -4,7 +4,7 @@ import json
 from typing import Any
 
 from sandbox.level.format.model import Level, Settings
-from sandbox.level.kinds.bodies import file_order
+from sandbox.level.kinds.body_def import file_order
 
 # A value goes on one line where it fits into this many columns; otherwise its items go one to a line.
 _WIDTH = 100

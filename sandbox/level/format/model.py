@@ -6,7 +6,7 @@ from pydantic import Discriminator, Field, Tag, field_validator
 from pydantic_core import PydanticKnownError
 
 from sandbox.level.checks import CheckDef
-from sandbox.level.format.drives import HydraulicDef, MuscleDef
+from sandbox.level.format.actuator_defs import HydraulicDef, MuscleDef
 from sandbox.level.format.limits import (
     CHECK_LIMIT,
     DEFAULT_MATERIAL,
@@ -187,6 +187,13 @@ class SpringDef(Description):
     group: Group = None
     extras: Extras = Field(default={})
 
+    @property
+    def given_length(self) -> float | None:
+        """Rest length [m] that it is given; None = as placed."""
+        if self.rest_length is None and self.hydraulic is not None:
+            return self.hydraulic.shortest
+        return self.rest_length
+
 
 class ContactsDef(Description):
     """That things touch each other, and how, unless they say otherwise."""
@@ -221,6 +228,9 @@ class TerrainDef(Description):
 
 class Level(Description):
     """A level: who made it, how time passes, and what is in it."""
+
+    # What its check has made of it, kept for its world: no field, so neither written nor compared nor copied.
+    __slots__ = ("_plan",)
 
     format: Literal["spring-sandbox/level"] = Field(description="Says that this is a level.")
     version: int = Field(description="Version of the format.", json_schema_extra={"const": VERSION})

@@ -13,6 +13,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from sandbox.level.build.plan import keep_plan
 from sandbox.level.faults.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.faults.validate import check_level
 from sandbox.level.format.gc_pause import collector_paused
@@ -56,7 +57,7 @@ def parse_level(data: bytes, source: str) -> Level:
     try:
         with collector_paused(len(data) > _LARGE):
             level = _parse(data, source)
-            check_level(level, source)
+            keep_plan(level, check_level(level, source))
     except (MemoryError, RecursionError):
         raise LevelError(source, [("", "is too large or too deep to be read")]) from None
     return level

@@ -11,6 +11,7 @@ from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format import limits
 from sandbox.level.format.parse import parse_level
 from sandbox.level.format.schema import TITLES, schema
+from sandbox.level.kinds.bodies import EXPANSIONS
 
 EXAMPLE = """\
 {
@@ -39,10 +40,11 @@ EXAMPLE = """\
 }
 """
 
+_PLURALS = ", ".join(each.plural for each in EXPANSIONS.values())
 _INTRO = f"""\
 # Level format, version {limits.VERSION}
 
-A level is one JSON file. It describes bodies (ropes, bridges, girders, webs, wheels, rings, jellies, meshes), loose
+A level is one JSON file. It describes bodies ({_PLURALS}), loose
 particles and loose springs; the program expands them into particles and springs. Lengths are in metres, masses in
 kilograms, times in seconds, angles in radians; y points up. Everything has a default but `format`, `version`, `name`
 and what a body cannot do without. Keys that are not listed here are refused, so a misspelt key is noticed; `extras`
@@ -55,7 +57,8 @@ is the place for other tools' data.
 canonical form, `sandbox schema` prints the JSON Schema for an editor that completes keys.
 """
 
-_NAMES = """\
+_GENERATION = "\n".join(each.generation for each in EXPANSIONS.values() if each.generation)
+_NAMES = f"""\
 ## Names and references
 
 - An id is 1 to 256 characters without `.` `:` `,` and control characters, and does not begin with `+`. Bodies and
@@ -71,26 +74,10 @@ _NAMES = """\
 ## Generation order
 
 - Particles: those of the bodies in file order, then the loose ones. Springs: likewise.
-- Rope: from start to end, evenly, whatever its rest length.
-- Bridge: the top row from start to end, then the bottom row, `height` straight below it. Springs: top chords, bottom
-  chords, verticals, then per cell the diagonal that falls towards the end and the one that rises.
-- Girder: the first row from start to end, then the second, each particle half a cell further and `height` to the
-  right of the way from start to end. Springs: first chords, second chords, then per cell the diagonal that leaves the
-  first row and the one that comes back. It can stand at any angle; a bridge's bottom row lies straight below.
-- Web: the particle in the centre, then ring by ring from the inside, each counter-clockwise from the first spoke.
-  Springs: the threads along the spokes in the order of their outer particles, then those of the rings.
-- Wheel: the hub, the inner ring, the outer ring, each counter-clockwise from the first spoke. Springs: hub to inner
-  ring, inner ring, outer ring, between the rings, then per cell both diagonals.
-- Ring: counter-clockwise from the first particle. Springs: each to the next, the last back to the first.
-- Jelly, box: `round(width / spacing) + 1` columns, rows alike, stretched to fit the box; row by row from the bottom
-  left. Where that leaves one column or row, it stands in the middle.
-- Jelly, circle and polygon: the whole multiples of `spacing` on either side of the centre, the shape's own [0, 0],
-  that lie inside the shape or on its border; row by row from the bottom left.
-- Springs of a jelly: all to the right, all upward, then per cell the diagonal that rises to the right and the other;
-  where both ends exist. The shape is turned by `angle` afterwards.
+{_GENERATION}
 - A pinned particle starts at rest, whatever its velocity.
 
-## Touching
+## Collisions
 
 - Things touch where the level has `contacts`, `walls` or `terrain`. A contact pushes and never pulls. Contacts are
   found anew in every step, along the way that each particle goes in it, so that what is fast does not pass.
@@ -134,7 +121,7 @@ _NAMES = """\
   are. A spring that would lose its length so is refused.
 """
 
-_DRIVEN = """\
+_ACTUATORS = """\
 ## What breaks, yields and is driven
 
 - Strain is `(length - rest length) / rest length`, of every spring with a rest length above 0, taken once, at the end
@@ -176,7 +163,7 @@ _MISTAKES = [
 
 def format_reference() -> str:
     """The reference as Markdown."""
-    return "\n".join([_INTRO, *_tables(), _NAMES, _DRIVEN, _limits(), _errors()])
+    return "\n".join([_INTRO, *_tables(), _NAMES, _ACTUATORS, _limits(), _errors()])
 
 
 def _tables() -> Iterator[str]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from sandbox.level.build.plan import Plan
 from sandbox.level.checks import CheckDef
 from sandbox.level.faults.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.faults.validate import level_faults
@@ -140,7 +141,7 @@ class _Remains:
         """The level that is left once nothing refers to what is gone."""
         for attempt in itertools.count():
             level = Level.model_validate_json(json.dumps(self.parts))
-            found = list(level_faults(level))
+            found = list(level_faults(level, Plan(level)))
             if not found:
                 break
             self._drop(level, found, with_rest=attempt >= _ROUNDS)

@@ -3,7 +3,8 @@
 from typing import Any
 
 from sandbox.level.format.model import Level
-from sandbox.level.kinds.bodies import KINDS, file_order
+from sandbox.level.kinds.bodies import EXPANSIONS, KINDS
+from sandbox.level.kinds.body_def import file_order
 
 # Titles of the definitions, in the order in which the reference explains them.
 TITLES = {
@@ -13,17 +14,11 @@ TITLES = {
     "ContactsDef": "Contacts",
     "WallsDef": "Walls",
     "TerrainDef": "Terrain",
-    "RopeDef": "Rope",
-    "BridgeDef": "Bridge",
-    "GirderDef": "Girder",
-    "WebDef": "Web",
-    "WheelDef": "Wheel",
-    "RingDef": "Ring",
-    "JellyDef": "Jelly",
-    "BoxShape": "Box",
-    "CircleShape": "Circle",
-    "PolygonShape": "Polygon",
-    "MeshDef": "Mesh",
+    **{
+        model.__name__: name.capitalize()
+        for kind, each in EXPANSIONS.items()
+        for name, model in {kind: each.model, **each.alternatives}.items()
+    },
     "BendingDef": "Bending",
     "ParticleDef": "Loose particle",
     "SpringDef": "Loose spring",

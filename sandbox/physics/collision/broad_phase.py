@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.types import Flags
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inner_kernel, unsigned
 from sandbox.physics.state import Floats, Slots
 
 # Cell in units of the mean box: smaller puts an object into many cells, larger many objects into a cell.
@@ -213,12 +213,14 @@ def find_pairs(boxes: Boxes, grid: Grid, larges: int, pairs: Pairs) -> int:
                 here = _cell_number(column, row)
                 # Boxes that share many cells are found in the first of them alone.
                 seen = (0 if column == left else 1) + (0 if row == bottom else 2)
-                for entry in range(grid.start[bucket], grid.start[bucket + 1]):
-                    k = grid.object[entry] >> 2
+                for at in range(grid.start[bucket], grid.start[bucket + 1]):
+                    entry = unsigned(at)
+                    found = grid.object[entry]
+                    k = found >> 2
                     if (
                         (k >= particles or k < past_discs)
                         and k != p
-                        and grid.object[entry] & seen == seen
+                        and found & seen == seen
                         and grid.cell[entry] == here
                         and _overlap(box, p, k)
                     ):
@@ -236,8 +238,8 @@ def new_boxes(particles: int, objects: int) -> Boxes:
 
 def new_grid(objects: int, entries: int) -> Grid:
     """A grid for so many objects, with room for so many entries."""
-    buckets = 64
-    while buckets < 2 * objects:
+    buckets = 16
+    while buckets < 4 * objects:
         buckets *= 2
     return Grid(
         np.zeros((objects, 4), np.int64), np.zeros(objects, np.int64), np.zeros(buckets + 1, np.int64),

@@ -1,4 +1,4 @@
-"""Collisions of a step, in two entries: `collide` before a solver moves bodies, `finish` after it.
+"""Collisions of a step, in two entries: `_collide` before a solver moves bodies, `_finish` after it.
 
 The first finds what touches and solves what no spring holds; the second keeps the contacts for the next step, holds
 particles out of terrain and moves them. Their arrays are made when the topology changes. Those whose length a step
@@ -38,7 +38,8 @@ from sandbox.physics.collision.types import (
     room_near,
     room_to_keep,
 )
-from sandbox.physics.integrate import advance
+from sandbox.physics.forces import Forces, add_gravity_and_air
+from sandbox.physics.integrate import advance, follow
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
 from sandbox.physics.solvers.contact.free_contacts import Work, new_work, solve_free_contacts
 from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, new_islands, sort_free_contacts
@@ -60,6 +61,7 @@ class CollidingParticles(NamedTuple):
 
     position: Floats
     velocity: Floats
+    slow_velocity: Floats
     origin: Floats
     inverse_mass: Floats
     radius: Floats
@@ -162,10 +164,12 @@ def _copy_bound(contacts: Contacts, count: int, bound: Flags, to: Contacts) -> N
             k += 1
 
 
-@kernel
-def _collide(items: Any, start: Floats, tick: int, h: float) -> int:
-    # Everything before the solver; how many contacts are left to it, or NO_ROOM.
-    particles, outline, terrain, triangles, colliders, room = contents(items)
+@inner_kernel
+def _before_solver(
+    particles: CollidingParticles, outline: Outline, terrain: Terrain, triangles: Triangles, colliders: Colliders,
+    room: CollisionRoom, start: Floats, tick: int, h: float,
+) -> int:  # fmt: skip
+    # Find contacts and solve the free ones; how many are left to a solver, or NO_ROOM.
     count = _detect(particles, outline, terrain, triangles, colliders, room, tick, h)
     if count == NO_ROOM:
         return count
@@ -182,10 +186,9 @@ def _collide(items: Any, start: Floats, tick: int, h: float) -> int:
     return bound
 
 
-@kernel
-def _finish(items: Any, h: float) -> int:
-    # Everything after the solver; how many contacts there are.
-    particles, _, terrain, _, _, room = contents(items)
+@inner_kernel
+def _after_solver(particles: CollidingParticles, terrain: Terrain, room: CollisionRoom, h: float) -> int:
+    # Keep the contacts, clamp at terrain, move; how many contacts there are.
     contacts = room.contacts
     count = room.counts[CONTACTS]
     k = 0
@@ -211,12 +214,45 @@ def _finish(items: Any, h: float) -> int:
     return count
 
 
+@kernel
+def _collide(items: Any, forces: Any, first: int, last: int, follows: bool, tick: int, h: float) -> int:
+    # last 0: what comes before the solver of a substep on which forces have acted; how many contacts are left to it, or
+    # NO_ROOM. Else, of a world in which nothing is held, substeps first..last; the first that is not done.
+    particles, outline, terrain, triangles, colliders, room = contents(items)
+    (forced,) = contents(forces)
+    substep = first
+    while True:
+        if last > 0:
+            add_gravity_and_air(forced, h)
+        bound = _before_solver(particles, outline, terrain, triangles, colliders, room, forced.before, tick, h)
+        if last == 0:
+            return bound
+        if bound == NO_ROOM:
+            for p in range(forced.before.shape[0]):
+                particles.velocity[p, 0] = forced.before[p, 0]
+                particles.velocity[p, 1] = forced.before[p, 1]
+            return substep
+        if follows:
+            follow(particles.velocity, particles.slow_velocity, particles.particle_active)
+        _after_solver(particles, terrain, room, h)
+        substep += 1
+        if substep == last:
+            return substep
+
+
+@kernel
+def _finish(items: Any, h: float) -> int:
+    particles, _, terrain, _, _, room = contents(items)
+    return _after_solver(particles, terrain, room, h)
+
+
 @dataclass(eq=False)
 class Collisions:
     """The scratch of a world's collisions: what topology decides, what a step fills in, and all as one argument.
 
-    wanted: the largest counts so far. solved: the contacts that the last step left to a solver. kept: the contacts of
-    the last tick, the first of those in room; they are the world's own, which so has them without a copy.
+    is_free: whether no spring or element holds anything. wanted: the largest counts so far. solved: the contacts that
+    the last step left to a solver. kept: the contacts of the last tick, the first of those in room; they are the
+    world's own, which so has them without a copy.
     """
 
     particles: CollidingParticles
@@ -225,11 +261,58 @@ class Collisions:
     triangles: Triangles
     colliders: Colliders
     room: CollisionRoom
+    is_free: bool
     wanted: Slots
     items: Any
     solved: Contacts = NO_CONTACTS
     kept: KeptContacts = NOTHING_KEPT
     count: int = 0
+
+    def begin(self, world: World) -> None:
+        """Take over the contacts of the world's last step, where they are not those of the last tick already."""
+        if world.contact_impulse is self.kept.impulse:
+            return
+        self.count = self.room.counts[KEPT] = len(world.contact_particle)
+        if self.count > len(self.room.kept.particle):
+            _grow(self)
+        room = self.room.kept
+        room.particle[: self.count] = world.contact_particle
+        room.feature[: self.count] = world.contact_feature
+        room.impulse[: self.count] = world.contact_impulse
+        _share_kept(world, self)
+
+    def collide(self, forces: Forces, tick: int, h: float) -> Contacts:
+        """Find the contacts of a step of h [s] and solve those of free particles; the others, returned, are a solver's.
+
+        forces: those that have acted.
+        """
+        count = _collide(self.items, forces.items, 0, 0, False, tick, h)
+        while count == NO_ROOM:
+            _grow(self)
+            count = _collide(self.items, forces.items, 0, 0, False, tick, h)
+        if count != len(self.solved.particle):
+            self.solved = Contacts._make([array[:count] for array in self.room.bound]) if count else NO_CONTACTS
+        return self.solved
+
+    def step_free(self, forces: Forces, substeps: int, follows: bool, tick: int, h: float) -> None:
+        """All substeps of h [s] of a tick, forces included, of a world in which no spring or element holds anything.
+
+        follows: whether the solver keeps the slow part of velocities, the only thing that is left to it.
+        """
+        done = _collide(self.items, forces.items, 0, substeps, follows, tick, h)
+        while done < substeps:
+            _grow(self)
+            done = _collide(self.items, forces.items, done, substeps, follows, tick, h)
+        self.count = int(self.room.counts[KEPT])
+
+    def finish(self, h: float) -> None:
+        """Keep a step's contacts with their impulses, stop what would cross terrain, and move particles over h [s]."""
+        self.count = _finish(self.items, h)
+
+    def end(self, world: World) -> None:
+        """Make the contacts of a tick's last step those of the world's state."""
+        if self.count != len(self.kept.particle) or self.kept is NOTHING_KEPT:
+            _share_kept(world, self)
 
 
 def collisions_of(world: World) -> Collisions | None:
@@ -246,7 +329,7 @@ def _make_collisions(world: World) -> Collisions | None:
     wanted[ENTRIES] = world.particle_count
     made = Collisions(
         particles, outline, world.terrain, triangles, colliders_of(world, outline),
-        _make_room(outline, triangles, wanted), wanted, None,
+        _make_room(outline, triangles, wanted), not outline.held.any(), wanted, None,
     )  # fmt: skip
     _bundle_up(made)
     return made
@@ -283,51 +366,10 @@ def _grow(collisions: Collisions) -> None:
     _bundle_up(collisions)
 
 
-def begin_collisions(world: World) -> Collisions | None:
-    """The scratch of the coming tick's collisions, with the contacts of the world's last step."""
-    collisions = collisions_of(world)
-    if collisions is not None and world.contact_impulse is not collisions.kept.impulse:
-        counts, count = collisions.room.counts, len(world.contact_particle)
-        counts[KEPT] = collisions.count = count
-        if count > len(collisions.room.kept.particle):
-            _grow(collisions)
-        room = collisions.room.kept
-        room.particle[:count] = world.contact_particle
-        room.feature[:count], room.impulse[:count] = world.contact_feature, world.contact_impulse
-        _share_kept(world, collisions)
-    return collisions
-
-
 def _share_kept(world: World, collisions: Collisions) -> None:
     count = collisions.count
     collisions.kept = KeptContacts._make([array[:count] for array in collisions.room.kept])
     world.keep_contacts(*collisions.kept)
-
-
-def collide(collisions: Collisions, start: Floats, tick: int, h: float) -> Contacts:
-    """Find the contacts of a step of h [s] and solve those of free particles; the others, returned, are a solver's.
-
-    start [m/s] (n, 2): the velocities before gravity and all else from outside.
-    """
-    count = _collide(collisions.items, start, tick, h)
-    while count == NO_ROOM:
-        _grow(collisions)
-        count = _collide(collisions.items, start, tick, h)
-    if count != len(collisions.solved.particle):
-        room = collisions.room.bound
-        collisions.solved = Contacts._make([array[:count] for array in room]) if count else NO_CONTACTS
-    return collisions.solved
-
-
-def finish(collisions: Collisions, h: float) -> None:
-    """Keep a step's contacts with their impulses, stop what would cross terrain, and move particles over h [s]."""
-    collisions.count = _finish(collisions.items, h)
-
-
-def end_collisions(world: World, collisions: Collisions) -> None:
-    """Make the contacts of a tick's last step those of the world's state."""
-    if collisions.count != len(collisions.kept.particle) or collisions.kept is NOTHING_KEPT:
-        _share_kept(world, collisions)
 
 
 def last_contacts(world: World) -> Contacts:

@@ -4,18 +4,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_RIGHT, TERRAIN_GROUP
 from sandbox.physics.collision.types import Colliders, Flags
 from sandbox.physics.state import Slots
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.world import HAND_MATERIAL, World
 
-# The group of terrain, and the bits of every group.
-TERRAIN_GROUP = 1
-ALL_GROUPS = (1 << 62) - 1
 # Owner of the first chain of terrain, the others below it; particles and bodies are above.
 TERRAIN_OWNER = -2_000_000_000
-# Kinds of edge of a spring: none, a line with two sides, an outline with what is solid on its left, or right.
-NO_EDGE, LINE, SOLID_LEFT, SOLID_RIGHT = 0, 1, 2, 3
 
 
 class Outline(NamedTuple):

@@ -2,7 +2,7 @@
 
 import math
 
-from sandbox.physics.collision.outline import TERRAIN_GROUP
+from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.types import Flags
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import Floats, Slots

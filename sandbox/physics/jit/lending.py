@@ -171,31 +171,34 @@ class _Words(bytearray):
     items: Any
 
 
-def _described(item: Any) -> tuple[Any, list[int]]:
-    """The numba type of what lies in a bundle, and its words."""
+def _signature(item: Any) -> tuple[Any, ...]:
+    """What decides the numba type of what lies in a bundle, quicker to compare than that type."""
     if isinstance(item, np.ndarray):
         if not item.flags.c_contiguous:
             raise TypeError("arrays in a bundle are contiguous")
-        words = [0, 0, item.size, item.itemsize, item.__array_interface__["data"][0], *item.shape, *item.strides]
-        return _array_type(item.dtype, item.ndim), words
+        return item.dtype.str, item.ndim
     if not isinstance(item, tuple):
         raise TypeError(f"a bundle holds arrays and tuples of them, not {type(item).__name__}")
-    described = [_described(part) for part in item]
-    name = type(item).__name__ if hasattr(item, "_fields") else ""
-    fields = getattr(item, "_fields", ("",) * len(item))
-    return _lent_type(name, fields, tuple(kind for kind, _ in described)), [
-        word for _, words in described for word in words
-    ]
+    return type(item), *map(_signature, item)
 
 
 @functools.cache
-def _array_type(dtype: np.dtype[Any], dimensions: int) -> Any:
-    return types.Array(numba.np.numpy_support.from_dtype(dtype), dimensions, "C")
+def _kind_of(signature: tuple[Any, ...]) -> Any:
+    """The numba type of what has this signature."""
+    first, *others = signature
+    if isinstance(first, str):
+        return types.Array(numba.np.numpy_support.from_dtype(np.dtype(first)), others[0], "C")
+    fields = getattr(first, "_fields", None)
+    return Lent(first.__name__ if fields else "", fields or ("",) * len(others), tuple(map(_kind_of, others)))
 
 
-@functools.cache
-def _lent_type(name: str, fields: tuple[str, ...], kinds: tuple[Any, ...]) -> Lent:
-    return Lent(name, fields, kinds)
+def _add_words(item: Any, words: list[int]) -> None:
+    """Add the words of what lies in a bundle."""
+    if isinstance(item, tuple):
+        for part in item:
+            _add_words(part, words)
+        return
+    words += [0, 0, item.size, item.itemsize, item.__array_interface__["data"][0], *item.shape, *item.strides]
 
 
 @functools.cache
@@ -206,7 +209,9 @@ def _dtype(kind: Lent) -> np.dtype[Any]:
 
 def bundle(items: tuple[Any, ...]) -> Any:
     """One array with the addresses of all the arrays in `items`, which a kernel takes at the cost of one."""
-    kind, words = _described(items)
+    kind = _kind_of(_signature(items))
+    words: list[int] = []
+    _add_words(items, words)
     owner = _Words(np.array(words, dtype=np.int64).tobytes())
     owner.items = items
     return np.frombuffer(owner, dtype=_dtype(kind))

@@ -6,72 +6,49 @@ A solver, and what it does about contacts, is imported when it is first used: a 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sandbox.physics.forces import Before
-    from sandbox.physics.solvers.single_pass import Pair
+    from sandbox.physics.collision.types import Contacts
+    from sandbox.physics.substeps import Substep
     from sandbox.physics.world import Floats, World
-
-
-class Schedule(NamedTuple):
-    """What a solver does.
-
-    solve(world, springs, elements, h, before): brings world.velocity from after the forces to the end of a step of
-    h [s], with Cs and Cd (m,) of the springs and (t,) of the elements in that step; before: what the step began with.
-    spring_constant(stiffness, damping, reduced_mass [kg], h): k [N/m] of the energy k/2 x^2.
-    """
-
-    solve: "Callable[[World, Pair, Pair, float, Before], None]"
-    spring_constant: "Callable[[Floats, Floats, Floats, float], Floats]"
 
 
 @dataclass(frozen=True)
 class Solver:
-    """One solver; load: imports its schedule.
+    """One solver: another is a module in this folder, and a line in SOLVERS.
 
     proven_limit: whether the limits of `stability` hold for it. bounded: whether it needs none, because it tests the
-    energy of every step.
+    energy of every step. follows: whether it keeps the slow part of velocities, which is all that it does to particles
+    that nothing holds.
     """
 
-    load: Callable[[], Schedule]
+    module: str
     proven_limit: bool
     bounded: bool
+    follows: bool = False
 
     @cached_property
-    def schedule(self) -> Schedule:
-        """What it does, imported once."""
-        return self.load()
+    def solve(self) -> "Callable[[World, Substep, Contacts | None], None]":
+        """solve(world, substep, contacts): brings world.velocity from after the forces to the end of a substep.
 
+        contacts: what touches, with the impulses that it brings along and then has; None: nothing can.
+        """
+        return self._schedule.solve
 
-def _single_pass() -> Schedule:
-    from sandbox.physics.solvers import single_pass
+    @cached_property
+    def spring_constant(self) -> "Callable[[Floats, Floats, Floats, float], Floats]":
+        """spring_constant(stiffness, damping, reduced_mass [kg], h): k [N/m] of the energy k/2 x^2."""
+        return self._schedule.spring_constant
 
-    return Schedule(single_pass.solve, single_pass.spring_constant)
-
-
-def _iterative() -> Schedule:
-    from sandbox.physics.solvers import iterative, single_pass
-
-    return Schedule(iterative.solve, single_pass.spring_constant)
-
-
-def _direct() -> Schedule:
-    from sandbox.physics.solvers.direct.solve import solve, spring_constant
-
-    def solve_or_push(world: "World", springs: "Pair", elements: "Pair", h: float, before: "Before") -> None:
-        if world.contacts is None:
-            solve(world, springs, elements, h, before)
-            return
-        from sandbox.physics.solvers.direct import contact_solve
-
-        contact_solve.solve(world, springs, elements, h, before)
-
-    return Schedule(solve_or_push, spring_constant)
+    @property
+    def _schedule(self) -> Any:
+        return import_module(f"{__name__}.{self.module}")
 
 
 SOLVERS = {
-    "single_pass": Solver(_single_pass, proven_limit=True, bounded=False),
-    "iterative": Solver(_iterative, proven_limit=False, bounded=False),
-    "direct": Solver(_direct, proven_limit=False, bounded=True),
+    "single_pass": Solver("single_pass", proven_limit=True, bounded=False),
+    "iterative": Solver("iterative", proven_limit=False, bounded=False),
+    "direct": Solver("direct.solve", proven_limit=False, bounded=True, follows=True),
 }

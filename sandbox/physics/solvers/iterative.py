@@ -8,22 +8,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sandbox.physics.collision.types import NO_CONTACTS
-from sandbox.physics.constraints import AREA, BEND, element_rate, evaluate, explicit_mass, look
-from sandbox.physics.equation import direction, reduced_mass
-from sandbox.physics.forces import Before
+from sandbox.physics.collision.types import NO_CONTACTS, Contacts, Flags
+from sandbox.physics.constraints import AREA, BEND, Elements, element_rate, evaluate, explicit_mass, look
+from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.solvers.contact.gauss_seidel import (
+    ContactTerms,
+    Delassus,
     add_change,
     load_biases,
     load_responses,
-    loose_blocks,
-    new_push,
+    new_terms,
+    no_blocks,
     start_impulses,
     sweep,
 )
-from sandbox.physics.solvers.single_pass import Pair, apply_explicit
-from sandbox.physics.world import LAW_HOOKE, Floats, World
+from sandbox.physics.solvers.single_pass import Ends, Particles, apply_explicit, ends_of, particles_of
+from sandbox.physics.substeps import Substep
+from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, Floats, Slots, World
 
 # The share of what an area still wants that it gets in an iteration after the first. With all of it jellies and rings,
 # which have more constraints than ways to move, gain energy several times over; with 0.3 or less a crushed jelly stays
@@ -36,8 +38,11 @@ class Wanted(NamedTuple):
 
     wanted = -(Cs C / h + Cd dC/dt) m; impulse = the sum of its j. Of a bend, damped = Cd m, kept = 1 - Cd and whole =
     kept + Cd m / present mass. Of an area, as of a spring, damped = m, kept = 0 and whole = 1, then 1 / AREA_SHARE.
+    stiffness, damping: Cs and Cd of the substep.
     """
 
+    stiffness: Floats
+    damping: Floats
     place: Floats
     slope: Floats
     wanted: Floats
@@ -47,25 +52,43 @@ class Wanted(NamedTuple):
     impulse: Floats
 
 
+class Pulling(NamedTuple):
+    """Scratch of the springs that do something, count of them by slot: wanted [m/s] = r, mass [kg], normal (m, 2).
+
+    By particle: change [m/s] (n, 2). By slot of all springs: accumulated [N s] (m, 2), which outlives the step.
+    """
+
+    slot: Slots
+    normal: Floats
+    wanted: Floats
+    mass: Floats
+    change: Floats
+    accumulated: Floats
+
+
 @inner_kernel
-def _prepare_elements(position, velocity, inverse_mass, elements, stiffness, damping, h, wanted):  # type: ignore[no-untyped-def]
+def _prepare_elements(particles: Particles, elements: Elements, h: float, wanted: Wanted) -> None:
+    # wanted = -(Cs C / h + Cd dC/dt) m
     for k in range(elements.kind.shape[0]):
         wanted.whole[k] = 0.0
         if not elements.active[k]:
             continue
         first = elements.first[k]
         last = first + elements.corners[k]
-        look(first, last, position, elements.particle, wanted.place)
+        look(first, last, particles.position, elements.particle, wanted.place)
         error = evaluate(
             elements.kind[k], wanted.place, first, last, elements.rest, k, elements.weight, wanted.slope
         )  # fmt: skip
-        mass, share = explicit_mass(first, last, inverse_mass, elements.particle, elements.weight, wanted.slope)
-        rate = element_rate(first, last, velocity, elements.particle, wanted.slope)
-        wanted.wanted[k] = -(stiffness[k] * error / h + damping[k] * rate) * mass
+        mass, share = explicit_mass(
+            first, last, particles.inverse_mass, elements.particle, elements.weight, wanted.slope
+        )  # fmt: skip
+        rate = element_rate(first, last, particles.velocity, elements.particle, wanted.slope)
+        damping = wanted.damping[k]
+        wanted.wanted[k] = spring_impulse(wanted.stiffness[k], damping, error, rate, mass, h)
         if elements.kind[k] == BEND:
-            wanted.damped[k] = damping[k] * mass
-            wanted.kept[k] = 1.0 - damping[k]
-            wanted.whole[k] = wanted.kept[k] + damping[k] * share
+            wanted.damped[k] = damping * mass
+            wanted.kept[k] = 1.0 - damping
+            wanted.whole[k] = wanted.kept[k] + damping * share
         else:
             wanted.damped[k] = mass
             wanted.kept[k] = 0.0
@@ -74,10 +97,9 @@ def _prepare_elements(position, velocity, inverse_mass, elements, stiffness, dam
 
 
 @inner_kernel
-def _iterate_elements(inverse_mass, elements, wanted, change):  # type: ignore[no-untyped-def]
+def _iterate_elements(inverse_mass: Floats, elements: Elements, wanted: Wanted, change: Floats) -> None:
     # A bend obeys (1 - Cd) j = -(Cs C / h + Cd (dC/dt + g . dv)) m, the equation with the velocity after the step
-    # (see direct/solve.py): so can all of more bends than there are ways to bend. Both go at once into the velocity
-    # change dv.
+    # (equation.py): so can all of more bends than there are ways to bend. Both go at once into the velocity change dv.
     for k in range(elements.kind.shape[0]):
         if wanted.whole[k] == 0.0:
             continue
@@ -95,40 +117,18 @@ def _iterate_elements(inverse_mass, elements, wanted, change):  # type: ignore[n
 
 
 @inner_kernel
-def _iterate_springs(count, inverse_mass, end_a, end_b, slot, normal, wanted, mass, change, accumulated):  # type: ignore[no-untyped-def]
-    # j = -(n . (dv_b - dv_a) - r) m_r, applied at once to the velocity change dv.
-    for c in range(count):
-        a = end_a[c]
-        b = end_b[c]
-        nx = normal[c, 0]
-        ny = normal[c, 1]
-        du = change[b, 0] - change[a, 0]
-        dv = change[b, 1] - change[a, 1]
-        j = -(nx * du + ny * dv - wanted[c]) * mass[c]
-        jx = j * nx
-        jy = j * ny
-        change[a, 0] -= jx * inverse_mass[a]
-        change[a, 1] -= jy * inverse_mass[a]
-        change[b, 0] += jx * inverse_mass[b]
-        change[b, 1] += jy * inverse_mass[b]
-        s = slot[c]
-        accumulated[s, 0] += jx
-        accumulated[s, 1] += jy
-
-
-@kernel
-def _iterate(  # type: ignore[no-untyped-def]
-    position, velocity, inverse_mass, particle_a, particle_b, rest_length, stiffness, damping, law, spring_active, h,
-    iterations, warm_start, accumulated, end_a, end_b, slot, normal, wanted, mass, change, elements,
-    element_stiffness, element_damping, element_wanted, contacts, push, blocks,
-):  # fmt: skip
-    # r = -(Cs x / h + Cd u), the wanted change of relative velocity.
+def _prepare_springs(
+    particles: Particles, ends: Ends, active: Flags, warm_start: float, h: float, pulling: Pulling
+) -> int:
+    # r = -(Cs x / h + Cd u), the wanted change of relative velocity; how many springs want one.
+    position, velocity, inverse_mass = particles.position, particles.velocity, particles.inverse_mass
+    change, accumulated = pulling.change, pulling.accumulated
     count = 0
-    for s in range(spring_active.shape[0]):
-        if not spring_active[s] or law[s] != 0:
+    for s in range(active.shape[0]):
+        if not active[s] or ends.law[s] != LAW_NISSEN:
             continue
-        a = particle_a[s]
-        b = particle_b[s]
+        a = ends.particle_a[s]
+        b = ends.particle_b[s]
         m = reduced_mass(inverse_mass[a], inverse_mass[b])
         # Warm start: p = n . acc; only a pull (p < 0) is used again, j = Cw p.
         warm_x = accumulated[s, 0]
@@ -140,13 +140,13 @@ def _iterate(  # type: ignore[no-untyped-def]
         du = velocity[b, 0] - velocity[a, 0]
         dv = velocity[b, 1] - velocity[a, 1]
         nx, ny, length = direction(position[b, 0] - position[a, 0], position[b, 1] - position[a, 1], du, dv)
-        end_a[count] = a
-        end_b[count] = b
-        slot[count] = s
-        normal[count, 0] = nx
-        normal[count, 1] = ny
-        mass[count] = m
-        wanted[count] = -(stiffness[s] * (length - rest_length[s]) / h + damping[s] * (nx * du + ny * dv))
+        pulling.slot[count] = s
+        pulling.normal[count, 0] = nx
+        pulling.normal[count, 1] = ny
+        pulling.mass[count] = m
+        pulling.wanted[count] = spring_impulse(
+            ends.stiffness[s], ends.damping[s], length - ends.rest_length[s], nx * du + ny * dv, 1.0, h
+        )  # fmt: skip
         count += 1
         p = nx * warm_x + ny * warm_y
         if p < 0.0:
@@ -155,34 +155,69 @@ def _iterate(  # type: ignore[no-untyped-def]
             change[a, 1] -= j * ny * inverse_mass[a]
             change[b, 0] += j * nx * inverse_mass[b]
             change[b, 1] += j * ny * inverse_mass[b]
-    _prepare_elements(
-        position, velocity, inverse_mass, elements, element_stiffness, element_damping, h, element_wanted
-    )  # fmt: skip
-    load_responses(contacts, push, inverse_mass, blocks)
-    start_impulses(contacts, change, inverse_mass, blocks)
+    return count
+
+
+@inner_kernel
+def _iterate_springs(count: int, inverse_mass: Floats, ends: Ends, pulling: Pulling) -> None:
+    # j = -(n . (dv_b - dv_a) - r) m_r, applied at once to the velocity change dv.
+    change, accumulated = pulling.change, pulling.accumulated
+    for c in range(count):
+        s = pulling.slot[c]
+        a = ends.particle_a[s]
+        b = ends.particle_b[s]
+        nx = pulling.normal[c, 0]
+        ny = pulling.normal[c, 1]
+        du = change[b, 0] - change[a, 0]
+        dv = change[b, 1] - change[a, 1]
+        j = -(nx * du + ny * dv - pulling.wanted[c]) * pulling.mass[c]
+        jx = j * nx
+        jy = j * ny
+        change[a, 0] -= jx * inverse_mass[a]
+        change[a, 1] -= jy * inverse_mass[a]
+        change[b, 0] += jx * inverse_mass[b]
+        change[b, 1] += jy * inverse_mass[b]
+        accumulated[s, 0] += jx
+        accumulated[s, 1] += jy
+
+
+@kernel
+def _iterate(
+    particles: Particles, ends: Ends, active: Flags, pulling: Pulling, elements: Elements, wanted: Wanted,
+    contacts: Contacts, terms: ContactTerms, delassus: Delassus, iterations: int, warm_start: float, h: float,
+) -> None:  # fmt: skip
+    velocity, inverse_mass, change = particles.velocity, particles.inverse_mass, pulling.change
+    count = _prepare_springs(particles, ends, active, warm_start, h, pulling)
+    _prepare_elements(particles, elements, h, wanted)
+    load_biases(contacts, terms, h)
+    load_responses(contacts, terms, inverse_mass, delassus)
+    start_impulses(contacts, change, inverse_mass, delassus)
     for _ in range(iterations):
-        _iterate_springs(count, inverse_mass, end_a, end_b, slot, normal, wanted, mass, change, accumulated)
-        _iterate_elements(inverse_mass, elements, element_wanted, change)
-        sweep(contacts, push, velocity, change, inverse_mass, blocks)
+        _iterate_springs(count, inverse_mass, ends, pulling)
+        _iterate_elements(inverse_mass, elements, wanted, change)
+        sweep(contacts, terms, velocity, change, inverse_mass, delassus)
     add_change(velocity, change, inverse_mass)
 
 
-def solve(world: World, springs: Pair, elements: Pair, h: float, before: Before) -> None:
-    """Bring the velocities to the end of a step of h [s]; world.impulse keeps the sums for the next warm start."""
+spring_constant = explicit_spring_constant
+
+
+def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
+    """Bring the velocities to the end of a substep; world.impulse keeps the sums for the next warm start."""
     hooke = world.spring_active & (world.law == LAW_HOOKE)
     if hooke.any():
-        apply_explicit(world, hooke, springs, h)
-    count, contacts = world.spring_count, world.contacts or NO_CONTACTS
-    blocks = loose_blocks(world.particle_count if world.contacts else 0)
-    push = new_push(len(contacts.particle))
-    load_biases(contacts, push, h)
-    end_a, end_b, slot = np.zeros((3, count), dtype=np.int64)
-    place, slope = np.zeros((2, len(world.corner_particle), 2))
-    wanted = Wanted(place, slope, *np.zeros((5, world.element_count)))
+        apply_explicit(world, hooke, substep.springs, substep.h)
+    delassus = no_blocks(0 if contacts is None else world.particle_count)
+    contacts = NO_CONTACTS if contacts is None else contacts
+    count, settings = world.spring_count, world.settings
+    change = np.zeros((world.particle_count, 2))
+    pulling = Pulling(
+        np.zeros(count, np.int64), np.zeros((count, 2)), np.zeros(count), np.zeros(count), change, world.impulse
+    )
+    wanted = Wanted(
+        *substep.elements, *np.zeros((2, len(world.corner_particle), 2)), *np.zeros((5, world.element_count))
+    )
     _iterate(
-        world.position, world.velocity, world.inverse_mass, world.particle_a, world.particle_b, world.rest_length,
-        springs[0], springs[1], world.law, world.spring_active, h, world.settings.iterations,
-        world.settings.warm_start, world.impulse, end_a, end_b, slot, np.zeros((count, 2)), np.zeros(count),
-        np.zeros(count), np.zeros((world.particle_count, 2)), world.elements, elements[0], elements[1], wanted,
-        contacts, push, blocks,
+        particles_of(world), ends_of(world, substep.springs), world.spring_active, pulling, world.elements, wanted,
+        contacts, new_terms(len(contacts.particle)), delassus, settings.iterations, settings.warm_start, substep.h,
     )  # fmt: skip

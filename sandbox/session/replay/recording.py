@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from sandbox.level.build.actuators import parts
+from sandbox.level.build.actuators import actuators
 from sandbox.level.format.model import Level
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, state_hash
@@ -60,7 +60,7 @@ class Replay:
             snapshot = decode_state(tick, stored.arrays, stored.settings)
         except ValueError as error:
             raise ReplayError(f"{self.source}: line {stored.line}: {error}") from None
-        driven = len(parts(self.level))
+        driven = len(actuators(self.level))
         if len(snapshot.part_value) != driven:
             raise ReplayError(
                 f"{self.source}: line {stored.line}: state.part_value: has {len(snapshot.part_value)} values, "

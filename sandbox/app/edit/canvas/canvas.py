@@ -67,7 +67,7 @@ class Part:
     ghost: bool = False
 
 
-class Chosen(NamedTuple):
+class SelectionMasks(NamedTuple):
     """Which particles (n,), springs (m,) and items (k,) of a scene are selected."""
 
     particles: Mask
@@ -75,7 +75,7 @@ class Chosen(NamedTuple):
     items: Mask
 
     @classmethod
-    def of(cls, scene: Scene, selection: Selection) -> "Chosen":
+    def of(cls, scene: Scene, selection: Selection) -> "SelectionMasks":
         """Find them, which takes time in large selections."""
         chosen = scene.chosen(selection)
         return cls(chosen[scene.particle_item], chosen[scene.spring_item], chosen)
@@ -93,7 +93,7 @@ class ScenePainter:
         self._finer: pygame.Surface | None = None
         self._work: Iterator[None] | None = None
 
-    def draw(self, surface: pygame.Surface, camera: Camera, scene: Scene, chosen: Chosen, hidden: bool) -> None:
+    def draw(self, surface: pygame.Surface, camera: Camera, scene: Scene, chosen: SelectionMasks, hidden: bool) -> None:
         """Draw grid, scene and selection, from the layer that is kept where it still holds.
 
         hidden: the selection is left out, because it is drawn elsewhere while it moves. Of a large scene the first
@@ -124,7 +124,7 @@ class ScenePainter:
         self._work, self._layer = None, self._finer
 
     def _layer_work(
-        self, layer: pygame.Surface, camera: Camera, scene: Scene, chosen: Chosen, hidden: bool, plain: bool
+        self, layer: pygame.Surface, camera: Camera, scene: Scene, chosen: SelectionMasks, hidden: bool, plain: bool
     ) -> Iterator[None]:
         # The clip holds while a slice is drawn, and nobody else draws on the layer.
         layer.set_clip(camera.viewport)
@@ -142,7 +142,7 @@ class ScenePainter:
         if not hidden:
             yield from self._slices(layer, camera, Part(scene, particles, springs, ACCENT), plain)
 
-    def paint_moved(self, surface: pygame.Surface, camera: Camera, moved: Scene, chosen: Chosen) -> None:
+    def paint_moved(self, surface: pygame.Surface, camera: Camera, moved: Scene, chosen: SelectionMasks) -> None:
         """Draw the selection in a scene where it has been moved, and the springs of others that hang on it."""
         particles, springs, items = chosen
         self.paint_ground(surface, camera, Ground(moved, items, ACCENT))
@@ -152,7 +152,7 @@ class ScenePainter:
 
     def paint_hovered(self, surface: pygame.Surface, camera: Camera, scene: Scene, item: Item) -> None:
         """Draw what a click would select, brighter; of large bodies only the springs."""
-        particles, springs, items = Chosen.of(scene, frozenset({item}))
+        particles, springs, items = SelectionMasks.of(scene, frozenset({item}))
         self.paint_ground(surface, camera, Ground(scene, items, HOVERED))
         if np.count_nonzero(springs) > PLAIN_FROM:
             particles = np.zeros(len(particles), dtype=np.bool_)
@@ -261,7 +261,7 @@ def draw_grid(surface: pygame.Surface, camera: Camera, scale: float) -> None:
                     surface.fill(tone, (left, round(at[1]), width, 1))
 
 
-def moved_by(scene: Scene, chosen: Chosen, matrix: NDArray[np.float64]) -> Scene:
+def moved_by(scene: Scene, chosen: SelectionMasks, matrix: NDArray[np.float64]) -> Scene:
     """The scene with what is chosen where a matrix (2, 3) takes it."""
     position = scene.position.copy()
     position[chosen.particles] = position[chosen.particles] @ matrix[:, :2].T + matrix[:, 2]

@@ -8,9 +8,9 @@ import pygame
 from sandbox.app.draw.camera import Camera, Point
 from sandbox.app.draw.colours import BACKGROUND, DRIVE, TEXT, mixed
 from sandbox.app.widgets.ui import Ui
-from sandbox.editor.driven import Driven, driven_parts
+from sandbox.editor.actuators import SceneActuators, scene_actuators
 from sandbox.editor.scene import Scene
-from sandbox.level.format.drives import HydraulicDef, MotorDef
+from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
 
 # Sizes in layout units: a badge, the shortest spring and the smallest wheel with a mark, the arrow of a motor.
 BADGE = 8.0
@@ -34,14 +34,14 @@ class DriveMarks:
     def __init__(self, ui: Ui) -> None:
         self._ui = ui
         self._of: tuple[object, object] | None = None
-        self._driven = Driven([], [], [])
+        self._actuators = SceneActuators([], [], [])
 
     def draw(self, surface: pygame.Surface, camera: Camera, scene: Scene) -> None:
         """Draw the marks where the scene's particles are."""
         level = scene.level
         if self._of is None or self._of[0] is not level.bodies or self._of[1] is not level.springs:
-            self._of, self._driven = (level.bodies, level.springs), driven_parts(scene)
-        muscles, hydraulics, motors = self._driven
+            self._of, self._actuators = (level.bodies, level.springs), scene_actuators(scene)
+        muscles, hydraulics, motors = self._actuators
         for spring in muscles[:MOST]:
             self._draw_muscle(surface, *self._ends(camera, scene, spring))
         for spring, hydraulic in hydraulics[:MOST]:

@@ -1,4 +1,4 @@
-"""Hands: what the pointer does with a tool of the editor: select and move, or draw."""
+"""The pointer tools of the editor: one selects and moves, the other draws."""
 
 import math
 from typing import Any
@@ -202,7 +202,7 @@ class SelectTool:
 
 
 class DrawTool:
-    """Draws with one of the editor's drawings; name: as in the history."""
+    """Draws with one of the editor's drawings; name: what a step of the history is called."""
 
     matrix: np.ndarray | None = None
 

@@ -7,7 +7,7 @@ import pygame
 
 from sandbox.app.draw.camera import Point
 from sandbox.app.draw.colours import ACCENT
-from sandbox.app.edit.canvas.canvas import Chosen, Part, ScenePainter, moved_by
+from sandbox.app.edit.canvas.canvas import Part, ScenePainter, SelectionMasks, moved_by
 from sandbox.app.edit.canvas.edited_terrain import Ground
 from sandbox.app.edit.canvas.marks import DriveMarks
 from sandbox.app.edit.canvas.overlay import SPOT_SECONDS, draw_cursor, draw_label, draw_spot
@@ -27,7 +27,7 @@ class View:
         self._screen = screen
         self._painter = ScenePainter(screen.scale)
         self._marks = DriveMarks(screen.ui)
-        self._chosen: tuple[Scene, Selection, Chosen] | None = None
+        self._chosen: tuple[Scene, Selection, SelectionMasks] | None = None
         self._ghost: Scene | None = None
         self._hanging: tuple[Scene, object, Scene] | None = None
         self._spot: tuple[Point, float] | None = None
@@ -54,7 +54,7 @@ class View:
         screen = self._screen
         scene, selection, matrix = screen.scene, screen.document.selection, screen.pointer_tool.matrix
         if self._chosen is None or self._chosen[0] is not scene or self._chosen[1] is not selection:
-            self._chosen = (scene, selection, Chosen.of(scene, selection))
+            self._chosen = (scene, selection, SelectionMasks.of(scene, selection))
         chosen = self._chosen[2]
         self._painter.draw(surface, screen.camera, scene, chosen, matrix is not None)
         if matrix is not None:
@@ -89,14 +89,14 @@ class View:
         self._painter.paint(surface, screen.camera, part)
 
     def _draw_marks(self, surface: pygame.Surface) -> None:
-        screen, hand = self._screen, self._screen.pointer_tool
-        hand.draw(surface)
-        under = hand.hovered if isinstance(hand, SelectTool) and hand.matrix is None else None
+        screen, tool = self._screen, self._screen.pointer_tool
+        tool.draw(surface)
+        under = tool.hovered if isinstance(tool, SelectTool) and tool.matrix is None else None
         if under is not None and under not in screen.document.selection:
             self._painter.paint_hovered(surface, screen.camera, screen.scene, under)
         if screen.cursor is not None:
             draw_cursor(surface, screen.camera.to_pixels(screen.cursor), screen.scale)
         if self._spot is not None:
             draw_spot(surface, screen.camera.to_pixels(self._spot[0]), self._spot[1], screen.scale)
-        if hand.measure and screen.pointer is not None:
-            draw_label(surface, screen.ui, screen.pointer, hand.measure, screen.camera.viewport)
+        if tool.measure and screen.pointer is not None:
+            draw_label(surface, screen.ui, screen.pointer, tool.measure, screen.camera.viewport)

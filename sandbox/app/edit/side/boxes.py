@@ -7,8 +7,8 @@ import pygame
 
 from sandbox.app.draw.colours import ACCENT, LINE, MUTED, TEXT, mixed
 from sandbox.app.edit.side.rows import FIELD_BACKGROUND
-from sandbox.app.widgets.painted import Lit, Painted, wrapped
-from sandbox.app.widgets.ui import ENTER_KEYS, Ui
+from sandbox.app.widgets.painted import Lit, Pressable, wrapped
+from sandbox.app.widgets.ui import Ui
 
 TEXT_SIZE = 12.5
 # Keys that a level can name: letters and digits.
@@ -18,7 +18,7 @@ NO_KEY = "none"
 SCRUB_STEP = 5.0
 
 
-class CheckBox(Painted):
+class CheckBox(Pressable):
     """A box to tick; its state may be MIXED."""
 
     ui: Ui
@@ -55,23 +55,12 @@ class CheckBox(Painted):
         surface.blit(text, (side + ui.px(7), (size[1] - text.get_height()) // 2))
         return surface
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Tick on a click."""
-        pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
-        if pressed and self.hover_point(*self.ui.manager.calculate_scaled_mouse_position(event.pos)):
-            self._toggle(not self.state)
-            return True
-        return False
-
-    def press_key(self, event: pygame.event.Event) -> bool:
-        """Tick by Enter or Space."""
-        if event.key in (*ENTER_KEYS, pygame.K_SPACE):
-            self._toggle(not self.state)
-            return True
-        return False
+    def press(self) -> None:
+        """Tick it, or no longer."""
+        self._toggle(not self.state)
 
 
-class KeyBox(Painted):
+class KeyBox(Pressable):
     """Shows a key; after a click, Enter or Space it takes the next one that is pressed, Delete takes it away.
 
     choose(key) is called with it, or with None.
@@ -120,22 +109,15 @@ class KeyBox(Painted):
         surface.blit(picture, at)
         return surface
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Listen after a click."""
-        pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
-        if pressed and self.hover_point(*self.ui.manager.calculate_scaled_mouse_position(event.pos)):
-            self.ui.focus_on(self)
-            self._listen(True)
-            return True
-        return False
+    def press(self) -> None:
+        """Listen."""
+        self.ui.focus_on(self)
+        self._listen(True)
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """Take the key."""
         if not self.listening:
-            if event.key in (*ENTER_KEYS, pygame.K_SPACE):
-                self._listen(True)
-                return True
-            return False
+            return super().press_key(event)
         if event.mod & (pygame.KMOD_CTRL | pygame.KMOD_META | pygame.KMOD_ALT):
             return False
         if event.key in KEYS:
@@ -182,19 +164,17 @@ class Scrub(Lit):
 
     def process_event(self, event: pygame.event.Event) -> bool:
         """Follow a drag that began on it."""
-        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
-            x, y = self.ui.manager.calculate_scaled_mouse_position(event.pos)
-            if self.hover_point(x, y):
-                self._from = x
-                return True
-        elif event.type == pygame.MOUSEMOTION and self._from is not None:
+        if self.is_press(event):
+            self._from = self.ui.manager.calculate_scaled_mouse_position(event.pos)[0]
+            return True
+        if event.type == pygame.MOUSEMOTION and self._from is not None:
             x = self.ui.manager.calculate_scaled_mouse_position(event.pos)[0]
             steps = int((x - self._from) / self.ui.px(SCRUB_STEP))
             if steps:
                 self._from += steps * self.ui.px(SCRUB_STEP)
                 self._turn(steps)
             return True
-        elif event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self._from is not None:
+        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self._from is not None:
             self._from = None
             self.repaint()
             self._done()

@@ -18,7 +18,7 @@ from sandbox.app.widgets.fields import Field
 from sandbox.app.widgets.sliders import LogSlider
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.materials import add_material, assign, delete_material, rename_material, set_material
-from sandbox.editor.panel.field_info import About, abouts
+from sandbox.editor.panel.field_info import FieldInfo, abouts
 from sandbox.editor.panel.property import Property
 from sandbox.editor.panel.typed import line_text, number_text, read_line, read_number
 from sandbox.editor.pick import items_of_material
@@ -115,7 +115,7 @@ class MaterialsPage:
         self._widgets.append(self.fields[name].entry)
         self._y += ROW + GAP
 
-    def _add_coefficient(self, name: str, about: About) -> None:
+    def _add_coefficient(self, name: str, about: FieldInfo) -> None:
         unit = f" [{about.unit}]" if name in ("k", "c") else ""
         self._add_field(name, SHORT[name] + unit, partial(self._type_coefficient, name), about.tooltip)
         if name in ("k", "c"):
@@ -126,7 +126,7 @@ class MaterialsPage:
         self._widgets.append(self.sliders[name])
         self._y += ROW - 2
 
-    def _add_limit(self, name: str, about: About) -> None:
+    def _add_limit(self, name: str, about: FieldInfo) -> None:
         turn, done = partial(self._scrub_limit, name), self._screen.history.end_merge
         place = self._ui.rect(0, self._y, self._inside - FIELD_WIDTH - GAP, ROW)
         scrub = Scrub(self._ui, place, about.title, turn, done, self.area.content)

@@ -14,7 +14,8 @@ from sandbox.app.edit.side.rows import Picker, Row
 from sandbox.app.widgets.fields import Field
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.moving import move, rotate, scale
-from sandbox.editor.tools.drawing_options import About, described, stepped
+from sandbox.editor.tools.drawing_options import OptionInfo, described, stepped
+from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import PLACE_DECIMALS
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 
@@ -55,13 +56,13 @@ class OptionsRow:
         screen = self._screen
         chosen = bool(screen.document.selection)
         materials = tuple(screen.scene.materials)
-        hand = screen.pointer_tool
-        made_for = (screen.tool, materials) if isinstance(hand, DrawTool) else ("select", chosen)
+        tool = screen.pointer_tool
+        made_for = (screen.tool, materials) if isinstance(tool, DrawTool) else ("select", chosen)
         if made_for != self._made_for:
             self._made_for, self._page = made_for, 0
             self._remake()
-        if isinstance(hand, DrawTool):
-            self._show_options(hand)
+        if isinstance(tool, DrawTool):
+            self._show_options(tool)
         elif chosen:
             self._show_selection()
 
@@ -69,11 +70,11 @@ class OptionsRow:
         for widget in self._made:
             self._ui.remove(widget)
         self._made, self.fields, self.flags, self.menus, self.more, self._x = [], {}, {}, {}, None, GAP
-        hand, chosen = self._screen.pointer_tool, bool(self._screen.document.selection)
+        tool, chosen = self._screen.pointer_tool, bool(self._screen.document.selection)
         items: list[Item] = []
-        if isinstance(hand, DrawTool):
-            self._add_label(self._screen.tool.capitalize() if self._screen.tool != "box" else "Jelly", "@heading")
-            items = [self._option(hand, name, about) for name, about in described(hand.drawing.options).items()]
+        if isinstance(tool, DrawTool):
+            self._add_label(TOOLS[self._screen.tool].title.capitalize(), "@heading")
+            items = [self._option(tool, name, about) for name, about in described(tool.drawing.options).items()]
         elif chosen:
             items = self._numbers()
         else:
@@ -159,44 +160,44 @@ class OptionsRow:
             items.append(self._labelled(label, NUMBER_WIDTH, add, 2 * GAP if name in ("y", "height") else GAP))
         return items
 
-    def _option(self, hand: DrawTool, name: str, about: About) -> Item:
+    def _option(self, tool: DrawTool, name: str, about: OptionInfo) -> Item:
         if about.kind == "flag":
             width = self._text_width(about.label) + 22
-            return width + LABEL_GAP, partial(self._add_flag, hand, name, about, width)
+            return width + LABEL_GAP, partial(self._add_flag, tool, name, about, width)
         label = about.label + (f" [{about.unit}]" if about.unit else "")
         if about.kind == "material":
-            self._settle_material(hand, name)
-            return self._labelled(label, MENU_WIDTH, partial(self._add_picker, hand, name, about))
-        return self._labelled(label, ENTRY_WIDTH, partial(self._add_value, hand, name, about))
+            self._settle_material(tool, name)
+            return self._labelled(label, MENU_WIDTH, partial(self._add_picker, tool, name, about))
+        return self._labelled(label, ENTRY_WIDTH, partial(self._add_value, tool, name, about))
 
-    def _add_flag(self, hand: DrawTool, name: str, about: About, width: float) -> None:
-        toggle = partial(self._toggle, hand, name)
+    def _add_flag(self, tool: DrawTool, name: str, about: OptionInfo, width: float) -> None:
+        toggle = partial(self._toggle, tool, name)
         button = self._ui.button(self._rect(width), about.label, toggle, self.back, style="@segment", tip=about.text)
         self.flags[name] = button
         self._made.append(button)
         self._x += LABEL_GAP
 
-    def _add_value(self, hand: DrawTool, name: str, about: About) -> None:
+    def _add_value(self, tool: DrawTool, name: str, about: OptionInfo) -> None:
         tip = f"{about.text} The wheel or Up and Down change it."
-        self._add_field(name, partial(self._type_option, hand, name, about), ENTRY_WIDTH, tip)
-        self.fields[name].turn = partial(self._turn_option, hand, name, about)
+        self._add_field(name, partial(self._type_option, tool, name, about), ENTRY_WIDTH, tip)
+        self.fields[name].turn = partial(self._turn_option, tool, name, about)
 
-    def _settle_material(self, hand: DrawTool, name: str) -> None:
+    def _settle_material(self, tool: DrawTool, name: str) -> None:
         """Draw with a material that the level has."""
         materials = self._screen.scene.materials
-        if getattr(hand.drawing.options, name) not in materials:
-            self._set(hand, name, materials[-1] if len(materials) > 1 else DEFAULT_MATERIAL)
+        if getattr(tool.drawing.options, name) not in materials:
+            self._set(tool, name, materials[-1] if len(materials) > 1 else DEFAULT_MATERIAL)
 
-    def _add_picker(self, hand: DrawTool, name: str, about: About) -> None:
-        picker = Picker(self._ui, self._rect(MENU_WIDTH), partial(self._choose, hand, name), self.back)
+    def _add_picker(self, tool: DrawTool, name: str, about: OptionInfo) -> None:
+        picker = Picker(self._ui, self._rect(MENU_WIDTH), partial(self._choose, tool, name), self.back)
         picker.set_tooltip(about.text)
         self.menus[name] = picker
         self._made.append(picker)
 
     # Showing.
 
-    def _show_options(self, hand: DrawTool) -> None:
-        options = hand.drawing.options
+    def _show_options(self, tool: DrawTool) -> None:
+        options = tool.drawing.options
         for name, field in self.fields.items():
             value = getattr(options, name)
             field.show("" if value is None else f"{value:g}")
@@ -221,37 +222,37 @@ class OptionsRow:
 
     # Changing.
 
-    def _set(self, hand: DrawTool, name: str, value: Any) -> bool:
+    def _set(self, tool: DrawTool, name: str, value: Any) -> bool:
         try:
-            hand.drawing.set_option(name, value)
+            tool.drawing.set_option(name, value)
         except EditError as error:
             self._screen.say(f"{str(error)[:1].upper()}{str(error)[1:]}.")
             return False
         return True
 
-    def _choose(self, hand: DrawTool, name: str, index: int) -> None:
-        self._set(hand, name, self.menus[name].rows[index].text)
+    def _choose(self, tool: DrawTool, name: str, index: int) -> None:
+        self._set(tool, name, self.menus[name].rows[index].text)
 
-    def _toggle(self, hand: DrawTool, name: str) -> None:
-        self._set(hand, name, not getattr(hand.drawing.options, name))
+    def _toggle(self, tool: DrawTool, name: str) -> None:
+        self._set(tool, name, not getattr(tool.drawing.options, name))
 
-    def _type_option(self, hand: DrawTool, name: str, about: About, text: str) -> bool:
+    def _type_option(self, tool: DrawTool, name: str, about: OptionInfo, text: str) -> bool:
         if not text.strip():
-            return self._set(hand, name, None)
+            return self._set(tool, name, None)
         value = self._number(about.label, text)
         if value is None:
             return False
         if about.kind == "count" and value == int(value):
-            return self._set(hand, name, int(value))
-        return self._set(hand, name, value)
+            return self._set(tool, name, int(value))
+        return self._set(tool, name, value)
 
-    def _turn_option(self, hand: DrawTool, name: str, about: About, by: int) -> None:
+    def _turn_option(self, tool: DrawTool, name: str, about: OptionInfo, by: int) -> None:
         """Step a value up or down; a number of parts from the one that fits."""
-        if name == hand.drawing.counted:
-            hand.adjust(by)
+        if name == tool.drawing.counted:
+            tool.adjust(by)
         else:
-            self._set(hand, name, stepped(about, getattr(hand.drawing.options, name), by))
-        self._show_option(name, getattr(hand.drawing.options, name))
+            self._set(tool, name, stepped(about, getattr(tool.drawing.options, name), by))
+        self._show_option(name, getattr(tool.drawing.options, name))
 
     def _show_option(self, name: str, value: float | None) -> None:
         text = "" if value is None else f"{value:g}"

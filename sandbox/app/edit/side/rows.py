@@ -9,8 +9,8 @@ import pygame
 
 from sandbox.app.draw.colours import ACCENT, LINE, MUTED, TEXT, Colour, mixed
 from sandbox.app.edit.side.scroll import WHEEL_STEP
-from sandbox.app.widgets.painted import Lit, Painted, wrapped
-from sandbox.app.widgets.ui import ENTER_KEYS, Ui
+from sandbox.app.widgets.painted import ENTER_KEYS, Lit, Painted, Pressable, wrapped
+from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
 LINE_HEIGHT = 17.0
@@ -201,10 +201,12 @@ class RowList(Painted):
             surface.blit(ui.font(11).render(text, True, MUTED), (left, y))
 
 
-class Picker(Lit):
+class Picker(Lit, Pressable):
     """A value that a menu of rows changes: opens below it, by a click, Enter, Space or an arrow key."""
 
     ui: Ui
+
+    press_keys = (*Pressable.press_keys, pygame.K_DOWN)
 
     def __init__(self, ui: Ui, rect: pygame.Rect, choose: Callable[[int], None], container: Any = None) -> None:
         super().__init__(ui, rect, container)
@@ -242,22 +244,7 @@ class Picker(Lit):
         pygame.draw.lines(surface, MUTED, False, chevron, 2)
         return surface
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Open on a click."""
-        pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
-        if pressed and self.hover_point(*self.ui.manager.calculate_scaled_mouse_position(event.pos)):
-            self.open()
-            return True
-        return False
-
-    def press_key(self, event: pygame.event.Event) -> bool:
-        """Open on Enter, Space or Down."""
-        if event.key in (*ENTER_KEYS, pygame.K_SPACE, pygame.K_DOWN):
-            self.open()
-            return True
-        return False
-
-    def open(self) -> None:
+    def press(self) -> None:
         """Offer the rows."""
         chosen = next((index for index, row in enumerate(self.rows) if row.text == self.shown.text), None)
 

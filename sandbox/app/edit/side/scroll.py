@@ -61,10 +61,8 @@ class ScrollBar(Painted):
 
     def process_event(self, event: pygame.event.Event) -> bool:
         """Follow the mouse; a press beside the thumb moves by a page."""
-        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self.needed:
-            x, y = self.ui.manager.calculate_scaled_mouse_position(event.pos)
-            if not self.hover_point(x, y):
-                return False
+        if self.needed and self.is_press(event):
+            y = self.ui.manager.calculate_scaled_mouse_position(event.pos)[1]
             top, height = self._thumb()
             at = y - self.rect.top
             if top <= at <= top + height:

@@ -22,7 +22,7 @@ TOP = 10.0
 GAP = 4.0
 
 
-class Page(Protocol):
+class SidePage(Protocol):
     """A page of the panel."""
 
     def refresh(self) -> None:
@@ -34,7 +34,7 @@ class Page(Protocol):
         ...
 
 
-PAGES: dict[str, tuple[str, str, Callable[[Editing, pygame.Rect, Any], Page]]] = {
+PAGES: dict[str, tuple[str, str, Callable[[Editing, pygame.Rect, Any], SidePage]]] = {
     "properties": ("Properties", "What is selected", PropertiesPage),
     "materials": ("Materials", "What springs are made of", MaterialsPage),
     "level": ("Level", "Name, maker, view, time and solver", SettingsPage),
@@ -65,7 +65,7 @@ class Side:
             self._rows.append(ui.choice(ui.rect(MARGIN, y, width, TAB), options, self.choose, self.back))
         top = TOP + len(self._rows) * (TAB + GAP) + 8
         self._place = ui.rect(MARGIN, top, width + 6, place.height / ui.scale - top - 6)
-        self.page: Page = self._made()
+        self.page: SidePage = self._made()
 
     def choose(self, tab: str) -> None:
         """Show another page."""
@@ -83,7 +83,7 @@ class Side:
     def _tab_button(self, tab: str) -> UIButton:
         return next(row.buttons[tab] for row in self._rows if tab in row.buttons)
 
-    def _made(self) -> Page:
+    def _made(self) -> SidePage:
         for row in self._rows:
             row.show(self.tab if self.tab in row.buttons else "")
         page = PAGES[self.tab][2](self._screen, self._place, self.back)

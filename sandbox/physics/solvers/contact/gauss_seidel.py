@@ -2,35 +2,36 @@
 
 Along the normal a contact is the spring of Cs and Cd below whose impulse cannot pull; across it is one that stops the
 surfaces, whose impulse is at most friction times the push (Coulomb). Both answer to the effective mass of what they
-push, 1 / (J W J^T): W of a loose particle is 1 / m, of a body that the direct solver has factored its response. What is
-kept of the last step starts the next, so that what rests is at rest from the first sweep on.
+terms, 1 / (J W J^T): W of a free particle is 1 / m, of a body that the direct solver has factored its Delassus block.
+What is kept of the last step starts the next, so that what rests is at rest from the first sweep on.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from sandbox.physics.collision.types import weight_of
+from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.equation import implicit_update
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.world import Floats, Slots
 
-# Cs / Cd of a contact that overlaps: the part of the overlap that a step removes. Higher shakes what rests, lower
+# Cs / Cd of a contact that penetrates: the part of the penetration that a step removes. Higher shakes what rests, lower
 # leaves heaps soft.
-OVERLAP_SHARE = 0.1
-# What overlaps parts at this speed [m/s] at most: a body is not thrown out of another that it was put into.
+PENETRATION_SHARE = 0.1
+# What penetrates parts at this speed [m/s] at most: a body is not thrown out of another that it was put into.
 FASTEST_PUSH = 3.0
 # 1 - Cd of a contact. 0 would leave contacts that carry the same load without a definite share; a larger value lets
 # heaps sink into each other.
-SOFTNESS = 7e-4
+CONTACT_SOFTNESS = 7e-4
 # Sweeps end where no contact changed its velocity by more [m/s].
 SETTLED = 1e-6
 
 
-class Blocks(NamedTuple):
-    """Responses of bodies: block and place in it of each particle (n,), -1: loose, it answers by its own mass.
+class Delassus(NamedTuple):
+    """Delassus delassus W of bodies: block and place in it of each particle (n,), -1: free, it answers by its own mass.
 
-    Points of block k: point[start[k]:start[k + 1]]; its response [1/kg], two rows of a square for each point, at
-    base[k] in numbers.
+    Points of block k: point[start[k]:start[k + 1]]; its numbers [1/kg], two rows of a square for each point, from
+    base[k] on. columns: scratch of one block.
     """
 
     block: Slots
@@ -39,30 +40,40 @@ class Blocks(NamedTuple):
     point: Slots
     base: Slots
     numbers: Floats
+    columns: Floats
 
 
-class Push(NamedTuple):
-    """By contact: the velocity [m/s] that it adds to its own, and its response [1/kg] along, between and across.
+class ContactTerms(NamedTuple):
+    """By contact: bias [m/s] that it adds to its velocity, and J W J^T [1/kg]: normal, coupling, tangent.
 
-    before, direction [N s] (k, 2): its impulse before a sweep, and where the sweeps so far have led.
+    before, direction [N s] (k, 2): its impulse before a sweep, and where the sweeps so far have led. There may be room
+    for more contacts.
     """
 
     bias: Floats
-    along: Floats
-    between: Floats
-    across: Floats
+    normal: Floats
+    coupling: Floats
+    tangent: Floats
     before: Floats
     direction: Floats
 
 
-def loose_blocks(particle_count: int) -> Blocks:
-    """The responses of particles that all answer by their own mass."""
+def new_terms(count: int) -> ContactTerms:
+    """Room for so many contacts."""
+    return ContactTerms(*np.zeros((4, count)), *np.zeros((2, count, 2)))
+
+
+def no_blocks(particle_count: int) -> Delassus:
+    """Of particles that all answer by their own mass."""
     none = np.zeros(0, dtype=np.int64)
-    return Blocks(np.full(particle_count, -1, dtype=np.int64), none, np.zeros(1, np.int64), none, none, np.zeros(0))
+    numbers = np.zeros(0)
+    return Delassus(
+        np.full(particle_count, -1, dtype=np.int64), none, np.zeros(1, np.int64), none, none, numbers, numbers
+    )
 
 
 @inner_kernel
-def relative_velocity(contacts, c, velocity, change):  # type: ignore[no-untyped-def]
+def relative_velocity(contacts: Contacts, c: int, velocity: Floats, change: Floats) -> tuple[float, float]:
     """Velocity of the particle against what it touches, from velocity + change."""
     p = contacts.particle[c]
     ux = velocity[p, 0] + change[p, 0]
@@ -80,178 +91,185 @@ def relative_velocity(contacts, c, velocity, change):  # type: ignore[no-untyped
 
 
 @inner_kernel
-def _push_particle(p, jx, jy, change, inverse_mass, blocks):  # type: ignore[no-untyped-def]
+def _push_particle(p: int, jx: float, jy: float, change: Floats, inverse_mass: Floats, delassus: Delassus) -> None:
     # v += W J
-    k = blocks.block[p]
+    k = delassus.block[p]
     if k < 0:
         change[p, 0] += jx * inverse_mass[p]
         change[p, 1] += jy * inverse_mass[p]
         return
-    first = blocks.start[k]
-    points = blocks.start[k + 1] - first
-    row = blocks.base[k] + blocks.place[p] * 4 * points
+    first = delassus.start[k]
+    points = delassus.start[k + 1] - first
+    row = delassus.base[k] + delassus.place[p] * 4 * points
     lower = row + 2 * points
     for i in range(points):
-        q = blocks.point[first + i]
+        q = delassus.point[first + i]
         j = 2 * i
-        change[q, 0] += blocks.numbers[row + j] * jx + blocks.numbers[lower + j] * jy
-        change[q, 1] += blocks.numbers[row + j + 1] * jx + blocks.numbers[lower + j + 1] * jy
+        change[q, 0] += delassus.numbers[row + j] * jx + delassus.numbers[lower + j] * jy
+        change[q, 1] += delassus.numbers[row + j + 1] * jx + delassus.numbers[lower + j + 1] * jy
 
 
 @inner_kernel
-def _apply(contacts, c, jn, jt, change, inverse_mass, blocks):  # type: ignore[no-untyped-def]
+def _apply(
+    contacts: Contacts, c: int, jn: float, jt: float, change: Floats, inverse_mass: Floats, delassus: Delassus
+) -> None:
+    # v += W J of the impulses along normal and tangent.
     nx = contacts.normal[c, 0]
     ny = contacts.normal[c, 1]
     jx = jn * nx - jt * ny
     jy = jn * ny + jt * nx
-    _push_particle(contacts.particle[c], jx, jy, change, inverse_mass, blocks)
+    _push_particle(contacts.particle[c], jx, jy, change, inverse_mass, delassus)
     a = contacts.end_a[c]
     if a >= 0:
         b = contacts.end_b[c]
         share = contacts.share[c] if b >= 0 else 0.0
-        _push_particle(a, -(1.0 - share) * jx, -(1.0 - share) * jy, change, inverse_mass, blocks)
+        _push_particle(a, -(1.0 - share) * jx, -(1.0 - share) * jy, change, inverse_mass, delassus)
         if b >= 0:
-            _push_particle(b, -share * jx, -share * jy, change, inverse_mass, blocks)
+            _push_particle(b, -share * jx, -share * jy, change, inverse_mass, delassus)
 
 
 @inner_kernel
-def _response(p, q, inverse_mass, blocks):  # type: ignore[no-untyped-def]
+def _response(p: int, q: int, inverse_mass: Floats, delassus: Delassus) -> tuple[float, float, float, float]:
     # The block xx, xy, yx, yy of W between two particles.
     if p < 0 or q < 0 or inverse_mass[p] == 0.0 or inverse_mass[q] == 0.0:
         return 0.0, 0.0, 0.0, 0.0
-    k = blocks.block[p]
+    k = delassus.block[p]
     if k < 0:
         w = inverse_mass[p] if p == q else 0.0
         return w, 0.0, 0.0, w
-    if blocks.block[q] != k:
+    if delassus.block[q] != k:
         return 0.0, 0.0, 0.0, 0.0
-    points = blocks.start[k + 1] - blocks.start[k]
-    at = blocks.base[k] + blocks.place[p] * 4 * points + 2 * blocks.place[q]
+    points = delassus.start[k + 1] - delassus.start[k]
+    at = delassus.base[k] + delassus.place[p] * 4 * points + 2 * delassus.place[q]
     below = at + 2 * points
-    return blocks.numbers[at], blocks.numbers[at + 1], blocks.numbers[below], blocks.numbers[below + 1]
+    return delassus.numbers[at], delassus.numbers[at + 1], delassus.numbers[below], delassus.numbers[below + 1]
 
 
 @inner_kernel
-def load_responses(contacts, push, inverse_mass, blocks):  # type: ignore[no-untyped-def]
-    """Response of every contact: J W J^T along, between and across."""
+def load_responses(contacts: Contacts, terms: ContactTerms, inverse_mass: Floats, delassus: Delassus) -> None:
+    """J W J^T of every contact: along its normal, between that and its tangent, and along the tangent."""
     for c in range(contacts.particle.shape[0]):
         nx = contacts.normal[c, 0]
         ny = contacts.normal[c, 1]
-        along = 0.0
-        between = 0.0
-        across = 0.0
+        normal = 0.0
+        coupling = 0.0
+        tangent = 0.0
         for end in range(3):
             p, weight = weight_of(contacts, c, end)
             for other in range(3):
                 q, share = weight_of(contacts, c, other)
-                xx, xy, yx, yy = _response(p, q, inverse_mass, blocks)
+                xx, xy, yx, yy = _response(p, q, inverse_mass, delassus)
                 both = weight * share
                 ax = both * (xx * nx + xy * ny)
                 ay = both * (yx * nx + yy * ny)
-                along += nx * ax + ny * ay
-                between += nx * ay - ny * ax
-                across += both * (nx * (yy * nx - yx * ny) - ny * (xy * nx - xx * ny))
-        push.along[c] = along
-        push.between[c] = between
-        push.across[c] = across
-
-
-@kernel
-def load_biases(contacts, push, h):  # type: ignore[no-untyped-def]
-    """What each contact adds to its velocity: its gap, its overlap or its bounce."""
-    for c in range(contacts.particle.shape[0]):
-        gap = contacts.gap[c]
-        push.bias[c] = gap / h if gap >= 0.0 else max(OVERLAP_SHARE * gap / h, -FASTEST_PUSH)
-        if contacts.bounce[c] >= 0.0:
-            push.bias[c] = -contacts.bounce[c]
+                normal += nx * ax + ny * ay
+                coupling += nx * ay - ny * ax
+                tangent += both * (nx * (yy * nx - yx * ny) - ny * (xy * nx - xx * ny))
+        terms.normal[c] = normal
+        terms.coupling[c] = coupling
+        terms.tangent[c] = tangent
 
 
 @inner_kernel
-def start_impulses(contacts, change, inverse_mass, blocks):  # type: ignore[no-untyped-def]
+def load_biases(contacts: Contacts, terms: ContactTerms, h: float) -> None:
+    """What each contact adds to its velocity, its gap, its penetration or its bounce; sweeps have led nowhere yet."""
+    for c in range(contacts.particle.shape[0]):
+        terms.direction[c, 0] = 0.0
+        terms.direction[c, 1] = 0.0
+        gap = contacts.gap[c]
+        terms.bias[c] = gap / h if gap >= 0.0 else max(PENETRATION_SHARE * gap / h, -FASTEST_PUSH)
+        if contacts.bounce[c] >= 0.0:
+            terms.bias[c] = -contacts.bounce[c]
+
+
+@inner_kernel
+def start_impulses(contacts: Contacts, change: Floats, inverse_mass: Floats, delassus: Delassus) -> None:
     """Apply the impulses that contacts bring along."""
     for c in range(contacts.particle.shape[0]):
         if contacts.impulse[c, 0] != 0.0 or contacts.impulse[c, 1] != 0.0:
-            _apply(contacts, c, contacts.impulse[c, 0], contacts.impulse[c, 1], change, inverse_mass, blocks)
+            _apply(contacts, c, contacts.impulse[c, 0], contacts.impulse[c, 1], change, inverse_mass, delassus)
 
 
 @inner_kernel
-def sweep(contacts, push, velocity, change, inverse_mass, blocks):  # type: ignore[no-untyped-def]
+def sweep(
+    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, delassus: Delassus
+) -> float:
     """One sweep over all contacts; the largest change of a contact's velocity [m/s]."""
     # J = max(0, J - (u + b + J / K) / (W + 1 / K)), 1 / K = W (1 - Cd) / Cd;  |J_t| <= friction J
     largest = 0.0
     for c in range(contacts.particle.shape[0]):
-        along = push.along[c]
-        if not along > 0.0:
+        normal = terms.normal[c]
+        if not normal > 0.0:
             continue
         ux, uy = relative_velocity(contacts, c, velocity, change)
         nx = contacts.normal[c, 0]
         ny = contacts.normal[c, 1]
-        soft = SOFTNESS * along
+        soft = CONTACT_SOFTNESS * normal
         old = contacts.impulse[c, 0]
-        new = max(0.0, old - (nx * ux + ny * uy + push.bias[c] + soft * old) / (along + soft))
+        new = max(0.0, implicit_update(old, nx * ux + ny * uy + terms.bias[c], normal, soft))
         jn = new - old
         contacts.impulse[c, 0] = new
         jt = 0.0
-        if push.across[c] > 0.0:
-            slip = nx * uy - ny * ux + push.between[c] * jn
+        if terms.tangent[c] > 0.0:
+            slip = nx * uy - ny * ux + terms.coupling[c] * jn
             most = contacts.friction[c] * new
             held = contacts.impulse[c, 1]
-            jt = min(most, max(-most, held - slip / push.across[c])) - held
+            jt = min(most, max(-most, held - slip / terms.tangent[c])) - held
             contacts.impulse[c, 1] = held + jt
         if jn != 0.0 or jt != 0.0:
-            _apply(contacts, c, jn, jt, change, inverse_mass, blocks)
-            largest = max(largest, max(abs(jn) * along, abs(jt) * push.across[c]))
+            _apply(contacts, c, jn, jt, change, inverse_mass, delassus)
+            largest = max(largest, max(abs(jn) * normal, abs(jt) * terms.tangent[c]))
     return largest
 
 
 @inner_kernel
-def solve_contacts(contacts, push, velocity, change, inverse_mass, blocks, sweeps, hasten):  # type: ignore[no-untyped-def]
+def solve_contacts(
+    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, delassus: Delassus,
+    sweeps: int, hasten: bool,
+) -> None:  # fmt: skip
     """Sweep until nothing changes, at most so many times; hasten: each goes on in the direction of those before it."""
     # Nonlinear conjugate gradients on the sweep as a fixed point (Silcowitz-Poulsen and others 2010).
-    start_impulses(contacts, change, inverse_mass, blocks)
+    start_impulses(contacts, change, inverse_mass, delassus)
     previous = 0.0
     for k in range(sweeps):
         for c in range(contacts.particle.shape[0]):
-            push.before[c, 0] = contacts.impulse[c, 0]
-            push.before[c, 1] = contacts.impulse[c, 1]
-        if sweep(contacts, push, velocity, change, inverse_mass, blocks) < SETTLED or k == sweeps - 1:
+            terms.before[c, 0] = contacts.impulse[c, 0]
+            terms.before[c, 1] = contacts.impulse[c, 1]
+        if sweep(contacts, terms, velocity, change, inverse_mass, delassus) < SETTLED or k == sweeps - 1:
             break
         squared = 0.0
         for c in range(contacts.particle.shape[0]):
-            jn = contacts.impulse[c, 0] - push.before[c, 0]
-            jt = contacts.impulse[c, 1] - push.before[c, 1]
-            squared += push.along[c] * jn * jn + push.across[c] * jt * jt
+            jn = contacts.impulse[c, 0] - terms.before[c, 0]
+            jt = contacts.impulse[c, 1] - terms.before[c, 1]
+            squared += terms.normal[c] * jn * jn + terms.tangent[c] * jt * jt
         ratio = squared / previous if hasten and previous > 0.0 else 0.0
-        _go_on(contacts, push, change, inverse_mass, blocks, ratio if ratio < 1.0 else 0.0)
+        _go_on(contacts, terms, change, inverse_mass, delassus, ratio if ratio < 1.0 else 0.0)
         previous = squared
 
 
 @inner_kernel
-def _go_on(contacts, push, change, inverse_mass, blocks, ratio):  # type: ignore[no-untyped-def]
+def _go_on(
+    contacts: Contacts, terms: ContactTerms, change: Floats, inverse_mass: Floats, delassus: Delassus, ratio: float
+) -> None:
     # J += ratio p, clamped;  p = ratio p + what the sweep has changed.
     for c in range(contacts.particle.shape[0]):
         old_n = contacts.impulse[c, 0]
         old_t = contacts.impulse[c, 1]
-        more_n = ratio * push.direction[c, 0]
-        more_t = ratio * push.direction[c, 1]
-        push.direction[c, 0] = more_n + (old_n - push.before[c, 0])
-        push.direction[c, 1] = more_t + (old_t - push.before[c, 1])
+        more_n = ratio * terms.direction[c, 0]
+        more_t = ratio * terms.direction[c, 1]
+        terms.direction[c, 0] = more_n + (old_n - terms.before[c, 0])
+        terms.direction[c, 1] = more_t + (old_t - terms.before[c, 1])
         new_n = max(0.0, old_n + more_n)
         most = contacts.friction[c] * new_n
         new_t = min(most, max(-most, old_t + more_t))
         if new_n != old_n or new_t != old_t:
             contacts.impulse[c, 0] = new_n
             contacts.impulse[c, 1] = new_t
-            _apply(contacts, c, new_n - old_n, new_t - old_t, change, inverse_mass, blocks)
-
-
-def new_push(count: int) -> Push:
-    """What so many contacts need for a step."""
-    return Push(*np.zeros((4, count)), *np.zeros((2, count, 2)))
+            _apply(contacts, c, new_n - old_n, new_t - old_t, change, inverse_mass, delassus)
 
 
 @inner_kernel
-def add_change(velocity, change, inverse_mass):  # type: ignore[no-untyped-def]
+def add_change(velocity: Floats, change: Floats, inverse_mass: Floats) -> None:
     """Add what a step changes to the velocities of particles that can move."""
     for p in range(inverse_mass.shape[0]):
         if inverse_mass[p] > 0.0:
@@ -260,8 +278,12 @@ def add_change(velocity, change, inverse_mass):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def sweep_masses(contacts, push, velocity, change, inverse_mass, blocks, sweeps):  # type: ignore[no-untyped-def]
+def sweep_masses(
+    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, delassus: Delassus,
+    sweeps: int, h: float,
+) -> None:  # fmt: skip
     """Solve contacts of particles that answer by their own mass, and bring the velocities to the end of the step."""
-    load_responses(contacts, push, inverse_mass, blocks)
-    solve_contacts(contacts, push, velocity, change, inverse_mass, blocks, sweeps, True)
+    load_biases(contacts, terms, h)
+    load_responses(contacts, terms, inverse_mass, delassus)
+    solve_contacts(contacts, terms, velocity, change, inverse_mass, delassus, sweeps, True)
     add_change(velocity, change, inverse_mass)

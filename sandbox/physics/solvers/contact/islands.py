@@ -1,61 +1,131 @@
-"""Contact islands: which bodies and loose particles contacts touch, and which of them touch each other."""
+"""Contact islands: which bodies and free particles contacts touch, and which of them touch each other."""
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sandbox.physics.collision.types import Contacts, weight_of
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.solvers.contact.gauss_seidel import Blocks
-from sandbox.physics.solvers.direct.system import Pattern
-from sandbox.physics.world import Floats, Slots, World
+from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
+from sandbox.physics.solvers.contact.gauss_seidel import ContactTerms, Delassus, new_terms
+from sandbox.physics.solvers.direct.system import Flags, System
+from sandbox.physics.world import Floats, Slots
+
+# Places in `counts`: bodies that contacts touch, members (those and free particles), islands, and the room that the
+# Delassus blocks of the bodies want: for their numbers, and for the columns of the largest.
+BODIES, MEMBERS, ISLANDS, NUMBERS, COLUMNS = range(5)
+# Room beyond what is wanted, in shares of it: a pile grows for a while.
+SPARE = 2
 
 
-class Touching(NamedTuple):
-    """The bodies and the loose particles that something touches, in this order a cluster's members; and scratch.
+class BodyIslands(NamedTuple):
+    """The bodies and the free particles that contacts touch, in this order the members of islands; and scratch.
 
-    By member: cluster, before, held, after, limit [J], fresh = its bank is begun in this step; member: of each particle
-    (n,), -1: none; row likewise. By body: misfit; due: to be solved again; bouncy, spread: of its springs and elements;
-    tangled, aimed: see shape_matching.py. By cluster: total, allowed [J], fails. By row: free, pushed [m/s]. By
-    particle: given, change [m/s]: velocities without contacts, and what those add.
+    There is room for all bodies and particles; counts (5,) says how many there are. body: their numbers; free: slots of
+    particles. By member: island, before, held, after, limit [J], fresh: its energy bank is begun in this step. By
+    particle (n,): member, -1: none, row in the matrix, -1: none; given, change [m/s]: velocities without contacts, and
+    what those add. By touched body: misfit; due: to be solved again. By island: total, allowed [J], fails. By row:
+    unpushed [m/s] = velocities without contacts, pushed [m/s] = what contacts add. label, marked: scratch.
     """
 
+    counts: Slots
     body: Slots
-    loose: Slots
-    cluster: Slots
+    free: Slots
+    island: Slots
     member: Slots
     row: Slots
     before: Floats
     held: Floats
     after: Floats
     limit: Floats
-    fresh: NDArray[np.bool_]
+    fresh: Flags
     misfit: Floats
-    due: NDArray[np.bool_]
-    bouncy: NDArray[np.bool_]
-    spread: NDArray[np.bool_]
-    tangled: NDArray[np.bool_]
-    aimed: NDArray[np.bool_]
+    due: Flags
     total: Floats
     allowed: Floats
-    fails: NDArray[np.bool_]
-    free: Floats
+    fails: Flags
+    unpushed: Floats
     pushed: Floats
     given: Floats
     change: Floats
+    label: Slots
+    marked: Flags
+
+
+class Touch(NamedTuple):
+    """Islands of bodies with what solves their contacts, as kernels take them."""
+
+    islands: BodyIslands
+    delassus: Delassus
+    terms: ContactTerms
+
+
+@dataclass(eq=False)
+class IslandRoom:
+    """The scratch of a world's islands: made when its topology changes, with more room where a step wants it.
+
+    lent: the same as one argument for kernels.
+    """
+
+    touch: Touch
+    lent: Any
+
+    def fit(self, contacts: Contacts) -> None:
+        """Make room for what the islands want that were found, and for their contacts."""
+        islands, delassus, terms = self.touch
+        numbers, columns = int(islands.counts[NUMBERS]), int(islands.counts[COLUMNS])
+        if (
+            numbers <= len(delassus.numbers)
+            and columns <= len(delassus.columns)
+            and len(contacts.particle) <= len(terms.bias)
+        ):
+            return
+        if numbers > len(delassus.numbers):
+            delassus = delassus._replace(numbers=np.zeros(SPARE * numbers))
+        if columns > len(delassus.columns):
+            delassus = delassus._replace(columns=np.zeros(SPARE * columns))
+        if len(contacts.particle) > len(terms.bias):
+            terms = new_terms(SPARE * len(contacts.particle))
+        self.touch = Touch(islands, delassus, terms)
+        self.lent = bundle((self.touch,))
+
+
+def new_islands(system: System, particle_count: int) -> IslandRoom:
+    """Room for the islands of a system in a world of so many particles."""
+    bodies, free_rows = len(system.bodies.lowest), len(system.matrix.diagonal)
+    members = bodies + particle_count
+    row = np.full(particle_count, -1, dtype=np.int64)
+    row[system.rows.particle[:free_rows]] = np.arange(free_rows)
+    slots, energies = np.zeros((2, members), dtype=np.int64), np.zeros((6, members))
+    islands = BodyIslands(
+        counts=np.zeros(5, dtype=np.int64), body=np.zeros(bodies, dtype=np.int64),
+        free=np.zeros(particle_count, dtype=np.int64), island=slots[0],
+        member=np.full(particle_count, -1, dtype=np.int64), row=row, before=energies[0], held=energies[1],
+        after=energies[2], limit=energies[3], fresh=np.zeros(members, dtype=np.bool_), misfit=np.zeros(bodies),
+        due=np.zeros(bodies, dtype=np.bool_), total=energies[4], allowed=energies[5],
+        fails=np.zeros(members, dtype=np.bool_), unpushed=np.zeros((free_rows, 2)), pushed=np.zeros((free_rows, 2)),
+        given=np.zeros((particle_count, 2)), change=np.zeros((particle_count, 2)), label=slots[1],
+        marked=np.zeros(particle_count, dtype=np.bool_),
+    )  # fmt: skip
+    block, place = np.full((2, particle_count), -1, dtype=np.int64)
+    delassus = Delassus(
+        block, place, np.zeros(bodies + 1, dtype=np.int64),
+        np.zeros(free_rows, dtype=np.int64), np.zeros(bodies + 1, dtype=np.int64), np.zeros(0), np.zeros(0),
+    )  # fmt: skip
+    touch = Touch(islands, delassus, new_terms(0))
+    return IslandRoom(touch, bundle((touch,)))
 
 
 @inner_kernel
-def _root(label, node):  # type: ignore[no-untyped-def]
+def _root(label: Slots, node: int) -> int:
     while label[node] != node:
         label[node] = label[label[node]]
         node = label[node]
     return node
 
 
-@kernel
-def _join(contacts, block, inverse_mass, label):  # type: ignore[no-untyped-def]
+@inner_kernel
+def _join_nodes(contacts: Contacts, block: Slots, inverse_mass: Floats, label: Slots, nodes: int) -> None:
     # Label the nodes that touch each other alike: particles (n,), then blocks; what cannot move joins nothing.
     count = block.shape[0]
     for c in range(contacts.particle.shape[0]):
@@ -72,44 +142,101 @@ def _join(contacts, block, inverse_mass, label):  # type: ignore[no-untyped-def]
                 first = node
             else:
                 label[node] = first
-    for node in range(label.shape[0]):
+    for node in range(nodes):
         label[node] = _root(label, node)
 
 
-def find_touching(world: World, pattern: Pattern, contacts: Contacts) -> tuple[Touching, Blocks]:
-    """What contacts touch, and the room for the responses of bodies."""
-    rows, bodies, count = pattern.rows, pattern.bodies, world.particle_count
-    free_count = int(bodies.row_start[-1])
-    row = np.full(count, -1, dtype=np.int64)
-    row[rows.particle[:free_count]] = np.arange(free_count)
-    ends = np.concatenate([contacts.particle, contacts.end_a, contacts.end_b])
-    ends = np.unique(ends[ends >= 0])
-    ends = ends[world.inverse_mass[ends] > 0.0]
-    points = np.sort(row[ends[row[ends] >= 0]])
-    loose = ends[row[ends] < 0]
-    body_of_point = np.searchsorted(bodies.row_start, points, side="right") - 1
-    body, first, sizes = np.unique(body_of_point, return_index=True, return_counts=True)
-    block, place = np.full((2, count), -1, dtype=np.int64)
-    particles = rows.particle[points]
-    block[particles] = np.repeat(np.arange(len(body)), sizes)
-    place[particles] = np.arange(len(points)) - np.repeat(first, sizes)
-    base = np.append(0, np.cumsum(4 * sizes * sizes)).astype(np.int64)
-    blocks = Blocks(block, place, np.append(first, len(points)), particles, base, np.zeros(base[-1]))
-    label = np.arange(count + len(body))
-    _join(contacts, block, world.inverse_mass, label)
-    _, cluster = np.unique(label[np.append(count + np.arange(len(body)), loose)], return_inverse=True)
-    clusters = int(cluster.max()) + 1 if len(cluster) else 0
-    size = len(body)
-    member = block.copy()
-    member[loose] = size + np.arange(len(loose))
-    members = size + len(loose)
-    flags, sums = np.zeros((5, size), dtype=np.bool_), np.zeros((2, clusters))
-    energies, vectors = np.zeros((4, members)), np.zeros((2, free_count, 2))
-    touching = Touching._make(
-        [
-            body, loose, cluster.astype(np.int64), member, row, *energies, np.zeros(members, dtype=np.bool_),
-            np.zeros(size), *flags, *sums, np.zeros(clusters, dtype=np.bool_), *vectors, world.velocity.copy(),
-            np.zeros((count, 2)),
-        ]
-    )  # fmt: skip
-    return touching, blocks
+@inner_kernel
+def _find_members(contacts: Contacts, system: System, inverse_mass: Floats, touch: Touch) -> None:
+    # The bodies that contacts touch, with their points by row, and the free particles by slot.
+    islands, delassus, bodies, rows = touch.islands, touch.delassus, system.bodies, system.rows
+    for p in range(islands.member.shape[0]):
+        islands.marked[p] = False
+        islands.member[p] = -1
+        delassus.block[p] = -1
+        delassus.place[p] = -1
+    for body in range(bodies.touched.shape[0]):
+        bodies.touched[body] = False
+    for c in range(contacts.particle.shape[0]):
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p >= 0 and inverse_mass[p] > 0.0:
+                islands.marked[p] = True
+    count = 0
+    points = 0
+    for body in range(bodies.touched.shape[0]):
+        for r in range(bodies.row_start[body], bodies.row_start[body + 1]):
+            p = rows.particle[r]
+            if not islands.marked[p]:
+                continue
+            if not bodies.touched[body]:
+                bodies.touched[body] = True
+                islands.body[count] = body
+                delassus.start[count] = points
+                count += 1
+            delassus.block[p] = count - 1
+            delassus.place[p] = points - delassus.start[count - 1]
+            delassus.point[points] = p
+            islands.member[p] = count - 1
+            points += 1
+    delassus.start[count] = points
+    islands.counts[BODIES] = count
+    members = count
+    for p in range(islands.member.shape[0]):
+        if islands.marked[p] and islands.row[p] < 0:
+            islands.free[members - count] = p
+            islands.member[p] = members
+            members += 1
+    islands.counts[MEMBERS] = members
+
+
+@inner_kernel
+def _number_islands(contacts: Contacts, inverse_mass: Floats, touch: Touch) -> None:
+    # The island of each member, in the order of their first ones.
+    islands, delassus = touch.islands, touch.delassus
+    particles = islands.member.shape[0]
+    bodies = islands.counts[BODIES]
+    for node in range(particles + bodies):
+        islands.label[node] = node
+    _join_nodes(contacts, delassus.block, inverse_mass, islands.label, particles + bodies)
+    count = 0
+    for k in range(islands.counts[MEMBERS]):
+        islands.island[k] = islands.label[particles + k if k < bodies else islands.free[k - bodies]]
+    for node in range(particles + bodies):
+        islands.label[node] = 0
+    for k in range(islands.counts[MEMBERS]):
+        label = islands.island[k]
+        if islands.label[label] == 0:
+            islands.label[label] = count + 1
+            count += 1
+        islands.island[k] = islands.label[label] - 1
+    islands.counts[ISLANDS] = count
+
+
+@inner_kernel
+def _find_room(system: System, touch: Touch) -> None:
+    # Where the Delassus blocks of the bodies begin, and what room they want.
+    islands, delassus, bodies = touch.islands, touch.delassus, system.bodies
+    base = 0
+    columns = 0
+    for k in range(islands.counts[BODIES]):
+        points = delassus.start[k + 1] - delassus.start[k]
+        first_row = bodies.row_start[islands.body[k]]
+        delassus.base[k] = base
+        base += 4 * points * points
+        if system.matrix.fronts.of_row[first_row] < 0:
+            columns = max(columns, 4 * points * (bodies.row_start[islands.body[k] + 1] - first_row))
+    delassus.base[islands.counts[BODIES]] = base
+    islands.counts[NUMBERS] = base
+    islands.counts[COLUMNS] = columns
+
+
+@kernel
+def find_body_islands(contacts: Contacts, lent_state: Any, lent_system: Any, lent_room: Any) -> None:
+    """Find the bodies and free particles that contacts touch, their islands, and the room that they want."""
+    (state,) = contents(lent_state)
+    (system,) = contents(lent_system)
+    (touch,) = contents(lent_room)
+    _find_members(contacts, system, state.inverse_mass, touch)
+    _number_islands(contacts, state.inverse_mass, touch)
+    _find_room(system, touch)

@@ -1,98 +1,102 @@
-"""One body's springs as one linear system, and the energies that decide whether its solution is taken.
+"""One body's springs in its linear system, and in the energies that decide whether its solution is taken.
 
-For 0 < Cd < 1 the article's impulse (Nissen 2019) is, for one spring, identical to
-
-    J = -K (u' + beta x / h),   K = m_r Cd / (1 - Cd) [kg],   beta = Cs / Cd
-
-with u' the velocity error AFTER the step, which is the minimum over v' of
+The implicit form of the article's impulse (equation.py; Nissen 2019) is, for all springs of a body together, the
+minimum over v' of
 
     f(v') = 1/2 |v' - v*|^2_M + sum over springs of [K (x' - x)^2 + K beta (x'^2 - (x' - x)^2)] / (2 h^2)
 
-v* = the velocities after gravity, x' = |d + h (v'_b - v'_a)| - L. Here K is `along`, K beta (which needs no division
-by Cd) is `pull`, v* is `target`, v' is `trial`; the directions, rows of the Jacobian, are `normal`, and the geometric
-stiffness across them is `across`. A spring of Cs > Cd is underdamped, in code bouncy.
+v* = the velocities after gravity, x' = |d + h (v'_b - v'_a)| - L. Here K is `stiff`, K beta is `restoring`, v* is
+`target`, v' is `trial`. The Jacobian of a spring's length is its direction n, at its ends with opposite signs.
 """
 
 import math
 
-from sandbox.physics.equation import SHORTEST, direction, reduced_mass
-from sandbox.physics.jit import inner_kernel, scalar_kernel
-from sandbox.physics.solvers.direct.constraint_terms import (
-    assemble_shapes,
-    correct_wide,
+from sandbox.physics.equation import (
+    SHORTEST,
+    capped,
+    direction,
+    highest_coefficient,
+    implicit_impulse,
     implicit_masses,
-    push_shapes,
-    solve_again,
-    take_in_wide,
+    reduced_mass,
 )
-from sandbox.physics.solvers.linear.fronts import add_block, clear_fronts
-from sandbox.physics.solvers.linear.parallel import solve_fronts
-from sandbox.physics.solvers.linear.sparse_ldl import back_substitute, factorise
+from sandbox.physics.jit import inner_kernel, scalar_kernel
+from sandbox.physics.solvers.direct.energy_norm import load_range
+from sandbox.physics.solvers.direct.system import Inputs, Span, State, System
+from sandbox.physics.solvers.linear.fronts import add_block
+from sandbox.physics.world import Floats
 
 # A linear solve is refined once where impulses that cancel are this many times those that are left: a violent step. A
 # higher bound loses the digits of one spring's step at Cd near 1, a lower one costs time on every step.
 CANCELLATION = 300.0
-# Refined only where lengths miss what was foreseen by no more than this share: what turns has larger errors than those
+# Refined only where lengths miss what was predicted by no more than this share: what turns has larger errors than those
 # of rounding. Higher costs swinging ropes a tenth of their time, 0 loses one spring's digits.
 ROUNDING_MISFIT = 1e-10
 
 
 @inner_kernel
-def load_springs(  # type: ignore[no-untyped-def]
-    first, last, body_mass, inverse_mass, rest_length, stiffness, damping, material, tension, rows, springs, least,
-    most, parts, h, free_count,
-):  # fmt: skip
-    """Bring the springs first..last into their scratch; whether any has Cs > Cd, and any a measure that spreads.
+def load_springs(
+    span: Span, system: System, state: State, inputs: Inputs, body_mass: float, parts: int, h: float
+) -> tuple[bool, bool, float]:
+    """Bring the springs of a body into their scratch; whether any has Cs > Cd, and any a norm that has a range.
 
-    Also their energy [J] once pinned particles have moved. parts: 0, or those of a tick that chooses them, with the
-    measures least and most of each spring (energy_norm.py).
+    Also their energy [J] once pinned particles have moved. parts: 0, or those of a tick that chooses them.
     """
-    bouncy = False
-    spread = False
+    rows, springs = system.rows, system.springs
+    free_count = system.matrix.diagonal.shape[0]
+    highest = highest_coefficient(parts)
+    underdamped = False
+    ranged = False
     moved = 0.0
-    for k in range(first, last):
+    for k in range(span.first_spring, span.last_spring):
         s = springs.slot[k]
         a = springs.row_a[k]
         b = springs.row_b[k]
         # A hand's spring pulls at the whole body, so that a heavy rope lifts as readily as a light one.
-        if material[s] == -1:
-            mass = body_mass
-        else:
-            mass = reduced_mass(inverse_mass[rows.particle[a]], inverse_mass[rows.particle[b]])
-        along, pull = implicit_masses(stiffness[s], damping[s], mass)
-        springs.along[k] = along
-        springs.pull[k] = pull
-        if pull > along:
-            bouncy = True
-        springs.measured[k] = pull
+        mass = body_mass if state.material[s] == -1 else reduced_mass(rows.inverse_mass[a], rows.inverse_mass[b])
+        stiffness = inputs.stiffness[s]
+        damping = inputs.damping[s]
+        if parts > 1:
+            stiffness, damping = capped(stiffness, damping, highest)
+        stiff, restoring = implicit_masses(stiffness, damping, mass)
+        springs.stiff[k] = stiff
+        springs.restoring[k] = restoring
+        if restoring > stiff:
+            underdamped = True
+        springs.norm[k] = restoring
         if parts > 0:
-            springs.measured[k] = mass * least[s] / (parts * parts)
-            springs.hidden[k] = mass * (most[s] - least[s]) / (parts * parts)
-            if most[s] > least[s]:
-                spread = True
+            load_range(k, springs, state.stiffness[s], state.damping[s])
+            springs.norm[k] = mass * springs.least[k] / (parts * parts)
+            springs.norm_excess[k] = mass * (springs.most[k] - springs.least[k]) / (parts * parts)
+            if springs.most[k] > springs.least[k]:
+                ranged = True
+        rest = state.rest_length[s]
+        springs.rest[k] = rest
+        springs.start_rest[k] = inputs.start_length[s]
         dx = rows.position[b, 0] - rows.position[a, 0]
         dy = rows.position[b, 1] - rows.position[a, 1]
         length = math.sqrt(dx * dx + dy * dy)
         springs.length[k] = length
-        springs.error[k] = length - rest_length[s]
-        springs.tension[k] = tension[s]
+        springs.error[k] = length - rest
+        springs.tension[k] = state.tension[s]
         if a >= free_count or b >= free_count:
             dx = rows.moved[b, 0] - rows.moved[a, 0]
             dy = rows.moved[b, 1] - rows.moved[a, 1]
             length = math.sqrt(dx * dx + dy * dy)
-        error = (length - rest_length[s]) / h
-        moved += 0.5 * springs.measured[k] * error * error
-    return bouncy, spread, moved
+        error = (length - rest) / h
+        moved += 0.5 * springs.norm[k] * error * error
+    return underdamped, ranged, moved
 
 
 @inner_kernel
-def linearise(first, last, rows, springs, h, ahead, behind):  # type: ignore[no-untyped-def]
-    """Directions, transverse masses and impulses of the springs first..last for one linear solve about `trial`.
+def linearise_springs(span: Span, system: System, h: float, ahead: float, behind: float) -> None:
+    """Directions, geometric stiffness and impulses of a body's springs for one linear solve about `trial`.
 
-    Directions are those at x + h (ahead v' - behind s). behind = 0 is Newton's method on f; else the transverse mass
-    comes from the springs' `tension` [N s], and never exceeds K.
+    Directions are those at x + h (ahead v' - behind s). behind = 0 is Newton's method on f; else the geometric
+    stiffness comes from the springs' `tension` [N s], and never exceeds K.
     """
-    for k in range(first, last):
+    rows, springs = system.rows, system.springs
+    for k in range(span.first_spring, span.last_spring):
         a = springs.row_a[k]
         b = springs.row_b[k]
         dx = rows.position[b, 0] - rows.position[a, 0]
@@ -111,24 +115,23 @@ def linearise(first, last, rows, springs, h, ahead, behind):  # type: ignore[no-
         nx, ny, length = direction(px, py, ux, uy)
         springs.normal[k, 0] = nx
         springs.normal[k, 1] = ny
-        along = springs.along[k]
-        # J = -(K (x' - x) / h + K beta x / h)
-        impulse = -(along * growth + springs.pull[k] * springs.error[k] / h)
+        stiff = springs.stiff[k]
+        impulse = implicit_impulse(stiff, springs.restoring[k], growth, springs.error[k], h)
         springs.impulse[k] = impulse
-        springs.foreseen[k] = springs.error[k] + h * growth
-        springs.sideways[k] = 0.0
+        springs.predicted[k] = springs.error[k] + h * growth
+        springs.tangential[k] = 0.0
         pulled = springs.tension[k]
         if behind == 0.0:
             pulled = max(0.0, -impulse)
         # h T / l, with T the impulse by which the spring pulls
-        across = ahead * h * pulled / length if length > SHORTEST else along
-        if behind > 0.0 and not across < along:
-            across = along
-        springs.across[k] = across
+        transverse = ahead * h * pulled / length if length > SHORTEST else stiff
+        if behind > 0.0 and not transverse < stiff:
+            transverse = stiff
+        springs.transverse[k] = transverse
 
 
-@inner_kernel
-def _growth(dx, dy, ux, uy, length, h):  # type: ignore[no-untyped-def]
+@scalar_kernel
+def _growth(dx: float, dy: float, ux: float, uy: float, length: float, h: float) -> float:
     # (l' - l) / h = (2 d.u + h u.u) / (l' + l), which does not cancel
     ex = dx + h * ux
     ey = dy + h * uy
@@ -139,48 +142,19 @@ def _growth(dx, dy, ux, uy, length, h):  # type: ignore[no-untyped-def]
 
 
 @scalar_kernel
-def _block(nx, ny, along, across):  # type: ignore[no-untyped-def]
+def _block(nx: float, ny: float, stiff: float, transverse: float) -> tuple[float, float, float]:
     # K n n^T + g (I - n n^T)
-    more = along - across
-    return across + more * nx * nx, more * nx * ny, across + more * ny * ny
+    more = stiff - transverse
+    return transverse + more * nx * nx, more * nx * ny, transverse + more * ny * ny
 
 
 @inner_kernel
-def assemble_fronts(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
-    """The same matrix as `assemble`, of a large body."""
-    clear_fronts(first_row, last_row, rows.inertia, matrix.fronts)
+def assemble_springs(span: Span, system: System) -> None:
+    """Add K n n^T + g (I - n n^T) of a body's springs to its matrix, at both ends, and less it between them."""
+    springs, matrix = system.springs, system.matrix
     free_count = matrix.diagonal.shape[0]
-    numbers = matrix.fronts.numbers
-    diagonal = matrix.fronts.diagonal
-    width = matrix.fronts.row_width
-    for k in range(first, last):
-        xx, xy, yy = _block(springs.normal[k, 0], springs.normal[k, 1], springs.along[k], springs.across[k])
-        a = springs.row_a[k]
-        b = springs.row_b[k]
-        if a < free_count:
-            add_block(numbers, diagonal[a], width[a], 1.0, xx, xy, yy)
-        if b < free_count:
-            add_block(numbers, diagonal[b], width[b], 1.0, xx, xy, yy)
-        if springs.block[k] >= 0:
-            add_block(numbers, springs.block[k], width[min(a, b)], -1.0, xx, xy, yy)
-
-
-@inner_kernel
-def assemble(first_row, last_row, first, last, rows, springs, matrix):  # type: ignore[no-untyped-def]
-    """A = M + sum [K n n^T + g (I - n n^T)]."""
-    free_count = matrix.diagonal.shape[0]
-    for r in range(first_row, last_row):
-        mass = rows.inertia[r]
-        matrix.diagonal[r, 0] = mass
-        matrix.diagonal[r, 1] = 0.0
-        matrix.diagonal[r, 2] = mass
-    for at in range(matrix.column_start[first_row], matrix.column_start[last_row]):
-        matrix.lower[at, 0] = 0.0
-        matrix.lower[at, 1] = 0.0
-        matrix.lower[at, 2] = 0.0
-        matrix.lower[at, 3] = 0.0
-    for k in range(first, last):
-        xx, xy, yy = _block(springs.normal[k, 0], springs.normal[k, 1], springs.along[k], springs.across[k])
+    for k in range(span.first_spring, span.last_spring):
+        xx, xy, yy = _block(springs.normal[k, 0], springs.normal[k, 1], springs.stiff[k], springs.transverse[k])
         a = springs.row_a[k]
         b = springs.row_b[k]
         if a < free_count:
@@ -200,16 +174,35 @@ def assemble(first_row, last_row, first, last, rows, springs, matrix):  # type: 
 
 
 @inner_kernel
-def load_residual(first_row, last_row, first, last, rows, springs, free_count):  # type: ignore[no-untyped-def]
-    """The right side M (v* - v') + sum of the springs' impulses of one body, into `change`."""
-    for r in range(first_row, last_row):
-        rows.change[r, 0] = rows.inertia[r] * (rows.aim[r, 0] - rows.trial[r, 0])
-        rows.change[r, 1] = rows.inertia[r] * (rows.aim[r, 1] - rows.trial[r, 1])
-    for k in range(first, last):
+def assemble_springs_in_fronts(span: Span, system: System) -> None:
+    """The same of a large body, whose matrix lies in fronts."""
+    springs, fronts = system.springs, system.matrix.fronts
+    free_count = system.matrix.diagonal.shape[0]
+    numbers = fronts.numbers
+    diagonal = fronts.diagonal
+    width = fronts.row_width
+    for k in range(span.first_spring, span.last_spring):
+        xx, xy, yy = _block(springs.normal[k, 0], springs.normal[k, 1], springs.stiff[k], springs.transverse[k])
+        a = springs.row_a[k]
+        b = springs.row_b[k]
+        if a < free_count:
+            add_block(numbers, diagonal[a], width[a], 1.0, xx, xy, yy)
+        if b < free_count:
+            add_block(numbers, diagonal[b], width[b], 1.0, xx, xy, yy)
+        if springs.block[k] >= 0:
+            add_block(numbers, springs.block[k], width[min(a, b)], -1.0, xx, xy, yy)
+
+
+@inner_kernel
+def push_springs(span: Span, system: System) -> None:
+    """Add the impulses of a body's springs to the right side, in `change`."""
+    rows, springs = system.rows, system.springs
+    free_count = system.matrix.diagonal.shape[0]
+    for k in range(span.first_spring, span.last_spring):
         nx = springs.normal[k, 0]
         ny = springs.normal[k, 1]
-        jx = springs.impulse[k] * nx - springs.sideways[k] * ny
-        jy = springs.impulse[k] * ny + springs.sideways[k] * nx
+        jx = springs.impulse[k] * nx - springs.tangential[k] * ny
+        jy = springs.impulse[k] * ny + springs.tangential[k] * nx
         a = springs.row_a[k]
         b = springs.row_b[k]
         if a < free_count:
@@ -221,44 +214,19 @@ def load_residual(first_row, last_row, first, last, rows, springs, free_count): 
 
 
 @inner_kernel
-def solve_linear(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix):  # type: ignore[no-untyped-def]
-    """Solve A D = right side for the rows, springs and elements of one body; D is left in `change`."""
-    load_residual(first_row, last_row, first, last, rows, springs, matrix.diagonal.shape[0])
-    if high > low:
-        push_shapes(low, high, rows, shapes, matrix.diagonal.shape[0])
-    fronts = matrix.fronts
-    if fronts.of_row[first_row] >= 0:
-        assemble_fronts(first_row, last_row, first, last, rows, springs, matrix)
-        if high > low:
-            assemble_shapes(low, high, shapes, matrix, True)
-        solve_fronts(False, first_row, last_row, fronts, rows.change)
-    else:
-        assemble(first_row, last_row, first, last, rows, springs, matrix)
-        if high > low:
-            assemble_shapes(low, high, shapes, matrix, False)
-        factorise(
-            first_row, last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target, matrix.where,
-            matrix.diagonal, matrix.lower, matrix.scaled,
-        )  # fmt: skip
-        back_substitute(
-            first_row, last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
-        )  # fmt: skip
-    if high > low:
-        take_in_wide(first_row, last_row, low, high, rows, shapes, matrix)
-
-
-@inner_kernel
-def update_impulses(first, last, rows, springs, rest_length, h, free_count):  # type: ignore[no-untyped-def]
+def update_springs(span: Span, system: System, h: float) -> tuple[float, float, bool]:
     """Bring one body's springs to `trial`, which D has been added to: J = q - K n.(D_b - D_a), the like across, x'.
 
-    Returned are their energy [J] after the step, the largest difference between a length then and the length foreseen,
+    Returned are their energy [J] after the step, the largest difference between a length then and the length predicted,
     as a share of its length, and whether D wants refining.
     """
+    rows, springs = system.rows, system.springs
+    free_count = system.matrix.diagonal.shape[0]
     before = 0.0
     after = 0.0
     energy = 0.0
     misfit = 0.0
-    for k in range(first, last):
+    for k in range(span.first_spring, span.last_spring):
         a = springs.row_a[k]
         b = springs.row_b[k]
         ux = 0.0
@@ -272,20 +240,20 @@ def update_impulses(first, last, rows, springs, rest_length, h, free_count):  # 
         nx = springs.normal[k, 0]
         ny = springs.normal[k, 1]
         u = nx * ux + ny * uy
-        foreseen = springs.foreseen[k] + h * u
-        springs.foreseen[k] = foreseen
-        taken = springs.along[k] * u
+        predicted = springs.predicted[k] + h * u
+        springs.predicted[k] = predicted
+        taken = springs.stiff[k] * u
         springs.impulse[k] -= taken
-        springs.sideways[k] -= springs.across[k] * (nx * uy - ny * ux)
+        springs.tangential[k] -= springs.transverse[k] * (nx * uy - ny * ux)
         before += abs(taken)
         after += abs(springs.impulse[k])
         dx = rows.position[b, 0] - rows.position[a, 0] + h * (rows.trial[b, 0] - rows.trial[a, 0])
         dy = rows.position[b, 1] - rows.position[a, 1] + h * (rows.trial[b, 1] - rows.trial[a, 1])
-        rest = rest_length[springs.slot[k]]
+        rest = springs.rest[k]
         error = math.sqrt(dx * dx + dy * dy) - rest
-        missed = abs(error - foreseen)
+        missed = abs(error - predicted)
         error /= h
-        energy += 0.5 * springs.measured[k] * error * error
+        energy += 0.5 * springs.norm[k] * error * error
         extent = rest + springs.length[k]
         # One of rest length 0, such as a hand's, has no strain to be spared.
         if rest > 0.0 and extent > SHORTEST and missed > misfit * extent:
@@ -294,26 +262,15 @@ def update_impulses(first, last, rows, springs, rest_length, h, free_count):  # 
 
 
 @inner_kernel
-def refine(first_row, last_row, first, last, low, high, rows, springs, shapes, matrix):  # type: ignore[no-untyped-def]
-    """Solve for what is left of the right side, with the impulses found so far; it is left in `change`."""
-    free_count = matrix.diagonal.shape[0]
-    load_residual(first_row, last_row, first, last, rows, springs, free_count)
-    if high > low:
-        push_shapes(low, high, rows, shapes, free_count)
-    solve_again(first_row, last_row, rows, matrix)
-    if high > low:
-        correct_wide(first_row, last_row, low, high, rows, shapes, free_count)
-
-
-@inner_kernel
-def objective(first_row, last_row, first, last, rows, springs, h):  # type: ignore[no-untyped-def]
-    """f(v') of one body at `trial` [J]."""
+def spring_objective(span: Span, system: System, h: float) -> float:
+    """1/2 |v' - v*|^2_M and the springs' part of f(v') of one body at `trial` [J]."""
+    rows, springs = system.rows, system.springs
     total = 0.0
-    for r in range(first_row, last_row):
+    for r in range(span.first_row, span.last_row):
         ux = rows.trial[r, 0] - rows.target[r, 0]
         uy = rows.trial[r, 1] - rows.target[r, 1]
         total += 0.5 * rows.mass[r] * (ux * ux + uy * uy)
-    for k in range(first, last):
+    for k in range(span.first_spring, span.last_spring):
         a = springs.row_a[k]
         b = springs.row_b[k]
         dx = rows.position[b, 0] - rows.position[a, 0]
@@ -323,62 +280,47 @@ def objective(first_row, last_row, first, last, rows, springs, h):  # type: igno
         growth = _growth(dx, dy, ux, uy, springs.length[k], h)
         error = springs.error[k] / h
         after = error + growth
-        total += 0.5 * (springs.along[k] * growth * growth + springs.pull[k] * (after * after - growth * growth))
+        total += 0.5 * (springs.stiff[k] * growth * growth + springs.restoring[k] * (after * after - growth * growth))
     return total
 
 
 @inner_kernel
-def hold_spin(first_row, last_row, rows):  # type: ignore[no-untyped-def]
-    """Take from `trial` the angular momentum that a free body would gain: nothing outside turns it.
-
-    Directions taken ahead turn a body that is violently out of shape. What is taken is a turn as a whole.
-    """
-    mass = x = y = before = after = inertia = u = v = p = q = 0.0
-    for r in range(first_row, last_row):
-        m = rows.mass[r]
-        mass += m
-        x += m * rows.position[r, 0]
-        y += m * rows.position[r, 1]
-        u += m * rows.target[r, 0]
-        v += m * rows.target[r, 1]
-        p += m * rows.trial[r, 0]
-        q += m * rows.trial[r, 1]
-    x /= mass
-    y /= mass
-    for r in range(first_row, last_row):
-        m = rows.mass[r]
-        dx = rows.position[r, 0] - x
-        dy = rows.position[r, 1] - y
-        inertia += m * (dx * dx + dy * dy)
-        before += m * (dx * (rows.target[r, 1] - v / mass) - dy * (rows.target[r, 0] - u / mass))
-        after += m * (dx * (rows.trial[r, 1] - q / mass) - dy * (rows.trial[r, 0] - p / mass))
-    kept = min(max(after, min(0.0, before)), max(0.0, before))
-    if kept == after or not inertia > 0.0:
-        return
-    turn = (kept - after) / inertia
-    for r in range(first_row, last_row):
-        rows.trial[r, 0] -= turn * (rows.position[r, 1] - y)
-        rows.trial[r, 1] += turn * (rows.position[r, 0] - x)
-
-
-@inner_kernel
-def kinetic(first_row, last_row, mass, velocity):  # type: ignore[no-untyped-def]
-    """1/2 |v|^2_M of one body [J]."""
+def spring_slope(span: Span, system: System) -> float:
+    """The derivative along D of the same."""
+    # -(right side) . D
+    rows, springs = system.rows, system.springs
+    free_count = system.matrix.diagonal.shape[0]
     total = 0.0
-    for r in range(first_row, last_row):
-        total += 0.5 * mass[r] * (velocity[r, 0] * velocity[r, 0] + velocity[r, 1] * velocity[r, 1])
+    for r in range(span.first_row, span.last_row):
+        total -= rows.mass[r] * (
+            (rows.target[r, 0] - rows.trial[r, 0]) * rows.change[r, 0]
+            + (rows.target[r, 1] - rows.trial[r, 1]) * rows.change[r, 1]
+        )
+    for k in range(span.first_spring, span.last_spring):
+        a = springs.row_a[k]
+        b = springs.row_b[k]
+        jx = springs.impulse[k] * springs.normal[k, 0]
+        jy = springs.impulse[k] * springs.normal[k, 1]
+        if a < free_count:
+            total += jx * rows.change[a, 0] + jy * rows.change[a, 1]
+        if b < free_count:
+            total -= jx * rows.change[b, 0] + jy * rows.change[b, 1]
     return total
 
 
 @inner_kernel
-def potential(first, last, position, velocity, springs, weight, rest_length, time, h):  # type: ignore[no-untyped-def]
-    """Energy of one body's springs at position + time velocity [J]: sum of weight x^2 / (2 h^2)."""
+def spring_potential(
+    span: Span, system: System, position: Floats, velocity: Floats, norm: Floats, rest: Floats, time: float, h: float
+) -> float:
+    """Energy of one body's springs at position + time velocity [J]; rest (k,): the rest lengths it is measured from."""
+    # sum of norm x^2 / (2 h^2)
+    springs = system.springs
     total = 0.0
-    for k in range(first, last):
+    for k in range(span.first_spring, span.last_spring):
         a = springs.row_a[k]
         b = springs.row_b[k]
         dx = position[b, 0] - position[a, 0] + time * (velocity[b, 0] - velocity[a, 0])
         dy = position[b, 1] - position[a, 1] + time * (velocity[b, 1] - velocity[a, 1])
-        error = (math.sqrt(dx * dx + dy * dy) - rest_length[springs.slot[k]]) / h
-        total += 0.5 * weight[k] * error * error
+        error = (math.sqrt(dx * dx + dy * dy) - rest[k]) / h
+        total += 0.5 * norm[k] * error * error
     return total

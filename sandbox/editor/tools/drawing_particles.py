@@ -1,29 +1,28 @@
-"""The drawing tools by name; those of loose particles, springs and pins are here, bodies have files of their own."""
+"""The tools of loose particles and springs, and of pins."""
 
-from dataclasses import replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 from sandbox.editor.document import Document, EditError, select
 from sandbox.editor.edits.placing import add_particle, add_spring, set_pinned, weld
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene, make_scene
-from sandbox.editor.tools.drawing_bodies import (
-    BridgeDrawing,
-    GirderDrawing,
-    RingDrawing,
-    RopeDrawing,
-    WebDrawing,
-    WheelDrawing,
-    direction,
-    known_material,
-)
-from sandbox.editor.tools.drawing_jelly import BoxDrawing, CircleDrawing, PolygonDrawing
-from sandbox.editor.tools.drawing_options import ParticleOptions, PinOptions, SpringOptions
-from sandbox.editor.tools.drawing_terrain import GroundDrawing, LineDrawing, WallsDrawing
+from sandbox.editor.tools.drawing_bodies import direction, known_material
+from sandbox.editor.tools.drawing_options import OptionInfo, Options, flag_option, mass_option, material_option, option
 from sandbox.editor.tools.drawing_tool import Drawing, staged
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen, draw_pin, draw_spring
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.limits import BODY_RADIUS
 from sandbox.level.format.model import ParticleDef
+
+
+@dataclass(frozen=True)
+class ParticleOptions(Options):
+    """A loose particle."""
+
+    mass: float = mass_option(1.0, text="Mass.")
+    radius: float = option(0.05, OptionInfo("number", "radius", "Radius of the drawn disc.", "m"))
+    pinned: bool = flag_option(False, "pinned", "Hold it where it is.")
 
 
 class ParticleDrawing(Drawing[ParticleOptions]):
@@ -50,6 +49,14 @@ def new_particle(
     return add_particle(document, particle)
 
 
+@dataclass(frozen=True)
+class SpringOptions(Options):
+    """A loose spring, and the particles that it gets where it ends at none."""
+
+    material: str = material_option()
+    mass: float = mass_option(1.0, text="Mass of the particle that an end in empty space gets.")
+
+
 class SpringDrawing(Drawing[SpringOptions]):
     """A spring from particle to particle; an end in empty space gets a particle of its own."""
 
@@ -74,6 +81,11 @@ class SpringDrawing(Drawing[SpringOptions]):
     def sizes(self, points: list[Snap]) -> str:
         """Length and angle."""
         return direction(points)
+
+
+@dataclass(frozen=True)
+class PinOptions(Options):
+    """A pin has none."""
 
 
 PIN_HINT = "Click a particle to pin or unpin it"
@@ -121,20 +133,10 @@ class PinDrawing(Drawing[PinOptions]):
             raise EditError(str(error.args[0])) from None
 
 
-DRAWINGS: dict[str, type[Drawing[Any]]] = {
-    "particle": ParticleDrawing,
-    "spring": SpringDrawing,
-    "rope": RopeDrawing,
-    "bridge": BridgeDrawing,
-    "girder": GirderDrawing,
-    "web": WebDrawing,
-    "box": BoxDrawing,
-    "circle": CircleDrawing,
-    "polygon": PolygonDrawing,
-    "wheel": WheelDrawing,
-    "ring": RingDrawing,
-    "pin": PinDrawing,
-    "ground": GroundDrawing,
-    "line": LineDrawing,
-    "walls": WallsDrawing,
-}
+def _draw_particle(pen: IconPen) -> None:
+    pen.disc(12, 12, 5)
+
+
+PARTICLE = EditorTool("particle", "A", "Particle", _draw_particle, ParticleDrawing)
+SPRING = EditorTool("spring", "S", "Spring", draw_spring, SpringDrawing)
+PIN = EditorTool("pin", "P", "Pin or unpin a particle", draw_pin, PinDrawing)

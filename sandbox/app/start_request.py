@@ -1,4 +1,4 @@
-"""Wanted: what the program was started for."""
+"""StartRequest: what the program was started for."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Wanted:
+class StartRequest:
     """What the app is to show first: a level (source: its file), a replay, or a file to edit, "" = an empty sheet."""
 
     level: "Level | None" = None

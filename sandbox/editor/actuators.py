@@ -1,4 +1,4 @@
-"""Driven: which parts of a scene are driven, and where a picture of the level says so."""
+"""SceneActuators: which springs and hubs of a scene are driven, and where a picture of the level says so."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -7,12 +7,12 @@ import numpy as np
 
 from sandbox.editor.items import Item
 from sandbox.editor.scene import Scene
-from sandbox.level.build.actuators import parts
-from sandbox.level.format.drives import HydraulicDef, MotorDef
-from sandbox.level.kinds.bodies import WheelDef
+from sandbox.level.build.actuators import actuators
+from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
+from sandbox.level.kinds.wheel import WheelDef
 
 
-class Driven(NamedTuple):
+class SceneActuators(NamedTuple):
     """Springs that are muscles, one for each body of them; hydraulics; hubs with motors, and inner radii [m]."""
 
     muscles: list[int]
@@ -20,10 +20,10 @@ class Driven(NamedTuple):
     motors: list[tuple[int, float, MotorDef]]
 
 
-def driven_parts(scene: Scene) -> Driven:
+def scene_actuators(scene: Scene) -> SceneActuators:
     """Find what is driven in a scene."""
     level = scene.level
-    found = Driven([], [], [])
+    found = SceneActuators([], [], [])
     for index, body in enumerate(level.bodies):
         if body.drive is not None:
             start, end = np.searchsorted(scene.spring_item, [index, index + 1]).tolist()
@@ -40,10 +40,10 @@ def driven_parts(scene: Scene) -> Driven:
     return found
 
 
-def restless(scene: Scene) -> Iterator[Item]:
+def driven_items(scene: Scene) -> Iterator[Item]:
     """Items that move by themselves: muscles, and wheels with a motor that runs from the start."""
     level = scene.level
-    running = {part.name for part in parts(level) if part.start_value}
+    running = {part.name for part in actuators(level) if part.start_value}
     for body in level.bodies:
         if (body.drive is not None and body.drive.amplitude) or body.id in running:
             yield Item("body", body.id)

@@ -1,19 +1,16 @@
-"""Surfaces: the terrain of a level, what touches what, and how."""
+"""Surfaces of a level: its terrain, what collides with what, friction and restitution."""
 
-import itertools
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.faults.level_error import Fault, shown, suggestion
-from sandbox.level.format.limits import BODY_RADIUS, COLLISION_GROUP_LIMIT, CORNER_LIMIT
-from sandbox.level.format.model import ContactsDef, Level, ParticleDef, TerrainDef
-from sandbox.level.kinds.bodies import BodyDef
-from sandbox.level.kinds.polygon import is_simple
+from sandbox.level.format.limits import BODY_RADIUS
+from sandbox.level.format.model import ContactsDef, Level, ParticleDef
+from sandbox.level.kinds.body_def import BodyDef
 from sandbox.physics.actuators import Surface
-from sandbox.physics.collision.outline import ALL_GROUPS, TERRAIN_GROUP
+from sandbox.physics.collision.filter import ALL_GROUPS, TERRAIN_GROUP
 from sandbox.physics.terrain import NO_TERRAIN, Chain, Terrain, make_terrain
 
 # Names of the groups that exist in every level: that of terrain and walls, and that of bodies which name none.
@@ -22,7 +19,7 @@ TERRAIN_NAME, DEFAULT_GROUP = "terrain", "default"
 Item = BodyDef | ParticleDef
 
 
-def _items(level: Level) -> Iterator[tuple[str, Item]]:
+def colliding_items(level: Level) -> Iterator[tuple[str, Item]]:
     """Every body and loose particle with its place in the file."""
     for part in ("bodies", "particles"):
         for index, item in enumerate(getattr(level, part)):
@@ -31,49 +28,9 @@ def _items(level: Level) -> Iterator[tuple[str, Item]]:
 
 def group_bits(level: Level) -> dict[str, int]:
     """The bit of every collision group of a level, by its name, in the order of the file."""
-    named = (item.collision_group for _, item in _items(level) if item.collision_group is not None)
+    named = (item.collision_group for _, item in colliding_items(level) if item.collision_group is not None)
     names = dict.fromkeys([TERRAIN_NAME, DEFAULT_GROUP, *named])
     return {name: TERRAIN_GROUP << number for number, name in enumerate(names)}
-
-
-def surface_faults(level: Level) -> Iterator[Fault]:
-    """Faults of terrain, walls and collision groups."""
-    taken: set[str] = {item.id for _, item in _items(level)}
-    corners = 0
-    for index, piece in enumerate(level.terrain):
-        path = f"terrain.{index}"
-        if piece.id in taken:
-            yield f"{path}.id", f"{shown(piece.id)} is taken; every piece of terrain needs an id of its own"
-        taken.add(piece.id)
-        corners += len(piece.polyline or piece.polygon or ())
-        if corners > CORNER_LIMIT:
-            yield path, f"brings the corners of all terrain above {CORNER_LIMIT:,}; use fewer"
-            break
-        yield from _shape_faults(path, piece)
-    walls = level.walls
-    if walls is not None and not (walls.box[0] < walls.box[2] and walls.box[1] < walls.box[3]):
-        yield "walls.box", "left and bottom come first and must be below right and top"
-    groups = group_bits(level)
-    for path, item in _items(level):
-        if item.collision_group == TERRAIN_NAME:
-            yield f"{path}.collision_group", f'"{TERRAIN_NAME}" is the group of terrain and walls; take another name'
-        for number, name in enumerate(item.collides if isinstance(item.collides, tuple) else ()):
-            if name not in groups:
-                yield f"{path}.collides.{number}", f"there is no group {shown(name)}" + suggestion(name, groups)
-    if len(groups) > COLLISION_GROUP_LIMIT:
-        yield "bodies", f"name {len(groups) - 2} collision groups; at most {COLLISION_GROUP_LIMIT - 2} are allowed"
-
-
-def _shape_faults(path: str, piece: TerrainDef) -> Iterator[Fault]:
-    if (piece.polyline is None) == (piece.polygon is None):
-        yield path, "needs one of polyline and polygon"
-    elif piece.polygon is not None:
-        if len(piece.polygon) < 3:
-            yield f"{path}.polygon", f"has {len(piece.polygon)} corners; a polygon has at least 3"
-        elif not is_simple(piece.polygon):
-            yield f"{path}.polygon", "its sides touch or cross, or a corner comes twice; draw it without"
-    elif any(a == b for a, b in itertools.pairwise(piece.polyline or ())):
-        yield f"{path}.polyline", "a corner comes twice in a row; take one out"
 
 
 def terrain_of(level: Level) -> Terrain:
@@ -109,7 +66,7 @@ def surfaces_of(level: Level, counts: Sequence[int]) -> dict[str, NDArray[Any]]:
     usual, bits = level.contacts or ContactsDef(), group_bits(level)
     sizes = [*counts, *([1] * len(level.particles))]
     rows = []
-    for index, (_, item) in enumerate(_items(level)):
+    for index, (_, item) in enumerate(colliding_items(level)):
         if isinstance(item, ParticleDef):
             radius = item.radius
         else:

@@ -1,0 +1,87 @@
+"""Bridges in the editor, and the drawing that they share with girders."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from sandbox.editor.kinds.editing import BodyEditing
+from sandbox.editor.kinds.motion import Motion
+from sandbox.editor.tools.drawing_bodies import LineDrawing, fitting_count, length, rounded
+from sandbox.editor.tools.drawing_options import (
+    LineOptions,
+    count_option,
+    flag_option,
+    mass_option,
+    material_option,
+    size_option,
+)
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
+from sandbox.editor.tools.snap import Snap
+from sandbox.level.kinds.bridge import BridgeDef
+
+# A cell is about this long [m], within these numbers.
+CELL_LENGTH = 0.5
+CELLS = (2, 40)
+
+
+@dataclass(frozen=True)
+class TrussOptions(LineOptions):
+    """A bridge or a girder; segments None: cells of about 0.5 m, height None: as fits the cells."""
+
+    segments: int | None = count_option("cells", "Number of cells; empty = cells of about 0.5 m.", 1)
+    height: float | None = size_option("height", "Height; empty = square or equilateral cells.")
+    particle_mass: float = mass_option(1.0)
+    material: str = material_option("steel")
+    pin_start: bool = flag_option(True, "pin start", "Hold the start, unless it joins a particle.")
+    pin_end: bool = flag_option(True, "pin end", "Hold the end, unless it joins a particle.")
+
+
+class BridgeDrawing(LineDrawing[TrussOptions]):
+    """A bridge along its top row."""
+
+    defaults = TrussOptions()
+    kind = "bridge"
+    start_hint = "Drag along the top of the bridge, or click both ends"
+
+    def fitting(self, points: list[Snap]) -> int:
+        """Cells of about 0.5 m."""
+        return fitting_count(length(points), CELL_LENGTH, *CELLS)
+
+    def fields(self, points: list[Snap]) -> dict[str, Any]:
+        """A bridge's own fields."""
+        height = self.options.height
+        if height is None:
+            height = rounded(length(points) / self.segments(points))
+        return {**self.ends(points), "height": height}
+
+
+def _draw_bridge(pen: IconPen) -> None:
+    pen.line((3, 8), (21, 8))
+    pen.line((3, 16), (21, 16))
+    for x in (3, 12, 21):
+        pen.line((x, 8), (x, 16))
+    for x in (3, 12):
+        pen.line((x, 8), (x + 9, 16), width=1.3)
+        pen.line((x, 16), (x + 9, 8), width=1.3)
+
+
+class BridgeEditing(BodyEditing[BridgeDef]):
+    """A bridge's bottom row stays straight below, however it is turned."""
+
+    tools: ClassVar = (EditorTool("bridge", "B", "Bridge", _draw_bridge, BridgeDrawing),)
+    formless = frozenset({"particle_mass", "pin"})
+
+    def can_stretch(self) -> bool:
+        """Its height is a field of its own."""
+        return True
+
+    def lies_askew(self, motion: Motion) -> bool:
+        """Turned, its bottom row no longer starts straight below."""
+        return motion.angle != 0.0
+
+    def mapped(self, motion: Motion) -> dict[str, Any]:
+        """The ends of what becomes the top row, and the height."""
+        body = self.body
+        drop = -body.height if motion.sy < 0.0 else 0.0
+        start, end = ((x, y + drop) for x, y in (body.start, body.end))
+        return {"start": motion.point(start), "end": motion.point(end), "height": body.height * abs(motion.sy)}

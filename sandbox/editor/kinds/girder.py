@@ -1,0 +1,63 @@
+"""Girders in the editor."""
+
+import math
+from typing import Any, ClassVar
+
+from sandbox.editor.kinds.bridge import BridgeDrawing
+from sandbox.editor.kinds.editing import BodyEditing
+from sandbox.editor.kinds.motion import Motion
+from sandbox.editor.tools.drawing_bodies import length, rounded
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
+from sandbox.editor.tools.snap import Snap
+from sandbox.level.kinds.girder import GirderDef
+
+# An equilateral cell is so high, in cell lengths.
+EQUILATERAL = math.sqrt(3.0) / 2.0
+
+
+class GirderDrawing(BridgeDrawing):
+    """A girder along its first row; the second lies to the right of the way."""
+
+    kind = "girder"
+    start_hint = "Drag along the girder, or click both ends"
+
+    def fields(self, points: list[Snap]) -> dict[str, Any]:
+        """A girder's own fields."""
+        height = self.options.height
+        if height is None:
+            height = rounded(EQUILATERAL * length(points) / self.segments(points))
+        return {**self.ends(points), "height": height}
+
+
+def _draw_girder(pen: IconPen) -> None:
+    pen.line((2.5, 7), (21.5, 7))
+    pen.line((7, 17), (17, 17))
+    pen.line((2.5, 7), (7, 17), (12, 7), (17, 17), (21.5, 7))
+
+
+class GirderEditing(BodyEditing[GirderDef]):
+    """A girder's second row lies on the right of the first; in a mirror its ends change places."""
+
+    tools: ClassVar = (EditorTool("girder", "G", "Girder", _draw_girder, GirderDrawing),)
+    formless = frozenset({"particle_mass", "pin"})
+
+    @property
+    def noun(self) -> str:
+        """Upright and level ones can be stretched."""
+        return "slanting girder"
+
+    def can_stretch(self) -> bool:
+        """Along an axis alone."""
+        return self.body.start[0] == self.body.end[0] or self.body.start[1] == self.body.end[1]
+
+    def mapped(self, motion: Motion) -> dict[str, Any]:
+        """Ends, height and pins."""
+        body = self.body
+        start, end = motion.point(body.start), motion.point(body.end)
+        if motion.is_mirror:
+            start, end = end, start
+        across = motion.factor if motion.is_even else abs(motion.sy if body.start[1] == body.end[1] else motion.sx)
+        pins = {"start": "end", "end": "start"} if motion.is_mirror else {}
+        pin = tuple(pins.get(name, name) for name in body.pin)
+        return {"start": start, "end": end, "height": body.height * across, "pin": pin}

@@ -1,0 +1,178 @@
+"""Jellies in the editor: a box from corner to corner, a circle from its centre, a polygon by clicks or by hand."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from sandbox.editor.document import EditError
+from sandbox.editor.kinds.editing import BodyEditing, mapped_centre
+from sandbox.editor.kinds.motion import Motion
+from sandbox.editor.tools.drawing_bodies import BodyDrawing, length, rounded
+from sandbox.editor.tools.drawing_options import BodyOptions, count_option, mass_option, material_option
+from sandbox.editor.tools.drawing_outline import OutlineDrawing
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
+from sandbox.editor.tools.snap import Snap
+from sandbox.level.kinds.jelly import BoxShape, CircleShape, JellyDef, PolygonShape
+
+# Cells across the shorter side, and about how many cells the whole of one has at most.
+CELLS_ACROSS = 8
+JELLY_CELLS = 1_000
+# Digits of a spacing that is found so; a person reads it.
+SPACING_DIGITS = 3
+# Angles this close to a quarter turn [rad] count as one: a box at it can be stretched along its sides.
+SQUARE = 1e-9
+
+
+@dataclass(frozen=True)
+class JellyOptions(BodyOptions):
+    """A jelly of any shape; cells None: 8 across, fewer where it is long and thin."""
+
+    cells: int | None = count_option("cells", "Cells across the shorter side; empty = 8, fewer in long shapes.", 1)
+    particle_mass: float = mass_option(0.1)
+    material: str = material_option("jelly")
+
+
+def jelly_spacing(width: float, height: float, cells: int | None) -> float:
+    """Spacing [m] of a jelly of that size, of `cells` across its shorter side; None: 8, fewer where it is long."""
+    shorter = min(width, height)
+    if cells is not None:
+        return shorter / cells
+    # A long thin jelly is coarser, but one cell thick at least.
+    spacing = min(max(shorter / CELLS_ACROSS, math.sqrt(width * height / JELLY_CELLS)), shorter)
+    return float(f"{spacing:.{SPACING_DIGITS}g}") if spacing > 0.0 else 0.0
+
+
+class JellyDrawing(BodyDrawing[JellyOptions]):
+    """A jelly whose grid fits its size."""
+
+    defaults = JellyOptions()
+    kind = "jelly"
+    counted = "cells"
+
+    def fitting(self, points: list[Snap]) -> int:
+        """8 cells across."""
+        return CELLS_ACROSS
+
+    def sized(self, width: float, height: float) -> dict[str, Any]:
+        """The spacing for a width and height [m]. Raises EditError where one is 0."""
+        if min(width, height) <= 0.0:
+            raise EditError("drag across, to give it a width and a height")
+        return {"spacing": jelly_spacing(width, height, self.options.cells)}
+
+
+class BoxDrawing(JellyDrawing):
+    """A box of jelly."""
+
+    start_hint = "Drag from corner to corner, or click both"
+    end_hint = "Click or release at the opposite corner; + and - change the number of cells"
+
+    def fields(self, points: list[Snap]) -> dict[str, Any]:
+        """Centre and size."""
+        (ax, ay), (bx, by) = points[0].point, points[1].point
+        box = rounded(abs(bx - ax)), rounded(abs(by - ay))
+        spacing = self.sized(*box)
+        return {"shape": BoxShape(box=box), "position": ((ax + bx) / 2.0, (ay + by) / 2.0), **spacing}
+
+    def sizes(self, points: list[Snap]) -> str:
+        """Width and height."""
+        (ax, ay), (bx, by) = points[0].point, points[1].point
+        return f"{abs(bx - ax):.3g} m x {abs(by - ay):.3g} m"
+
+
+class CircleDrawing(JellyDrawing):
+    """A disc of jelly; its centre may be on a particle, its rim has none to join."""
+
+    start_hint = "Drag from the centre to the rim, or click both"
+    end_hint = "Click or release at the rim; + and - change the number of cells"
+
+    def joins(self, index: int) -> bool:
+        """Only the centre is sure to have a particle."""
+        return index == 0
+
+    def fields(self, points: list[Snap]) -> dict[str, Any]:
+        """Centre and radius."""
+        radius = rounded(length(points))
+        spacing = self.sized(2.0 * radius, 2.0 * radius)
+        return {"shape": CircleShape(circle=radius), "position": points[0].point, **spacing}
+
+    def sizes(self, points: list[Snap]) -> str:
+        """Radius."""
+        return f"radius {length(points):.3g} m"
+
+
+class PolygonDrawing(OutlineDrawing[JellyOptions], JellyDrawing):
+    """A polygon of jelly."""
+
+    def fields(self, points: list[Snap]) -> dict[str, Any]:
+        """Corners about the middle of their box."""
+        corners = [point.point for point in points]
+        fault = self.fault(corners)
+        if fault:
+            raise EditError(fault)
+        (left, right), (bottom, top) = ((min(side), max(side)) for side in zip(*corners, strict=True))
+        x, y = rounded((left + right) / 2.0), rounded((bottom + top) / 2.0)
+        polygon = tuple((rounded(corner[0] - x), rounded(corner[1] - y)) for corner in corners)
+        spacing = self.sized(right - left, top - bottom)
+        return {"shape": PolygonShape(polygon=polygon), "position": (x, y), **spacing}
+
+
+def _draw_box(pen: IconPen) -> None:
+    for at in (4, 12, 20):
+        pen.line((at, 4), (at, 20), width=1.7)
+        pen.line((4, at), (20, at), width=1.7)
+
+
+def _draw_circle(pen: IconPen) -> None:
+    pen.disc(12, 12, 9, 2)
+    pen.line((12, 3.5), (12, 20.5), width=1.4)
+    pen.line((3.5, 12), (20.5, 12), width=1.4)
+
+
+def _draw_polygon(pen: IconPen) -> None:
+    corners = ((4, 9), (12, 3.5), (20, 8), (17.5, 19), (7, 20), (4, 9))
+    pen.line(*corners)
+    for x, y in corners:
+        pen.disc(x, y, 2.2)
+
+
+class JellyEditing(BodyEditing[JellyDef]):
+    """A jelly whose sides lie along the axes can be stretched, unless it is round."""
+
+    tools: ClassVar = (
+        EditorTool("box", "J", "Jelly: a box", _draw_box, BoxDrawing, word="jelly"),
+        EditorTool("circle", "O", "Jelly: a disc", _draw_circle, CircleDrawing),
+        EditorTool("polygon", "Y", "Jelly: freehand or corner by corner", _draw_polygon, PolygonDrawing),
+    )
+    formless = frozenset({"particle_mass", "area"})
+
+    @property
+    def noun(self) -> str:
+        """Square ones can be stretched."""
+        return "jelly that is round or turned"
+
+    def can_stretch(self) -> bool:
+        """Along its sides."""
+        if isinstance(self.body.shape, CircleShape):
+            return False
+        return abs(math.remainder(self.body.angle, math.pi / 2.0)) <= SQUARE
+
+    def mapped(self, motion: Motion) -> dict[str, Any]:
+        """Place, angle, spacing and shape."""
+        body = self.body
+        result = mapped_centre(body, motion) | {"spacing": body.spacing * motion.factor}
+        if motion.is_mirror:
+            # The shape itself is mirrored in its own frame, so that the grid lies as it did.
+            result["angle"] = -body.angle
+        across, up = abs(motion.sx), abs(motion.sy)
+        if not motion.is_even and round(body.angle / (math.pi / 2.0)) % 2:
+            across, up = up, across
+        if isinstance(body.shape, BoxShape):
+            result["shape"] = BoxShape.model_construct(box=(body.shape.box[0] * across, body.shape.box[1] * up))
+        elif isinstance(body.shape, CircleShape):
+            result["shape"] = CircleShape.model_construct(circle=body.shape.circle * motion.factor)
+        else:
+            across, up = math.copysign(across, motion.sx), math.copysign(up, motion.sy)
+            corners = tuple((x * across, y * up) for x, y in body.shape.polygon)
+            result["shape"] = PolygonShape.model_construct(polygon=corners)
+        return result

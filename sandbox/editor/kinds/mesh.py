@@ -1,0 +1,23 @@
+"""Meshes in the editor; none is drawn, they come from breaking and importing."""
+
+from typing import Any
+
+from sandbox.editor.kinds.editing import BodyEditing
+from sandbox.editor.kinds.motion import Motion, mapped_velocity
+from sandbox.level.kinds.mesh import MeshDef
+
+
+class MeshEditing(BodyEditing[MeshDef]):
+    """A mesh goes where its particles go."""
+
+    formless = frozenset({"masses", "velocities", "bending"})
+
+    def can_stretch(self) -> bool:
+        """Any way."""
+        return True
+
+    def mapped(self, motion: Motion) -> dict[str, Any]:
+        """Every particle, and its velocity."""
+        body = self.body
+        velocities = body.velocities and tuple(mapped_velocity(velocity, motion) for velocity in body.velocities)
+        return {"particles": motion.points(body.particles), "velocities": velocities}

@@ -1,0 +1,87 @@
+"""Rings in the editor."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from sandbox.editor.kinds.editing import BodyEditing, mapped_centre
+from sandbox.editor.kinds.motion import Motion
+from sandbox.editor.tools.drawing_bodies import RoundDrawing, fitting_count, length
+from sandbox.editor.tools.drawing_options import (
+    BodyOptions,
+    OptionInfo,
+    count_option,
+    mass_option,
+    material_option,
+    option,
+)
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
+from sandbox.editor.tools.snap import Snap
+from sandbox.level.format.limits import INFLATION_LIMIT
+from sandbox.level.kinds.ring import RingDef
+
+# A part is about this long [m], within these numbers.
+PART_LENGTH = 0.25
+PARTS = (8, 60)
+
+
+@dataclass(frozen=True)
+class RingOptions(BodyOptions):
+    """A ring; segments None: about 0.25 m each."""
+
+    segments: int | None = count_option("parts", "Number of parts; empty = about 0.25 m each.", 3)
+    inflation: float | None = option(
+        1.2,
+        OptionInfo("number", "inflation", "Area that it wants, times its own; empty = it holds nothing.", "", 0.0,
+              INFLATION_LIMIT, optional=True),
+    )  # fmt: skip
+    particle_mass: float = mass_option(0.1)
+    material: str = material_option("rubber")
+
+
+class RingDrawing(RoundDrawing[RingOptions]):
+    """A ring with air inside; of what it is drawn on it joins only what is on its rim."""
+
+    defaults = RingOptions()
+    kind = "ring"
+    counted = "segments"
+
+    def joins(self, index: int) -> bool:
+        """There is no particle in its centre."""
+        return index == 1
+
+    def fitting(self, points: list[Snap]) -> int:
+        """Parts of about 0.25 m."""
+        return fitting_count(2.0 * math.pi * length(points), PART_LENGTH, *PARTS)
+
+    def fields(self, points: list[Snap]) -> dict[str, Any]:
+        """A ring's own fields."""
+        return {**self.disc(points), "segments": self._parts(points), "inflation": self.options.inflation}
+
+    def _parts(self, points: list[Snap]) -> int:
+        return self.fitting(points) if self.options.segments is None else self.options.segments
+
+    def sizes(self, points: list[Snap]) -> str:
+        """Radius and number of parts."""
+        return f"radius {length(points):.3g} m, {self._parts(points)} parts"
+
+
+def _draw_ring(pen: IconPen) -> None:
+    pen.disc(12, 12, 9.5, 2.2)
+    for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        pen.line((12 + 1.5 * dx, 12 + 1.5 * dy), (12 + 5.2 * dx, 12 + 5.2 * dy), width=1.5)
+        tip = (12 + 5.6 * dx, 12 + 5.6 * dy)
+        for side in (-1, 1):
+            pen.line(tip, (tip[0] - 1.7 * dx + 1.5 * side * dy, tip[1] - 1.7 * dy + 1.5 * side * dx), width=1.5)
+
+
+class RingEditing(BodyEditing[RingDef]):
+    """A ring stays round."""
+
+    tools: ClassVar = (EditorTool("ring", "Shift+O", "Ring with air inside: a balloon", _draw_ring, RingDrawing),)
+    formless = frozenset({"particle_mass", "inflation", "bending"})
+
+    def mapped(self, motion: Motion) -> dict[str, Any]:
+        """Place, angle and radius."""
+        return mapped_centre(self.body, motion) | {"radius": self.body.radius * motion.factor}

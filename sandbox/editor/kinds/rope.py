@@ -1,0 +1,98 @@
+"""Ropes in the editor."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from sandbox.editor.kinds.editing import BodyEditing
+from sandbox.editor.kinds.motion import Motion, stretch
+from sandbox.editor.tools.drawing_bodies import LineDrawing, fitting_count, length, rounded
+from sandbox.editor.tools.drawing_options import (
+    LineOptions,
+    OptionInfo,
+    count_option,
+    flag_option,
+    mass_option,
+    material_option,
+    option,
+)
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
+from sandbox.editor.tools.snap import Snap
+from sandbox.level.kinds.rope import RopeDef
+
+# A link is about this long [m], within these numbers. Shorter: finer, and slower to play.
+LINK_LENGTH = 0.25
+LINKS = (4, 60)
+# Slack: how much longer it is than the way from end to end, as a part of that.
+SLACK_RANGE = (-0.5, 4.0)
+
+
+@dataclass(frozen=True)
+class RopeOptions(LineOptions):
+    """A rope; segments None: links of about 0.25 m."""
+
+    segments: int | None = count_option("links", "Number of links; empty = links of about 0.25 m.", 1)
+    slack: float = option(
+        0.0,
+        OptionInfo(
+            "number", "slack", "How much longer it is than the way from end to end, 0.1 = 10 %.", "", *SLACK_RANGE
+        ),
+    )
+    particle_mass: float = mass_option(1.0)
+    end_mass: float | None = mass_option(None, "end mass", "Mass of the last particle; empty = as the others.")
+    material: str = material_option("steel")
+    pin_start: bool = flag_option(True, "pin start", "Hold the start, unless it joins a particle.")
+    pin_end: bool = flag_option(False, "pin end", "Hold the end, unless it joins a particle.")
+
+
+class RopeDrawing(LineDrawing[RopeOptions]):
+    """A rope; slack makes it longer than the way from end to end."""
+
+    defaults = RopeOptions()
+    kind = "rope"
+    parts = "links"
+    start_hint = "Drag from the rope's start to its end, or click both"
+
+    def fitting(self, points: list[Snap]) -> int:
+        """Links of about 0.25 m."""
+        return fitting_count(length(points), LINK_LENGTH, *LINKS)
+
+    def fields(self, points: list[Snap]) -> dict[str, Any]:
+        """A rope's own fields."""
+        rest = None
+        if self.options.slack != 0.0:
+            rest = rounded((1.0 + self.options.slack) * length(points) / self.segments(points))
+        return {**self.ends(points), "end_mass": self.options.end_mass, "rest_length": rest}
+
+
+def _draw_rope(pen: IconPen) -> None:
+    points = [(4 + 4 * k, 6 + 11 * (1 - ((k - 2) / 2) ** 2)) for k in range(5)]
+    pen.line(*points)
+    for x, y in points:
+        pen.disc(x, y, 2.3)
+
+
+class RopeEditing(BodyEditing[RopeDef]):
+    """A rope goes where its ends go."""
+
+    tools: ClassVar = (EditorTool("rope", "R", "Rope", _draw_rope, RopeDrawing),)
+    formless = frozenset({"particle_mass", "end_mass", "rest_length", "pin", "bending"})
+
+    def can_stretch(self) -> bool:
+        """It has no height."""
+        return True
+
+    def mapped(self, motion: Motion) -> dict[str, Any]:
+        """Its ends, and the length of its links."""
+        body = self.body
+        ends = {"start": motion.point(body.start), "end": motion.point(body.end)}
+        if body.rest_length is None:
+            return ends
+        return ends | {"rest_length": body.rest_length * stretch(body.start, body.end, motion)}
+
+    def with_field(self, field: str, value: Any) -> dict[str, Any]:
+        """Of other numbers of links it keeps its whole length."""
+        body = self.body
+        if field == "segments" and body.rest_length is not None:
+            return {field: value, "rest_length": body.rest_length * body.segments / value}
+        return {field: value}

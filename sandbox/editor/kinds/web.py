@@ -1,0 +1,70 @@
+"""Webs in the editor."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from sandbox.editor.kinds.editing import BodyEditing, mapped_centre
+from sandbox.editor.kinds.motion import Motion
+from sandbox.editor.tools.drawing_bodies import RoundDrawing, fitting_count, length
+from sandbox.editor.tools.drawing_options import BodyOptions, count_option, flag_option, mass_option, material_option
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
+from sandbox.editor.tools.snap import Snap
+from sandbox.level.kinds.web import WebDef
+
+# The step between two rings is about this long [m], within these numbers of rings.
+RING_STEP = 0.25
+RINGS = (2, 12)
+
+
+@dataclass(frozen=True)
+class WebOptions(BodyOptions):
+    """A web; rings None: rings of about 0.25 m."""
+
+    spokes: int = count_option("spokes", "Number of spokes.", 3, 12)
+    rings: int | None = count_option("rings", "Number of rings; empty = about 0.25 m apart.", 1)
+    particle_mass: float = mass_option(0.1)
+    material: str = material_option("rubber")
+    pin_rim: bool = flag_option(True, "pin rim", "Hold the outermost ring.")
+
+
+class WebDrawing(RoundDrawing[WebOptions]):
+    """A web."""
+
+    defaults = WebOptions()
+    kind = "web"
+    counted = "spokes"
+
+    def fields(self, points: list[Snap]) -> dict[str, Any]:
+        """A web's own fields."""
+        pin = ("rim",) if self.options.pin_rim else ()
+        return {**self.disc(points), "spokes": self.options.spokes, "rings": self._rings(points), "pin": pin}
+
+    def _rings(self, points: list[Snap]) -> int:
+        return fitting_count(length(points), RING_STEP, *RINGS) if self.options.rings is None else self.options.rings
+
+    def sizes(self, points: list[Snap]) -> str:
+        """Radius and numbers of parts."""
+        return f"radius {length(points):.3g} m, {self.options.spokes} spokes, {self._rings(points)} rings"
+
+
+def _draw_web(pen: IconPen) -> None:
+    for radius in (4.5, 9.5):
+        pen.line(
+            *[(12 + radius * math.cos(math.tau * k / 6), 12 + radius * math.sin(math.tau * k / 6)) for k in range(7)],
+            width=1.6,
+        )
+    for k in range(6):
+        pen.line((12, 12), (12 + 9.5 * math.cos(math.tau * k / 6), 12 + 9.5 * math.sin(math.tau * k / 6)), width=1.3)
+
+
+class WebEditing(BodyEditing[WebDef]):
+    """A web stays round."""
+
+    tools: ClassVar = (EditorTool("web", "W", "Web", _draw_web, WebDrawing),)
+    formless = frozenset({"particle_mass", "pin"})
+
+    def mapped(self, motion: Motion) -> dict[str, Any]:
+        """Place, angle and radius."""
+        return mapped_centre(self.body, motion) | {"radius": self.body.radius * motion.factor}

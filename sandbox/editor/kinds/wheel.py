@@ -1,0 +1,91 @@
+"""Wheels in the editor."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from sandbox.editor.kinds.editing import BodyEditing, mapped_centre
+from sandbox.editor.kinds.motion import Motion
+from sandbox.editor.tools.drawing_bodies import RoundDrawing, fitting_count, length, rounded
+from sandbox.editor.tools.drawing_options import (
+    BodyOptions,
+    count_option,
+    flag_option,
+    mass_option,
+    material_option,
+    size_option,
+)
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
+from sandbox.editor.tools.snap import Snap
+from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.wheel import WheelDef
+
+# A piece of rim between two spokes is about this long [m], within these numbers of spokes.
+RIM_LENGTH = 0.5
+SPOKES = (8, 32)
+
+
+@dataclass(frozen=True)
+class WheelOptions(BodyOptions):
+    """A wheel; segments None: about 0.5 m of rim each, thickness None: a quarter of the radius."""
+
+    segments: int | None = count_option("spokes", "Number of spokes; empty = about 0.5 m of rim each.", 3)
+    thickness: float | None = size_option("thickness", "Thickness of the rim; empty = a quarter of the radius.")
+    particle_mass: float = mass_option(1.0)
+    hub_mass: float | None = mass_option(None, "hub mass", "Mass of the hub; empty = as the others.")
+    material: str = material_option("rubber")
+    pin_hub: bool = flag_option(False, "pin hub", "Hold the hub, unless it joins a particle.")
+
+
+class WheelDrawing(RoundDrawing[WheelOptions]):
+    """A wheel; its hub may be held, or joins the particle that it is drawn on."""
+
+    defaults = WheelOptions()
+    kind = "wheel"
+    counted = "segments"
+
+    def fitting(self, points: list[Snap]) -> int:
+        """OptionInfo 0.5 m of rim to each spoke; an even number, as the box around an odd one is crooked."""
+        return 2 * fitting_count(2.0 * math.pi * length(points), 2.0 * RIM_LENGTH, SPOKES[0] // 2, SPOKES[1] // 2)
+
+    def fields(self, points: list[Snap]) -> dict[str, Any]:
+        """A wheel's own fields."""
+        thickness = self.options.thickness
+        return {
+            **self.disc(points),
+            "thickness": rounded(length(points) / 4.0) if thickness is None else thickness,
+            "segments": self._spokes(points),
+            "hub_mass": self.options.hub_mass,
+            "pin": ("hub",) if self.options.pin_hub and points[0].name is None else (),
+        }
+
+    def _spokes(self, points: list[Snap]) -> int:
+        return self.fitting(points) if self.options.segments is None else self.options.segments
+
+    def sizes(self, points: list[Snap]) -> str:
+        """Radius and number of spokes."""
+        return f"radius {length(points):.3g} m, {self._spokes(points)} spokes"
+
+
+def _draw_wheel(pen: IconPen) -> None:
+    pen.disc(12, 12, 9.5, 2.6)
+    pen.disc(12, 12, 2.6)
+    for k in range(6):
+        pen.line((12, 12), (12 + 8 * math.cos(math.tau * k / 6), 12 + 8 * math.sin(math.tau * k / 6)), width=1.4)
+
+
+class WheelEditing(BodyEditing[WheelDef]):
+    """A wheel stays round; in a mirror its motor turns the other way."""
+
+    tools: ClassVar = (EditorTool("wheel", "Q", "Wheel with a hub", _draw_wheel, WheelDrawing),)
+    formless = frozenset({"particle_mass", "hub_mass", "pin", "motor"})
+
+    def mapped(self, motion: Motion) -> dict[str, Any]:
+        """Place, angle, radius, thickness and motor."""
+        body = self.body
+        sizes = {"radius": body.radius * motion.factor, "thickness": body.thickness * motion.factor}
+        motor: dict[str, Any] = {}
+        if body.motor is not None and motion.is_mirror:
+            motor = {"motor": replaced(body.motor, speed=-body.motor.speed)}
+        return mapped_centre(body, motion) | sizes | motor

@@ -1,0 +1,58 @@
+"""Area and bending constraints of the bodies of a level, added to its world."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.level.build.layout import Layout
+from sandbox.level.build.welds import Slots
+from sandbox.level.format.model import Level, Material, NissenMaterial
+from sandbox.level.kinds.expansion import NO_POLYGONS, Expansion
+from sandbox.physics.constraints import AREA, BEND
+from sandbox.physics.world import OWN_MATERIAL, World
+
+
+def add_constraints(
+    world: World,
+    layout: Layout,
+    level: Level,
+    bodies: Sequence[Expansion[Any]],
+    slots: Slots,
+    materials: dict[str, Material],
+) -> None:
+    """Add the area and bending constraints, body by body; at rest they are those of the body's form."""
+    index = {name: number for number, name in enumerate(materials)}
+    for body, made in zip(level.bodies, bodies, strict=True):
+        material, bending = materials[body.material], made.bending
+        # Their error is that of the impulse-based spring; a Hooke material has none for areas.
+        areas = made.area_constraints if isinstance(material, NissenMaterial) else NO_POLYGONS
+        angles = made.bending_constraints
+        if not len(areas) and not len(angles):
+            continue
+        particles, form = slots[layout.owners[body.id].first :], made.form
+        # Welds may have made one particle of two corners: nothing is left to keep.
+        areas, angles = (rows[_distinct(particles[rows])] for rows in (areas, angles))
+        if isinstance(material, NissenMaterial):
+            first = world.add_elements(
+                AREA, particles[areas], form=form[areas], inflation=made.inflation,
+                stiffness=material.stiffness + 0.0, damping=material.damping + 0.0, material=index[body.material],
+            )  # fmt: skip
+            if len(areas):
+                world.name_areas(body.id, range(first, first + len(areas)))
+        if bending is not None:
+            angles = angles[_has_links(form[angles])]
+            world.add_elements(
+                BEND, particles[angles], form=form[angles], stiffness=bending.stiffness + 0.0,
+                damping=bending.damping + 0.0, material=OWN_MATERIAL,
+            )  # fmt: skip
+
+
+def _distinct(corners: Slots) -> NDArray[np.bool_]:
+    return np.asarray((np.diff(np.sort(corners, axis=1), axis=1) != 0).all(axis=1))
+
+
+def _has_links(places: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether both links of each triple of places [m] (t, 3, 2) have a length, and so an angle."""
+    return np.asarray((np.diff(places, axis=1) != 0.0).any(axis=2).all(axis=1))

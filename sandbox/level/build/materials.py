@@ -1,0 +1,36 @@
+"""Materials as the world has them: law and coefficients of every spring, strains at which it breaks or yields."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.level.format.model import HookeMaterial, Material
+from sandbox.physics.actuators import NEVER, StrainLimits
+from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN
+
+
+def coefficients(material: NDArray[np.int64], materials: dict[str, Material]) -> dict[str, NDArray[np.generic]]:
+    """Law and coefficients of every spring (m,), by the argument of World.add_springs that takes them."""
+    rows = [_row(chosen) for chosen in materials.values()]
+    law, stiffness, damping, k, c = (np.array(column)[material] for column in zip(*rows, strict=True))
+    return {"law": law, "stiffness": stiffness, "damping": damping, "hooke_stiffness": k, "hooke_damping": c}
+
+
+def strain_limits(materials: dict[str, Material]) -> StrainLimits:
+    """The strains at which springs of each material break and yield."""
+
+    def column(name: str) -> NDArray[np.float64]:
+        values = [getattr(material, name) for material in materials.values()]
+        return np.array([NEVER if value is None else value for value in values], dtype=np.float64)
+
+    return StrainLimits(
+        tension=column("tension_limit"),
+        compression=column("compression_limit"),
+        yielding=column("yield_strain"),
+        yield_share=column("yield_limit"),
+    )
+
+
+def _row(material: Material) -> tuple[int, float, float, float, float]:
+    if isinstance(material, HookeMaterial):
+        return LAW_HOOKE, 0.0, 0.0, material.k + 0.0, material.c + 0.0
+    return LAW_NISSEN, material.stiffness + 0.0, material.damping + 0.0, 0.0, 0.0

@@ -1,0 +1,55 @@
+"""Plan: what a level expands to and in which slots, found once, for its check, its world and its picture."""
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from sandbox.level.build.layout import Layout
+from sandbox.level.build.welds import Slots, united
+from sandbox.level.format.model import Level
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.expansion import Expansion
+
+
+class Plan:
+    """The bodies of a level expanded, the slots and names of its particles, and which of them are one.
+
+    Each part is made when it is first asked for. The check asks first, and in an order in which nothing is made of a
+    level that is too large; beyond `layout`, and of the arrays of bodies, only a sound level has any.
+    bodies: expansions of the level's bodies where they are known already.
+    """
+
+    def __init__(self, level: Level, bodies: Sequence[Expansion[Any]] | None = None) -> None:
+        self.bodies = [expansion(body) for body in level.bodies] if bodies is None else list(bodies)
+        # Not the level itself, which keeps its plan: neither would be gone before the collector finds both.
+        self._ids = [body.id for body in level.bodies], [particle.id for particle in level.particles]
+        self._springs, self._welds = level.springs, level.welds
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Slots by name, before welds."""
+        return Layout(self._ids[0], self.bodies, self._ids[1])
+
+    @cached_property
+    def spring_ends(self) -> Slots:
+        """Particles (k, 2) that each loose spring joins, before welds."""
+        slot = self.layout.slot
+        return np.array([(slot(spring.a), slot(spring.b)) for spring in self._springs], dtype=np.int64).reshape(-1, 2)
+
+    @cached_property
+    def first_of_weld(self) -> Slots:
+        """The first (n,) of the particles that each one is welded to, itself where it is welded to none."""
+        slot = self.layout.slot
+        return united(self.layout.particle_count, ((slot(a), slot(b)) for a, b in self._welds))
+
+
+def keep_plan(level: Level, plan: Plan) -> None:
+    """Let a level keep the plan that its check has found sound, for as long as it lives."""
+    object.__setattr__(level, "_plan", plan)
+
+
+def kept_plan(level: Level) -> Plan | None:
+    """The plan that a level keeps: one that was read has one, one that was made of another has none."""
+    return getattr(level, "_plan", None)

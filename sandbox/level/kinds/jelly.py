@@ -1,0 +1,261 @@
+"""Jelly: a soft body on a square grid inside a box, a circle or a polygon."""
+
+import math
+from collections.abc import Iterator
+from functools import cached_property
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Discriminator, Field, Tag
+
+from sandbox.level.faults.level_error import Fault
+from sandbox.level.format.limits import COORDINATE_LIMIT, PARTICLE_LIMIT
+from sandbox.level.format.quantities import Angle, Description, Mass, Point, Size, Spacing, unit
+from sandbox.level.kinds.body_def import BodyDef
+from sandbox.level.kinds.expansion import NO_POLYGONS, Expansion
+from sandbox.level.kinds.geometry import Pairs, Points, turn
+from sandbox.level.kinds.polygon import BORDER, grid_bounds, is_simple, largest_part, polygon_grid
+from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
+
+
+class BoxShape(Description):
+    """A rectangle about the jelly's centre."""
+
+    box: tuple[Size, Size] = Field(description="Width and height.", json_schema_extra=unit("m"))
+
+
+class CircleShape(Description):
+    """A disc about the jelly's centre."""
+
+    circle: Size = Field(description="Radius.")
+
+
+class PolygonShape(Description):
+    """A simple polygon, corners relative to the jelly's centre."""
+
+    polygon: tuple[Point, ...] = Field(
+        min_length=3,
+        description="Corners in order, relative to the jelly's position; sides may not touch or cross.",
+    )
+
+
+SHAPES: dict[str, type[Description]] = {"box": BoxShape, "circle": CircleShape, "polygon": PolygonShape}
+
+
+def _shape_of(value: Any) -> str | None:
+    if isinstance(value, dict):
+        return next((name for name in SHAPES if name in value), None)
+    return next((name for name in SHAPES if hasattr(value, name)), None)
+
+
+Shape = Annotated[
+    Annotated[BoxShape, Tag("box")] | Annotated[CircleShape, Tag("circle")] | Annotated[PolygonShape, Tag("polygon")],
+    Discriminator(_shape_of),
+]
+
+
+class JellyDef(BodyDef):
+    """A soft body: particles on a square grid inside a shape, each joined to its eight neighbours."""
+
+    type: Literal["jelly"] = Field(description="Kind of body.")
+    shape: Shape = Field(description='`{"box": [w, h]}`, `{"circle": radius}` or `{"polygon": [[x, y], ...]}`.')
+    position: Point = Field(default=(0.0, 0.0), description="Place of the centre, the shape's own [0, 0].")
+    angle: Angle = Field(default=0.0, description="Turn about the centre, counter-clockwise.")
+    spacing: Spacing = Field(description="Distance of neighbours in the grid; a box stretches it to fit.")
+    particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
+    area: bool = Field(
+        default=True,
+        description="Whether its triangles keep their areas, with Cs and Cd of its material, so that it comes back "
+        "from being crushed or turned inside out; those of a Hooke material never do.",
+    )
+
+
+class Jelly(Expansion[JellyDef]):
+    """The points of a grid that lie in the shape."""
+
+    model = JellyDef
+    size_path = ("spacing",)
+    alternatives = SHAPES
+    plural = "jellies"
+    generation = """\
+- Jelly, box: `round(width / spacing) + 1` columns, rows alike, stretched to fit the box; row by row from the bottom
+  left. Where that leaves one column or row, it stands in the middle.
+- Jelly, circle and polygon: the whole multiples of `spacing` on either side of the centre, the shape's own [0, 0],
+  that lie inside the shape or on its border; row by row from the bottom left.
+- Springs of a jelly: all to the right, all upward, then per cell the diagonal that rises to the right and the other;
+  where both ends exist. The shape is turned by `angle` afterwards."""
+
+    @property
+    def polygon_work(self) -> tuple[int, int]:
+        """Of a polygon its corners, and a look at every column and side in each row."""
+        shape = self.body.shape
+        if not isinstance(shape, PolygonShape):
+            return 0, 0
+        _, _, columns, rows = grid_bounds(shape.polygon, self.body.spacing)
+        return len(shape.polygon), rows * (columns + len(shape.polygon))
+
+    @cached_property
+    def form_count(self) -> tuple[int, int]:
+        """Set points, and pairs of neighbours both of which are set; of a circle beyond the limit a number above it."""
+        if isinstance(self.body.shape, BoxShape):
+            columns, rows = self._box_grid()
+            across, up = columns - 1, rows - 1
+            return columns * rows, across * rows + columns * up + 2 * across * up
+        if isinstance(self.body.shape, CircleShape) and self._reach() ** 2 > PARTICLE_LIMIT:
+            return 2 * PARTICLE_LIMIT, 0
+        cells = self._grid[2]
+        springs = sum(int(np.count_nonzero(cells[a] & cells[b])) for a, b in _NEIGHBOURS)
+        return int(np.count_nonzero(cells)), springs
+
+    @cached_property
+    def local_form(self) -> tuple[Points, Pairs]:
+        body = self.body
+        left, bottom, cells = self._grid
+        if isinstance(body.shape, BoxShape):
+            columns, rows = self._box_grid()
+            across, up = _stretched(body.shape.box[0], columns), _stretched(body.shape.box[1], rows)
+        else:
+            across = (left + np.arange(cells.shape[1], dtype=np.float64)) * body.spacing
+            up = (bottom + np.arange(cells.shape[0], dtype=np.float64)) * body.spacing
+        row, column = np.nonzero(cells)
+        x, y = across[column], up[row]
+        cosine, sine = turn(body.angle)
+        return np.stack([x * cosine - y * sine, x * sine + y * cosine], axis=1), _neighbours(self._numbers)
+
+    @property
+    def edges(self) -> NDArray[np.int8]:
+        """Kind of edge (m,): solid are the sides that one square or triangle of its grid has alone."""
+        pairs, count = self.pairs, self.form_count[0]
+        sides, inner = _sides(self._numbers, count)
+        there, back = pairs[:, 0] * count + pairs[:, 1], pairs[:, 1] * count + pairs[:, 0]
+        left, right = np.isin(there, sides), np.isin(back, sides)
+        hidden = np.isin(there, inner) | np.isin(back, inner) | (left & right)
+        kind = np.where(left, SOLID_LEFT, np.where(right, SOLID_RIGHT, LINE))
+        return np.where(hidden, NO_EDGE, kind).astype(np.int8)
+
+    def polygons(self) -> Pairs:
+        """Triangles (t, 3), counter-clockwise: two of each cell of its grid, one of a cell of three corners.
+
+        Cells are cut along one diagonal and the other in turns, as a chessboard is coloured: no way of shearing is
+        easier.
+        """
+        if not self.body.area:
+            return NO_POLYGONS
+        corners = _corners(self._numbers)
+        row, column = np.indices(corners.shape[:2])
+        corners = corners.reshape(-1, 4)
+        missing = corners < 0
+        # A missing corner is cut off; of whole cells the first or the second.
+        cut = np.where(missing.any(axis=1), np.argmax(missing, axis=1), ((row + column) % 2).reshape(-1))
+        ahead = cut[:, None] + np.array([1, 2, 3])
+        inner = np.take_along_axis(corners, ahead % 4, axis=1)
+        outer = np.take_along_axis(corners, (cut[:, None] + np.array([3, 4, 5])) % 4, axis=1)
+        both = np.stack([inner, outer], axis=1).reshape(-1, 3)
+        return both[(both >= 0).all(axis=1)]
+
+    def faults(self, path: str) -> Iterator[Fault]:
+        """Whether its shape is one, lies inside the world, and holds a point of the grid."""
+        yield from self.outline_faults(path)
+        if self.form_count[0] == 0:
+            yield f"{path}.spacing", "no point of the grid lies inside the polygon; make it smaller"
+
+    def outline_faults(self, path: str) -> Iterator[Fault]:
+        """Whether its shape is one, and lies inside the world."""
+        shape = self.body.shape
+        if isinstance(shape, PolygonShape) and not is_simple(shape.polygon):
+            yield f"{path}.shape.polygon", "its sides touch or cross, or a corner comes twice; draw it without"
+        if self._farthest() > COORDINATE_LIMIT:
+            yield f"{path}.position", f"takes the shape beyond the limit {COORDINATE_LIMIT:.15g}"
+
+    @cached_property
+    def _grid(self) -> tuple[int, int, NDArray[np.bool_]]:
+        """Left, bottom, and which points of the grid over the shape belong to it (rows, columns), from there on."""
+        body, shape = self.body, self.body.shape
+        if isinstance(shape, BoxShape):
+            return 0, 0, np.ones(self._box_grid()[::-1], dtype=np.bool_)
+        if isinstance(shape, CircleShape):
+            reach = self._reach()
+            steps = np.arange(-reach, reach + 1, dtype=np.float64)
+            ratio = shape.circle / body.spacing + BORDER
+            inside = steps[:, None] * steps[:, None] + steps[None, :] * steps[None, :] <= ratio * ratio
+            return -reach, -reach, largest_part(inside)
+        left, bottom, points = polygon_grid(shape.polygon, body.spacing)
+        return left, bottom, largest_part(points)
+
+    @cached_property
+    def _numbers(self) -> Pairs:
+        """Particles on the grid (rows, columns), -1 where there is none."""
+        cells = self._grid[2]
+        numbers = np.full(cells.shape, -1, dtype=np.int64)
+        numbers[cells] = np.arange(np.count_nonzero(cells))
+        return numbers
+
+    def _box_grid(self) -> tuple[int, int]:
+        """Columns and rows of a box."""
+        assert isinstance(self.body.shape, BoxShape)
+        width, height = self.body.shape.box
+        return round(width / self.body.spacing) + 1, round(height / self.body.spacing) + 1
+
+    def _reach(self) -> int:
+        """Points of the grid on either side of the centre of a circle."""
+        assert isinstance(self.body.shape, CircleShape)
+        return math.floor(self.body.shape.circle / self.body.spacing + BORDER)
+
+    def _farthest(self) -> float:
+        """Largest absolute coordinate [m] of the outline."""
+        body, shape = self.body, self.body.shape
+        if isinstance(shape, CircleShape):
+            return max(map(abs, body.position)) + shape.circle
+        if isinstance(shape, BoxShape):
+            x, y = shape.box[0] / 2, shape.box[1] / 2
+            corners: tuple[tuple[float, float], ...] = ((x, y), (-x, y), (-x, -y), (x, -y))
+        else:
+            corners = shape.polygon
+        cosine, sine = turn(body.angle)
+        across, up = body.position
+        return max(max(abs(across + x * cosine - y * sine), abs(up + x * sine + y * cosine)) for x, y in corners)
+
+
+_ALL, _FIRST, _LAST = slice(None), slice(None, -1), slice(1, None)
+# Both ends of the springs of a grid [rows, columns]: to the right, upward, rising to the right, and falling.
+_NEIGHBOURS = (
+    ((_ALL, _FIRST), (_ALL, _LAST)),
+    ((_FIRST, _ALL), (_LAST, _ALL)),
+    ((_FIRST, _FIRST), (_LAST, _LAST)),
+    ((_FIRST, _LAST), (_LAST, _FIRST)),
+)
+
+
+def _neighbours(numbers: Pairs) -> Pairs:
+    """Pairs of a grid of indices (rows, columns), -1 = none: all right, all up, then per cell both diagonals."""
+    right, up, rising, falling = (np.stack([numbers[a], numbers[b]], axis=-1) for a, b in _NEIGHBOURS)
+    diagonals = np.stack([rising, falling], axis=-2)
+    pairs = np.concatenate([part.reshape(-1, 2) for part in (right, up, diagonals)])
+    return pairs[(pairs[:, 0] >= 0) & (pairs[:, 1] >= 0)]
+
+
+def _corners(numbers: Pairs) -> Pairs:
+    """Corners of each cell of a grid (rows, columns, 4), counter-clockwise from the bottom left, -1 = none."""
+    return np.stack([numbers[:-1, :-1], numbers[:-1, 1:], numbers[1:, 1:], numbers[1:, :-1]], axis=-1)
+
+
+def _sides(numbers: Pairs, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Keys a n + b of the sides a to b of squares and triangles, counter-clockwise, and of whole squares' diagonals."""
+    corners = _corners(numbers).reshape(-1, 4)
+    present = corners >= 0
+    full = corners[present.all(axis=1)]
+    sides = [full[:, [k, (k + 1) % 4]] for k in range(4)]
+    for missing in range(4):
+        three = corners[(present.sum(axis=1) == 3) & ~present[:, missing]]
+        around = [(missing + k) % 4 for k in (1, 2, 3)]
+        sides += [three[:, [around[k], around[(k + 1) % 3]]] for k in range(3)]
+    directed = np.concatenate(sides)
+    inner = np.concatenate([full[:, [0, 2]], full[:, [1, 3]]])
+    return directed[:, 0] * count + directed[:, 1], inner[:, 0] * count + inner[:, 1]
+
+
+def _stretched(size: float, points: int) -> Points:
+    if points == 1:
+        return np.zeros(1)
+    return size * np.arange(points, dtype=np.float64) / (points - 1) - size / 2.0

@@ -1,0 +1,85 @@
+"""Mesh: particles and springs one by one."""
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from sandbox.level.faults.level_error import Fault, shown
+from sandbox.level.format.limits import SPEED_LIMIT
+from sandbox.level.format.quantities import Index, Mass, Point, Velocity, unit
+from sandbox.level.kinds.body_def import BENDING, BendingDef, BodyDef
+from sandbox.level.kinds.expansion import Expansion, Floats
+from sandbox.level.kinds.geometry import Pairs, Points
+
+
+class MeshDef(BodyDef):
+    """Particles and springs one by one, for whatever the other bodies do not offer."""
+
+    type: Literal["mesh"] = Field(description="Kind of body.")
+    particles: tuple[Point, ...] = Field(min_length=1, description="Place of each particle.")
+    masses: tuple[Mass, ...] | None = Field(
+        default=None, description="Mass of each particle; null = 1 each.", json_schema_extra=unit("kg")
+    )
+    velocities: tuple[Velocity, ...] | None = Field(
+        default=None,
+        description="Start velocity of each particle, added to the body's `velocity`; null = none.",
+        json_schema_extra=unit("m/s"),
+    )
+    springs: tuple[tuple[Index, Index], ...] = Field(
+        default=(), description="Pairs of particles, by index, that a spring joins; rest lengths are as placed."
+    )
+    bending: BendingDef | None = Field(default=None, description=BENDING)
+
+
+class Mesh(Expansion[MeshDef]):
+    """What its lists say."""
+
+    model = MeshDef
+    size_path = ()
+    plural = "meshes"
+    generation = ""
+
+    @property
+    def form_count(self) -> tuple[int, int]:
+        """As many as are listed."""
+        return len(self.body.particles), len(self.body.springs)
+
+    @cached_property
+    def local_form(self) -> tuple[Points, Pairs]:
+        pairs = np.array(self.body.springs, dtype=np.int64).reshape(-1, 2)
+        return np.array(self.body.particles, dtype=np.float64).reshape(-1, 2), pairs
+
+    @cached_property
+    def mass(self) -> Floats:
+        """Mass [kg] (n,), as listed."""
+        masses = self.body.masses
+        return np.ones(self.form_count[0]) if masses is None else np.array(masses, dtype=np.float64)
+
+    @cached_property
+    def velocity(self) -> Points:
+        """Start velocity [m/s] (n, 2): the body's and each particle's own."""
+        velocity = super().velocity
+        return velocity if self.body.velocities is None else velocity + np.array(self.body.velocities)
+
+    @property
+    def bending(self) -> BendingDef | None:
+        """Whether it is stiff."""
+        return self.body.bending
+
+    def faults(self, path: str) -> Iterator[Fault]:
+        """Whether its lists fit each other, and its springs join particles that exist."""
+        body, size = self.body, len(self.body.particles)
+        for name, values in (("masses", body.masses), ("velocities", body.velocities)):
+            if values is not None and len(values) != size:
+                yield f"{path}.{name}", f"has {len(values)} items for {size} particles; give one each"
+        for axis, base in enumerate(body.velocity):
+            if any(abs(base + velocity[axis]) > SPEED_LIMIT for velocity in body.velocities or ()):
+                yield f"{path}.velocities", f"with the body's velocity one goes beyond the limit {SPEED_LIMIT:.15g}"
+        for index, (a, b) in enumerate(body.springs):
+            if max(a, b) >= size:
+                yield f"{path}.springs.{index}", f"{shown(max(a, b))} is beyond the last particle, {size - 1}"
+            elif a == b:
+                yield f"{path}.springs.{index}", f"joins particle {a} to itself; name two particles"

@@ -1,0 +1,66 @@
+"""Ring: a closed ring of particles that keeps the area inside."""
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from sandbox.level.faults.level_error import Fault
+from sandbox.level.format.quantities import Angle, Inflation, Mass, Point, Size
+from sandbox.level.kinds.body_def import BENDING, BendingDef, BodyDef
+from sandbox.level.kinds.expansion import NO_POLYGONS, Expansion, round_outline_faults
+from sandbox.level.kinds.geometry import Pairs, Points, ring, spokes
+
+
+class RingDef(BodyDef):
+    """A closed ring of particles, which keeps the area inside: a balloon, a tyre."""
+
+    type: Literal["ring"] = Field(description="Kind of body.")
+    position: Point = Field(default=(0.0, 0.0), description="Place of the centre.")
+    angle: Angle = Field(default=0.0, description="Direction of the first particle, counter-clockwise from the right.")
+    radius: Size = Field(description="Radius of the ring.")
+    segments: int = Field(ge=3, description="Number of springs, and of particles.")
+    particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
+    inflation: Inflation | None = Field(
+        default=1.0, description="Area that the ring wants, as a multiple of its own; null = it holds nothing."
+    )
+    bending: BendingDef | None = Field(default=None, description=BENDING)
+
+
+class Ring(Expansion[RingDef]):
+    """One ring, one polygon."""
+
+    model = RingDef
+    plural = "rings"
+    generation = (
+        "- Ring: counter-clockwise from the first particle. Springs: each to the next, the last back to the first."
+    )
+
+    @property
+    def form_count(self) -> tuple[int, int]:
+        """As many particles as springs."""
+        return self.body.segments, self.body.segments
+
+    @cached_property
+    def local_form(self) -> tuple[Points, Pairs]:
+        return self.body.radius * spokes(self.body.angle, self.body.segments), ring(0, self.body.segments)
+
+    def polygons(self) -> Pairs:
+        """All of it, unless it holds nothing."""
+        return NO_POLYGONS if self.body.inflation is None else np.arange(self.body.segments, dtype=np.int64)[None]
+
+    @property
+    def inflation(self) -> float:
+        """Area that it wants, as a multiple of its own."""
+        return 1.0 if self.body.inflation is None else self.body.inflation
+
+    @property
+    def bending(self) -> BendingDef | None:
+        """Whether it is stiff."""
+        return self.body.bending
+
+    def outline_faults(self, path: str) -> Iterator[Fault]:
+        """Whether it stays inside the world."""
+        return round_outline_faults(path, self.body.type, self.body.position, self.body.radius)

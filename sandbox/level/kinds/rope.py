@@ -1,0 +1,72 @@
+"""Rope: a chain of particles."""
+
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from sandbox.level.format.quantities import Length, Mass, Point
+from sandbox.level.kinds.body_def import BENDING, BendingDef, BodyDef, End
+from sandbox.level.kinds.expansion import Expansion, Floats
+from sandbox.level.kinds.geometry import Pairs, Points, chain, row
+
+
+class RopeDef(BodyDef):
+    """A chain of particles, placed evenly from start to end, with a spring between each two neighbours."""
+
+    type: Literal["rope"] = Field(description="Kind of body.")
+    start: Point = Field(description="Place of the first particle, `id.start`.")
+    end: Point = Field(description="Place of the last particle, `id.end`.")
+    segments: int = Field(ge=1, description="Number of springs; the particles are one more.")
+    particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
+    end_mass: Mass | None = Field(default=None, description="Mass of the last particle; null = `particle_mass`.")
+    rest_length: Length | None = Field(default=None, description="Rest length of each spring; null = as placed.")
+    pin: tuple[End, ...] = Field(default=(), max_length=2, description='Ends that are held: any of "start", "end".')
+    bending: BendingDef | None = Field(default=None, description=BENDING)
+
+
+class Rope(Expansion[RopeDef]):
+    """A row of particles with a spring between each two neighbours."""
+
+    model = RopeDef
+    plural = "ropes"
+    generation = "- Rope: from start to end, evenly, whatever its rest length."
+
+    @property
+    def form_count(self) -> tuple[int, int]:
+        """One particle more than springs."""
+        return self.body.segments + 1, self.body.segments
+
+    @cached_property
+    def local_form(self) -> tuple[Points, Pairs]:
+        return row(self.body.start, self.body.end, self.body.segments), chain(self.body.segments)
+
+    @property
+    def named_particles(self) -> dict[str, int]:
+        """Both ends."""
+        return {"start": 0, "end": self.body.segments}
+
+    def named_pins(self) -> list[int]:
+        """The ends that are held."""
+        return [self.named_particles[end] for end in self.body.pin]
+
+    @cached_property
+    def mass(self) -> Floats:
+        """Mass [kg] (n,); the last may have its own."""
+        mass = np.full(self.form_count[0], self.body.particle_mass)
+        if self.body.end_mass is not None:
+            mass[-1] = self.body.end_mass
+        return mass
+
+    @cached_property
+    def rest_length(self) -> Floats:
+        """Rest length [m] (m,), as placed or as given."""
+        if self.body.rest_length is None:
+            return super().rest_length
+        return np.full(len(self.pairs), self.body.rest_length)
+
+    @property
+    def bending(self) -> BendingDef | None:
+        """Whether it is stiff."""
+        return self.body.bending

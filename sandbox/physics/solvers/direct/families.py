@@ -1,0 +1,211 @@
+"""The families of a body's network through one interface: its rows, springs and constraints.
+
+Each family loops over its own arrays; what calls them knows spans alone. Another family is called here, and nowhere
+else in this room.
+"""
+
+from sandbox.physics.integrate import SLOW_SHARE
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.solvers.direct.constraint_terms import (
+    assemble_constraints,
+    constraint_objective,
+    constraint_potential,
+    constraint_slope,
+    linearise_constraints,
+    load_constraints,
+    push_constraints,
+    update_constraints,
+)
+from sandbox.physics.solvers.direct.motion import copy
+from sandbox.physics.solvers.direct.spring_terms import (
+    assemble_springs,
+    assemble_springs_in_fronts,
+    linearise_springs,
+    load_springs,
+    push_springs,
+    spring_objective,
+    spring_potential,
+    spring_slope,
+    update_springs,
+)
+from sandbox.physics.solvers.direct.system import Inputs, Span, State, System
+from sandbox.physics.solvers.linear.fronts import clear_fronts
+from sandbox.physics.world import Floats
+
+# The velocities foreseen before a first solve are v + CHANGE_AHEAD (v - s): of an even change, s lags behind by that of
+# 1 / CHANGE_AHEAD steps. Without it, or with less, smooth turning takes two solves where one is enough.
+CHANGE_AHEAD = SLOW_SHARE / (1.0 - SLOW_SHARE)
+
+
+@inner_kernel
+def load_rows(system: System, state: State, inputs: Inputs, h: float) -> None:
+    """Bring every row to the start of a step of h [s], with a first guess of its end in `trial`."""
+    rows = system.rows
+    free_count = system.matrix.diagonal.shape[0]
+    for r in range(rows.particle.shape[0]):
+        p = rows.particle[r]
+        rows.mass[r] = state.mass[p]
+        rows.inertia[r] = state.mass[p]
+        rows.inverse_mass[r] = state.inverse_mass[p]
+        for axis in range(2):
+            rows.position[r, axis] = state.position[p, axis]
+            rows.moved[r, axis] = state.position[p, axis]
+            rows.target[r, axis] = state.velocity[p, axis]
+            rows.aim[r, axis] = state.velocity[p, axis]
+            rows.start[r, axis] = inputs.start[p, axis]
+            rows.slow[r, axis] = state.slow_velocity[p, axis]
+        if r >= free_count:
+            rows.moved[r, 0] += state.velocity[p, 0] * h
+            rows.moved[r, 1] += state.velocity[p, 1] * h
+        for axis in range(2):
+            rows.trial[r, axis] = rows.start[r, axis]
+            if r < free_count:
+                rows.trial[r, axis] += CHANGE_AHEAD * (rows.start[r, axis] - rows.slow[r, axis])
+
+
+@inner_kernel
+def load(
+    span: Span, system: System, state: State, inputs: Inputs, free: bool, parts: int, h: float
+) -> tuple[bool, bool, float]:
+    """Load a body's springs and constraints: whether one is underdamped, whether norms have a range, and their energy.
+
+    free: nothing of it is pinned. See `load_springs`.
+    """
+    rows = system.rows
+    body_mass = 0.0
+    for r in range(span.first_row, span.last_row):
+        body_mass += rows.mass[r]
+    # Gravity moves a body without anchors as a whole: started there, it falls without rounding.
+    if free:
+        copy(span, rows.target, rows.trial)
+    underdamped, ranged, moved = load_springs(span, system, state, inputs, body_mass, parts, h)
+    if span.last_constraint > span.first_constraint:
+        more_underdamped, more_ranged, more_moved = load_constraints(span, system, state, inputs, parts, h)
+        underdamped = underdamped or more_underdamped
+        ranged = ranged or more_ranged
+        moved += more_moved
+    return underdamped, ranged, moved
+
+
+@inner_kernel
+def linearise(span: Span, system: System, h: float, ahead: float, behind: float) -> None:
+    """Bring a body to a linear system about `trial`, gradients at x + h (ahead v' - behind s)."""
+    linearise_springs(span, system, h, ahead, behind)
+    if span.last_constraint > span.first_constraint:
+        linearise_constraints(span, system, h, ahead, behind)
+
+
+@inner_kernel
+def load_residual(span: Span, system: System) -> None:
+    """The right side M (v* - v') + sum of impulses of one body, into `change`."""
+    rows = system.rows
+    for r in range(span.first_row, span.last_row):
+        rows.change[r, 0] = rows.inertia[r] * (rows.aim[r, 0] - rows.trial[r, 0])
+        rows.change[r, 1] = rows.inertia[r] * (rows.aim[r, 1] - rows.trial[r, 1])
+    push_springs(span, system)
+    if span.last_constraint > span.first_constraint:
+        push_constraints(span, system)
+
+
+@inner_kernel
+def assemble(span: Span, system: System) -> None:
+    """A = M + sum [K n n^T + g (I - n n^T)] + sum K g g^T, of springs and narrow constraints."""
+    rows, matrix = system.rows, system.matrix
+    constrained = span.last_constraint > span.first_constraint
+    if matrix.fronts.of_row[span.first_row] >= 0:
+        clear_fronts(span.first_row, span.last_row, rows.inertia, matrix.fronts)
+        assemble_springs_in_fronts(span, system)
+        if constrained:
+            assemble_constraints(span, system, True)
+    else:
+        for r in range(span.first_row, span.last_row):
+            mass = rows.inertia[r]
+            matrix.diagonal[r, 0] = mass
+            matrix.diagonal[r, 1] = 0.0
+            matrix.diagonal[r, 2] = mass
+        for at in range(matrix.column_start[span.first_row], matrix.column_start[span.last_row]):
+            matrix.lower[at, 0] = 0.0
+            matrix.lower[at, 1] = 0.0
+            matrix.lower[at, 2] = 0.0
+            matrix.lower[at, 3] = 0.0
+        assemble_springs(span, system)
+        if constrained:
+            assemble_constraints(span, system, False)
+
+
+@inner_kernel
+def update(span: Span, system: System, h: float) -> tuple[float, float, bool]:
+    """Bring a body's impulses to `trial`, which D has been added to: energy [J] after the step, misfit, if to refine.
+
+    See `update_springs`.
+    """
+    energy, misfit, rounded = update_springs(span, system, h)
+    if span.last_constraint > span.first_constraint:
+        energy_of_constraints, missed = update_constraints(span, system, h)
+        energy += energy_of_constraints
+        misfit = max(misfit, missed)
+    return energy, misfit, rounded
+
+
+@inner_kernel
+def keep_tension(span: Span, system: System) -> None:
+    """T = max(0, -J) of a body's springs, for what follows."""
+    springs = system.springs
+    for k in range(span.first_spring, span.last_spring):
+        springs.tension[k] = max(0.0, -springs.impulse[k])
+
+
+@inner_kernel
+def find_tension(span: Span, system: System, h: float) -> None:
+    """The same of springs whose impulses are not known at `trial`."""
+    linearise_springs(span, system, h, 1.0, 0.0)
+    keep_tension(span, system)
+
+
+@inner_kernel
+def objective(span: Span, system: System, h: float) -> float:
+    """f(v') of one body at `trial` [J] (spring_terms.py)."""
+    springs_hold = spring_objective(span, system, h)
+    return springs_hold + constraint_objective(span, system, h)
+
+
+@inner_kernel
+def slope(span: Span, system: System) -> float:
+    """The derivative of f along D."""
+    return spring_slope(span, system) + constraint_slope(span, system)
+
+
+@inner_kernel
+def potential(span: Span, system: System, position: Floats, velocity: Floats, time: float, h: float) -> float:
+    """Energy of one body's springs and constraints at position + time velocity [J]."""
+    springs, constraints = system.springs, system.constraints
+    return spring_potential(
+        span, system, position, velocity, springs.norm, springs.rest, time, h
+    ) + constraint_potential(span, system, position, velocity, constraints.norm, time, h)
+
+
+@inner_kernel
+def potential_excess(span: Span, system: System, position: Floats, velocity: Floats, time: float, h: float) -> float:
+    """What the most k adds to that energy [J] (energy_norm.py)."""
+    springs, constraints = system.springs, system.constraints
+    return spring_potential(
+        span, system, position, velocity, springs.norm_excess, springs.rest, time, h
+    ) + constraint_potential(span, system, position, velocity, constraints.norm_excess, time, h)
+
+
+@inner_kernel
+def start_potential(span: Span, system: System, h: float) -> float:
+    """Energy of one body's springs and constraints before forces, pins and drives have moved [J]."""
+    rows, springs, constraints = system.rows, system.springs, system.constraints
+    return spring_potential(
+        span, system, rows.position, rows.start, springs.norm, springs.start_rest, 0.0, h
+    ) + constraint_potential(span, system, rows.position, rows.start, constraints.norm, 0.0, h)
+
+
+@inner_kernel
+def start_excess(span: Span, system: System, h: float) -> float:
+    """What the most k adds to that energy [J]."""
+    rows, springs, constraints = system.rows, system.springs, system.constraints
+    return spring_potential(
+        span, system, rows.position, rows.start, springs.norm_excess, springs.start_rest, 0.0, h
+    ) + constraint_potential(span, system, rows.position, rows.start, constraints.norm_excess, 0.0, h)

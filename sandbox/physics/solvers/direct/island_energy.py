@@ -1,0 +1,266 @@
+"""The energy test of islands: bodies that touch each other together never have more than they had and have saved.
+
+The norm is H = KE(v') + PE(x + h v') of bodies and free particles, less 1/2 sum m (v* - v).(v' - v*): then the work of
+forces in the step is that of their impulses at the mean of the velocities v and v', as in free fall. What a step loses
+is stored, up to a limit, in the energy banks of bodies and particles; to push apart what penetrates is paid from there.
+"""
+
+from sandbox.physics.collision.filter import TERRAIN_GROUP
+from sandbox.physics.collision.terrain_clamp import STOPS, stopped
+from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.solvers.contact.gauss_seidel import CONTACT_SOFTNESS, FASTEST_PUSH, PENETRATION_SHARE, ContactTerms
+from sandbox.physics.solvers.contact.islands import BODIES, ISLANDS, MEMBERS, BodyIslands, Touch
+from sandbox.physics.solvers.direct.energy_bank import (
+    BANK_SHARE,
+    ENERGY_ROUNDING,
+    LAST_HALVINGS,
+    UNDERDAMPED_BANK_SHARE,
+    bank_limit,
+    body_energy,
+)
+from sandbox.physics.solvers.direct.families import find_tension
+from sandbox.physics.solvers.direct.motion import copy, kinetic, scale
+from sandbox.physics.solvers.direct.system import Rows, Span, State, System, span_of
+from sandbox.physics.world import Floats
+
+# Halvings of what moves within bodies that fail the test, before all that moves is slowed down.
+INNER_HALVINGS = 3
+# k x^2 / 2 of a contact is this, times (x / h)^2 over its response: what its penetration x may be paid back.
+STORED = 0.5 * PENETRATION_SHARE / CONTACT_SOFTNESS
+
+
+@inner_kernel
+def clamp_rows(span: Span, rows: Rows, state: State, h: float) -> bool:
+    """Cut the velocities of one body's particles that would cross terrain; whether any does."""
+    found = False
+    for r in range(span.first_row, span.last_row):
+        if not state.collides[rows.particle[r]] & TERRAIN_GROUP:
+            continue
+        wx = h * rows.trial[r, 0]
+        wy = h * rows.trial[r, 1]
+        stops, x, y = stopped(rows.position[r, 0], rows.position[r, 1], wx, wy, state.terrain)
+        if stops > 0:
+            found = True
+            rows.trial[r, 0] = 0.0 if stops > STOPS else rows.trial[r, 0] + (x - wx) / h
+            rows.trial[r, 1] = 0.0 if stops > STOPS else rows.trial[r, 1] + (y - wy) / h
+    return found
+
+
+@inner_kernel
+def clamp_free(islands: BodyIslands, state: State, h: float) -> None:
+    """Cut the velocities of free particles that would cross terrain."""
+    for i in range(islands.counts[MEMBERS] - islands.counts[BODIES]):
+        p = islands.free[i]
+        if not state.collides[p] & TERRAIN_GROUP:
+            continue
+        wx = h * (islands.given[p, 0] + islands.change[p, 0])
+        wy = h * (islands.given[p, 1] + islands.change[p, 1])
+        stops, x, y = stopped(state.position[p, 0], state.position[p, 1], wx, wy, state.terrain)
+        if stops > STOPS:
+            islands.change[p, 0] = -islands.given[p, 0]
+            islands.change[p, 1] = -islands.given[p, 1]
+        elif stops > 0:
+            islands.change[p, 0] += (x - wx) / h
+            islands.change[p, 1] += (y - wy) / h
+
+
+@inner_kernel
+def work_of_forces(span: Span, rows: Rows, underdamped: bool) -> float:
+    """What the norm of a body takes off its energy after the step [J]; underdamped ones are topped up by its work."""
+    total = 0.0
+    for r in range(span.first_row, span.last_row):
+        total += rows.mass[r] * (
+            (rows.target[r, 0] - rows.start[r, 0]) * (rows.trial[r, 0] - rows.target[r, 0])
+            + (rows.target[r, 1] - rows.start[r, 1]) * (rows.trial[r, 1] - rows.target[r, 1])
+        )
+    return 0.5 * total * (1.0 + UNDERDAMPED_BANK_SHARE if underdamped else 1.0)
+
+
+@inner_kernel
+def measure_body(k: int, span: Span, system: System, islands: BodyIslands, held: float) -> None:
+    """Note the norm of one body after the step, whose springs then hold so much [J]."""
+    rows = system.rows
+    underdamped = system.bodies.underdamped[islands.body[k]]
+    islands.after[k] = kinetic(span, rows.mass, rows.trial) + held - work_of_forces(span, rows, underdamped)
+
+
+@inner_kernel
+def open_free(islands: BodyIslands, state: State) -> None:
+    """The energies of free particles before the step, and what their banks hold."""
+    bodies = islands.counts[BODIES]
+    for i in range(islands.counts[MEMBERS] - bodies):
+        p = islands.free[i]
+        k = bodies + i
+        ux, uy = islands.given[p, 0], islands.given[p, 1]
+        islands.before[k] = 0.5 * state.mass[p] * (ux * ux + uy * uy)
+        islands.held[k] = max(0.0, state.energy_bank[p])
+        islands.fresh[k] = state.energy_bank[p] < 0.0
+
+
+@inner_kernel
+def _stored(c: int, contacts: Contacts, terms: ContactTerms, h: float) -> float:
+    # What the penetration of a contact stores [J].
+    if not (contacts.gap[c] < 0.0 and terms.normal[c] > 0.0):
+        return 0.0
+    depth = min(-contacts.gap[c] / h, FASTEST_PUSH)
+    return STORED * depth * depth / terms.normal[c]
+
+
+@inner_kernel
+def credit_penetration(contacts: Contacts, touch: Touch, inverse_mass: Floats, h: float) -> None:
+    """Where a bank is begun, what penetrates then and there stores counts as energy of the start."""
+    islands = touch.islands
+    for c in range(contacts.particle.shape[0]):
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p >= 0 and inverse_mass[p] > 0.0 and islands.fresh[islands.member[p]]:
+                islands.held[islands.member[p]] += _stored(c, contacts, touch.terms, h)
+                break
+
+
+@inner_kernel
+def check_energies(islands: BodyIslands, mass: Floats, start: Floats) -> bool:
+    """Check the energy of every island; whether any fails."""
+    bodies = islands.counts[BODIES]
+    for island in range(islands.counts[ISLANDS]):
+        islands.total[island] = 0.0
+        islands.allowed[island] = 0.0
+    for i in range(islands.counts[MEMBERS] - bodies):
+        p = islands.free[i]
+        ux, uy = islands.given[p, 0], islands.given[p, 1]
+        vx, vy = ux + islands.change[p, 0], uy + islands.change[p, 1]
+        work = (ux - start[p, 0]) * islands.change[p, 0] + (uy - start[p, 1]) * islands.change[p, 1]
+        islands.after[bodies + i] = 0.5 * mass[p] * (vx * vx + vy * vy - work)
+    for k in range(islands.counts[MEMBERS]):
+        islands.total[islands.island[k]] += islands.after[k]
+        islands.allowed[islands.island[k]] += islands.before[k] * (1.0 + ENERGY_ROUNDING) + islands.held[k]
+    failing = False
+    for island in range(islands.counts[ISLANDS]):
+        islands.fails[island] = not islands.total[island] <= islands.allowed[island]
+        failing = failing or islands.fails[island]
+    return failing
+
+
+@inner_kernel
+def _member_of(c: int, contacts: Contacts, islands: BodyIslands, inverse_mass: Floats) -> int:
+    # The first body or free particle of a contact that can move, by its place among the members; -1: none.
+    for end in range(3):
+        p, _ = weight_of(contacts, c, end)
+        if p >= 0 and inverse_mass[p] > 0.0:
+            return islands.member[p]
+    return -1
+
+
+@inner_kernel
+def only_hold(contacts: Contacts, touch: Touch, inverse_mass: Floats, h: float) -> None:
+    """Let contacts of islands that fail begin with no impulse, and neither push apart nor bounce."""
+    # From there each sweep that is not hastened takes energy: it lowers 1/2 J.W J + J.u, which is what contacts add.
+    islands = touch.islands
+    for c in range(contacts.particle.shape[0]):
+        k = _member_of(c, contacts, islands, inverse_mass)
+        if k >= 0 and islands.fails[islands.island[k]]:
+            touch.terms.bias[c] = max(touch.terms.bias[c], max(0.0, contacts.gap[c]) / h)
+            contacts.impulse[c, 0] = 0.0
+            contacts.impulse[c, 1] = 0.0
+
+
+@inner_kernel
+def _damp_within(span: Span, rows: Rows) -> None:
+    # Halve the velocities within one body, v = mean + (v - mean) / 2.
+    x = 0.0
+    y = 0.0
+    total = 0.0
+    for r in range(span.first_row, span.last_row):
+        total += rows.mass[r]
+        x += rows.mass[r] * rows.trial[r, 0]
+        y += rows.mass[r] * rows.trial[r, 1]
+    if total > 0.0:
+        x /= total
+        y /= total
+    for r in range(span.first_row, span.last_row):
+        rows.trial[r, 0] = x + 0.5 * (rows.trial[r, 0] - x)
+        rows.trial[r, 1] = y + 0.5 * (rows.trial[r, 1] - y)
+
+
+@inner_kernel
+def _damp_bodies(islands: BodyIslands, system: System, state: State, halving: int, h: float) -> None:
+    # One halving of every body of an island that fails.
+    bodies, rows = system.bodies, system.rows
+    for k in range(islands.counts[BODIES]):
+        if not islands.fails[islands.island[k]]:
+            continue
+        body = islands.body[k]
+        span = span_of(system, body)
+        if halving == 0:
+            islands.due[k] = True
+            copy(span, rows.trial, islands.unpushed)
+        if halving < INNER_HALVINGS:
+            if not bodies.anchored[body]:
+                _damp_within(span, rows)
+        else:
+            if halving == INNER_HALVINGS:
+                copy(span, islands.unpushed, rows.trial)
+            scale(span, 0.5 if halving < LAST_HALVINGS else 0.0, rows.trial)
+        clamp_rows(span, rows, state, h)
+        held = body_energy(span, system, h)
+        islands.after[k] = held - work_of_forces(span, rows, bodies.underdamped[body])
+
+
+@inner_kernel
+def damp_islands(islands: BodyIslands, system: System, state: State, start: Floats, h: float) -> None:
+    """Slow down what moves within the bodies of islands that fail, else all that moves, until they pass."""
+    # All that moves slowly enough along what contacts and springs want loses energy, and at rest they pass.
+    bodies = islands.counts[BODIES]
+    for k in range(bodies):
+        islands.due[k] = False
+    for halving in range(LAST_HALVINGS + 1):
+        _damp_bodies(islands, system, state, halving, h)
+        for i in range(islands.counts[MEMBERS] - bodies):
+            if halving >= INNER_HALVINGS and islands.fails[islands.island[bodies + i]]:
+                p = islands.free[i]
+                factor = 0.5 if halving < LAST_HALVINGS else 0.0
+                for axis in range(2):
+                    v = islands.given[p, axis] + islands.change[p, axis]
+                    islands.change[p, axis] = factor * v - islands.given[p, axis]
+        if not check_energies(islands, state.mass, start):
+            break
+    for k in range(bodies):
+        if islands.due[k]:
+            find_tension(span_of(system, islands.body[k]), system, h)
+
+
+@inner_kernel
+def _load_limits(contacts: Contacts, touch: Touch, system: System, inverse_mass: Floats, h: float) -> None:
+    # The most that each bank may hold: a share of the member's energy, and what penetrations store.
+    islands = touch.islands
+    for k in range(islands.counts[MEMBERS]):
+        if k < islands.counts[BODIES]:
+            body = islands.body[k]
+            islands.limit[k] = bank_limit(body, span_of(system, body), system, h)
+        else:
+            islands.limit[k] = BANK_SHARE * islands.before[k]
+    for c in range(contacts.particle.shape[0]):
+        k = _member_of(c, contacts, islands, inverse_mass)
+        if k >= 0:
+            islands.limit[k] += _stored(c, contacts, touch.terms, h)
+
+
+@inner_kernel
+def store_energies(contacts: Contacts, touch: Touch, system: System, state: State, h: float) -> None:
+    """Store what each island has left of what it was allowed, up to the limits of its banks."""
+    islands, bodies = touch.islands, system.bodies
+    _load_limits(contacts, touch, system, state.inverse_mass, h)
+    for k in range(islands.counts[MEMBERS]):
+        island = islands.island[k]
+        limit = islands.limit[k]
+        is_body = k < islands.counts[BODIES]
+        # As in solve.py: an inverted body keeps all that it lost for the way back to its form.
+        if is_body and bodies.inverted[islands.body[k]] and not bodies.anchored[islands.body[k]]:
+            limit = max(limit, islands.held[k] + islands.before[k] - islands.after[k])
+        stored = max(0.0, min(islands.allowed[island] - islands.total[island], limit))
+        islands.allowed[island] -= stored
+        if is_body:
+            state.energy_bank[bodies.lowest[islands.body[k]]] = stored
+        else:
+            state.energy_bank[islands.free[k - islands.counts[BODIES]]] = stored

@@ -1,0 +1,271 @@
+"""Islands of bodies that contacts touch: each body is solved as ever, and pushed through the response of its factor.
+
+A v' = b + J^T lambda is what the minimum of spring_terms.py's f becomes where contacts push. The factor of A gives the
+Delassus block W = P A^-1 P^T of the particles P of a body that something touches; gauss_seidel.py finds lambda with it,
+and one more substitution brings the impulses to the whole body. The energy test is that of solve.py for all bodies
+together that touch each other, so that one may take what another gives.
+"""
+
+from typing import Any
+
+from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.jit import contents, inner_kernel, kernel
+from sandbox.physics.solvers.contact.gauss_seidel import (
+    ContactTerms,
+    Delassus,
+    load_biases,
+    load_responses,
+    solve_contacts,
+)
+from sandbox.physics.solvers.contact.islands import (
+    BODIES,
+    MEMBERS,
+    BodyIslands,
+    IslandRoom,
+    Touch,
+    find_body_islands,
+    new_islands,
+)
+from sandbox.physics.solvers.direct.energy_bank import is_open
+from sandbox.physics.solvers.direct.factor import respond, solve_linear
+from sandbox.physics.solvers.direct.families import find_tension, keep_tension, linearise, load_rows, potential, update
+from sandbox.physics.solvers.direct.island_energy import (
+    check_energies,
+    clamp_free,
+    clamp_rows,
+    credit_penetration,
+    damp_islands,
+    measure_body,
+    only_hold,
+    open_free,
+    store_energies,
+)
+from sandbox.physics.solvers.direct.layout import SystemLayout, layout_of
+from sandbox.physics.solvers.direct.motion import copy, hold_spin, scale
+from sandbox.physics.solvers.direct.response import load_block
+from sandbox.physics.solvers.direct.shape_matching import release_shape
+from sandbox.physics.solvers.direct.step_body import AHEAD, LINEAR_SOLVES, MISFIT_RATE, open_body
+from sandbox.physics.solvers.direct.system import InputArrays, Inputs, Rows, Span, State, System, span_of
+from sandbox.physics.world import Floats, World
+
+# Sweeps over the contacts for each linear solve. More costs time, fewer leaves piles soft and restless.
+SWEEPS = 20
+# What all sweeps of a step of h [s] may cost: h WORK pushes of an impulse at a particle, some 10 ms of a tick at 60 Hz.
+# Where it is spent the step ends, in its energy test; a solve has this many sweeps in any case. Less leaves crowds
+# soft, more makes piles of inverted bodies slow.
+WORK = 7.2e7
+FEWEST_SWEEPS = 4
+# Solves in which contacts only hold.
+HOLDS = 2
+
+
+@inner_kernel
+def _open(touch: Touch, system: System, state: State, inputs: Inputs, parts: int, h: float) -> None:
+    # Load the families and energies of every body that is touched, and the free particles; no contact has acted.
+    islands, bodies = touch.islands, system.bodies
+    for p in range(state.velocity.shape[0]):
+        for axis in range(2):
+            islands.given[p, axis] = state.velocity[p, axis]
+            islands.change[p, axis] = 0.0
+    for k in range(islands.counts[BODIES]):
+        body = islands.body[k]
+        span = span_of(system, body)
+        islands.fresh[k] = not is_open(span, system, state.energy_bank)
+        open_body(body, span, system, state, inputs, parts, h)
+        islands.before[k] = bodies.before[body]
+        islands.held[k] = bodies.held[body]
+        islands.due[k] = True
+    open_free(islands, state)
+
+
+@inner_kernel
+def _solve_due(touch: Touch, system: System, h: float, ahead: float, behind: float) -> None:
+    # Linearise and factor the bodies that are due: their velocities without contacts, and their Delassus blocks.
+    islands, delassus = touch.islands, touch.delassus
+    for k in range(islands.counts[BODIES]):
+        if not islands.due[k]:
+            continue
+        body = islands.body[k]
+        span = span_of(system, body)
+        linearise(span, system, h, ahead, behind)
+        solve_linear(span, system)
+        turns = span.last_constraint > span.first_constraint and not system.bodies.anchored[body]
+        _leave_unpushed(span, turns, system.rows, islands.unpushed)
+        load_block(k, span, system, delassus, islands.row, islands.pushed)
+        for i in range(delassus.start[k], delassus.start[k + 1]):
+            p = delassus.point[i]
+            islands.given[p, 0] = islands.unpushed[islands.row[p], 0]
+            islands.given[p, 1] = islands.unpushed[islands.row[p], 1]
+
+
+@inner_kernel
+def _leave_unpushed(span: Span, turns: bool, rows: Rows, unpushed: Floats) -> None:
+    # What a body does without contacts, which gain it no spin; `trial` stays where the body was linearised.
+    copy(span, rows.trial, rows.best)
+    for r in range(span.first_row, span.last_row):
+        rows.trial[r, 0] += rows.change[r, 0]
+        rows.trial[r, 1] += rows.change[r, 1]
+    if turns:
+        hold_spin(span, rows)
+    copy(span, rows.trial, unpushed)
+    copy(span, rows.best, rows.trial)
+
+
+@inner_kernel
+def _clear(vector: Floats) -> None:
+    for r in range(vector.shape[0]):
+        vector[r, 0] = 0.0
+        vector[r, 1] = 0.0
+
+
+@inner_kernel
+def _cost_of(contacts: Contacts, delassus: Delassus) -> int:
+    # What one sweep costs: the particles that answer to every impulse.
+    cost = 0
+    for c in range(contacts.particle.shape[0]):
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p >= 0:
+                k = delassus.block[p]
+                cost += 1 if k < 0 else delassus.start[k + 1] - delassus.start[k]
+    return cost
+
+
+@inner_kernel
+def _push_all(
+    contacts: Contacts, islands: BodyIslands, terms: ContactTerms, delassus: Delassus, inverse_mass: Floats,
+    sweeps: int, hasten: bool,
+) -> None:  # fmt: skip
+    # Sweep all contacts; the impulses J^T lambda of bodies are left in `pushed`.
+    load_responses(contacts, terms, inverse_mass, delassus)
+    _clear(islands.change)
+    solve_contacts(contacts, terms, islands.given, islands.change, inverse_mass, delassus, sweeps, hasten)
+    _clear(islands.pushed)
+    for c in range(contacts.particle.shape[0]):
+        jn = contacts.impulse[c, 0]
+        jt = contacts.impulse[c, 1]
+        jx = jn * contacts.normal[c, 0] - jt * contacts.normal[c, 1]
+        jy = jn * contacts.normal[c, 1] + jt * contacts.normal[c, 0]
+        for end in range(3):
+            p, weight = weight_of(contacts, c, end)
+            if p >= 0 and islands.row[p] >= 0:
+                islands.pushed[islands.row[p], 0] += weight * jx
+                islands.pushed[islands.row[p], 1] += weight * jy
+
+
+@inner_kernel
+def _answer(islands: BodyIslands, system: System, state: State, h: float) -> None:
+    # v' = unpushed + A^-1 J^T lambda of every body, clamped at terrain; its energy and misfit.
+    rows = system.rows
+    for k in range(islands.counts[BODIES]):
+        span = span_of(system, islands.body[k])
+        respond(span, system, islands.pushed)
+        for r in range(span.first_row, span.last_row):
+            for axis in range(2):
+                v = islands.unpushed[r, axis] + islands.pushed[r, axis]
+                rows.change[r, axis] = v - rows.trial[r, axis]
+                rows.trial[r, axis] = v
+        held, misfit, _ = update(span, system, h)
+        keep_tension(span, system)
+        if clamp_rows(span, rows, state, h):
+            held = potential(span, system, rows.position, rows.trial, h, h)
+            find_tension(span, system, h)
+        measure_body(k, span, system, islands, held)
+        islands.misfit[k] = misfit
+    clamp_free(islands, state, h)
+
+
+@inner_kernel
+def _finish(islands: BodyIslands, system: System, state: State) -> None:
+    bodies, rows, springs = system.bodies, system.rows, system.springs
+    for k in range(islands.counts[BODIES]):
+        body = islands.body[k]
+        for r in range(bodies.row_start[body], bodies.row_start[body + 1]):
+            state.velocity[rows.particle[r], 0] = rows.trial[r, 0]
+            state.velocity[rows.particle[r], 1] = rows.trial[r, 1]
+        for s in range(bodies.spring_start[body], bodies.spring_start[body + 1]):
+            state.tension[springs.slot[s]] = springs.tension[s]
+    for i in range(islands.counts[MEMBERS] - islands.counts[BODIES]):
+        p = islands.free[i]
+        state.velocity[p, 0] = islands.given[p, 0] + islands.change[p, 0]
+        state.velocity[p, 1] = islands.given[p, 1] + islands.change[p, 1]
+
+
+@inner_kernel
+def _begin_again(islands: BodyIslands, system: System, share: float) -> None:
+    # Bring what fails to this share of v*, without its shape matching.
+    bodies, rows = system.bodies, system.rows
+    for k in range(islands.counts[BODIES]):
+        if islands.due[k]:
+            body = islands.body[k]
+            span = span_of(system, body)
+            copy(span, rows.target, rows.trial)
+            scale(span, share, rows.trial)
+            if bodies.matched[body]:
+                release_shape(span, rows)
+                bodies.matched[body] = False
+
+
+@kernel
+def _solve_islands(
+    contacts: Contacts, lent_room: Any, lent_system: Any, lent_state: Any, stiffness: Floats, damping: Floats,
+    element_stiffness: Floats, element_damping: Floats, start: Floats, start_length: Floats, parts: int, h: float,
+) -> None:  # fmt: skip
+    # Load all rows, and bring what contacts touch to the end of a step of h [s].
+    (system,) = contents(lent_system)
+    (state,) = contents(lent_state)
+    (touch,) = contents(lent_room)
+    inputs = Inputs(stiffness, damping, element_stiffness, element_damping, start, start_length)
+    islands, terms, delassus = touch.islands, touch.terms, touch.delassus
+    load_rows(system, state, inputs, h)
+    load_biases(contacts, terms, h)
+    _open(touch, system, state, inputs, parts, h)
+    affordable = int(WORK * h) // max(1, _cost_of(contacts, delassus))
+    failing = False
+    # Linear solves while springs miss the lengths predicted, a second where the test fails; then contacts only hold, at
+    # Newton steps on f from v* and from rest: the last one takes energy if it is made short enough.
+    stage = 0
+    while stage < LINEAR_SOLVES + HOLDS:
+        if stage < LINEAR_SOLVES:
+            _solve_due(touch, system, h, AHEAD, AHEAD)
+        else:
+            only_hold(contacts, touch, state.inverse_mass, h)
+            _begin_again(islands, system, 1.0 if stage == LINEAR_SOLVES else 0.0)
+            _solve_due(touch, system, h, 1.0, 0.0)
+        sweeps = max(FEWEST_SWEEPS, min(SWEEPS, affordable))
+        _push_all(contacts, islands, terms, delassus, state.inverse_mass, sweeps, stage < LINEAR_SOLVES)
+        affordable -= sweeps
+        if stage == 0:
+            credit_penetration(contacts, touch, state.inverse_mass, h)
+        _answer(islands, system, state, h)
+        failing = check_energies(islands, state.mass, inputs.start)
+        inexact = False
+        for k in range(islands.counts[BODIES]):
+            missed = stage < LINEAR_SOLVES - 1 and affordable > 0 and islands.misfit[k] > MISFIT_RATE * h * h
+            inexact = inexact or missed
+            islands.due[k] = missed or islands.fails[islands.island[k]]
+        if not (inexact or failing):
+            break
+        stage += 1
+        if failing and affordable <= 0:
+            stage = max(stage, LINEAR_SOLVES + HOLDS - 1)
+        elif failing and not inexact and stage > 1:
+            stage = max(stage, LINEAR_SOLVES)
+    if failing:
+        damp_islands(islands, system, state, inputs.start, h)
+    store_energies(contacts, touch, system, state, h)
+    _finish(islands, system, state)
+
+
+def _islands_of(world: World) -> IslandRoom:
+    return new_islands(layout_of(world).system, world.particle_count)
+
+
+def solve_touched(
+    contacts: Contacts, world: World, layout: SystemLayout, state: Any, inputs: InputArrays, parts: int, h: float
+) -> None:
+    """Solve the islands of what contacts touch, and mark their bodies as touched; see `solve`."""
+    room = world.derived(_islands_of)
+    find_body_islands(contacts, state, layout.lent, room.lent)
+    room.fit(contacts)
+    _solve_islands(contacts, room.lent, layout.lent, state, *inputs, parts, h)

@@ -1,0 +1,140 @@
+"""One body's step in the direct solver, where nothing touches it.
+
+A step is one linear solve with the springs' directions taken ahead of the present ones, less the slow part of the
+velocity: that damps fast vibration and leaves slow turning alone. It is taken only if the body's energy stays within
+what it had plus what its bank holds of earlier losses; else f itself is minimised.
+"""
+
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.solvers.direct.energy_bank import (
+    ENERGY_ROUNDING,
+    LAST_HALVINGS,
+    bank_limit,
+    body_energy,
+    open_bank,
+)
+from sandbox.physics.solvers.direct.factor import refine, solve_linear
+from sandbox.physics.solvers.direct.families import find_tension, keep_tension, linearise, load, update
+from sandbox.physics.solvers.direct.motion import copy, hold_spin, kinetic, scale
+from sandbox.physics.solvers.direct.newton import minimise
+from sandbox.physics.solvers.direct.shape_matching import find_inverted, match_shape, release_shape
+from sandbox.physics.solvers.direct.system import Inputs, Span, State, System
+from sandbox.physics.world import Floats
+
+# Directions are those at x + h AHEAD (v' - s). Lower explodes taut ropes, higher gains nothing.
+AHEAD = 0.75
+# A body of which a spring, after a linear solve, misses the length that was predicted by more than this share of it
+# times h^2 [1/s^2] (1e-4 at 60 Hz) gets another: what turns fast, a whipping tip or a dragged end, stretches 5 to 20
+# times less for it. Lower costs time on every swing, higher stretch; with h^2 so that substeps keep their gain.
+MISFIT_RATE = 0.36
+# Linear solves of a step at most. With 2, whipping ropes stretch up to 10 times as much and a hundredth of their steps
+# has to be minimised; a fourth is hardly ever asked for.
+LINEAR_SOLVES = 3
+
+
+@inner_kernel
+def open_body(body: int, span: Span, system: System, state: State, inputs: Inputs, parts: int, h: float) -> None:
+    """Load a body's springs and constraints, its energies and its bank, and match its shape where it is inverted."""
+    bodies, rows = system.bodies, system.rows
+    underdamped, ranged, moved = load(span, system, state, inputs, not bodies.anchored[body], parts, h)
+    bodies.underdamped[body] = underdamped
+    bodies.ranged[body] = ranged
+    bodies.before[body] = kinetic(span, rows.mass, rows.target) + moved
+    bodies.held[body] = open_bank(body, span, system, state.energy_bank, moved, h)
+    bodies.inverted[body] = False
+    bodies.matched[body] = False
+    if span.last_constraint > span.first_constraint and find_inverted(body, span, system):
+        bodies.inverted[body] = True
+        bodies.matched[body] = match_shape(body, span, system, h)
+
+
+@inner_kernel
+def _take_candidate(span: Span, system: System, free: bool, h: float) -> tuple[float, float]:
+    # v' = v + D;  J = q - K n.(D_b - D_a);  T = max(0, -J) for what follows. Returned: H, and the largest misfit.
+    rows = system.rows
+    linearise(span, system, h, AHEAD, AHEAD)
+    solve_linear(span, system)
+    held = 0.0
+    misfit = 0.0
+    for _refinement in range(2):
+        for r in range(span.first_row, span.last_row):
+            rows.trial[r, 0] += rows.change[r, 0]
+            rows.trial[r, 1] += rows.change[r, 1]
+        if free and span.last_constraint > span.first_constraint:
+            hold_spin(span, rows)
+        held, misfit, rounded = update(span, system, h)
+        if not rounded:
+            break
+        refine(span, system)
+    keep_tension(span, system)
+    return kinetic(span, rows.mass, rows.trial) + held, misfit
+
+
+@inner_kernel
+def _solve_within(body: int, span: Span, system: System, allowed: float, h: float) -> float:
+    # Linear solves until one fits and has no more energy than is allowed; the energy of the last that is taken.
+    bodies, rows = system.bodies, system.rows
+    free = not bodies.anchored[body]
+    after = 0.0
+    solves = 0
+    while solves < LINEAR_SOLVES:
+        once = after
+        within = solves > 0 and once <= allowed
+        if within:
+            copy(span, rows.trial, rows.best)
+        after, misfit = _take_candidate(span, system, free, h)
+        solves += 1
+        if within and not after <= allowed:
+            copy(span, rows.best, rows.trial)
+            find_tension(span, system, h)
+            after = once
+            break
+        if after <= allowed and not misfit > MISFIT_RATE * h * h:
+            break
+        if bodies.matched[body] and solves == LINEAR_SOLVES and not after <= allowed:
+            # Without its target, from the start.
+            bodies.matched[body] = False
+            solves = 0
+            release_shape(span, rows)
+            copy(span, rows.target, rows.trial)
+    return after
+
+
+@inner_kernel
+def step_body(body: int, span: Span, system: System, energy_bank: Floats, h: float) -> None:
+    """Bring a body that was opened to the end of a step of h [s], in `trial`, and its bank."""
+    bodies = system.bodies
+    before = bodies.before[body]
+    held = bodies.held[body]
+    allowed = before * (1.0 + ENERGY_ROUNDING) + held
+    after = _solve_within(body, span, system, allowed, h)
+    if not after <= allowed:
+        minimise(span, system, h)
+        after = body_energy(span, system, h)
+        if not after <= allowed:
+            after = _damp(span, system, allowed, h)
+    limit = bank_limit(body, span, system, h)
+    saved = held + before - after
+    # An inverted body keeps all that it lost for the way back to its form; one that hands move, no more than others do.
+    if not (bodies.inverted[body] and not bodies.anchored[body]):
+        saved = min(saved, limit)
+    energy_bank[bodies.lowest[body]] = saved if saved > 0.0 else 0.0
+
+
+@inner_kernel
+def _damp(span: Span, system: System, allowed: float, h: float) -> float:
+    # Halve the free velocities until the energy test holds; at rest it always does.
+    rows = system.rows
+    after = 0.0
+    for _halving in range(LAST_HALVINGS):
+        scale(span, 0.5, rows.trial)
+        after = body_energy(span, system, h)
+        if after <= allowed:
+            break
+    if not after <= allowed:
+        for r in range(span.first_row, span.last_row):
+            rows.trial[r, 0] = 0.0
+            rows.trial[r, 1] = 0.0
+        after = body_energy(span, system, h)
+    find_tension(span, system, h)
+    return after

@@ -1,0 +1,125 @@
+"""Collisions of a step: their arrays are made once, have room that grows, and change no bit of a run."""
+
+import copy
+
+import numpy as np
+import pytest
+
+from sandbox.physics.collision import collide
+from sandbox.physics.collision.collide import Collisions, collisions_of, last_contacts
+from sandbox.physics.collision.types import NO_CONTACTS
+from sandbox.physics.snapshot import restore, state_hash, take
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.step import step
+from sandbox.physics.terrain import Chain
+from tests.support.contact_scenes import add_discs, add_jelly, world
+from tests.support.physics_scenes import run, scaled
+
+PIT = Chain([(-0.9, 6.0), (-0.9, 0.0), (0.9, 0.0), (0.9, 6.0)])
+
+
+def heap(jelly=True, **settings):
+    """Discs that fall into a pit, with a block of jelly or alone."""
+    w, count = world(PIT, **settings), scaled(60, 10)
+    generator = np.random.default_rng(4)
+    k = np.arange(count)
+    points = np.stack([-0.7 + 0.28 * (k % 6), 0.5 + 0.25 * (k // 6)], axis=1)
+    add_discs(w, points + generator.uniform(0.0, 0.05, points.shape), radius=generator.uniform(0.07, 0.11, count))
+    if jelly:
+        add_jelly(w, (0.0, 3.5), size=(0.3, 0.3))
+    return w
+
+
+def hashes(w, ticks):
+    """The hash of the state after each tick."""
+    found = []
+    for _ in range(ticks):
+        step(w)
+        found.append(state_hash(w))
+    return found
+
+
+@pytest.mark.parametrize("substeps", [1, 4])
+@pytest.mark.parametrize("jelly", [False, True])
+def test_a_run_whose_arrays_grow_on_the_way_has_the_bits_of_one_with_room_from_the_start(monkeypatch, substeps, jelly):
+    ticks = scaled(120, 30)
+    monkeypatch.setattr(collide, "LEAST_ROOM", 5000)
+    ample = hashes(heap(jelly, substeps=substeps), ticks)
+    monkeypatch.setattr(collide, "LEAST_ROOM", 1)
+    monkeypatch.setattr(collide, "MORE_ROOM", 1)
+    w = heap(jelly, substeps=substeps)
+    rooms = []
+    for expected in ample:
+        step(w)
+        assert state_hash(w) == expected
+        rooms.append(len(collisions_of(w).room.contacts.particle))
+    assert len(set(rooms)) > 2 and rooms[-1] < 5000
+
+
+def test_a_tick_of_a_heap_at_rest_makes_no_array():
+    w = world(PIT)
+    add_discs(w, [(-0.4 + 0.3 * k, 0.1) for k in range(4)])
+    run(w, 60)
+    made = collisions_of(w)
+    before = made, made.room, made.items, made.kept, w.contact_particle, w.contact_feature, w.contact_impulse
+    run(w, 10)
+    made = collisions_of(w)
+    after = made, made.room, made.items, made.kept, w.contact_particle, w.contact_feature, w.contact_impulse
+    assert len(w.contact_particle) == 4
+    assert all(one is other for one, other in zip(before, after, strict=True))
+
+
+def test_a_run_goes_on_with_the_same_bits_after_slots_were_added_and_taken_back_while_things_touch():
+    w = heap()
+    run(w, scaled(60, 25))
+    kept = take(w)
+    expected = hashes(w, 8)
+    assert len(w.contact_particle) > 2
+    restore(w, kept)
+    add_discs(w, [(0.1, 2.6), (0.2, 2.9)], velocity=(0.0, -8.0))
+    with_more = hashes(w, 8)
+    assert not set(with_more) & set(expected)
+    restore(w, kept)
+    assert hashes(w, 8) == expected
+    restore(w, kept)
+    add_discs(w, [(0.1, 2.6), (0.2, 2.9)], velocity=(0.0, -8.0))
+    assert hashes(w, 8) == with_more
+
+
+def test_a_copy_of_a_world_in_which_things_touch_goes_its_own_way_with_the_same_bits():
+    w = heap()
+    run(w, scaled(60, 25))
+    other = copy.deepcopy(w)
+    expected = hashes(w, 5)
+    assert len(other.contact_particle) > 2
+    assert hashes(other, 5) == expected
+
+
+def test_impulses_that_are_dropped_between_ticks_are_not_remembered():
+    w = heap()
+    run(w, scaled(60, 25))
+    other = copy.deepcopy(w)
+    for changed in (w, other):
+        changed.contact_impulse[:] = 0.0
+    other.keep_contacts(other.contact_particle.copy(), other.contact_feature.copy(), other.contact_impulse.copy())
+    assert hashes(w, 3) == hashes(other, 3)
+
+
+def test_the_contacts_of_the_last_step_are_those_of_the_state():
+    w = heap()
+    run(w, scaled(60, 25))
+    contacts = last_contacts(w)
+    assert len(contacts.gap) > 2
+    assert contacts.particle.tolist() == w.contact_particle.tolist()
+    assert contacts.impulse.tolist() == w.contact_impulse.tolist()
+    w.cut([0])
+    assert len(last_contacts(w).gap) == 0
+    assert last_contacts(world()) is NO_CONTACTS
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_world_in_which_nothing_is_held_has_the_bits_of_one_that_is_taken_part_by_part(solver, monkeypatch):
+    ticks = scaled(90, 20)
+    expected = hashes(heap(jelly=False, solver=solver, substeps=2, drag=0.3, wind=(2.0, 0.5)), ticks)
+    monkeypatch.setattr(Collisions, "is_free", property(lambda self: False, lambda self, value: None), raising=False)
+    assert hashes(heap(jelly=False, solver=solver, substeps=2, drag=0.3, wind=(2.0, 0.5)), ticks) == expected
