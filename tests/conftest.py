@@ -1,5 +1,7 @@
 """What holds in every test."""
 
+import gc
+import sys
 from weakref import WeakKeyDictionary
 
 import pytest
@@ -10,6 +12,14 @@ from sandbox.physics.world import World
 TOPOLOGY = [column.name for column in COLUMNS if column.topology]
 # Looks at one world that are made one after another, and ticks between two of them after that.
 FIRST_LOOKS, LATER = 10, 16
+# Of a process that runs tests [bytes].
+MOST_MEMORY = 1e9
+
+
+def pytest_collection_finish():
+    """Leave what is imported out of garbage collection, which takes long, and is put off while so much is alive."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -31,3 +41,14 @@ def nothing_is_derived_from_a_topology_that_was_changed_behind_a_worlds_back():
     World.derived = checked
     yield
     World.derived = derived
+
+
+@pytest.fixture(autouse=True, scope="session")
+def tests_take_at_most_a_gigabyte_of_memory():
+    """What a test has opened or built is let go of after it: no process that runs tests grows with their number."""
+    yield
+    if sys.platform == "linux":
+        import resource
+
+        peak = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        assert peak <= MOST_MEMORY, f"{peak / 1e6:.0f} MB at their most"

@@ -177,6 +177,8 @@ def open_app(documents):
     yield open_
     for driver in drivers:
         driver.app.close()
+        # Whoever has it may be kept until the next collection, and its pictures take 20 MB.
+        del driver.app
 
 
 @pytest.fixture

@@ -310,7 +310,7 @@ def levels(draw):
         gravity=points,
         tick_rate=st.integers(1, 10_000),
         substeps=st.sampled_from([1, 2, 64, "auto"]),
-        solver=st.sampled_from(["single_pass", "iterative"]),
+        solver=st.sampled_from(["single_pass", "iterative", "direct"]),
         warm_start=coefficients,
         wind=points,
         drag=st.floats(0, 1e6),

@@ -16,7 +16,7 @@ from sandbox.physics.step import step
 
 LEVELS = [path.stem for path in shipped_levels()]
 
-# The format's own example, as its description gives it; the solver named while "direct" is not the default.
+# The format's own example, as its description gives it.
 EXAMPLE = """
     {"format": "spring-sandbox/level", "version": 1, "name": "Rope, bridge, jelly", "description": "...", "author": "...", "licence": "...", "tags": ["demo"],
      "settings": {"gravity": [0.0, -9.81], "tick_rate": 60, "substeps": 1, "solver": "iterative", "iterations": 10, "warm_start": 0.5},

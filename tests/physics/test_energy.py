@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.energy import gravity_energy, kinetic_energy, reduced_masses, spring_energy, spring_lengths
+from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE, World
 from tests.support.physics_scenes import network, run
@@ -45,7 +46,7 @@ def test_a_hooke_spring_stores_energy_by_its_own_k_and_a_pinned_pair_none():
     assert spring_energy(world) == pytest.approx(0.5 * 8.0 * 0.25)
 
 
-@pytest.mark.parametrize("solver", ["single_pass", "iterative"])
+@pytest.mark.parametrize("solver", list(SOLVERS))
 def test_a_soft_undamped_spring_keeps_its_energy_and_a_damped_one_loses_it(solver):
     for damping in (0.0, 0.01):
         world = network([(0, 0), (1, 0)], [(0, 1)], stiffness=1e-4, damping=damping, solver=solver)

@@ -7,6 +7,7 @@ from sandbox.physics.constraints import AREA
 from sandbox.physics.energy import kinetic_energy, spring_energy
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import take
+from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.state import Family, family_of
 from sandbox.physics.step import step
 from sandbox.physics.world import HAND_COUNT, LAW_HOOKE, World
@@ -108,7 +109,7 @@ def test_unused_hands_change_nothing():
     assert np.array_equal(with_hands.position[:5], without.position)
 
 
-@pytest.mark.parametrize("solver", ["single_pass", "iterative"])
+@pytest.mark.parametrize("solver", list(SOLVERS))
 @pytest.mark.parametrize("substeps", [1, 2, 8, 64])
 def test_a_moved_hand_arrives_at_its_target_after_one_tick_and_stops(solver, substeps):
     world = held_rope(solver=solver, substeps=substeps)

@@ -75,7 +75,7 @@ COMMANDS = st.one_of(
     st.builds(SetGravity, PLACES),
     st.builds(
         SetSolver,
-        st.sampled_from([None, "single_pass", "iterative", "magic"]),
+        st.sampled_from([None, "single_pass", "iterative", "direct", "magic"]),
         substeps=st.integers(1, 4) | st.just("auto"),
     ),
 )
