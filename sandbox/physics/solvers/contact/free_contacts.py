@@ -223,18 +223,13 @@ def _iterate(
     # is_last: whether the step ends with it; what would meet in the first small step of the next one, and bounce there,
     # is not slowed before.
     # J = max(0, J - ((u + b) m + soft J) / (1 + soft));  |J_t| <= friction J
-    row = work.constraint
-    end = work.end
-    motion = work.motion
+    row, end, motion = work.constraint, work.end, work.motion
     for c in range(first, last):
         i = unsigned(c)
         p = unsigned(end[i, 0])
-        nx = row[i, NX]
-        ny = row[i, NY]
-        ux = motion[p, VX]
-        uy = motion[p, VY]
-        wx = motion[p, WX]
-        wy = motion[p, WY]
+        nx, ny = row[i, NX], row[i, NY]
+        ux, uy = motion[p, VX], motion[p, VY]
+        wx, wy = motion[p, WX], motion[p, WY]
         moves = end[i, 1] >= 0
         if moves:
             q = unsigned(end[i, 1])
