@@ -1,4 +1,5 @@
 # make play: install into .venv and run the app.    make test: install into .venv and run every test.
+# Kernels are compiled before, or each worker would compile all of them.
 # make pictures: draw the gallery's pictures of shipped levels anew, after one was changed.
 PYTHON ?= python3
 VENV := .venv
@@ -11,7 +12,8 @@ play: $(VENV)/installed
 	$(BIN)/sandbox
 
 test: $(VENV)/installed-dev
-	$(BIN)/python -m pytest -n $(WORKERS)
+	-$(BIN)/sandbox prepare
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check sandbox tests examples
