@@ -124,9 +124,10 @@ def test_a_run_that_is_too_slow_loses_time_instead_of_running_away(monkeypatch):
 def test_positions_are_interpolated_and_fall_back_to_the_current_ones():
     session = Session(small_level())
     first = session.snapshot()
-    moved = replace(first, position=first.position + 2.0)
+    moved = replace(first, arrays={**first.arrays, "position": first.position + 2.0})
     assert np.allclose(interpolated(first, moved, 0.25), first.position + 0.5)
-    longer = replace(first, position=first.position[:-1], mass=first.mass[:-1])
+    fewer = {name: first.arrays[name][:-1] for name in ("position", "mass")}
+    longer = replace(first, arrays={**first.arrays, **fewer})
     assert interpolated(longer, first, 0.5) is first.position
 
 
