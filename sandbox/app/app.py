@@ -98,6 +98,7 @@ class App:
         before = self.ui
         self._build_ui()
         self.ui.take_over(before)
+        self._collector.expect_old_garbage()
 
     def say(self, text: str) -> None:
         """Show a line to the person for some seconds."""
@@ -124,6 +125,7 @@ class App:
         before = self.ui
         self._build_ui()
         self.ui.take_over(before, questions_alone=True)
+        self._collector.expect_old_garbage()
 
     def start(self, playback: Playback, source: Path | None = None) -> None:
         """Show another run from its beginning; source: the file of its level."""

@@ -17,15 +17,21 @@ class IdleCollector:
         self._was_enabled = gc.isenabled()
         self._rest = 0.0
         self._searches = 0
+        self._full_is_due = False
         gc.disable()
 
     def update(self, frame_time: float, is_busy: bool) -> None:
         """Let frame_time [s] pass, in which something has happened or not."""
         self._rest = 0.0 if is_busy else self._rest + frame_time
-        if self._rest < REST or gc.get_count()[0] < ENOUGH:
+        if self._rest < REST or not (self._full_is_due or gc.get_count()[0] >= ENOUGH):
             return
         self._searches += 1
-        gc.collect(2 if self._searches % FULL_EVERY == 0 else 1)
+        gc.collect(2 if self._full_is_due or self._searches % FULL_EVERY == 0 else 1)
+        self._full_is_due = False
+
+    def expect_old_garbage(self) -> None:
+        """Look at all objects in the next pause: widgets hold each other, and those of a window 20 MB of pictures."""
+        self._full_is_due = True
 
     def close(self) -> None:
         """Leave it to Python again."""

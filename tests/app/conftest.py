@@ -12,6 +12,7 @@ import pytest
 
 from sandbox.app.app import App
 from sandbox.app.display import Display
+from sandbox.app.idle import REST
 from sandbox.app.start_request import StartRequest
 from sandbox.level.format.files import parse_level
 from tests.support.person import VirtualScreen
@@ -74,6 +75,11 @@ class Driver:
         for _ in range(count):
             self.app.preparation.finish(self.app.play is not None and self.app.play.has_contacts)
             self.app.frame(FRAME)
+
+    def rest(self):
+        """Do nothing for long enough that the app finds what it needs no more."""
+        pygame.event.clear()
+        self.app.frame(REST)
 
     def post(self, kind, **data):
         pygame.event.post(pygame.event.Event(kind, **data))

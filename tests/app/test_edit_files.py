@@ -229,6 +229,7 @@ def test_every_shipped_level_opens_and_saves_as_it_was(edit, tmp_path):
         target = tmp_path / shipped.name
         driver.editor.level_file.save_as(driver.editor.document.level, target)
         assert target.read_bytes() == shipped.read_bytes(), shipped.name
+        driver.rest()
 
 
 def test_closing_the_window_twice_asks_once_and_also_from_a_page(driver):

@@ -145,6 +145,7 @@ def test_no_action_fails_with_nothing_or_something_selected(driver):
                 driver.key(pygame.K_ESCAPE)
             if driver.app.mode == "play":
                 driver.key(pygame.K_e)
+                driver.rest()
 
 
 def test_everything_that_is_done_by_key_is_done_by_a_button_too(driver):

@@ -1,10 +1,13 @@
 """Python's search for garbage waits until nobody works."""
 
 import gc
+import weakref
 
 import pytest
 
 from sandbox.app.idle import ENOUGH, REST, IdleCollector
+from sandbox.app.play.playback import Playback
+from tests.app.conftest import small_level
 
 
 @pytest.fixture
@@ -41,9 +44,43 @@ def test_a_pause_in_which_there_is_little_to_find_is_left_alone(collector):
     assert gc.get_count()[0] >= before
 
 
+def test_what_was_long_on_the_screen_is_found_in_the_first_pause_after_it_is_gone(collector):
+    class Widget:
+        pass
+
+    widget = Widget()
+    widget.itself, gone = widget, weakref.ref(widget)
+    gc.collect()
+    del widget
+    collector.update(REST, is_busy=False)
+    assert gone() is not None
+    collector.expect_old_garbage()
+    collector.update(REST / 2, is_busy=True)
+    assert gone() is not None
+    collector.update(REST, is_busy=False)
+    assert gone() is None
+
+
 def test_python_searches_by_itself_again_once_it_is_closed():
     assert gc.isenabled()
     made = IdleCollector()
     assert not gc.isenabled()
     made.close()
     assert gc.isenabled()
+
+
+@pytest.mark.parametrize(
+    "replace",
+    [lambda app: app.documents.new(), lambda app: app.start(Playback(small_level())), lambda app: app.rebuild()],
+    ids=["another level", "a run", "another layout"],
+)
+def test_what_filled_the_window_is_let_go_of_in_the_next_pause(edit, replace):
+    driver = edit()
+    # A run keeps the editor's window, to come back to.
+    replace(driver.app)
+    driver.frames(2)
+    left = weakref.ref(driver.app.ui)
+    replace(driver.app)
+    driver.frames(2)
+    driver.rest()
+    assert left() is None

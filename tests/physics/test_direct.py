@@ -17,12 +17,7 @@ from sandbox.physics.stability import coefficient_limits, report
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE, World
 from tests.bench import energy_gate, scenes
-
-
-def run(world: World, ticks: int) -> World:
-    for _ in range(ticks):
-        step(world)
-    return world
+from tests.support.physics_scenes import run
 
 
 def single_springs(generator: np.random.Generator, count: int, damping_range, steps: int):

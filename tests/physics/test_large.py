@@ -15,12 +15,7 @@ from sandbox.physics.solvers.linear import dissection, parallel
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.bench import energy_gate, scenes
-
-
-def run(world: World, ticks: int) -> World:
-    for _ in range(ticks):
-        step(world)
-    return world
+from tests.support.physics_scenes import run
 
 
 def by_fronts(world: World) -> bool:

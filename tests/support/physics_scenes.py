@@ -74,10 +74,11 @@ def random_graph(
     return network(points, pairs[np.sort(chosen)], masses=masses, pinned=range(pinned), **options)
 
 
-def run(world: World, ticks: int) -> None:
-    """Step so many ticks."""
+def run(world: World, ticks: int) -> World:
+    """Step so many ticks; the same world."""
     for _ in range(ticks):
         step(world)
+    return world
 
 
 def lengths(world: World) -> np.ndarray:

@@ -7,6 +7,7 @@ import pygame
 
 from sandbox.app.draw.camera import Camera, Point
 from sandbox.app.draw.colours import BACKGROUND, DRIVE, TEXT, mixed
+from sandbox.app.edit.editing import Editing
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.actuators import SceneActuators, scene_actuators
 from sandbox.editor.scene import Scene
@@ -31,10 +32,15 @@ MOST = 500
 class DriveMarks:
     """Draws the marks of a scene, and keeps what it found of it while nothing that is driven changes."""
 
-    def __init__(self, ui: Ui) -> None:
-        self._ui = ui
+    def __init__(self, screen: Editing) -> None:
+        self._screen = screen
         self._of: tuple[object, object] | None = None
         self._actuators = SceneActuators([], [], [])
+
+    @property
+    def _ui(self) -> Ui:
+        # The layout of now: one that was left would be kept, and all that it showed.
+        return self._screen.ui
 
     def draw(self, surface: pygame.Surface, camera: Camera, scene: Scene) -> None:
         """Draw the marks where the scene's particles are."""

@@ -26,7 +26,7 @@ class View:
     def __init__(self, screen: Editing) -> None:
         self._screen = screen
         self._painter = ScenePainter(screen.scale)
-        self._marks = DriveMarks(screen.ui)
+        self._marks = DriveMarks(screen)
         self._chosen: tuple[Scene, Selection, SelectionMasks] | None = None
         self._ghost: Scene | None = None
         self._hanging: tuple[Scene, object, Scene] | None = None
