@@ -74,11 +74,11 @@ def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_ca
     assert len(session.messages) == 1 and session.messages[0].endswith(" broke")
     (tmp_path / "pump.jsonl").write_text(pumping)
     session = Session(load_level("balloons"), read_script(tmp_path / "pump.jsonl"))
-    wanted = session.world.element_rest.copy()
+    wanted = session.world.constraint_rest.copy()
     for _ in range(70):
         session.advance()
     assert not session.messages
-    assert np.count_nonzero(session.world.element_rest > wanted) == 1
+    assert np.count_nonzero(session.world.constraint_rest > wanted) == 1
 
 
 def rows(page, heading):

@@ -136,16 +136,16 @@ def warm_up_rest() -> None:
     from sandbox.physics.constraints import AREA
     from sandbox.physics.energy import total_energy
     from sandbox.physics.settings import WorldSettings
-    from sandbox.physics.step import element_coefficients, substep_coefficients
+    from sandbox.physics.step import constraint_coefficients, substep_coefficients
     from sandbox.physics.world import World
 
     world = World(WorldSettings())
     world.add_particles(["a", "b", "c"], np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
     world.add_springs(["s"], [0], [1])
-    world.add_elements(AREA, [[0, 1, 2]])
+    world.add_constraints(AREA, [[0, 1, 2]])
     total_energy(world)
     substep_coefficients(world, 2)
-    element_coefficients(world, 2)
+    constraint_coefficients(world, 2)
     warm_up_lines()
 
 

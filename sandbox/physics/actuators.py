@@ -97,10 +97,10 @@ class Motors:
 
 
 @dataclass(frozen=True, eq=False)
-class Driven:
-    """Everything that is driven; part_names: what the parts that a command can drive are called."""
+class Actuators:
+    """Everything that is driven; names: what the parts that a command can drive are called."""
 
-    part_names: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
     muscles: Muscles = field(default_factory=Muscles)
     hydraulics: Hydraulics = field(default_factory=Hydraulics)
     motors: Motors = field(default_factory=Motors)

@@ -55,7 +55,7 @@ def yield_and_break(world: World) -> None:
     broken = np.zeros(world.spring_count, dtype=np.int64)
     count = _yield_and_break(
         world.position, world.particle_a, world.particle_b, world.rest_length, world.good["rest_length"],
-        world.natural_length, world.material, world.spring_active, world.driven.springs(world.spring_count),
+        world.natural_length, world.material, world.spring_active, world.actuators.springs(world.spring_count),
         limits.tension, limits.compression, limits.yielding, limits.yield_share, broken,
     )  # fmt: skip
     if count:

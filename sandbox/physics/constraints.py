@@ -1,4 +1,4 @@
-"""Constraints of several corners (elements): areas of polygons and angles between two links, in the same equation.
+"""Constraints of several corners: areas of polygons and angles between two links, in the same equation.
 
 Any scalar constraint C(x) of gradient g has the effective mass 1 / (sum of w |g|^2); with C for the distance error and
 dC/dt for the velocity error, Cs and Cd mean what they mean for a spring (Nissen 2019). The mass is that of the rest
@@ -28,8 +28,8 @@ STEEPEST = 30.0
 Floats = NDArray[np.float64]
 
 
-class Elements(NamedTuple):
-    """Elements as kernels read them: t elements, whose corners lie one after another in the q of all.
+class ConstraintArrays(NamedTuple):
+    """ConstraintArrays as kernels read them: t constraints, whose corners lie one after another in the q of all.
 
     kind (t,), first (t,) and corners (t,) = where its corners begin and how many they are, rest (t, 2) = area wanted
     and area of the form [m^2], or cosine and sine of the angle at rest; active (t,); particle (q,) = slots, weight
@@ -108,7 +108,7 @@ def _bend(place, first, cosine, sine, weight, slope):  # type: ignore[no-untyped
 
 @inner_kernel
 def evaluate(kind, place, first, last, rest, at, weight, slope):  # type: ignore[no-untyped-def]
-    """C of the element of rest[at] whose corners first..last are at place (q, 2); its gradient into slope (q, 2)."""
+    """C of the constraint of rest[at] whose corners first..last are at place (q, 2); its gradient into slope (q, 2)."""
     if kind == AREA:
         _area_slope(place, first, last, slope)
         return area_of(place, first, last) - rest[at, 0]
@@ -134,8 +134,8 @@ def look(first, last, position, particle, place):  # type: ignore[no-untyped-def
 
 
 @inner_kernel
-def element_rate(first, last, velocity, particle, slope):  # type: ignore[no-untyped-def]
-    """dC/dt of the element of the corners first..last whose gradient is slope (q, 2)."""
+def constraint_rate(first, last, velocity, particle, slope):  # type: ignore[no-untyped-def]
+    """dC/dt of the constraint of the corners first..last whose gradient is slope (q, 2)."""
     rate = 0.0
     for c in range(first, last):
         rate += slope[c, 0] * velocity[particle[c], 0] + slope[c, 1] * velocity[particle[c], 1]
@@ -143,17 +143,17 @@ def element_rate(first, last, velocity, particle, slope):  # type: ignore[no-unt
 
 
 @kernel
-def element_values(position, inverse_mass, elements, place, value, mass, slope):  # type: ignore[no-untyped-def]
-    """C (t,) and effective mass (t,) of all active elements, 0 of others, with their gradients (q, 2)."""
-    for k in range(elements.kind.shape[0]):
-        first = elements.first[k]
-        last = first + elements.corners[k]
+def constraint_values(position, inverse_mass, constraints, place, value, mass, slope):  # type: ignore[no-untyped-def]
+    """C (t,) and effective mass (t,) of all active constraints, 0 of others, with their gradients (q, 2)."""
+    for k in range(constraints.kind.shape[0]):
+        first = constraints.first[k]
+        last = first + constraints.corners[k]
         value[k] = 0.0
         mass[k] = 0.0
-        if elements.active[k]:
-            look(first, last, position, elements.particle, place)
-            value[k] = evaluate(elements.kind[k], place, first, last, elements.rest, k, elements.weight, slope)
-            mass[k] = rest_mass(first, last, inverse_mass, elements.particle, elements.weight)
+        if constraints.active[k]:
+            look(first, last, position, constraints.particle, place)
+            value[k] = evaluate(constraints.kind[k], place, first, last, constraints.rest, k, constraints.weight, slope)
+            mass[k] = rest_mass(first, last, inverse_mass, constraints.particle, constraints.weight)
 
 
 @inner_kernel
@@ -174,21 +174,22 @@ def explicit_mass(first, last, inverse_mass, particle, weight, slope):  # type: 
 
 
 def sides_gone(
-    elements: Elements,
+    constraints: ConstraintArrays,
     particle_a: NDArray[np.int32],
     particle_b: NDArray[np.int32],
     spring_active: NDArray[np.bool_],
     springs: NDArray[np.int64],
 ) -> NDArray[np.int32]:
-    """Elements, each at least once, of which one of these springs was a side that no active spring holds any more."""
+    """ConstraintArrays, each at least once, of which one of these springs was a side that no active spring holds any
+    more."""
     cut = _sides(particle_a[springs], particle_b[springs])
     loose = np.setdiff1d(cut, _sides(particle_a[spring_active], particle_b[spring_active]))
-    owner = np.repeat(np.arange(len(elements.kind)), elements.corners)
-    corner, first = np.arange(len(owner)), elements.first[owner]
-    before = np.where(corner == first, first + elements.corners[owner] - 1, corner - 1)
+    owner = np.repeat(np.arange(len(constraints.kind)), constraints.corners)
+    corner, first = np.arange(len(owner)), constraints.first[owner]
+    before = np.where(corner == first, first + constraints.corners[owner] - 1, corner - 1)
     # A bend's two outer corners are no side of it.
-    is_side = (elements.kind[owner] == AREA) | (corner != first)
-    return owner[is_side & np.isin(_sides(elements.particle[before], elements.particle), loose)]
+    is_side = (constraints.kind[owner] == AREA) | (corner != first)
+    return owner[is_side & np.isin(_sides(constraints.particle[before], constraints.particle), loose)]
 
 
 def _sides(a: NDArray[np.int32], b: NDArray[np.int32]) -> NDArray[np.int64]:

@@ -26,16 +26,16 @@ def _contract(tick, spring, amplitude, period, phase, natural_length, lengths): 
 
 
 @kernel
-def _extend(spring, shortest, longest, rate, part, part_value, rest_length, h, lengths):  # type: ignore[no-untyped-def]
+def _extend(spring, shortest, longest, rate, part, actuator_value, rest_length, h, lengths):  # type: ignore[no-untyped-def]
     # L += value rate h, within shortest..longest
     for k in range(spring.shape[0]):
-        wanted = rest_length[spring[k]] + part_value[part[k]] * rate[k] * h
+        wanted = rest_length[spring[k]] + actuator_value[part[k]] * rate[k] * h
         lengths[k] = min(max(wanted, shortest[k]), longest[k])
 
 
 def drive_muscles(world: World, tick: int) -> None:
     """Give every muscle the rest length that it has at a tick."""
-    muscles = world.driven.muscles
+    muscles = world.actuators.muscles
     if not len(muscles.spring):
         return
     lengths = np.zeros(len(muscles.spring))
@@ -47,15 +47,15 @@ def drive_muscles(world: World, tick: int) -> None:
 
 def drive_springs(world: World) -> Floats:
     """Give driven springs the rest lengths of the coming tick's end; the rest lengths (m,) before, for their work."""
-    before, hydraulics = world.rest_length, world.driven.hydraulics
-    if not len(world.driven.muscles.spring) and not len(hydraulics.spring):
+    before, hydraulics = world.rest_length, world.actuators.hydraulics
+    if not len(world.actuators.muscles.spring) and not len(hydraulics.spring):
         return before
     before = before.copy()
     drive_muscles(world, world.tick + 1)
     lengths = np.zeros(len(hydraulics.spring))
     _extend(
         hydraulics.spring, hydraulics.shortest, hydraulics.longest, hydraulics.rate, hydraulics.part,
-        world.part_value, world.rest_length, 1.0 / world.settings.tick_rate, lengths,
+        world.actuator_value, world.rest_length, 1.0 / world.settings.tick_rate, lengths,
     )  # fmt: skip
     world.set_rest_lengths(hydraulics.spring, lengths)
     return before

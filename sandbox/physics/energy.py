@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from sandbox.physics.constraints import element_values
+from sandbox.physics.constraints import constraint_values
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.substeps import element_coefficients, substep_coefficients, substep_time
-from sandbox.physics.world import HAND_MATERIAL, LAW_HOOKE, Floats, World
+from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
+from sandbox.physics.world import GRAB_MATERIAL, LAW_HOOKE, Floats, World
 
 # The energy of what blew up is inf or NaN, and no fault.
 _unbounded = np.errstate(over="ignore", invalid="ignore")
@@ -33,7 +33,8 @@ def kinetic_energy(world: World) -> float:
 
 @_unbounded
 def spring_energy(world: World) -> float:
-    """Sum of k x^2 / 2 [J] over active springs but the hands', and of elements, with the k that the solver gives them.
+    """Sum of k x^2 / 2 [J] over active springs but the grabs', and of constraints, with the k that the solver gives
+    them.
 
     With substeps "auto" that is the k of a tick in one part, however many parts the last tick had.
     """
@@ -42,26 +43,26 @@ def spring_energy(world: World) -> float:
     nissen = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, reduced_masses(world), h)
     constant = np.where(world.law == LAW_HOOKE, world.hooke_stiffness, nissen)
     error = spring_lengths(world) - world.rest_length
-    springs = np.sum((constant * error * error)[world.spring_active & (world.material != HAND_MATERIAL)])
-    return float(0.5 * springs) + (float(np.sum(element_energies(world))) if world.element_count else 0.0)
+    springs = np.sum((constant * error * error)[world.spring_active & (world.material != GRAB_MATERIAL)])
+    return float(0.5 * springs) + (float(np.sum(constraint_energies(world))) if world.constraint_count else 0.0)
 
 
 @_unbounded
-def element_energies(world: World) -> Floats:
-    """Energy [J] of every element (t,), k C^2 / 2 with the k that the world's solver gives it; 0 where inactive."""
-    value, mass, _ = measure_elements(world)
+def constraint_energies(world: World) -> Floats:
+    """Energy [J] of every constraint (t,), k C^2 / 2 with the k that the world's solver gives it; 0 where inactive."""
+    value, mass, _ = measure_constraints(world)
     constant = SOLVERS[world.settings.solver].spring_constant(
-        *element_coefficients(world), mass, substep_time(world.settings)
+        *constraint_coefficients(world), mass, substep_time(world.settings)
     )
     return np.asarray(0.5 * constant * value * value)
 
 
-def measure_elements(world: World) -> tuple[Floats, Floats, Floats]:
-    """C (t,) and effective mass (t,) of every element, 0 where inactive; and the gradient at each corner (q, 2)."""
-    value, mass = np.zeros((2, world.element_count))
+def measure_constraints(world: World) -> tuple[Floats, Floats, Floats]:
+    """C (t,) and effective mass (t,) of every constraint, 0 where inactive; and the gradient at each corner (q, 2)."""
+    value, mass = np.zeros((2, world.constraint_count))
     place, slope = np.zeros((2, len(world.corner_particle), 2))
-    if world.element_count:
-        element_values(world.position, world.inverse_mass, world.elements, place, value, mass, slope)
+    if world.constraint_count:
+        constraint_values(world.position, world.inverse_mass, world.constraints, place, value, mass, slope)
     return value, mass, slope
 
 
@@ -84,7 +85,7 @@ def total_energy(world: World) -> float:
 class Dissipation:
     """Energy [J] lost in ticks: `before` each, then `after` it; energy that a tick gained counts against it.
 
-    What commands change between ticks is not counted, nor is a tick in which something works on the world: a hand that
+    What commands change between ticks is not counted, nor is a tick in which something works on the world: a grab that
     holds a particle, a muscle, a hydraulic or motor that is driven, the wind.
     """
 
@@ -111,4 +112,4 @@ class Dissipation:
 def _is_worked_on(world: World) -> bool:
     settings = world.settings
     blows = settings.drag > 0.0 and any(settings.wind)
-    return world.hands_in_use() or bool(len(world.driven.muscles.spring)) or bool(np.any(world.part_value)) or blows
+    return world.any_held() or bool(len(world.actuators.muscles.spring)) or bool(np.any(world.actuator_value)) or blows

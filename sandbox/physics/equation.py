@@ -9,7 +9,7 @@ the implicit form, on the velocity error u' after the step, in which springs of 
 
     J = -K (u' + beta x / h),   K = m_r Cd / (1 - Cd) [kg],   beta = Cs / Cd
 
-Areas, bends, contacts and the hand obey the same equation: C(x) with gradient g has dC/dt for u, and 1 / (g W g^T) for
+Areas, bends, contacts and the grab obey the same equation: C(x) with gradient g has dC/dt for u, and 1 / (g W g^T) for
 m_r.
 """
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Containment:
-    """What was taken back: at a tick, in the array `array` of the particle, spring or element `name`."""
+    """What was taken back: at a tick, in the array `array` of the particle, spring or constraint `name`."""
 
     tick: int
     array: str

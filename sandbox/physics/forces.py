@@ -51,7 +51,7 @@ class Wheels(NamedTuple):
     part: Slots
     rim_start: Slots
     rim: Slots
-    part_value: Floats
+    actuator_value: Floats
 
 
 class ForcedParticles(NamedTuple):
@@ -199,7 +199,7 @@ def _run_motors(masses: Masses, joints: Joints, wheels: Wheels, mark: Slots, mou
     # P = (speed - (omega_wheel - omega_mount)) / (1 / I_wheel + 1 / I_mount), +P on the wheel and -P on the mount.
     rim, rim_start = wheels.rim, wheels.rim_start
     for k in range(wheels.hub.shape[0]):
-        value = wheels.part_value[wheels.part[k]]
+        value = wheels.actuator_value[wheels.part[k]]
         if value == 0.0:
             continue
         first, last = rim_start[k], rim_start[k + 1]
@@ -229,7 +229,7 @@ def apply_forces(world: World, h: float) -> Forces:
     A motor's reaction goes to its hub and what springs join to it, so that momentum and angular momentum are kept;
     where one of these is pinned, it goes to the ground. The forces that are returned keep the velocities before.
     """
-    motors = world.driven.motors
+    motors = world.actuators.motors
     forces = forces_of(world)
     _add_gravity_and_air(forces.items, h)
     if len(motors.hub):
@@ -238,7 +238,7 @@ def apply_forces(world: World, h: float) -> Forces:
             Masses(world.position, world.velocity, world.mass, world.inverse_mass),
             Joints(world.particle_a, world.particle_b, world.spring_active, world.material),
             Wheels(
-                motors.hub, motors.speed, motors.torque, motors.part, motors.rim_start, motors.rim, world.part_value
+                motors.hub, motors.speed, motors.torque, motors.part, motors.rim_start, motors.rim, world.actuator_value
             ),
             mark, mount, h,
         )  # fmt: skip

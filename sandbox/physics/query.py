@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.snapshot import Snapshot
-from sandbox.physics.world import HAND_COUNT, Floats, Slots, World
+from sandbox.physics.world import GRAB_COUNT, Floats, Slots, World
 
 Point = tuple[float, float]
 
@@ -12,21 +12,21 @@ Point = tuple[float, float]
 _far_away = np.errstate(over="ignore", invalid="ignore")
 
 
-def _without_hands(active: NDArray[np.bool_], first_hand: int) -> NDArray[np.bool_]:
+def _without_grabs(active: NDArray[np.bool_], first_grab: int) -> NDArray[np.bool_]:
     shown = active.copy()
-    if first_hand >= 0:
-        shown[first_hand : first_hand + HAND_COUNT] = False
+    if first_grab >= 0:
+        shown[first_grab : first_grab + GRAB_COUNT] = False
     return shown
 
 
 def shown_particles(state: World | Snapshot) -> NDArray[np.bool_]:
-    """Particles (n,) that a person sees: active and no hand's cursor."""
-    return _without_hands(state.particle_active, state.hand_particle)
+    """Particles (n,) that a person sees: active and no grab's cursor."""
+    return _without_grabs(state.particle_active, state.grab_particle)
 
 
 def shown_springs(state: World | Snapshot) -> NDArray[np.bool_]:
-    """Springs (m,) that a person sees: active and no hand's spring."""
-    return _without_hands(state.spring_active, state.hand_spring)
+    """Springs (m,) that a person sees: active and no grab's spring."""
+    return _without_grabs(state.spring_active, state.grab_spring)
 
 
 @_far_away

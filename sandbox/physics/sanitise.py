@@ -1,7 +1,7 @@
 """Quarantine: a value that no physics can give is taken back before it spreads.
 
 A particle whose position, velocity or mass is not finite, or is absurd, gets its last good values back and is frozen:
-pinned where it was, until somebody unpins it. An absurd constant of a spring or an element gets its last good value
+pinned where it was, until somebody unpins it. An absurd constant of a spring or a constraint gets its last good value
 back. Positions and velocities are good as the last tick ended with them, masses and constants as they were last set.
 """
 
@@ -18,7 +18,7 @@ from sandbox.physics.world import World
 # Larger than anything that a level or a command can ask for (1e6 m, 1e9 m/s, 1e9 kg, 1e15 N/m), and small enough that
 # energies stay finite; a mistuned spring that passes it is frozen there.
 ABSURD = 1e18
-# What is guarded of springs and elements.
+# What is guarded of springs and constraints.
 _CONSTANTS = [column for column in GUARDED if column.family is not Family.PARTICLE]
 
 
@@ -34,9 +34,9 @@ class CheckedArrays(NamedTuple):
     damping: Floats
     hooke_stiffness: Floats
     hooke_damping: Floats
-    element_rest: Floats
-    element_stiffness: Floats
-    element_damping: Floats
+    constraint_rest: Floats
+    constraint_stiffness: Floats
+    constraint_damping: Floats
     corner_weight: Floats
     corner_form: Floats
     good_position: Floats
@@ -60,12 +60,12 @@ def _sound_motion(arrays: CheckedArrays) -> bool:
 
 @inner_kernel
 def _sound_elements(arrays: CheckedArrays) -> bool:
-    for k in range(arrays.element_stiffness.shape[0]):
+    for k in range(arrays.constraint_stiffness.shape[0]):
         if not (
-            -ABSURD <= arrays.element_rest[k, 0] <= ABSURD
-            and -ABSURD <= arrays.element_rest[k, 1] <= ABSURD
-            and 0.0 <= arrays.element_stiffness[k] <= 1.0
-            and 0.0 <= arrays.element_damping[k] <= 1.0
+            -ABSURD <= arrays.constraint_rest[k, 0] <= ABSURD
+            and -ABSURD <= arrays.constraint_rest[k, 1] <= ABSURD
+            and 0.0 <= arrays.constraint_stiffness[k] <= 1.0
+            and 0.0 <= arrays.constraint_damping[k] <= 1.0
         ):
             return False
     for c in range(arrays.corner_weight.shape[0]):

@@ -24,8 +24,8 @@ class Snapshot(StateArrays):
     arrays: Mapping[str, NDArray[Any]]
     settings: WorldSettings
     tick: int
-    hand_particle: int
-    hand_spring: int
+    grab_particle: int
+    grab_spring: int
     terrain: Terrain
 
     def __post_init__(self) -> None:
@@ -41,8 +41,8 @@ def take(world: World) -> Snapshot:
         copies,
         settings=world.settings,
         tick=world.tick,
-        hand_particle=world.hand_particle,
-        hand_spring=world.hand_spring,
+        grab_particle=world.grab_particle,
+        grab_spring=world.grab_spring,
         terrain=world.terrain,
     )
 
@@ -60,8 +60,8 @@ def restore(world: World, snapshot: Snapshot) -> None:
         elif not column.topology:
             present[:] = kept
     world.tick = snapshot.tick
-    world.hand_particle = snapshot.hand_particle
-    world.hand_spring = snapshot.hand_spring
+    world.grab_particle = snapshot.grab_particle
+    world.grab_spring = snapshot.grab_spring
     world.trust()
     world.forget_names_beyond(len(snapshot.mass), len(snapshot.rest_length))
 

@@ -7,8 +7,8 @@ All springs evaluated on the old velocities are stable where (Cs + 2 Cd) n_eff <
 and n_a, n_b the springs on its ends, for every topology, mass and time step. With Cs = Cd = C that is
 C < 4 / (3 n_eff), which holds the article's 1 / (n + 1) inside (Nissen 2019, limitations and pitfalls).
 Stable as well, and closer where soft and hard springs meet: m_r (w_a S_a + w_b S_b) < 4 for every spring, with S the
-sum of Cs + 2 Cd over the springs on an end; a hand at a particle of many soft springs is inside this one alone.
-An element counts as one more spring at each of its corners, and has the most of them for its n_eff.
+sum of Cs + 2 Cd over the springs on an end; a grab at a particle of many soft springs is inside this one alone.
+A constraint counts as one more spring at each of its corners, and has the most of them for its n_eff.
 A Hooke spring counts as the Cs and Cd that it amounts to: k h^2 / m_r and c h / m_r.
 """
 
@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.energy import measure_elements, reduced_masses
+from sandbox.physics.energy import measure_constraints, reduced_masses
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import halve, substep_time
 from sandbox.physics.world import LAW_HOOKE, Floats, World
@@ -62,21 +62,21 @@ def _working(world: World) -> NDArray[np.bool_]:
 
 
 def _held_corners(world: World) -> NDArray[np.int64]:
-    """The corners (of q) of active elements whose particles are free, which is where elements do something."""
-    active = np.repeat(world.element_active, world.element_corners)
+    """The corners (of q) of active constraints whose particles are free, which is where constraints do something."""
+    active = np.repeat(world.constraint_active, world.constraint_corners)
     return np.flatnonzero(active & (world.inverse_mass[world.corner_particle] > 0.0))
 
 
 def _most_at_corners(world: World, at: Floats) -> Floats:
-    """The most of what stands at each particle (n,) over the free corners of every element (t,); 0 where none is."""
-    owner, corners = np.repeat(np.arange(world.element_count), world.element_corners), _held_corners(world)
-    most = np.zeros(world.element_count)
+    """The most of what stands at each particle (n,) over the free corners of every constraint (t,); 0 where none is."""
+    owner, corners = np.repeat(np.arange(world.constraint_count), world.constraint_corners), _held_corners(world)
+    most = np.zeros(world.constraint_count)
     np.maximum.at(most, owner[corners], at[world.corner_particle[corners]])
     return most
 
 
 def _degrees(world: World) -> NDArray[np.int64]:
-    """Springs and elements that hold each particle (n,)."""
+    """Springs and constraints that hold each particle (n,)."""
     working = _working(world)
     held = world.corner_particle[_held_corners(world)]
     ends = np.concatenate([world.particle_a[working], world.particle_b[working], held])
@@ -96,8 +96,8 @@ def effective_count(world: World) -> Floats:
     return np.where(_working(world), reduced_masses(world) * weighted, 0.0)
 
 
-def element_count(world: World) -> Floats:
-    """n_eff of every element (t,): the most springs and elements that hold one of its free corners."""
+def constraint_count(world: World) -> Floats:
+    """n_eff of every constraint (t,): the most springs and constraints that hold one of its free corners."""
     # m sum of w |g|^2 n <= the largest n, since m <= 1 / (sum of w |g|^2)
     return _most_at_corners(world, _degrees(world).astype(np.float64))
 
@@ -128,7 +128,8 @@ def _norm(vector: Floats) -> float:
 
 
 def _incidence(world: World) -> tuple[NDArray[np.int64], NDArray[np.int64], Floats]:
-    """The rows of sqrt(m) J, one per working spring, then per element: their number, particle and gradient (k, 2)."""
+    """The rows of sqrt(m) J, one per working spring, then per constraint: their number, particle and gradient (k,
+    2)."""
     springs = np.flatnonzero(_working(world))
     a, b = world.particle_a[springs], world.particle_b[springs]
     separation = world.position[b] - world.position[a]
@@ -136,10 +137,10 @@ def _incidence(world: World) -> tuple[NDArray[np.int64], NDArray[np.int64], Floa
     normal = np.divide(separation, length[:, None], out=np.zeros_like(separation), where=length[:, None] > 0.0)
     normal[length == 0.0] = (1.0, 0.0)
     normal *= np.sqrt(reduced_masses(world)[springs])[:, None]
-    _, rest_mass, slope = measure_elements(world)
-    owner, corners = np.repeat(np.arange(world.element_count), world.element_corners), _held_corners(world)
+    _, rest_mass, slope = measure_constraints(world)
+    owner, corners = np.repeat(np.arange(world.constraint_count), world.constraint_corners), _held_corners(world)
     squares = world.inverse_mass[world.corner_particle[corners]] * np.sum(slope[corners] ** 2, axis=1)
-    present = np.bincount(owner[corners], squares, world.element_count).astype(np.float64)
+    present = np.bincount(owner[corners], squares, world.constraint_count).astype(np.float64)
     # The explicit solvers take the less of the two masses.
     mass = np.minimum(rest_mass, np.divide(1.0, present, out=np.full_like(present, np.inf), where=present > 0.0))
     held = slope[corners] * np.sqrt(mass)[owner[corners], None]
@@ -161,18 +162,18 @@ def _demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
     return np.where(working, stiffness + 2.0 * damping, 0.0)
 
 
-def _element_demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
-    """Cs + 2 Cd of a substep (t,) from an element's Cs and Cd per tick; 0 where it does nothing."""
+def _constraint_demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
+    """Cs + 2 Cd of a substep (t,) from a constraint's Cs and Cd per tick; 0 where it does nothing."""
     stiffness, damping = stiffness.copy(), damping.copy()
     halve(stiffness, damping, world.settings.fewest_substeps)
-    return np.where(element_count(world) > 0.0, stiffness + 2.0 * damping, 0.0)
+    return np.where(constraint_count(world) > 0.0, stiffness + 2.0 * damping, 0.0)
 
 
-def _summed_loads(world: World, demands: Floats, of_elements: Floats) -> Floats:
-    """m_r (w_a S_a + w_b S_b) of every spring, S = what is demanded on an end; then the most S of every element."""
+def _summed_loads(world: World, demands: Floats, of_constraints: Floats) -> Floats:
+    """m_r (w_a S_a + w_b S_b) of every spring, S = what is demanded on an end; then the most S of every constraint."""
     a, b = world.particle_a, world.particle_b
     corners = _held_corners(world)
-    asked = np.repeat(of_elements, world.element_corners)[corners]
+    asked = np.repeat(of_constraints, world.constraint_corners)[corners]
     at = np.zeros(world.particle_count)
     for particles, weight in ((a, demands), (b, demands), (world.corner_particle[corners], asked)):
         at = at + np.bincount(particles, weight, world.particle_count)
@@ -181,27 +182,28 @@ def _summed_loads(world: World, demands: Floats, of_elements: Floats) -> Floats:
 
 
 def spring_loads(world: World) -> Floats:
-    """What must stay below BOUND for every spring, then every element: of two proven bounds the one that allows more.
+    """What must stay below BOUND for every spring, then every constraint: of two proven bounds the one that allows
+    more.
 
     (m + t,)
     """
     demands = _demands(world, world.stiffness, world.damping)
-    of_elements = _element_demands(world, world.element_stiffness, world.element_damping)
-    summed = _summed_loads(world, demands, of_elements)
-    counted = np.concatenate([demands * effective_count(world), of_elements * element_count(world)])
+    of_constraints = _constraint_demands(world, world.constraint_stiffness, world.constraint_damping)
+    summed = _summed_loads(world, demands, of_constraints)
+    counted = np.concatenate([demands * effective_count(world), of_constraints * constraint_count(world)])
     return summed if summed.max() < counted.max() else counted
 
 
 def _particles_of(world: World, slot: int) -> NDArray[np.int32]:
-    """Particles that a spring, or the element after the springs, joins."""
+    """Particles that a spring, or the constraint after the springs, joins."""
     if slot < world.spring_count:
         return np.array([world.particle_a[slot], world.particle_b[slot]])
-    first = world.element_first[slot - world.spring_count]
-    return world.corner_particle[first : first + world.element_corners[slot - world.spring_count]]
+    first = world.constraint_first[slot - world.spring_count]
+    return world.corner_particle[first : first + world.constraint_corners[slot - world.spring_count]]
 
 
 def _owner_name(world: World, slot: int) -> str:
-    """Name of a spring, or of the element after the springs."""
+    """Name of a spring, or of the constraint after the springs."""
     if slot < world.spring_count:
         return world.spring_names[slot]
     return world.slot_name("element_kind", slot - world.spring_count)
@@ -233,19 +235,19 @@ def _energy_bound(world: World) -> str:
     """What the test of a step's energy proves, and of which kind the springs are."""
     stiffness, damping = world.stiffness, world.damping
     springs = _working(world) & (world.law != LAW_HOOKE) & (stiffness > damping)
-    elements = (element_count(world) > 0.0) & (world.element_stiffness > world.element_damping)
-    bouncy = np.flatnonzero(np.append(springs, elements))
-    if len(bouncy):
+    constraints = (constraint_count(world) > 0.0) & (world.constraint_stiffness > world.constraint_damping)
+    underdamped = np.flatnonzero(np.append(springs, constraints))
+    if len(underdamped):
         return (
             f"proven: energy never exceeds four times the start and the work done, whatever Cs and Cd "
-            f"(Cs is above Cd at {_owner_name(world, int(bouncy[0]))})"
+            f"(Cs is above Cd at {_owner_name(world, int(underdamped[0]))})"
         )
     return "proven: energy never exceeds the start and the work done, because Cs <= Cd on every spring"
 
 
 def report(world: World) -> StabilityReport:
     """What can be proven about this world's stability under its solver."""
-    counts = np.concatenate([effective_count(world), element_count(world)])
+    counts = np.concatenate([effective_count(world), constraint_count(world)])
     solver = world.settings.solver
     if not len(counts) or counts.max() == 0.0:
         return StabilityReport(solver, 0.0, 1.0, 1.0, 1.0, True, None, "no spring does anything: nothing can blow up")
@@ -288,22 +290,22 @@ def coefficient_limits(world: World, material: int | None = None) -> Coefficient
         return CoefficientLimits(1.0, 1.0, _energy_bound(world))
     if not SOLVERS[solver].proven_limit:
         return CoefficientLimits(None, None, f"no proven limit for the {solver} solver")
-    counts = np.concatenate([effective_count(world), element_count(world)])
-    materials = np.concatenate([world.material, world.element_material])
-    is_nissen = np.append(world.law != LAW_HOOKE, np.ones(world.element_count, dtype=np.bool_))
+    counts = np.concatenate([effective_count(world), constraint_count(world)])
+    materials = np.concatenate([world.material, world.constraint_material])
+    is_nissen = np.append(world.law != LAW_HOOKE, np.ones(world.constraint_count, dtype=np.bool_))
     chosen = (materials >= 0) if material is None else (materials == material)
     chosen &= (counts > 0.0) & is_nissen
     if not chosen.any():
         return CoefficientLimits(1.0, 1.0, "no spring of this material does anything")
-    judged = chosen | _hands_beside(world, chosen)
+    judged = chosen | _grabs_beside(world, chosen)
 
     def limit(name: str) -> float:
         def inside(c: float) -> bool:
             springs = {"stiffness": world.stiffness.copy(), "damping": world.damping.copy()}
-            elements = {"stiffness": world.element_stiffness.copy(), "damping": world.element_damping.copy()}
+            constraints = {"stiffness": world.constraint_stiffness.copy(), "damping": world.constraint_damping.copy()}
             springs[name][chosen[: world.spring_count]] = c
-            elements[name][chosen[world.spring_count :]] = c
-            loads = _summed_loads(world, _demands(world, **springs), _element_demands(world, **elements))
+            constraints[name][chosen[world.spring_count :]] = c
+            loads = _summed_loads(world, _demands(world, **springs), _constraint_demands(world, **constraints))
             return bool(np.all(loads[judged] < BOUND))
 
         return _largest(inside)
@@ -314,13 +316,13 @@ def coefficient_limits(world: World, material: int | None = None) -> Coefficient
     return CoefficientLimits(limit("stiffness"), limit("damping"), reason)
 
 
-def _hands_beside(world: World, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The hands' springs (m + t,) that hold a particle of the chosen springs and elements.
+def _grabs_beside(world: World, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The grabs' springs (m + t,) that hold a particle of the chosen springs and constraints.
 
-    A hand is as hard as it is: what the others may add to it there is less.
+    A grab is as hard as it is: what the others may add to it there is less.
     """
     springs = chosen[: world.spring_count]
-    corners = world.corner_particle[np.repeat(chosen[world.spring_count :], world.element_corners)]
+    corners = world.corner_particle[np.repeat(chosen[world.spring_count :], world.constraint_corners)]
     ends = np.concatenate([world.particle_a[springs], world.particle_b[springs], corners])
-    hands = _working(world) & (world.material < 0) & np.isin(world.particle_b, ends)
-    return np.append(hands, np.zeros(world.element_count, dtype=np.bool_))
+    grabs = _working(world) & (world.material < 0) & np.isin(world.particle_b, ends)
+    return np.append(grabs, np.zeros(world.constraint_count, dtype=np.bool_))

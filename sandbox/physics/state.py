@@ -21,8 +21,8 @@ class Family(Enum):
 
     PARTICLE = "particle"
     SPRING = "spring"
-    ELEMENT = "element"
-    CORNER = "corner"
+    CONSTRAINT = "constraint"
+    CORNER = "corner of a constraint"
     ACTUATOR = "actuator"
     CONTACT = "contact"
 
@@ -74,7 +74,7 @@ F64, I64, I32, I8, BOOL = np.float64, np.int64, np.int32, np.int8, np.bool_
 
 
 class StateArrays:
-    """Particles, springs, elements, actuators and contacts as a struct of arrays.
+    """Particles, springs, constraints, actuators and contacts as a struct of arrays.
 
     The order of the lines is that in which arrays are hashed and stored. It and the names in quotes are part of the
     replay contract: they do not follow a rename in code, and new lines go to the end of their family.
@@ -83,7 +83,7 @@ class StateArrays:
     # fmt: off
     # ruff: noqa: E501
     position = _array("position", P, F64, "m", "where it is", width=2, guarded=True)
-    velocity = _array("velocity", P, F64, "m/s", "how it moves; 0 where pinned, but for a hand's cursor", width=2, guarded=True)
+    velocity = _array("velocity", P, F64, "m/s", "how it moves; 0 where pinned, but for a grab's cursor", width=2, guarded=True)
     origin = _array("origin", P, F64, "m", "where it was created, which orders the direct solver's elimination", width=2, topology=True)
     mass = _array("mass", P, F64, "kg", "its mass, pinned or not", guarded=True)
     inverse_mass = _array("inverse_mass", P, F64, "1/kg", "0 = pinned", topology=True)
@@ -107,26 +107,26 @@ class StateArrays:
     law = _array("law", S, I8, "", "LAW_NISSEN or LAW_HOOKE", topology=True)
     hooke_stiffness = _array("hooke_stiffness", S, F64, "N/m", "k of a Hooke spring", guarded=True)
     hooke_damping = _array("hooke_damping", S, F64, "N s/m", "c of a Hooke spring", guarded=True)
-    material = _array("material", S, I32, "", "index into material_names, -1 = a hand's", topology=True)
-    spring_active = _array("spring_active", S, BOOL, "", "False: cut, broken, or a hand's that holds nothing", topology=True)
+    material = _array("material", S, I32, "", "index into material_names, -1 = a grab's", topology=True)
+    spring_active = _array("spring_active", S, BOOL, "", "False: cut, broken, or a grab's that holds nothing", topology=True)
     impulse = _array("impulse", S, F64, "N s", "what the iterative solver keeps for its warm start", width=2)
     tension = _array("tension", S, F64, "N s", "the impulse by which it pulled in the last step, of a whole tick where substeps are \"auto\", for the direct solver")
     edge = _array("edge", S, I8, "", "no line that others meet, one of two sides, or the outline of a solid body on its left or right", topology=True)
 
-    element_kind = _array("element_kind", E, I8, "", "AREA or BEND (constraints.py)", topology=True)
-    element_first = _array("element_first", E, I32, "corner", "where its corners begin", topology=True)
-    element_corners = _array("element_corners", E, I32, "", "how many corners it has", topology=True)
-    element_rest = _array("element_rest", E, F64, "m^2 or 1", "area wanted and area of the form; cosine and sine of the angle at rest", width=2, guarded=True)
-    element_stiffness = _array("element_stiffness", E, F64, "1", "Cs of a tick", guarded=True)
-    element_damping = _array("element_damping", E, F64, "1", "Cd of a tick", guarded=True)
-    element_material = _array("element_material", E, I32, "", "index into material_names, -1 = Cs and Cd of its own")
-    element_active = _array("element_active", E, BOOL, "", "whether it holds; it goes with any of the springs along its sides", topology=True)
+    constraint_kind = _array("element_kind", E, I8, "", "AREA or BEND (constraints.py)", topology=True)
+    constraint_first = _array("element_first", E, I32, "corner", "where its corners begin", topology=True)
+    constraint_corners = _array("element_corners", E, I32, "", "how many corners it has", topology=True)
+    constraint_rest = _array("element_rest", E, F64, "m^2 or 1", "area wanted and area of the form; cosine and sine of the angle at rest", width=2, guarded=True)
+    constraint_stiffness = _array("element_stiffness", E, F64, "1", "Cs of a tick", guarded=True)
+    constraint_damping = _array("element_damping", E, F64, "1", "Cd of a tick", guarded=True)
+    constraint_material = _array("element_material", E, I32, "", "index into material_names, -1 = Cs and Cd of its own")
+    constraint_active = _array("element_active", E, BOOL, "", "whether it holds; it goes with any of the springs along its sides", topology=True)
 
     corner_particle = _array("corner_particle", C, I32, "slot", "the particle there", topology=True)
     corner_weight = _array("corner_weight", C, F64, "m^2 or 1/m^2", "square of the gradient there, at rest", guarded=True)
     corner_form = _array("corner_form", C, F64, "m", "where it stands at rest", width=2, guarded=True, topology=True)
 
-    part_value = _array("part_value", A, F64, "1", "how it is driven, -1..1")
+    actuator_value = _array("part_value", A, F64, "1", "how it is driven, -1..1")
 
     contact_particle = _array("contact_particle", T, I32, "slot", "the particle of a contact of the last step")
     contact_feature = _array("contact_feature", T, I64, "", "what it touched there (contacts.py)")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sandbox.physics.actuators import Driven, Hydraulics, Motors, Muscles, StrainLimits
+from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles, StrainLimits
 from sandbox.physics.breaking import yield_and_break
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_springs
@@ -16,7 +16,7 @@ from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import (
     Substep,
-    element_coefficients,
+    constraint_coefficients,
     substep_coefficients,
     substep_count,
     substep_time,
@@ -49,23 +49,23 @@ def step(world: World) -> None:
     count = substep_count(world)
     h = substep_time(settings, count)
     # Solvers only read them, so a tick of one substep needs no copies.
-    springs, elements = (world.stiffness, world.damping), world.element_coefficients
+    springs, constraints = (world.stiffness, world.damping), world.constraint_coefficients
     if count > 1:
-        springs, elements = substep_coefficients(world, count), element_coefficients(world, count)
+        springs, constraints = substep_coefficients(world, count), constraint_coefficients(world, count)
     # What a solver keeps is an impulse of one substep: exact, as their number is a power of two.
     scale = settings.fewest_substeps / count
     world.scale_impulses(scale)
     collisions = world.derived(_collisions)
     if collisions is not None:
         collisions.begin(world)
-    if collisions is not None and collisions.is_free and not len(world.driven.motors.hub):
+    if collisions is not None and collisions.is_free and not len(world.actuators.motors.hub):
         collisions.step_free(forces_of(world), count, solver.follows, world.tick, h)
     else:
         for _ in range(count):
             forces = apply_forces(world, h)
             before = Before(forces.particles.before, rest_length)
             contacts = None if collisions is None else collisions.collide(forces, world.tick, h)
-            solver.solve(world, Substep(h, count, springs, elements, before), contacts)
+            solver.solve(world, Substep(h, count, springs, constraints, before), contacts)
             if collisions is not None:
                 collisions.finish(h)
             else:
@@ -74,7 +74,7 @@ def step(world: World) -> None:
     if collisions is not None:
         collisions.end(world)
     world.scale_impulses(1.0 / scale)
-    world.rest_hands()
+    world.rest_grabs()
     world.tick += 1
     contain_outcome(world)
     yield_and_break(world)
@@ -89,13 +89,13 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
         world = World(WorldSettings(solver=solver, substeps=AUTO, drag=1.0))
         world.add_particles(["a", "b", "c"], np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
         world.add_springs(["s", "t"], [0, 0], [1, 1], law=[0, 1])
-        world.add_elements(AREA, [[0, 1, 2]])
+        world.add_constraints(AREA, [[0, 1, 2]])
         world.limits = StrainLimits(np.ones(1), np.ones(1), np.ones(1), np.zeros(1))
         one = np.zeros(1, dtype=np.int64)
         muscles = Muscles(one, np.zeros(1), one + 2, np.zeros(1))
         hydraulics = Hydraulics(one + 1, np.ones(1), np.ones(1), np.zeros(1), one)
         motors = Motors(one, np.ones(1), np.ones(1), one, np.array([0, 1]), one + 1)
-        world.fit(Driven(("a",), muscles, hydraulics, motors), [1.0])
+        world.fit(Actuators(("a",), muscles, hydraulics, motors), [1.0])
         step(world)
         if contacts:
             from sandbox.physics.collision.filter import TERRAIN_GROUP

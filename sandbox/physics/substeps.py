@@ -12,7 +12,7 @@ from sandbox.physics.equation import half_step
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
 from sandbox.physics.settings import AUTO, WorldSettings
-from sandbox.physics.world import HAND_COUNT, Floats, World
+from sandbox.physics.world import GRAB_COUNT, Floats, World
 
 # No tick chooses more substeps than this. 4 leaves a rope dragged at 20 m/s at a stretch above 1e-2, 16 doubles the
 # time.
@@ -21,12 +21,12 @@ MOST_AUTO = 8
 # over within one step is beyond any linear solve; a smaller share costs time on every swing.
 LARGEST_TURN = 0.5
 
-# Cs and Cd of springs (m,) or elements (t,).
+# Cs and Cd of springs (m,) or constraints (t,).
 Pair = tuple[Floats, Floats]
 
 
 class Substep(NamedTuple):
-    """What a solver is given: time step h [s] of one of so many substeps, Cs and Cd of springs and elements in it.
+    """What a solver is given: time step h [s] of one of so many substeps, Cs and Cd of springs and constraints in it.
 
     before: what the substep began with.
     """
@@ -34,7 +34,7 @@ class Substep(NamedTuple):
     h: float
     substeps: int
     springs: Pair
-    elements: Pair
+    constraints: Pair
     before: Before
 
 
@@ -51,9 +51,9 @@ def substep_coefficients(world: World, count: int | None = None) -> Pair:
     return _halved((world.stiffness, world.damping), count or world.settings.fewest_substeps)
 
 
-def element_coefficients(world: World, count: int | None = None) -> Pair:
-    """Cs and Cd (t,) of elements, as `substep_coefficients` gives those of springs."""
-    return _halved(world.element_coefficients, count or world.settings.fewest_substeps)
+def constraint_coefficients(world: World, count: int | None = None) -> Pair:
+    """Cs and Cd (t,) of constraints, as `substep_coefficients` gives those of springs."""
+    return _halved(world.constraint_coefficients, count or world.settings.fewest_substeps)
 
 
 def _halved(coefficients: Pair, count: int) -> Pair:
@@ -79,12 +79,12 @@ def halve(stiffness: Floats, damping: Floats, substeps: int) -> None:
 @kernel
 def _fastest_turn(
     velocity: Floats, inverse_mass: Floats, particle_a: NDArray[np.int32], particle_b: NDArray[np.int32],
-    rest_length: Floats, spring_active: NDArray[np.bool_], hand_spring: int, hands: int, h: float, shortest: Floats,
+    rest_length: Floats, spring_active: NDArray[np.bool_], grab_spring: int, grabs: int, h: float, shortest: Floats,
 ) -> float:  # fmt: skip
-    # Largest ((|v_b - v_a| h) / L)^2; a hand's spring, which has no length, counts by the shortest spring at its end.
+    # Largest ((|v_b - v_a| h) / L)^2; a grab's spring, which has no length, counts by the shortest spring at its end.
     largest = 0.0
     for s in range(rest_length.shape[0]):
-        held = hand_spring <= s < hand_spring + hands
+        held = grab_spring <= s < grab_spring + grabs
         if not spring_active[s] or held:
             continue
         length = rest_length[s]
@@ -97,16 +97,16 @@ def _fastest_turn(
         turn = u * u + v * v
         if not turn <= largest:
             largest = turn
-        for hand in range(hands):
-            if spring_active[hand_spring + hand]:
-                end = particle_b[hand_spring + hand]
-                if end in (a, b) and (shortest[hand] == 0.0 or length < shortest[hand]):
-                    shortest[hand] = length
-    for hand in range(hands):
-        s = hand_spring + hand
-        if spring_active[s] and shortest[hand] > 0.0:
-            u = (velocity[particle_b[s], 0] - velocity[particle_a[s], 0]) * h / shortest[hand]
-            v = (velocity[particle_b[s], 1] - velocity[particle_a[s], 1]) * h / shortest[hand]
+        for grab in range(grabs):
+            if spring_active[grab_spring + grab]:
+                end = particle_b[grab_spring + grab]
+                if end in (a, b) and (shortest[grab] == 0.0 or length < shortest[grab]):
+                    shortest[grab] = length
+    for grab in range(grabs):
+        s = grab_spring + grab
+        if spring_active[s] and shortest[grab] > 0.0:
+            u = (velocity[particle_b[s], 0] - velocity[particle_a[s], 0]) * h / shortest[grab]
+            v = (velocity[particle_b[s], 1] - velocity[particle_a[s], 1]) * h / shortest[grab]
             turn = u * u + v * v
             if not turn <= largest:
                 largest = turn
@@ -116,15 +116,15 @@ def _fastest_turn(
 def substep_count(world: World) -> int:
     """Substeps of the coming tick: as set, or, for "auto", the fewest (1, 2, 4, 8) in which no spring turns too far.
 
-    Looked at are the springs' ends as they move at the tick's start, cursors of hands and moved pins included.
+    Looked at are the springs' ends as they move at the tick's start, cursors of grabs and moved pins included.
     """
     if world.settings.substeps != AUTO:
         return world.settings.substeps
     # A whole tick's turn, halved at each doubling of the substeps.
-    hands = HAND_COUNT if world.hand_spring >= 0 else 0
+    grabs = GRAB_COUNT if world.grab_spring >= 0 else 0
     turn = _fastest_turn(
         world.velocity, world.inverse_mass, world.particle_a, world.particle_b, world.rest_length, world.spring_active,
-        world.hand_spring, hands, 1.0 / world.settings.tick_rate, np.zeros(HAND_COUNT),
+        world.grab_spring, grabs, 1.0 / world.settings.tick_rate, np.zeros(GRAB_COUNT),
     )  # fmt: skip
     count = 1
     while count < MOST_AUTO and not turn <= (LARGEST_TURN * count) * (LARGEST_TURN * count):

@@ -1,4 +1,4 @@
-"""World: particles, springs, elements, settings and tick, with the only methods that change them."""
+"""World: particles, springs, constraints, settings and tick, with the only methods that change them."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
@@ -6,8 +6,8 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sandbox.physics.actuators import Driven, StrainLimits, Surface, unlimited
-from sandbox.physics.constraints import AREA, BEND, Elements, rest_of_area, rest_of_bend, sides_gone
+from sandbox.physics.actuators import Actuators, StrainLimits, Surface, unlimited
+from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, rest_of_area, rest_of_bend, sides_gone
 from sandbox.physics.events import Containment
 from sandbox.physics.names import Names
 from sandbox.physics.settings import AUTO, WorldSettings
@@ -22,17 +22,17 @@ BANK_UNOPENED = -1.0
 LAW_NISSEN = 0
 LAW_HOOKE = 1
 
-# How many particles can be held at once. A hand is a pinned cursor particle and one spring, in slots reserved when
+# How many particles can be held at once. A grab is a pinned cursor particle and one spring, in slots reserved when
 # the world is built, so that grabbing never moves another slot.
-HAND_COUNT = 10
-# The material index of a hand's spring: of no material, so that no slider reaches it.
-HAND_MATERIAL = -1
-# Cs and Cd of a hand's spring, for a whole tick. (Cs + 2 Cd) = 0.8 of the proven bound 4, so that a body inside the
+GRAB_COUNT = 10
+# The material index of a grab's spring: of no material, so that no slider reaches it.
+GRAB_MATERIAL = -1
+# Cs and Cd of a grab's spring, for a whole tick. (Cs + 2 Cd) = 0.8 of the proven bound 4, so that a body inside the
 # article's 1/(n+1) stays bounded while it is held; higher values grip harder and use that margin up.
-HAND_STIFFNESS = 0.2
-HAND_DAMPING = 0.3
+GRAB_STIFFNESS = 0.2
+GRAB_DAMPING = 0.3
 
-# The material index of an element with Cs and Cd of its own, which no slider reaches.
+# The material index of a constraint with Cs and Cd of its own, which no slider reaches.
 OWN_MATERIAL = -1
 # Corners of an area that is all shape: it and its sides agree in one.
 TRIANGLE = 3
@@ -66,15 +66,15 @@ class World(StateArrays):
         self.tick = 0
         self.material_names = tuple(material_names)
         self.limits: StrainLimits = unlimited(len(self.material_names))
-        self.driven = Driven()
+        self.actuators = Actuators()
         # What a particle that is added while the world runs is like to the touch.
         self.surface = Surface()
         self._particles, self._springs = Names(), Names()
-        # Bodies that keep areas, and the elements of each.
+        # Bodies that keep areas, and the constraints of each.
         self.area_names: list[str] = []
-        self.area_elements: list[range] = []
-        self.hand_particle = -1
-        self.hand_spring = -1
+        self.area_constraints: list[range] = []
+        self.grab_particle = -1
+        self.grab_spring = -1
         self.terrain: Terrain = NO_TERRAIN
         # What was taken back since somebody last looked, and the springs that broke in the last tick; never state.
         self.contained: list[Containment] = []
@@ -176,35 +176,35 @@ class World(StateArrays):
 
     @property
     def particle_count(self) -> int:
-        """Particle slots in use, active or not, hands included."""
+        """Particle slots in use, active or not, grabs included."""
         return len(self.mass)
 
     @property
     def spring_count(self) -> int:
-        """Spring slots in use, active or not, hands included."""
+        """Spring slots in use, active or not, grabs included."""
         return len(self.rest_length)
 
     @property
-    def element_count(self) -> int:
-        """Element slots in use, active or not."""
-        return len(self.element_kind)
+    def constraint_count(self) -> int:
+        """Constraint slots in use, active or not."""
+        return len(self.constraint_kind)
 
     @property
-    def elements(self) -> Elements:
-        """The elements as kernels read them."""
-        return Elements(
-            self.element_kind, self.element_first, self.element_corners, self.element_rest, self.element_active,
-            self.corner_particle, self.corner_weight,
+    def constraints(self) -> ConstraintArrays:
+        """The constraints as kernels read them."""
+        return ConstraintArrays(
+            self.constraint_kind, self.constraint_first, self.constraint_corners, self.constraint_rest,
+            self.constraint_active, self.corner_particle, self.corner_weight,
         )  # fmt: skip
 
     @property
-    def element_coefficients(self) -> tuple[Floats, Floats]:
+    def constraint_coefficients(self) -> tuple[Floats, Floats]:
         """Cs and Cd (t,) of a tick, as solvers take them; those of areas of more than three corners give way."""
-        stiffness, damping = self.element_stiffness, self.element_damping
+        stiffness, damping = self.constraint_stiffness, self.constraint_damping
         # numpy takes 2 us for nothing at all, a fifth of the tick of a rope.
         if not len(damping):
             return stiffness, damping
-        gives = (self.element_corners > TRIANGLE) & (damping > HIGHEST_OF_RING)
+        gives = (self.constraint_corners > TRIANGLE) & (damping > HIGHEST_OF_RING)
         if not gives.any():
             return stiffness, damping
         least = np.minimum(stiffness, HIGHEST_OF_RING)
@@ -240,22 +240,22 @@ class World(StateArrays):
             case Family.SPRING:
                 return self.spring_names[slot]
             case Family.ACTUATOR:
-                return self.driven.part_names[slot]
+                return self.actuators.names[slot]
             case Family.CONTACT:
                 return f"contact of {self.particle_names[self.contact_particle[slot]]}"
             case Family.CORNER:
                 return f"corner at {self.particle_names[self.corner_particle[slot]]}"
-        bend = self.element_kind[slot] == BEND
-        middle = self.corner_particle[self.element_first[slot] + bend]
+        bend = self.constraint_kind[slot] == BEND
+        middle = self.corner_particle[self.constraint_first[slot] + bend]
         return f"{'bend' if bend else 'area'} at {self.particle_names[middle]}"
 
-    def is_hand_particle(self, slot: int) -> bool:
-        """Whether the slot is a hand's cursor."""
-        return 0 <= self.hand_particle <= slot < self.hand_particle + HAND_COUNT
+    def is_grab_particle(self, slot: int) -> bool:
+        """Whether the slot is a grab's cursor."""
+        return 0 <= self.grab_particle <= slot < self.grab_particle + GRAB_COUNT
 
-    def is_hand_spring(self, slot: int) -> bool:
-        """Whether the slot is a hand's spring."""
-        return 0 <= self.hand_spring <= slot < self.hand_spring + HAND_COUNT
+    def is_grab_spring(self, slot: int) -> bool:
+        """Whether the slot is a grab's spring."""
+        return 0 <= self.grab_spring <= slot < self.grab_spring + GRAB_COUNT
 
     def add_particles(
         self,
@@ -358,7 +358,7 @@ class World(StateArrays):
         self._disturb(a, b)
         return first
 
-    def add_elements(
+    def add_constraints(
         self,
         kind: int,
         corners: ArrayLike,
@@ -369,7 +369,7 @@ class World(StateArrays):
         damping: ArrayLike = 0.9,
         material: ArrayLike = 0,
     ) -> int:
-        """Append elements of one kind, AREA or BEND, with k corners each, and return the first slot.
+        """Append constraints of one kind, AREA or BEND, with k corners each, and return the first slot.
 
         corners: particle slots (t, k), of an area in the order of its outline. form [m] (t, k, 2): their places at
         rest, None = as they stand. inflation: area wanted as a multiple of the form's. The others (t,) or one for all.
@@ -381,23 +381,23 @@ class World(StateArrays):
         if size < 3 or (kind == BEND and size != 3):
             raise ValueError("an area has three corners or more, a bend three")
         if count and (slots.min() < 0 or slots.max() >= len(self.position)):
-            raise ValueError("an element names a particle slot that does not exist")
+            raise ValueError("a constraint names a particle slot that does not exist")
         if np.any(np.diff(np.sort(slots, axis=1), axis=1) == 0):
-            raise ValueError("the corners of an element are different particles")
+            raise ValueError("the corners of a constraint are different particles")
         places = self.position[slots] if form is None else np.asarray(form, dtype=np.float64)
         rest, weight = rest_of_area(places, inflation) if kind == AREA else rest_of_bend(places)
-        first = self.element_count
+        first = self.constraint_count
         self._append(
-            Family.ELEMENT,
+            Family.CONSTRAINT,
             count,
-            element_kind=kind,
-            element_first=len(self.corner_particle) + size * np.arange(count),
-            element_corners=size,
-            element_rest=rest,
-            element_stiffness=stiffness,
-            element_damping=damping,
-            element_material=material,
-            element_active=True,
+            constraint_kind=kind,
+            constraint_first=len(self.corner_particle) + size * np.arange(count),
+            constraint_corners=size,
+            constraint_rest=rest,
+            constraint_stiffness=stiffness,
+            constraint_damping=damping,
+            constraint_material=material,
+            constraint_active=True,
         )
         self._append(
             Family.CORNER,
@@ -409,25 +409,25 @@ class World(StateArrays):
         self._disturb(slots)
         return first
 
-    def name_areas(self, name: str, elements: range) -> None:
+    def name_areas(self, name: str, constraints: range) -> None:
         """Name the areas of a body, to be inflated together."""
         self.area_names.append(name)
-        self.area_elements.append(elements)
+        self.area_constraints.append(constraints)
 
     def inflate(self, body: int, inflation: float) -> None:
         """Let each area of a body, by its place in `area_names`, want this multiple of its form's."""
-        first, last = self.area_elements[body].start, self.area_elements[body].stop
-        self.element_rest[first:last, 0] = inflation * self.element_rest[first:last, 1]
-        self.good["element_rest"][first:last] = self.element_rest[first:last]
-        corners = self.element_first[first], self.element_first[last - 1] + self.element_corners[last - 1]
+        first, last = self.area_constraints[body].start, self.area_constraints[body].stop
+        self.constraint_rest[first:last, 0] = inflation * self.constraint_rest[first:last, 1]
+        self.good["constraint_rest"][first:last] = self.constraint_rest[first:last]
+        corners = self.constraint_first[first], self.constraint_first[last - 1] + self.constraint_corners[last - 1]
         self._disturb(self.corner_particle[corners[0] : corners[1]])
 
     def set_coefficients(self, stiffness: float | None, damping: float | None, material: int | None) -> None:
         """Set Cs, Cd or both, of one material's springs and areas or (None) of all.
 
-        Hands, Hooke springs and elements with Cs and Cd of their own keep theirs.
+        Grabs, Hooke springs and constraints with Cs and Cd of their own keep theirs.
         """
-        for family, materials in (("", self.material), ("element_", self.element_material)):
+        for family, materials in (("", self.material), ("constraint_", self.constraint_material)):
             chosen = materials >= 0 if material is None else materials == material
             for name, value in ((f"{family}stiffness", stiffness), (f"{family}damping", damping)):
                 if value is not None:
@@ -436,27 +436,27 @@ class World(StateArrays):
             if not family:
                 self._disturb(self.particle_a[chosen], self.particle_b[chosen])
             else:
-                self._disturb(self.corner_particle[np.repeat(chosen, self.element_corners)])
+                self._disturb(self.corner_particle[np.repeat(chosen, self.constraint_corners)])
 
-    def reserve_hands(self) -> None:
-        """Reserve the slots of all hands, inactive; done once, when the world is built."""
-        if self.hand_particle >= 0 or self.particle_count == 0:
+    def reserve_grabs(self) -> None:
+        """Reserve the slots of all grabs, inactive; done once, when the world is built."""
+        if self.grab_particle >= 0 or self.particle_count == 0:
             return
-        names = _hand_names()
-        self.hand_particle = self.add_particles(names, np.zeros((HAND_COUNT, 2)), pinned=True, radius=0.0)
-        held = np.zeros(HAND_COUNT, dtype=np.int64)
-        cursors = self.hand_particle + np.arange(HAND_COUNT)
-        self.hand_spring = self.add_springs(
+        names = _grab_names()
+        self.grab_particle = self.add_particles(names, np.zeros((GRAB_COUNT, 2)), pinned=True, radius=0.0)
+        held = np.zeros(GRAB_COUNT, dtype=np.int64)
+        cursors = self.grab_particle + np.arange(GRAB_COUNT)
+        self.grab_spring = self.add_springs(
             names,
             cursors,
             held,
             rest_length=0.0,
-            stiffness=HAND_STIFFNESS,
-            damping=HAND_DAMPING,
-            material=HAND_MATERIAL,
+            stiffness=GRAB_STIFFNESS,
+            damping=GRAB_DAMPING,
+            material=GRAB_MATERIAL,
         )
-        self.change("particle_active", False, slice(self.hand_particle, None))
-        self.change("spring_active", False, slice(self.hand_spring, None))
+        self.change("particle_active", False, slice(self.grab_particle, None))
+        self.change("spring_active", False, slice(self.grab_spring, None))
 
     def pin(self, particle: int) -> None:
         """Hold a particle where it is."""
@@ -489,32 +489,32 @@ class World(StateArrays):
         self.broken = springs
 
     def _take_out(self, springs: Slots) -> None:
-        """Take springs out, and the elements that they were a side of, unless another spring holds that side."""
+        """Take springs out, and the constraints that they were a side of, unless another spring holds that side."""
         self.change("spring_active", False, springs)
         self.impulse[springs] = 0.0
         self.tension[springs] = 0.0
-        if self.element_count:
-            gone = sides_gone(self.elements, self.particle_a, self.particle_b, self.spring_active, springs)
-            self.change("element_active", False, gone)
+        if self.constraint_count:
+            gone = sides_gone(self.constraints, self.particle_a, self.particle_b, self.spring_active, springs)
+            self.change("constraint_active", False, gone)
 
-    def fit(self, driven: Driven, values: ArrayLike) -> None:
+    def fit(self, driven: Actuators, values: ArrayLike) -> None:
         """Give the world its driven parts, with the value (k,) of each, -1..1; done once, when the world is built."""
-        self.driven = driven
-        self.part_value = np.array(values, dtype=np.float64)
+        self.actuators = driven
+        self.actuator_value = np.array(values, dtype=np.float64)
 
     def drive(self, part: int, value: float) -> None:
         """Drive a part, -1..1: a motor at that share of its speed, a hydraulic at that share of its rate."""
-        self.part_value[part] = value
+        self.actuator_value[part] = value
 
     def set_rest_lengths(self, springs: Slots, lengths: Floats) -> None:
         """Give springs other rest lengths [m]; what they yielded by stays what it was."""
         self.rest_length[springs] = lengths
         self.good["rest_length"][springs] = lengths
 
-    def hold(self, hand: int, particle: int, target: tuple[float, float]) -> None:
-        """Join a particle to a hand's cursor at target [m] by a spring of rest length 0: a mouse joint."""
-        self.reserve_hands()
-        cursor, spring = self.hand_particle + hand, self.hand_spring + hand
+    def hold(self, grab: int, particle: int, target: tuple[float, float]) -> None:
+        """Join a particle to a grab's cursor at target [m] by a spring of rest length 0: a mouse joint."""
+        self.reserve_grabs()
+        cursor, spring = self.grab_particle + grab, self.grab_spring + grab
         self.change("particle_active", True, cursor)
         self.position[cursor] = target
         self.velocity[cursor] = 0.0
@@ -525,27 +525,27 @@ class World(StateArrays):
         self.tension[spring] = 0.0
         self._disturb(particle)
 
-    def is_held(self, hand: int) -> bool:
-        """Whether a hand holds a particle."""
-        return self.hand_spring >= 0 and bool(self.spring_active[self.hand_spring + hand])
+    def is_held(self, grab: int) -> bool:
+        """Whether a grab holds a particle."""
+        return self.grab_spring >= 0 and bool(self.spring_active[self.grab_spring + grab])
 
-    def hands_in_use(self) -> bool:
-        """Whether any hand holds a particle."""
-        return any(self.is_held(hand) for hand in range(HAND_COUNT))
+    def any_held(self) -> bool:
+        """Whether any grab holds a particle."""
+        return any(self.is_held(grab) for grab in range(GRAB_COUNT))
 
-    def move_hand(self, hand: int, target: tuple[float, float]) -> None:
-        """Send a hand's cursor to target [m]: it travels there in the coming tick."""
-        cursor = self.hand_particle + hand
+    def move_grab(self, grab: int, target: tuple[float, float]) -> None:
+        """Send a grab's cursor to target [m]: it travels there in the coming tick."""
+        cursor = self.grab_particle + grab
         self.velocity[cursor] = (np.asarray(target) - self.position[cursor]) * float(self.settings.tick_rate)
 
-    def rest_hands(self) -> None:
+    def rest_grabs(self) -> None:
         """Stop every cursor; the end of a tick."""
-        if self.hand_particle >= 0:
-            self.velocity[self.hand_particle : self.hand_particle + HAND_COUNT] = 0.0
+        if self.grab_particle >= 0:
+            self.velocity[self.grab_particle : self.grab_particle + GRAB_COUNT] = 0.0
 
-    def release(self, hand: int) -> None:
-        """Let go; the hand's slots wait for its next use."""
-        cursor, spring = self.hand_particle + hand, self.hand_spring + hand
+    def release(self, grab: int) -> None:
+        """Let go; the grab's slots wait for its next use."""
+        cursor, spring = self.grab_particle + grab, self.grab_spring + grab
         self.change("particle_active", False, cursor)
         self._disturb(self.particle_b[spring])
         self.position[cursor] = 0.0
@@ -561,9 +561,9 @@ class World(StateArrays):
         self._particles.append(particles)
         self._springs.append(springs)
 
-    def name_hands(self) -> None:
-        """Name the hands' slots, where a restored state brought them along."""
-        self.name_slots(_hand_names(), _hand_names())
+    def name_grabs(self) -> None:
+        """Name the grabs' slots, where a restored state brought them along."""
+        self.name_slots(_grab_names(), _grab_names())
 
     def forget_names_beyond(self, particle_count: int, spring_count: int) -> None:
         """Drop the names of slots that a restored state does not have."""
@@ -571,8 +571,8 @@ class World(StateArrays):
         self._springs.forget_beyond(spring_count)
 
 
-def _hand_names() -> list[str]:
-    return [f"+hand.{hand}" for hand in range(HAND_COUNT)]
+def _grab_names() -> list[str]:
+    return [f"+hand.{grab}" for grab in range(GRAB_COUNT)]
 
 
 def _collides(world: World) -> bool:

@@ -100,7 +100,7 @@ def _summary(
     finite = np.isfinite(speed) & np.isfinite(world.position[shown]).all(axis=1)
     samples = sum(count for _, _, count in window)
     active = int(np.count_nonzero(shown_springs(world)))
-    real = sum(not world.is_hand_spring(slot) for slot in range(world.spring_count))
+    real = sum(not world.is_grab_spring(slot) for slot in range(world.spring_count))
     springs_hold, gravity_holds = spring_energy(world), gravity_energy(world)
     return Summary(
         ticks=ticks,

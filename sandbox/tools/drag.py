@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from sandbox.physics.query import nearest_particle
 from sandbox.physics.snapshot import Snapshot
-from sandbox.physics.world import HAND_COUNT
+from sandbox.physics.world import GRAB_COUNT
 from sandbox.session.commands import Grab, MoveGrab, Release
 from sandbox.tools.tool import NOTHING, Point, PointerEvent, Response, Submission
 
@@ -60,8 +60,8 @@ class DragTool:
     def reconcile(self, snapshot: Snapshot) -> None:
         """Forget the hands that the world says are empty: undo, a reset or a refused grab took them."""
         for hand in list(self.holds):
-            spring = snapshot.hand_spring + hand
-            if snapshot.hand_spring < 0 or not snapshot.spring_active[spring]:
+            spring = snapshot.grab_spring + hand
+            if snapshot.grab_spring < 0 or not snapshot.spring_active[spring]:
                 del self.holds[hand]
                 if self._dragged == hand:
                     self._dragged = None
@@ -78,9 +78,9 @@ class DragTool:
             return NOTHING
         if snapshot.inverse_mass[particle] == 0.0:
             return Response(message="This particle is pinned. Unpin it with the pin tool (P) to drag it.")
-        hand = next((number for number in range(HAND_COUNT) if number not in self.holds), None)
+        hand = next((number for number in range(GRAB_COUNT) if number not in self.holds), None)
         if hand is None:
-            return Response(message=f"All {HAND_COUNT} hands are full. Escape lets go of everything.")
+            return Response(message=f"All {GRAB_COUNT} hands are full. Escape lets go of everything.")
         hold = Hold(particle, self._new_gesture())
         self.holds[hand] = hold
         self._dragged = hand

@@ -20,7 +20,7 @@ def test_a_key_drives_while_it_is_held_and_opposite_keys_take_turns(driving):
     for kind, key in [("down", "d"), ("down", "d"), ("down", "a"), ("up", "a"), ("up", "d")]:
         driving.post(pygame.KEYDOWN if kind == "down" else pygame.KEYUP, key=ord(key), mod=0, unicode=key)
         driving.frames(2)
-        values.append(driving.world.part_value[0])
+        values.append(driving.world.actuator_value[0])
     assert values == [1.0, 1.0, -1.0, 1.0, 0.0]
     assert driving.world.velocity.any()
 
@@ -29,7 +29,7 @@ def test_a_key_with_ctrl_is_a_shortcut_and_one_of_no_part_too(driving):
     driving.post(pygame.KEYDOWN, key=pygame.K_d, mod=pygame.KMOD_CTRL, unicode="d")
     driving.post(pygame.KEYDOWN, key=pygame.K_p, mod=0, unicode="p")
     driving.frames(2)
-    assert driving.world.part_value[0] == 0.0
+    assert driving.world.actuator_value[0] == 0.0
     assert driving.stage.tool_name == "pin"
 
 
@@ -39,11 +39,11 @@ def test_a_key_that_is_held_over_a_fresh_start_lets_go_without_a_trace(driving):
     driving.key(pygame.K_r)
     driving.post(pygame.KEYUP, key=pygame.K_d, mod=0)
     driving.frames(2)
-    assert driving.world.part_value[0] == 0.0
+    assert driving.world.actuator_value[0] == 0.0
     assert not driving.playback.session.can_undo
     driving.post(pygame.KEYDOWN, key=pygame.K_a, mod=0, unicode="a")
     driving.frames(2)
-    assert driving.world.part_value[0] == -1.0
+    assert driving.world.actuator_value[0] == -1.0
 
 
 def test_undo_takes_a_whole_press_back(driving):

@@ -21,7 +21,7 @@ def drag(substeps: Substeps, hand: bool) -> str:
         velocity = 20.0 * np.array([(1, 0), (-1, 0), (0, 1), (0, -1)][tick // 15 % 4])
         target = target + velocity / world.settings.tick_rate
         if hand:
-            world.move_hand(0, tuple(target))
+            world.move_grab(0, tuple(target))
         else:
             world.velocity[0] = velocity
         parts.append(substep_count(world))

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.energy import measure_elements
+from sandbox.physics.energy import measure_constraints
 from sandbox.physics.settings import AUTO, Substeps, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.solvers.direct.energy_norm import extremes
@@ -94,7 +94,7 @@ def _add_elements(graphs: Graphs, number: int, kind: str, rng: np.random.Generat
         size = min(len(particles), int(rng.choice([3, 3, 3, 5, 8]))) if is_area else 3
         corners = rng.choice(particles, size, replace=False)[None]
         stiffness, damping = coefficients(kind, 1, rng)
-        world.add_elements(
+        world.add_constraints(
             AREA if is_area else BEND, corners, inflation=rng.choice([1.0, 0.0, 2.0, -1.0]), stiffness=stiffness,
             damping=damping,
         )  # fmt: skip
@@ -140,16 +140,16 @@ def energies(graphs: Graphs, count: int, *, start: bool = False) -> Floats:
         constant = extremes(world.stiffness, world.damping)[start] * mass / (h * h)
     separation = world.position[world.particle_b] - world.position[world.particle_a]
     error = np.sqrt(np.sum(separation**2, axis=1)) - world.rest_length
-    value, effective, _ = measure_elements(world)
-    stiffness, damping = world.element_coefficients
-    of_elements = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, effective, h)
+    value, effective, _ = measure_constraints(world)
+    stiffness, damping = world.constraint_coefficients
+    of_constraints = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, effective, h)
     if world.settings.substeps == AUTO:
-        of_elements = extremes(stiffness, damping)[start] * effective / (h * h)
+        of_constraints = extremes(stiffness, damping)[start] * effective / (h * h)
     moving = np.where(world.inverse_mass > 0.0, world.mass * np.sum(world.velocity**2, axis=1), 0.0)
     return 0.5 * (
         np.bincount(graphs.of_particle, moving, count)
         + np.bincount(graphs.of_spring, constant * error**2, count)
-        + np.bincount(graphs.of_element, of_elements * value**2, count)
+        + np.bincount(graphs.of_element, of_constraints * value**2, count)
     )
 
 

@@ -17,7 +17,7 @@ from sandbox.physics.forces import Before
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.solvers import single_pass
 from sandbox.physics.step import step
-from sandbox.physics.substeps import Substep, element_coefficients, substep_coefficients, substep_time
+from sandbox.physics.substeps import Substep, constraint_coefficients, substep_coefficients, substep_time
 from tests.support.physics_scenes import grid_with_diagonals
 
 SIDE = 32
@@ -29,7 +29,7 @@ def seconds_per_pass(passes: int) -> float:
     """Median time [s] of one single pass over the mesh, in motion, kernels warm."""
     world = grid_with_diagonals(columns=SIDE, rows=SIDE, stiffness=0.1, damping=0.1, gravity=(0.0, -9.81))
     step(world)
-    springs, elements = substep_coefficients(world), element_coefficients(world)
+    springs, elements = substep_coefficients(world), constraint_coefficients(world)
     h, times = substep_time(world.settings), []
     before = Before(world.velocity, world.rest_length)
     substep = Substep(h, 1, springs, elements, before)

@@ -77,7 +77,7 @@ def busy_world(solver: str, substeps: int):
     """
     import numpy as np
 
-    from sandbox.physics.actuators import Driven, Hydraulics, Motors, Muscles, StrainLimits
+    from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles, StrainLimits
     from sandbox.physics.constraints import AREA, BEND
     from sandbox.physics.settings import WorldSettings
     from sandbox.physics.world import LAW_HOOKE, World
@@ -107,16 +107,16 @@ def busy_world(solver: str, substeps: int):
     pair = world.add_particles(["a", "b", "free"], [(4, 4), (4, 4), (5, 5)], velocity=[(0, 0), (0.1, -0.2), (1, 2)])
     world.add_springs([":0", ":1"], [pair, pair], [pair + 1, pair + 1], rest_length=[0.3, 0.0], stiffness=0.2)
     cells = [k for k in range(side * (side - 1)) if k % side < side - 1 and k % 3 == 0]
-    world.add_elements(AREA, [(k, k + 1, k + side) for k in cells], stiffness=0.05, damping=0.07)
-    world.add_elements(AREA, [(0, 1, 2, 8, 14, 13, 12, 6)], inflation=1.3, stiffness=0.04, damping=0.06)
-    world.add_elements(BEND, [(k, k + 1, k + 2) for k in range(18, 22)], stiffness=0.05, damping=0.02, material=-1)
+    world.add_constraints(AREA, [(k, k + 1, k + side) for k in cells], stiffness=0.05, damping=0.07)
+    world.add_constraints(AREA, [(0, 1, 2, 8, 14, 13, 12, 6)], inflation=1.3, stiffness=0.04, damping=0.06)
+    world.add_constraints(BEND, [(k, k + 1, k + 2) for k in range(18, 22)], stiffness=0.05, damping=0.02, material=-1)
     world.limits = StrainLimits(*np.array([[0.6], [0.5], [0.15], [0.2]]))
     muscles = Muscles(np.array([3, 30]), np.array([0.3, 0.2]), np.array([7, 12]), np.array([0.0, 0.3]))
     hydraulics = Hydraulics(np.array([40]), np.array([0.2]), np.array([0.9]), np.array([1.7]), np.array([1]))
     rim = np.array([8, 9, 13, 15, 19, 20, 21])
     motors = Motors(np.array([14]), np.array([5.0]), np.array([90.0]), np.array([0]), np.array([0, 7]), rim)
-    world.fit(Driven(("motor", "jack"), muscles, hydraulics, motors), [0.7, 1.0])
-    world.reserve_hands()
+    world.fit(Actuators(("motor", "jack"), muscles, hydraulics, motors), [0.7, 1.0])
+    world.reserve_grabs()
     return world
 
 
@@ -161,7 +161,7 @@ def hashes(advance, solver: str, substeps: int, ticks: int):
         if tick % 10 == 2:
             world.hold(tick // 10 % 3, 7 + tick % 20, (1.0, 1.5))
         if tick % 10 > 2:
-            world.move_hand(tick // 10 % 3, (1.0 + 0.07 * (tick % 10), 1.5 - 0.031 * tick))
+            world.move_grab(tick // 10 % 3, (1.0 + 0.07 * (tick % 10), 1.5 - 0.031 * tick))
         if tick % 10 == 9:
             world.release(tick // 10 % 3)
         if tick == 13:

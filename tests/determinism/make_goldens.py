@@ -134,7 +134,7 @@ def slide(person: Person, ticks: int) -> Iterator[None]:
 def drive(person: Person, ticks: int) -> Iterator[None]:
     """Drive what the level has to drive."""
     for values in ((1.0, 1.0), (-1.0, 0.0), (-1.0, 1.0)):
-        for name in person.session.world.driven.part_names:
+        for name in person.session.world.actuators.names:
             person.do_once(type="set_drive", part=name, value=person.number(*values))
         for _ in range(ticks // 3):
             yield

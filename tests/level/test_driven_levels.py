@@ -63,7 +63,7 @@ def test_everything_arrives_in_the_world():
     assert world.limits.yield_share.tolist() == [0.25, 0.25, 0.5]
     driven = world.driven
     assert driven.part_names == ("w", "v", ":0", ":2")
-    assert world.part_value.tolist() == [0.0, 1.0, 0.0, 0.0]
+    assert world.actuator_value.tolist() == [0.0, 1.0, 0.0, 0.0]
     assert [world.spring_names[s] for s in driven.muscles.spring] == ["m:0", "m:1", "m:2", "m:3", ":1"]
     assert [world.spring_names[s] for s in driven.hydraulics.spring] == [":0", ":2"]
     assert [world.particle_names[s] for s in driven.motors.hub] == ["w.0", "v.0"]
@@ -166,6 +166,6 @@ def test_a_fault_is_told_in_one_line_and_the_rest_can_be_saved(given, line):
 def test_a_level_of_before_reads_as_it_did():
     plain = level(bodies=[ROPE, WHEEL])
     world = build_world(plain)
-    assert not world.limits.exist and world.driven.part_names == ()
-    assert np.all(world.gravity_scale[: world.hand_particle] == 1.0) and world.settings.drag == 0.0
+    assert not world.limits.exist and world.actuators.names == ()
+    assert np.all(world.gravity_scale[: world.grab_particle] == 1.0) and world.settings.drag == 0.0
     assert "drive" not in level_text(plain)

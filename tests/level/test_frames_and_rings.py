@@ -18,16 +18,16 @@ def world_of(body, **keys):
 
 
 def places(world):
-    return world.position[: world.hand_particle]
+    return world.position[: world.grab_particle]
 
 
 def springs(world):
     ends = zip(world.particle_a.tolist(), world.particle_b.tolist(), strict=True)
-    return list(ends)[: world.hand_spring]
+    return list(ends)[: world.grab_spring]
 
 
 def held(world):
-    return np.flatnonzero(world.inverse_mass[: world.hand_particle] == 0.0).tolist()
+    return np.flatnonzero(world.inverse_mass[: world.grab_particle] == 0.0).tolist()
 
 
 def girder(**keys):

@@ -15,7 +15,7 @@ from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.polygon import polygon_grid
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
-from sandbox.physics.world import HAND_COUNT, LAW_HOOKE, LAW_NISSEN
+from sandbox.physics.world import GRAB_COUNT, LAW_HOOKE, LAW_NISSEN
 from tests.support.malformed_levels import GOOD, encoded
 
 
@@ -29,12 +29,12 @@ def world_of(*bodies, **keys):
 
 
 def places(world):
-    return world.position[: world.hand_particle].tolist()
+    return world.position[: world.grab_particle].tolist()
 
 
 def springs(world):
     ends = zip(world.particle_a.tolist(), world.particle_b.tolist(), strict=True)
-    return list(ends)[: world.hand_spring]
+    return list(ends)[: world.grab_spring]
 
 
 def rope(**keys):
@@ -186,7 +186,7 @@ def test_slots_go_bodies_first_then_loose_ones_then_hands():
     assert world.spring_names[13:17] == ["b:10", ":0", ":1", "+hand.0"]
     assert springs(world)[-2:] == [(11, 3), (10, 4)]
     assert world.radius[9:12].tolist() == [0.05, 0.5, 0.05]
-    assert len(world.particle_names) == 12 + HAND_COUNT
+    assert len(world.particle_names) == 12 + GRAB_COUNT
 
 
 @pytest.mark.parametrize(
@@ -265,7 +265,7 @@ def test_what_is_counted_before_is_what_is_built(index):
 )
 def test_a_hundred_thousand_particles_are_built(body):
     world = world_of(body)
-    assert 95_000 < world.particle_count - HAND_COUNT <= 100_000
+    assert 95_000 < world.particle_count - GRAB_COUNT <= 100_000
 
 
 def test_a_level_made_in_python_is_checked_before_it_is_built():

@@ -34,9 +34,9 @@ EXAMPLE = """
 
 def test_the_format_s_example_expands_as_described():
     world = build_world(parse_level(EXAMPLE.encode(), "example"))
-    assert world.hand_particle == 31 + 2 * 41 + 9 * 9 + 2 + 1
-    assert world.hand_spring == 30 + (5 * 40 + 1) + (2 * 72 + 2 * 64) + 1 + 1
-    assert world.particle_b[world.hand_spring - 1] == world.particle_slot("deck.20") == 31 + 20
+    assert world.grab_particle == 31 + 2 * 41 + 9 * 9 + 2 + 1
+    assert world.grab_spring == 30 + (5 * 40 + 1) + (2 * 72 + 2 * 64) + 1 + 1
+    assert world.particle_b[world.grab_spring - 1] == world.particle_slot("deck.20") == 31 + 20
 
 
 def test_the_shipped_example_holds_the_format_s_example():
@@ -91,7 +91,7 @@ def metric(world, check, largest_strain):
     return {
         "max_strain": largest_strain,
         "max_speed": float(speeds.max()),
-        "broken_springs": float(np.count_nonzero(~world.spring_active[: world.hand_spring])),
+        "broken_springs": float(np.count_nonzero(~world.spring_active[: world.grab_spring])),
         "non_finite": float(np.count_nonzero(~np.isfinite(world.position))),
     }[check.metric]
 
@@ -123,7 +123,7 @@ def test_a_shipped_level_starts_inside_its_view_and_finite(name):
     for _ in range(60 if COMPILED else 1):
         step(world)
     left, bottom, right, top = level.view
-    shown = world.position[: world.hand_particle]
+    shown = world.position[: world.grab_particle]
     assert np.all(np.isfinite(shown))
     if name != "hooke_comparison":
         assert np.all((shown >= [left, bottom]) & (shown <= [right, top]))

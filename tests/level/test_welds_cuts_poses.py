@@ -35,7 +35,7 @@ def second(**keys):
 
 def springs(world):
     ends = zip(world.particle_a.tolist(), world.particle_b.tolist(), strict=True)
-    return list(ends)[: world.hand_spring]
+    return list(ends)[: world.grab_spring]
 
 
 def test_pins_by_number_come_beside_those_by_end():
@@ -51,7 +51,7 @@ def test_springs_that_are_cut_are_left_out_and_the_others_keep_their_names():
 
 
 def test_a_body_may_lose_all_its_springs():
-    assert world_of(rope(cut=[0, 1, 2])).hand_spring == 0
+    assert world_of(rope(cut=[0, 1, 2])).grab_spring == 0
 
 
 def test_a_pose_places_the_particles_and_leaves_the_rest_lengths():
@@ -101,7 +101,7 @@ def test_a_union_is_held_where_one_of_it_is_and_as_large_as_its_largest():
     world = world_of(rope(), particles=loose, welds=[["p", "r.end"], ["q", "p"]])
     assert (world.radius[3], world.inverse_mass[3], world.mass[3]) == (0.5, 0.0, 3.0)
     assert world.velocity[3].tolist() == [0.0, 0.0]
-    assert world.hand_particle == 4
+    assert world.grab_particle == 4
 
 
 def test_chains_of_welds_are_one_union_in_any_order():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.actuators import Driven, Hydraulics, Muscles
+from sandbox.physics.actuators import Actuators, Hydraulics, Muscles
 from sandbox.physics.driving import drive_muscles, wave
 from sandbox.physics.energy import kinetic_energy, spring_energy, total_energy
 from sandbox.physics.snapshot import restore, state_hash, take
@@ -17,7 +17,7 @@ def driven(world, *, amplitude=0.3, period=20, phase=0.0):
     last = world.spring_count - 1
     muscles = Muscles(np.array([0]), np.array([amplitude]), np.array([period]), np.array([phase]))
     hydraulics = Hydraulics(np.array([last]), np.array([0.5]), np.array([2.0]), np.array([3.0]), np.array([0]))
-    world.fit(Driven(("jack",), muscles, hydraulics), [0.0])
+    world.fit(Actuators(("jack",), muscles, hydraulics), [0.0])
     drive_muscles(world, 0)
     return world
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.actuators import NEVER, Driven, Muscles, StrainLimits
+from sandbox.physics.actuators import NEVER, Actuators, Muscles, StrainLimits
 from sandbox.physics.energy import kinetic_energy, reduced_masses, spring_lengths
 from sandbox.physics.equation import implicit_spring_constant
 from sandbox.physics.settings import AUTO
@@ -82,7 +82,7 @@ def test_what_yields_breaks_once_it_can_yield_no_further():
 
 def test_a_driven_spring_does_not_yield_but_breaks():
     world = pair(1.5, yielding=0.1, share=0.5)
-    world.fit(Driven((), Muscles(np.array([0]), np.array([0.0]), np.array([4]), np.array([0.0]))), [])
+    world.fit(Actuators((), Muscles(np.array([0]), np.array([0.0]), np.array([4]), np.array([0.0]))), [])
     step(world)
     assert world.rest_length[0] == 1.0
     world.limits = limits(tension=0.4)

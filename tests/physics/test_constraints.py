@@ -9,13 +9,13 @@ import pytest
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import ContactsDef
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.energy import element_energies, measure_elements, total_energy
+from sandbox.physics.energy import constraint_energies, measure_constraints, total_energy
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.solvers.direct import layout
-from sandbox.physics.stability import element_count, largest_eigenvalue, report
+from sandbox.physics.stability import constraint_count, largest_eigenvalue, report
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import step
 from sandbox.physics.world import World
@@ -35,11 +35,11 @@ def ring(count=12, *, inflation=1.0, bending=None, coefficient=0.1, pinned=(), *
     points = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     springs = [(k, (k + 1) % count) for k in range(count)]
     world = network(points, springs, stiffness=coefficient, damping=coefficient, pinned=pinned, **options)
-    world.add_elements(AREA, [range(count)], inflation=inflation, stiffness=coefficient, damping=coefficient)
+    world.add_constraints(AREA, [range(count)], inflation=inflation, stiffness=coefficient, damping=coefficient)
     world.name_areas("ring", range(1))
     if bending is not None:
         triples = [(k, (k + 1) % count, (k + 2) % count) for k in range(count)]
-        world.add_elements(BEND, triples, stiffness=bending, damping=bending, material=-1)
+        world.add_constraints(BEND, triples, stiffness=bending, damping=bending, material=-1)
     return world
 
 
@@ -56,8 +56,8 @@ def test_gradients_are_those_of_the_error(kind, corners):
     for _ in range(scaled(200, 20)):
         points = generator.uniform(-1.0, 1.0, (corners, 2))
         world = network(points, [])
-        world.add_elements(kind, [range(corners)], form=generator.uniform(-1.0, 1.0, (1, corners, 2)))
-        value, _, slope = measure_elements(world)
+        world.add_constraints(kind, [range(corners)], form=generator.uniform(-1.0, 1.0, (1, corners, 2)))
+        value, _, slope = measure_constraints(world)
         # At a fold of 180 degrees the angle changes its sign.
         if kind == BEND and abs(value[0]) > 2.7:
             continue
@@ -66,7 +66,7 @@ def test_gradients_are_those_of_the_error(kind, corners):
                 sides = []
                 for shift in (1e-6, -1e-6):
                     world.position[corner, axis] += shift
-                    sides.append(measure_elements(world)[0][0])
+                    sides.append(measure_constraints(world)[0][0])
                     world.position[corner, axis] -= shift
                 assert slope[corner, axis] == pytest.approx((sides[0] - sides[1]) / 2e-6, rel=1e-3, abs=1e-5)
 
@@ -78,14 +78,14 @@ def test_a_bend_measures_the_angle_from_its_rest(rest, turned):
         return [(-2.0, 0.0), (0.0, 0.0), (math.cos(angle), math.sin(angle))]
 
     world = network(hinge(rest + turned), [])
-    world.add_elements(BEND, [[0, 1, 2]], form=[hinge(rest)])
-    assert measure_elements(world)[0][0] == pytest.approx(4.0 * math.sin(turned / 4.0), abs=1e-12)
+    world.add_constraints(BEND, [[0, 1, 2]], form=[hinge(rest)])
+    assert measure_constraints(world)[0][0] == pytest.approx(4.0 * math.sin(turned / 4.0), abs=1e-12)
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_link_folded_back_by_180_degrees_unfolds(solver):
     world = network([(0, 0), (1, 0), (2, 0)], [(0, 1), (1, 2)], pinned=(0, 1), solver=solver)
-    world.add_elements(BEND, [[0, 1, 2]], stiffness=0.1, damping=0.3)
+    world.add_constraints(BEND, [[0, 1, 2]], stiffness=0.1, damping=0.3)
     world.position[2] = (0.0, 0.0)
     run(world, scaled(300, 150))
     assert world.position[2] == pytest.approx([2.0, 0.0], abs=1e-2)
@@ -94,11 +94,11 @@ def test_a_link_folded_back_by_180_degrees_unfolds(solver):
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_triangle_turned_inside_out_comes_back(solver):
     world = network([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)], solver=solver, stiffness=0.2, damping=0.3)
-    world.add_elements(AREA, [[0, 1, 2]], stiffness=0.2, damping=0.3)
+    world.add_constraints(AREA, [[0, 1, 2]], stiffness=0.2, damping=0.3)
     world.position[2] = (0.1, -1.0)
     run(world, scaled(600, 300))
-    value, *_ = measure_elements(world)
-    assert abs(value[0]) < 1e-3 and world.element_rest[0, 0] == 0.5
+    value, *_ = measure_constraints(world)
+    assert abs(value[0]) < 1e-3 and world.constraint_rest[0, 0] == 0.5
 
 
 @pytest.mark.parametrize("stiffness", [1.0, 0.3])
@@ -107,7 +107,7 @@ def test_one_area_alone_obeys_the_equation_of_one_spring(stiffness):
     damping, h = 0.6, 1.0 / 60.0
     for solver in SOLVERS:
         world = network([(0, 0), (1, 0), (0.5, 1)], [], pinned=(0, 1), solver=solver)
-        world.add_elements(AREA, [[0, 1, 2]], stiffness=stiffness, damping=damping)
+        world.add_constraints(AREA, [[0, 1, 2]], stiffness=stiffness, damping=damping)
         world.position[2, 1] = 1.3
         error, rate = 0.5 * 0.3, 0.0
         # The rest shape's mass is of a gradient of the same length in this direction; sideways there is none.
@@ -115,7 +115,7 @@ def test_one_area_alone_obeys_the_equation_of_one_spring(stiffness):
             step(world)
             rate = (1.0 - damping) * rate - stiffness * error / h
             error += h * rate
-            assert measure_elements(world)[0][0] == pytest.approx(error, abs=1e-9)
+            assert measure_constraints(world)[0][0] == pytest.approx(error, abs=1e-9)
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
@@ -144,10 +144,10 @@ def test_a_ring_takes_the_area_it_is_inflated_to_whatever_is_pinned(solver, pinn
     coefficient = 0.9 if solver == "direct" else 0.1
     world = ring(inflation=1.1, coefficient=coefficient, pinned=pinned, bending=0.05, solver=solver, substeps=2)
     run(world, scaled(300, 30))
-    assert measure_elements(world)[0][0] + world.element_rest[0, 0] > 1.05 * world.element_rest[0, 1]
+    assert measure_constraints(world)[0][0] + world.constraint_rest[0, 0] > 1.05 * world.constraint_rest[0, 1]
     world.inflate(0, 0.8)
     run(world, scaled(300, 30))
-    assert measure_elements(world)[0][0] + world.element_rest[0, 0] < 0.95 * world.element_rest[0, 1]
+    assert measure_constraints(world)[0][0] + world.constraint_rest[0, 0] < 0.95 * world.constraint_rest[0, 1]
 
 
 def test_elements_taken_in_after_the_factorisation_move_as_those_in_the_matrix_do(monkeypatch):
@@ -155,7 +155,7 @@ def test_elements_taken_in_after_the_factorisation_move_as_those_in_the_matrix_d
     for narrow in (3, 2):
         monkeypatch.setattr(layout, "NARROW", narrow)
         world = jelly_abuse.jelly(4, 3)
-        world.add_elements(BEND, [[0, 1, 2], [4, 5, 6]], stiffness=0.3, damping=0.5)
+        world.add_constraints(BEND, [[0, 1, 2], [4, 5, 6]], stiffness=0.3, damping=0.5)
         world.pin(0)
         # Not tangled: only those of the matrix have a goal.
         worlds.append(shaken(world, np.random.default_rng(4), shift=0.02))
@@ -169,18 +169,18 @@ def test_elements_taken_in_after_the_factorisation_move_as_those_in_the_matrix_d
 def test_what_a_cut_spring_was_a_side_of_is_gone(solver):
     points, springs = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (2, 0)]
     world = network(points, springs, solver=solver)
-    world.add_elements(AREA, [[0, 1, 2], [0, 2, 3]])
-    world.add_elements(BEND, [[0, 1, 2]])
+    world.add_constraints(AREA, [[0, 1, 2], [0, 2, 3]])
+    world.add_constraints(BEND, [[0, 1, 2]])
     step(world)
     world.cut([4])
-    assert world.element_active.all()  # another spring holds that side
+    assert world.constraint_active.all()  # another spring holds that side
     world.cut([5])
-    assert world.element_active.tolist() == [False, False, True]
+    assert world.constraint_active.tolist() == [False, False, True]
     world.cut([1])
-    assert not world.element_active.any()
+    assert not world.constraint_active.any()
     world.position[3] = (5.0, 5.0)
     step(world)
-    assert np.all(element_energies(world) == 0.0)
+    assert np.all(constraint_energies(world) == 0.0)
 
 
 @pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
@@ -204,15 +204,15 @@ def test_elements_that_make_no_sense_are_refused():
         (BEND, [[0, 1, 2]], "with a length"),
     ):
         with pytest.raises(ValueError, match=text):
-            world.add_elements(kind, corners)
-    assert world.element_count == 0 and len(world.corner_particle) == 0
+            world.add_constraints(kind, corners)
+    assert world.constraint_count == 0 and len(world.corner_particle) == 0
 
 
 def test_a_slider_of_a_material_moves_its_areas_and_no_bends():
     world = ring(bending=0.05)
     world.set_coefficients(0.7, 0.8, 0)
-    assert (world.element_stiffness[0], world.element_damping[0]) == (0.7, 0.8)
-    assert set(world.element_stiffness[1:]) == {0.05}
+    assert (world.constraint_stiffness[0], world.constraint_damping[0]) == (0.7, 0.8)
+    assert set(world.constraint_stiffness[1:]) == {0.05}
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
@@ -236,7 +236,7 @@ def test_limits_count_elements_and_hold_the_eigenvalue():
     for seed in range(scaled(60, 10)):
         world = jelly_abuse.jelly(4, 3, solver="single_pass") if seed % 2 else ring(7, bending=0.1)
         shaken(world, generator)
-        assert largest_eigenvalue(world) <= max(report(world).n_eff, element_count(world).max()) + 1e-9
+        assert largest_eigenvalue(world) <= max(report(world).n_eff, constraint_count(world).max()) + 1e-9
 
 
 @pytest.mark.parametrize("scene", ["jelly", "ring", "stiff ring"])
@@ -353,7 +353,7 @@ def test_a_jelly_that_was_at_rest_does_not_begin_to_spin(abuse):
 def test_a_torn_jelly_beside_a_pendulum_is_drawn_to_no_form():
     # A goal would push what it hangs together with.
     world = network([(0, 0), (1, 0), (0, 1), (3, 0)], [(0, 1), (1, 2), (2, 0), (1, 3)], solver="direct")
-    world.add_elements(AREA, [[0, 1, 2]])
+    world.add_constraints(AREA, [[0, 1, 2]])
     world.position[2] = (0.5, -0.3)
     before = momentum(world)[:2]
     run(world, 60)
@@ -363,6 +363,6 @@ def test_a_torn_jelly_beside_a_pendulum_is_drawn_to_no_form():
 def test_a_world_of_elements_without_springs_moves_too():
     world = World(WorldSettings(gravity=STILL, solver="direct"))
     world.add_particles(["a", "b", "c"], [(0, 0), (1, 0), (0, 1)])
-    world.add_elements(AREA, [[0, 1, 2]], inflation=2.0)
+    world.add_constraints(AREA, [[0, 1, 2]], inflation=2.0)
     run(world, 60)
-    assert measure_elements(world)[0][0] == pytest.approx(0.0, abs=1e-3)
+    assert measure_constraints(world)[0][0] == pytest.approx(0.0, abs=1e-3)

@@ -26,7 +26,7 @@ def add_filled_jelly(to, position, *, stiffness=0.5, damping=0.9, **options):
     side = round(count**0.5)
     corner = [slots.start + k for k in range(count) if k % side < side - 1 and k // side < side - 1]
     triangles = [(k, k + 1, k + side + 1) for k in corner] + [(k, k + side + 1, k + side) for k in corner]
-    to.add_elements(AREA, triangles, stiffness=stiffness, damping=damping)
+    to.add_constraints(AREA, triangles, stiffness=stiffness, damping=damping)
     return slots
 
 
@@ -44,8 +44,8 @@ def add_ring(to, position, *, radius=0.5, segments=16, inflation=1.0, stiffness=
     to.add_springs(
         [f"ring:{first + i}" for i in k], first + k, first + after, stiffness=stiffness, damping=damping, edge=LINE
     )
-    to.add_elements(AREA, [first + k], inflation=inflation, stiffness=stiffness, damping=damping)
-    to.add_elements(BEND, np.stack([first + last, first + k, first + after], axis=1), stiffness=0.1, damping=0.5)
+    to.add_constraints(AREA, [first + k], inflation=inflation, stiffness=stiffness, damping=damping)
+    to.add_constraints(BEND, np.stack([first + last, first + k, first + after], axis=1), stiffness=0.1, damping=0.5)
     return slice(first, first + segments)
 
 
@@ -74,9 +74,9 @@ def test_a_weight_on_a_balloon_is_carried_by_its_area(solver):
     for inflation in (1.0, None):
         w = world(FLOOR, solver=solver, iterations=60, substeps=4)
         ring = add_ring(w, (0.0, 0.54), stiffness=0.3, damping=0.3)
-        w.change("element_active", False, w.element_kind == BEND)
+        w.change("constraint_active", False, w.constraint_kind == BEND)
         if inflation is None:
-            w.change("element_active", False)
+            w.change("constraint_active", False)
         add_discs(w, [(0.0, 1.2)], mass=3.0)
         run(w, scaled(240, 40))
         heights.append(np.ptp(w.position[ring, 1]))
@@ -137,11 +137,13 @@ def test_what_a_body_keeps_goes_with_the_springs_that_break(solver):
     run(w, 3)
     sides = {frozenset((int(w.particle_a[s]), int(w.particle_b[s]))) for s in np.flatnonzero(w.spring_active)}
     gone = 0
-    for k in range(w.element_count):
-        corners = w.corner_particle[w.element_first[k] :][: w.element_corners[k]].tolist()
-        pairs = list(zip(corners, [*corners[1:], corners[0]], strict=True))[: 2 if w.element_kind[k] == BEND else None]
+    for k in range(w.constraint_count):
+        corners = w.corner_particle[w.constraint_first[k] :][: w.constraint_corners[k]].tolist()
+        pairs = list(zip(corners, [*corners[1:], corners[0]], strict=True))[
+            : 2 if w.constraint_kind[k] == BEND else None
+        ]
         whole = all(frozenset(pair) in sides for pair in pairs)
-        assert w.element_active[k] == whole
+        assert w.constraint_active[k] == whole
         gone += not whole
     assert gone >= 4
 
@@ -150,11 +152,11 @@ def test_a_side_that_two_springs_hold_keeps_its_area_until_both_are_gone():
     w = world()
     w.add_particles(["a", "b", "c"], [(0, 0), (1, 0), (0, 1)])
     w.add_springs(["ab", "bc", "ca", "ba"], [0, 1, 2, 1], [1, 2, 0, 0])
-    w.add_elements(AREA, [[0, 1, 2]])
+    w.add_constraints(AREA, [[0, 1, 2]])
     w.cut([0])
-    assert w.element_active[0]
+    assert w.constraint_active[0]
     w.break_springs(np.array([3]))
-    assert not w.element_active[0]
+    assert not w.constraint_active[0]
 
 
 @every_solver

@@ -167,7 +167,7 @@ def tangle(**settings) -> World:
     )  # fmt: skip
     world.add_springs(["zero"], [first], [first + 8], rest_length=0.0, stiffness=0.01, damping=0.5)
     world.add_springs(["hooke"], [3], [first], law=LAW_HOOKE, hooke_stiffness=20.0, hooke_damping=0.1)
-    world.reserve_hands()
+    world.reserve_grabs()
     return world
 
 
@@ -177,7 +177,7 @@ def play(world: World, ticks: int) -> World:
         if tick == 5:
             world.hold(0, 6, (0.6, 0.1))
         if 5 < tick < 15:
-            world.move_hand(0, (0.6 + 0.1 * tick, 0.1 * (tick % 4)))
+            world.move_grab(0, (0.6 + 0.1 * tick, 0.1 * (tick % 4)))
         if tick == 15:
             world.release(0)
         if tick == 18:
@@ -288,13 +288,13 @@ def energy_and_work(world: World) -> tuple[float, float]:
 @pytest.mark.parametrize(("stiffness", "damping", "bound"), [(1.0, 1.0, 1.0), (0.3, 0.4, 1.0), (0.9, 0.1, 4.0)])
 def test_a_dragged_body_gains_at_most_the_work_that_hand_and_gravity_do(stiffness, damping, bound):
     world = scenes.lattice(4, hung=False).world(stiffness=stiffness, damping=damping)
-    world.reserve_hands()
+    world.reserve_grabs()
     generator = np.random.default_rng(4)
     world.hold(0, 5, (0.2, 0.2))
     # What the hand's spring holds at the start is there before any work.
     allowed = energy_and_work(world)[0]
     for _ in range(300):
-        world.move_hand(0, tuple(world.position[world.hand_particle] + generator.uniform(-0.3, 0.3, 2)))
+        world.move_grab(0, tuple(world.position[world.grab_particle] + generator.uniform(-0.3, 0.3, 2)))
         before, after = energy_and_work(world)
         # Where energy may swing beyond the work, only work that adds to it counts.
         allowed += after - before if bound == 1.0 else max(0.0, after - before)
@@ -319,9 +319,9 @@ def test_an_absurd_value_neither_hangs_nor_leaves_its_body(array, value):
 
 def test_cutting_adding_and_pinning_while_it_runs_change_the_matrix():
     world = scenes.lattice(4).world()
-    world.reserve_hands()
+    world.reserve_grabs()
     run(world, 5)
-    world.cut(range(world.hand_spring))
+    world.cut(range(world.grab_spring))
     height = world.position[0, 1]
     run(world, 30)
     # Cut loose, it falls freely.

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.actuators import Driven, Motors
+from sandbox.physics.actuators import Actuators, Motors
 from sandbox.physics.energy import gravity_energy, kinetic_energy, total_energy
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
@@ -85,7 +85,7 @@ def wheel(solver, *, mount=True, pinned=(), speed=6.0, torque=20.0):
     motors = Motors(
         np.array([0]), np.array([speed]), np.array([torque]), np.array([0]), np.array([0, 6]), rim
     )  # fmt: skip
-    world.fit(Driven(("wheel",), motors=motors), [1.0])
+    world.fit(Actuators(("wheel",), motors=motors), [1.0])
     return world
 
 

@@ -37,7 +37,7 @@ def mesh(seed: int, count: int = 500) -> World:
     world.add_springs([f"m:{k}" for k in range(len(a))], a, b, stiffness=0.6, damping=0.8)
     first = world.add_particles(["r.0", "r.1"], [(1.1, 0.5), (1.2, 0.5)])
     world.add_springs(["r:0", "r:1"], [count - 1, first], [first, first + 1], stiffness=1.0, damping=1.0)
-    world.reserve_hands()
+    world.reserve_grabs()
     return world
 
 
@@ -47,7 +47,7 @@ def play(world: World, ticks: int) -> World:
         if world.tick == 2:
             world.hold(0, 40, (0.3, 0.4))
         if 2 < world.tick < 6:
-            world.move_hand(0, (0.3 + 0.02 * world.tick, 0.5))
+            world.move_grab(0, (0.3 + 0.02 * world.tick, 0.5))
         if world.tick == 4:
             world.cut([10, 200, 333])
         if world.tick == 6:
@@ -165,12 +165,12 @@ def test_large_lattices_hung_by_a_corner_barely_stretch(side, ticks):
 @pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
 def test_a_large_lattice_that_is_dragged_about_keeps_its_shape():
     world = scenes.lattice(48).world()
-    world.reserve_hands()
+    world.reserve_grabs()
     held = 47
     world.hold(0, held, tuple(world.position[held]))
     speeds = np.array([0.1, -0.2, 0.25, -0.1])
     for tick in range(120):
-        world.move_hand(0, tuple(world.position[world.hand_particle] + [speeds[tick // 30], 0.5 * speeds[tick % 4]]))
+        world.move_grab(0, tuple(world.position[world.grab_particle] + [speeds[tick // 30], 0.5 * speeds[tick % 4]]))
         step(world)
         assert np.sqrt(np.mean(scenes.square_strains(world))) <= 1e-2
     world.release(0)

@@ -77,7 +77,7 @@ def test_a_stroke_of_no_length_is_a_point():
 
 def test_hands_and_inactive_slots_are_never_found():
     world = square()
-    world.reserve_hands()
+    world.reserve_grabs()
     world.hold(0, 2, (3.0, 3.0))
     world.cut([1])
     for state in (world, take(world)):

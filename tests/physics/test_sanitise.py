@@ -23,7 +23,7 @@ def _net(solver: str) -> World:
     world.add_springs([f"net:{k}" for k in range(len(pairs))], *zip(*pairs, strict=True), stiffness=0.2, damping=0.2)
     first = world.add_particles(["hook.0", "hook.1"], [(9.0, 0.0), (9.0, -1.0)], pinned=[True, False])
     world.add_springs(["hook:0"], [first], [first + 1], law=1, hooke_stiffness=50.0, hooke_damping=1.0)
-    world.reserve_hands()
+    world.reserve_grabs()
     return world
 
 
@@ -117,7 +117,7 @@ def test_hands_and_new_particles_are_guarded_too():
     world.hold(0, 20, (2.0, -3.0))
     added = world.add_particles(["late"], [(5.0, 5.0)])
     world.position[added, 1] = math.nan
-    world.position[world.hand_particle, 0] = 1e300
+    world.position[world.grab_particle, 0] = 1e300
     step(world)
     assert {hit.name for hit in world.contained} == {"late", "+hand.0"}
     assert world.position[added].tolist() == [5.0, 5.0]

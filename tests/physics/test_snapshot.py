@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sandbox.physics.actuators import Driven
+from sandbox.physics.actuators import Actuators
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, restore, state_hash, take
@@ -20,10 +20,10 @@ def busy_world(solver="iterative"):
     world = grid(5, 5, solver=solver, gravity=(0.5, -9.81), substeps=2, stiffness=0.2)
     world.change("law", LAW_HOOKE, 3)
     world.hooke_stiffness[3], world.hooke_damping[3] = 50.0, 0.1
-    world.add_elements(AREA, [[0, 1, 6], [6, 7, 12]], stiffness=0.1)
-    world.add_elements(BEND, [[0, 1, 2]], damping=0.1, material=-1)
-    world.fit(Driven(("part",)), [0.5])
-    world.reserve_hands()
+    world.add_constraints(AREA, [[0, 1, 6], [6, 7, 12]], stiffness=0.1)
+    world.add_constraints(BEND, [[0, 1, 2]], damping=0.1, material=-1)
+    world.fit(Actuators(("part",)), [0.5])
+    world.reserve_grabs()
     world.hold(0, 12, (2.0, 2.5))
     run(world, 5)
     return world
@@ -35,7 +35,7 @@ def test_resuming_from_a_snapshot_is_the_straight_run_bit_for_bit(solver):
     snapshot, hashes = take(world), []
     ticks = scaled(60, 10)
     for tick in range(ticks):
-        world.move_hand(0, (2.0 + 0.01 * tick, 2.5))
+        world.move_grab(0, (2.0 + 0.01 * tick, 2.5))
         step(world)
         hashes.append(state_hash(world))
     # Slots, settings and edits after the snapshot leave no trace.
@@ -47,7 +47,7 @@ def test_resuming_from_a_snapshot_is_the_straight_run_bit_for_bit(solver):
     run(world, 3)
     restore(world, snapshot)
     for tick in range(ticks):
-        world.move_hand(0, (2.0 + 0.01 * tick, 2.5))
+        world.move_grab(0, (2.0 + 0.01 * tick, 2.5))
         step(world)
         assert state_hash(world) == hashes[tick]
 

@@ -136,7 +136,7 @@ def test_mixed_coefficients_just_inside_the_proven_bound_stay_bounded_in_a_run()
 
 def test_a_hand_on_a_mesh_at_the_article_s_limit_is_still_proven_stable():
     world = grid_with_diagonals(stiffness=1.0 / 9.0, damping=1.0 / 9.0)
-    world.reserve_hands()
+    world.reserve_grabs()
     assert report(world).within_limit
     world.hold(0, 27, (3.0, 3.0))
     assert report(world).within_limit
@@ -213,7 +213,7 @@ def test_the_marks_are_for_the_chosen_material():
 def test_the_marks_leave_room_for_what_harder_springs_and_hands_take_at_the_same_particle():
     world = grid_with_diagonals(stiffness=0.05, damping=0.05)
     free_hand = coefficient_limits(world).damping
-    world.reserve_hands()
+    world.reserve_grabs()
     world.hold(0, 27, (3.0, 3.0))
     held = coefficient_limits(world).damping
     # Eight springs and a hand at one particle: 8 (Cs + 2 Cd) + 0.8 < 4.

@@ -49,11 +49,11 @@ def test_each_array_says_what_it_means_and_stands_beside_its_family():
 
 def test_what_is_derived_is_kept_while_a_world_moves_and_is_driven():
     world = rope(links=4)
-    world.reserve_hands()
+    world.reserve_grabs()
     world.hold(0, 3, (1.0, 1.0))
     made = world.derived(made_of)
     for tick in range(5):
-        world.move_hand(0, (1.0 + tick, 1.0))
+        world.move_grab(0, (1.0 + tick, 1.0))
         step(world)
     world.set_coefficients(0.3, None, None)
     world.position += 1.0
@@ -64,7 +64,7 @@ def test_what_is_derived_is_kept_while_a_world_moves_and_is_driven():
 CHANGES = {
     "a particle": lambda world: world.add_particles(["new"], [(0.0, 0.0)]),
     "a spring": lambda world: world.add_springs(["new"], [0], [2]),
-    "an element": lambda world: world.add_elements(AREA, [[0, 1, 2]]),
+    "an element": lambda world: world.add_constraints(AREA, [[0, 1, 2]]),
     "a pin": lambda world: world.pin(2),
     "no pin": lambda world: world.unpin(0),
     "a cut": lambda world: world.cut([0]),

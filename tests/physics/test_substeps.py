@@ -51,7 +51,7 @@ def test_a_moving_hand_counts_by_the_shortest_spring_at_what_it_holds():
     world = scenes.rope(10).world(substeps=AUTO)
     world.hold(0, 10, (1.0, 0.0))
     assert substep_count(world) == 1
-    world.move_hand(0, (1.0, 0.06))
+    world.move_grab(0, (1.0, 0.06))
     assert substep_count(world) == 2
     world.rest_length[9] = 0.01
     assert substep_count(world) == 8
@@ -119,7 +119,7 @@ def drag(world: World, held: int) -> tuple[float, float]:
     world.hold(0, held, tuple(target))
     for tick in range(180):
         target += DIRECTIONS[tick // 15 % 4] / world.settings.tick_rate
-        world.move_hand(0, tuple(target))
+        world.move_grab(0, tuple(target))
         squares.append(scenes.square_strains(run(world, 1)))
     world.release(0)
     return np.sqrt(np.mean(squares)), np.sqrt(np.mean(scenes.square_strains(run(world, 60))))

@@ -10,13 +10,13 @@ from sandbox.physics.snapshot import take
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.state import Family, family_of
 from sandbox.physics.step import step
-from sandbox.physics.world import HAND_COUNT, LAW_HOOKE, World
+from sandbox.physics.world import GRAB_COUNT, LAW_HOOKE, World
 from tests.support.physics_scenes import STILL, grid_with_diagonals, network, rope, run, scaled
 
 
 def held_rope(**options):
     world = rope(links=4, **options)
-    world.reserve_hands()
+    world.reserve_grabs()
     return world
 
 
@@ -34,13 +34,13 @@ def test_slots_are_appended_and_named():
 
 def test_every_array_keeps_its_type_and_one_item_per_slot():
     world = held_rope()
-    world.add_elements(AREA, [[0, 1, 2, 3]])
-    counts = (5 + HAND_COUNT, 4 + HAND_COUNT, 1, 4, 0, 0)
+    world.add_constraints(AREA, [[0, 1, 2, 3]])
+    counts = (5 + GRAB_COUNT, 4 + GRAB_COUNT, 1, 4, 0, 0)
     for family, count in zip(Family, counts, strict=True):
         for column in family_of(family):
             array = getattr(world, column.name)
             assert array.dtype == column.dtype and array.flags.c_contiguous and len(array) == count
-    assert (world.particle_count, world.spring_count, world.element_count) == counts[:3]
+    assert (world.particle_count, world.spring_count, world.constraint_count) == counts[:3]
     assert world.particle_a.dtype == np.int32 and world.position.dtype == np.float64
 
 
@@ -83,7 +83,7 @@ def test_coefficients_are_set_by_material_and_never_on_hands():
     world = World(material_names=("steel", "jelly"))
     world.add_particles(["a", "b", "c"], [(0, 0), (1, 0), (2, 0)])
     world.add_springs(["s", "t", "u"], [0, 1, 0], [1, 2, 2], stiffness=0.1, damping=0.2, material=[0, 1, 1])
-    world.reserve_hands()
+    world.reserve_grabs()
     hands = world.stiffness[3:].copy(), world.damping[3:].copy()
     world.set_coefficients(0.7, None, 1)
     assert np.array_equal(world.stiffness[:3], [0.1, 0.7, 0.7])
@@ -94,12 +94,12 @@ def test_coefficients_are_set_by_material_and_never_on_hands():
 
 def test_hands_are_reserved_once_at_the_end_and_rest():
     world = held_rope()
-    world.reserve_hands()
-    assert (world.hand_particle, world.hand_spring) == (5, 4)
-    assert [slot for slot in range(-1, 20) if world.is_hand_particle(slot)] == list(range(5, 5 + HAND_COUNT))
-    assert [slot for slot in range(-1, 20) if world.is_hand_spring(slot)] == list(range(4, 4 + HAND_COUNT))
+    world.reserve_grabs()
+    assert (world.grab_particle, world.grab_spring) == (5, 4)
+    assert [slot for slot in range(-1, 20) if world.is_grab_particle(slot)] == list(range(5, 5 + GRAB_COUNT))
+    assert [slot for slot in range(-1, 20) if world.is_grab_spring(slot)] == list(range(4, 4 + GRAB_COUNT))
     assert not world.particle_active[5:].any() and not world.spring_active[4:].any()
-    assert not any(world.is_held(hand) for hand in range(HAND_COUNT))
+    assert not any(world.is_held(hand) for hand in range(GRAB_COUNT))
 
 
 def test_unused_hands_change_nothing():
@@ -114,9 +114,9 @@ def test_unused_hands_change_nothing():
 def test_a_moved_hand_arrives_at_its_target_after_one_tick_and_stops(solver, substeps):
     world = held_rope(solver=solver, substeps=substeps)
     world.hold(3, 4, (4.0, 0.0))
-    cursor = world.hand_particle + 3
+    cursor = world.grab_particle + 3
     for target in [(4.5, 0.25), (-7.1, 3.3), (-7.1, 3.3), (1e3, -1e3)]:
-        world.move_hand(3, target)
+        world.move_grab(3, target)
         step(world)
         assert world.position[cursor] == pytest.approx(target, rel=1e-13, abs=1e-13)
         assert np.array_equal(world.velocity[cursor], STILL)
@@ -152,7 +152,7 @@ def test_a_released_hand_leaves_no_sum_for_a_warm_start():
     world = held_rope(solver="iterative")
     world.hold(2, 4, (9.0, 9.0))
     run(world, 2)
-    spring = world.hand_spring + 2
+    spring = world.grab_spring + 2
     assert world.impulse[spring].any()
     world.release(2)
     assert not world.impulse[spring].any()
@@ -160,10 +160,10 @@ def test_a_released_hand_leaves_no_sum_for_a_warm_start():
 
 def test_ten_hands_hold_at_once():
     world = grid_with_diagonals(stiffness=1.0 / 9.0, damping=1.0 / 9.0)
-    world.reserve_hands()
-    for hand in range(HAND_COUNT):
+    world.reserve_grabs()
+    for hand in range(GRAB_COUNT):
         world.hold(hand, 5 * hand, (0.0, 0.0))
-    assert all(world.is_held(hand) for hand in range(HAND_COUNT))
+    assert all(world.is_held(hand) for hand in range(GRAB_COUNT))
     run(world, 100)
     assert np.all(np.isfinite(world.position))
 
@@ -180,12 +180,12 @@ def test_holding_a_pinned_particle_moves_nothing():
 def test_dragging_a_body_at_the_article_s_limit_leaves_it_bounded(substeps):
     generator = np.random.default_rng(2)
     world = grid_with_diagonals(stiffness=1.0 / 9.0, damping=1.0 / 9.0, substeps=substeps)
-    world.reserve_hands()
+    world.reserve_grabs()
     held, target = 27, np.array([3.0, 3.0])
     world.hold(0, held, tuple(target))
     for _ in range(scaled(600, 20)):
         target = np.clip(target + generator.uniform(-1.0, 1.0, 2), -10.0, 10.0)
-        world.move_hand(0, tuple(target))
+        world.move_grab(0, tuple(target))
         step(world)
         assert np.max(np.abs(world.position[:64])) < 40.0
     energy = []
@@ -205,8 +205,8 @@ def test_hooke_springs_keep_their_k_and_c_when_sliders_move():
 
 def test_an_empty_world_has_no_hands_until_it_has_a_particle():
     world = World(WorldSettings())
-    world.reserve_hands()
-    assert world.hand_particle == -1 and world.particle_count == 0
+    world.reserve_grabs()
+    assert world.grab_particle == -1 and world.particle_count == 0
     world.add_particles(["+.0"], [(0.0, 0.0)])
     world.hold(0, 0, (1.0, 0.0))
     step(world)

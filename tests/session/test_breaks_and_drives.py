@@ -100,7 +100,7 @@ def test_a_recording_of_breaks_drives_and_air_verifies_from_every_state(solver, 
             session.submit(CutSprings((0,)) if session.world.spring_active[0] else SetDrive(0, -1.0))
         session.advance()
     session.stop_recording()
-    assert np.count_nonzero(~session.world.spring_active[: session.world.hand_spring]) > 1
+    assert np.count_nonzero(~session.world.spring_active[: session.world.grab_spring]) > 1
     replay = read_replay(tmp_path / "run.replay")
     assert [line.record for line in replay.script][:2] == [
         {"type": "set_drive", "part": "w", "value": 1.0},
@@ -118,7 +118,7 @@ def test_a_divergence_names_the_driven_part(tmp_path):
 
     def disturb(world):
         if world.tick == 17:
-            world.part_value[1] = 0.5
+            world.actuator_value[1] = 0.5
 
     divergence = verify(read_replay(tmp_path / "run.replay"), on_tick=disturb)
     assert (divergence.tick, divergence.array, divergence.index, divergence.name) == (17, "part_value", 1, ":1")
@@ -131,7 +131,7 @@ def test_undo_takes_a_drive_back_and_redo_leaves_nothing_driven_that_was_let_go(
     advance(before, 25)
     session.submit(SetDrive(0, 1.0), 9)
     advance(session, 20)
-    assert session.world.part_value[0] == 1.0
+    assert session.world.actuator_value[0] == 1.0
     session.undo()
     session.apply_pending()
     assert state_hash(session.world) == state_hash(before.world)
@@ -141,7 +141,7 @@ def test_undo_takes_a_drive_back_and_redo_leaves_nothing_driven_that_was_let_go(
     session.redo()
     session.apply_pending()
     assert session.world.velocity[session.world.particle_slot("w.1")].any()
-    assert session.world.part_value[0] == 0.0
+    assert session.world.actuator_value[0] == 0.0
     assert not session.messages or all("broke" in line for line in session.messages)
 
 
@@ -149,14 +149,14 @@ def test_undo_lets_a_spring_that_a_pull_broke_be_whole_again():
     level = busy_level(particles=[{"id": "load", "position": [0, -2], "mass": 0.1}, {"id": "p"}, {"id": "q"}])
     session = Session(level)
     advance(session, 30)
-    assert session.world.spring_active[: session.world.hand_spring].all()
+    assert session.world.spring_active[: session.world.grab_spring].all()
     session.submit(Grab(0, session.world.particle_slot("deck.6"), (0.0, 0.0)), 4)
     session.submit(MoveGrab(0, (0.0, 30.0)), 4)
     advance(session, 60)
-    assert not session.world.spring_active[: session.world.hand_spring].all()
+    assert not session.world.spring_active[: session.world.grab_spring].all()
     session.undo()
     session.apply_pending()
-    assert session.world.spring_active[: session.world.hand_spring].all()
+    assert session.world.spring_active[: session.world.grab_spring].all()
 
 
 def test_drives_of_nothing_and_beyond_1_are_refused_in_one_line():
@@ -188,7 +188,7 @@ def test_a_run_counts_what_broke():
     session = Session(busy_level())
     summary = run(session, 240)
     assert summary.broken_springs == np.count_nonzero(
-        ~session.world.spring_active[: session.world.hand_spring]
+        ~session.world.spring_active[: session.world.grab_spring]
     )  # fmt: skip
     assert summary.broken_springs > 0
 

@@ -273,9 +273,9 @@ def test_a_command_that_cannot_be_carried_out_is_dropped_with_one_line(session, 
 def test_hands_cannot_be_grabbed_pinned_or_cut(session):
     world = session.world
     session.submit(Grab(0, 6, (3.0, 1.0)))
-    session.submit(Grab(1, world.hand_particle, (3.0, 1.0)))
-    session.submit(Pin(world.hand_particle))
-    session.submit(CutSprings((world.hand_spring,)))
+    session.submit(Grab(1, world.grab_particle, (3.0, 1.0)))
+    session.submit(Pin(world.grab_particle))
+    session.submit(CutSprings((world.grab_spring,)))
     session.apply_pending()
     assert len(session.messages) == 3
 

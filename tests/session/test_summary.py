@@ -43,10 +43,10 @@ def test_what_commands_and_hands_change_is_not_counted_as_dissipated():
 )
 def test_ticks_in_which_something_works_on_the_world_are_not_counted_as_dissipated(working):
     session = Session(rope_level(**working))
-    if len(session.world.part_value):
+    if len(session.world.actuator_value):
         session.submit(SetDrive(0, 1.0))
     assert run(session, 60).dissipated_energy == 0.0
-    if len(session.world.part_value):
+    if len(session.world.actuator_value):
         session.submit(SetDrive(0, 0.0))
         assert run(session, 10).dissipated_energy != 0.0
 

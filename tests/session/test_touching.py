@@ -70,7 +70,7 @@ def recorded(tmp_path_factory):
     assert session.messages == [] or all("broke" in message for message in session.messages)
     assert len(session.world.contact_particle) > 5
     assert not session.world.spring_active[:40].all()
-    assert 0 < np.count_nonzero(session.world.element_active) < session.world.element_count
+    assert 0 < np.count_nonzero(session.world.constraint_active) < session.world.constraint_count
     return path
 
 

@@ -12,7 +12,7 @@ from sandbox.physics.constraints import AREA
 from sandbox.physics.energy import (
     gravity_energy,
     kinetic_energy,
-    measure_elements,
+    measure_constraints,
     reduced_masses,
     spring_energy,
     spring_lengths,
@@ -85,7 +85,7 @@ def _add_body(to: World, generator: np.random.Generator, centre: tuple[float, fl
         damping=damping, edge=sides,
     )  # fmt: skip
     if len(triangles):
-        to.add_elements(AREA, np.asarray(triangles) + first, stiffness=stiffness, damping=damping)
+        to.add_constraints(AREA, np.asarray(triangles) + first, stiffness=stiffness, damping=damping)
 
 
 def random_box(seed: int, solver: str = "direct", bouncy: bool | None = None, most: int = COLUMNS * ROWS) -> Box:
@@ -106,9 +106,9 @@ def energy(of: World) -> float:
     springs = spring_energy(of)
     if of.settings.substeps == AUTO:
         h = substep_time(of.settings)
-        error, (value, mass, _) = spring_lengths(of) - of.rest_length, measure_elements(of)
+        error, (value, mass, _) = spring_lengths(of) - of.rest_length, measure_constraints(of)
         constant, _ = extremes(of.stiffness, of.damping)
-        constants, _ = extremes(of.element_stiffness, of.element_damping)
+        constants, _ = extremes(of.constraint_stiffness, of.constraint_damping)
         springs = float(np.sum(constant * reduced_masses(of) * error**2) + np.sum(constants * mass * value**2)) / (
             h * h
         )

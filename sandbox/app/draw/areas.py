@@ -17,12 +17,12 @@ TINT = 0.3
 
 def draw_areas(canvas: Canvas, camera: Camera, current: Snapshot, pixels: NDArray[np.float64]) -> None:
     """Fill the areas of a snapshot, whose particles are at `pixels` (n, 2)."""
-    areas = np.flatnonzero(current.element_active & (current.element_kind == AREA))
-    for size in np.unique(current.element_corners[areas]).tolist():
-        chosen = areas[current.element_corners[areas] == size]
-        corners = pixels[current.corner_particle[current.element_first[chosen, None] + np.arange(size)]]
+    areas = np.flatnonzero(current.constraint_active & (current.constraint_kind == AREA))
+    for size in np.unique(current.constraint_corners[areas]).tolist():
+        chosen = areas[current.constraint_corners[areas] == size]
+        corners = pixels[current.corner_particle[current.constraint_first[chosen, None] + np.arange(size)]]
         seen = (np.abs(corners) < FARTHEST).all(axis=(1, 2))
-        corners, wanted = corners[seen], current.element_rest[chosen[seen], 0]
+        corners, wanted = corners[seen], current.constraint_rest[chosen[seen], 0]
         colours = _colours(corners, wanted * camera.zoom * camera.zoom)
         if size == 3:
             canvas.triangles(np.ascontiguousarray(corners), colours)

@@ -156,10 +156,10 @@ class Renderer:
 
     def _draw_hands(self, canvas: Canvas, current: Snapshot, pixels: NDArray[np.float64], overlay: Overlay) -> None:
         """A line from every held particle to the cursor that pulls it."""
-        if current.hand_spring < 0:
+        if current.grab_spring < 0:
             return
-        hands = slice(current.hand_spring, current.hand_spring + 10)
-        active = np.flatnonzero(current.spring_active[hands]) + current.hand_spring
+        hands = slice(current.grab_spring, current.grab_spring + 10)
+        active = np.flatnonzero(current.spring_active[hands]) + current.grab_spring
         a, b = current.particle_a[active], current.particle_b[active]
         ends = np.ascontiguousarray(np.concatenate([pixels[a], pixels[b]], axis=1))
         canvas.lines(ends, np.full(len(active), packed(ACCENT)), 1.4 * self.scale)

@@ -27,7 +27,7 @@ def springs_past_limits(level: Level, scene: Scene) -> Rule:
     if solver.proven_limit:
         load, count = spring_loads(world), len(scene.rest_length)
         yield from _past_proven(level, scene, load[:count])
-        yield from _elements_past_proven(level, scene, world, load[count:])
+        yield from _constraints_past_proven(level, scene, world, load[count:])
     else:
         yield from _past_published(level, scene, world)
 
@@ -52,10 +52,10 @@ def _network(level: Level, scene: Scene) -> World:
     return world
 
 
-def _elements_past_proven(level: Level, scene: Scene, world: World, load: NDArray[np.float64]) -> Rule:
+def _constraints_past_proven(level: Level, scene: Scene, world: World, load: NDArray[np.float64]) -> Rule:
     """Bodies whose areas or angles are past the proven limit, where their springs are not."""
     past = np.flatnonzero(load >= BOUND)
-    owner = scene.particle_item[world.corner_particle[world.element_first[past]]]
+    owner = scene.particle_item[world.corner_particle[world.constraint_first[past]]]
     for index in np.unique(owner).tolist():
         mine = past[owner == index]
         worst = int(mine[np.argmax(load[mine])])
@@ -65,7 +65,7 @@ def _elements_past_proven(level: Level, scene: Scene, world: World, load: NDArra
             f"Cs + 2 Cd add up to {load[worst]:.3g}, stable is below {BOUND:g}; lower the coefficients or use the "
             "direct solver"
         )
-        slot = int(world.corner_particle[world.element_first[worst]])
+        slot = int(world.corner_particle[world.constraint_first[worst]])
         yield Finding("warning", text, frozenset([item]), place_of(scene, slot))
         yield None
 

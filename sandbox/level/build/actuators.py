@@ -11,7 +11,7 @@ from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
 from sandbox.level.format.model import Level
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.expansion import Expansion
-from sandbox.physics.actuators import Driven, Hydraulics, Motors, Muscles
+from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles
 from sandbox.physics.driving import drive_muscles
 from sandbox.physics.world import World
 
@@ -81,7 +81,7 @@ def add_actuators(world: World, level: Level, plan: Plan, slots: Slots) -> None:
         part=len(motors) + np.arange(len(hydraulics), dtype=np.int64),
     )
     names = tuple(each.name for each in found)
-    equipment = Driven(names, _muscles(level, plan.bodies), lifting, turning)
+    equipment = Actuators(names, _muscles(level, plan.bodies), lifting, turning)
     world.fit(equipment, [each.start_value for each in found])
     drive_muscles(world, 0)
 

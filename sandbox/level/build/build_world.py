@@ -35,7 +35,7 @@ def build_world(level: Level) -> World:
     _add_springs(world, level, plan, slots, materials)
     world.limits = strain_limits(materials)
     add_actuators(world, level, plan, slots)
-    world.reserve_hands()
+    world.reserve_grabs()
     add_constraints(world, plan.layout, level, plan.bodies, slots, materials)
     world.terrain, world.surface = terrain_of(level), surface_of(level)
     return world

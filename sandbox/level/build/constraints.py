@@ -35,7 +35,7 @@ def add_constraints(
         # Welds may have made one particle of two corners: nothing is left to keep.
         areas, angles = (rows[_distinct(particles[rows])] for rows in (areas, angles))
         if isinstance(material, NissenMaterial):
-            first = world.add_elements(
+            first = world.add_constraints(
                 AREA, particles[areas], form=form[areas], inflation=made.inflation,
                 stiffness=material.stiffness + 0.0, damping=material.damping + 0.0, material=index[body.material],
             )  # fmt: skip
@@ -43,7 +43,7 @@ def add_constraints(
                 world.name_areas(body.id, range(first, first + len(areas)))
         if bending is not None:
             angles = angles[_has_links(form[angles])]
-            world.add_elements(
+            world.add_constraints(
                 BEND, particles[angles], form=form[angles], stiffness=bending.stiffness + 0.0,
                 damping=bending.damping + 0.0, material=OWN_MATERIAL,
             )  # fmt: skip

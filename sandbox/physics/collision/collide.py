@@ -70,7 +70,7 @@ class CollidingParticles(NamedTuple):
     group: Slots
     collides: Slots
     particle_active: Flags
-    element_rest: Floats
+    constraint_rest: Floats
 
 
 class CollisionRoom(NamedTuple):
@@ -120,9 +120,9 @@ def _detect(
 ) -> int:  # fmt: skip
     # Broad and narrow phase: the contacts of the step, but for bounces and impulses; their number, or NO_ROOM.
     _load_particles(particles, colliders)
-    if triangles.element.shape[0] > 0:
+    if triangles.constraint.shape[0] > 0:
         find_inverted(
-            particles.position, particles.element_rest, triangles, room.inversions, colliders.inverted
+            particles.position, particles.constraint_rest, triangles, room.inversions, colliders.inverted
         )  # fmt: skip
     fill_boxes(colliders, outline.dynamic[0], h, room.boxes)
     cell = cell_size(room.boxes.box)
@@ -250,8 +250,8 @@ def _finish(items: Any, h: float) -> int:
 class Collisions:
     """The scratch of a world's collisions: what topology decides, what a step fills in, and all as one argument.
 
-    is_free: whether no spring or element holds anything. wanted: the largest counts so far. solved: the contacts that
-    the last step left to a solver. kept: the contacts of the last tick, the first of those in room; they are the
+    is_free: whether no spring or constraint holds anything. wanted: the largest counts so far. solved: the contacts
+    that the last step left to a solver. kept: the contacts of the last tick, the first of those in room; they are the
     world's own, which so has them without a copy.
     """
 
@@ -295,7 +295,7 @@ class Collisions:
         return self.solved
 
     def step_free(self, forces: Forces, substeps: int, follows: bool, tick: int, h: float) -> None:
-        """All substeps of h [s] of a tick, forces included, of a world in which no spring or element holds anything.
+        """All substeps of h [s] of a tick, forces included, of a world in which no spring or constraint holds anything.
 
         follows: whether the solver keeps the slow part of velocities, the only thing that is left to it.
         """

@@ -82,9 +82,9 @@ def wind(place: Floats, a: int, b: int, c: int, member: Slots, at: int, turns: S
 
 
 class Triangles(NamedTuple):
-    """The triangles of a world that keep their areas, t of them: element (t,), corners (t, 3), and their jellies."""
+    """The triangles of a world that keep their areas, t of them: constraint (t,), corners (t, 3), and their jellies."""
 
-    element: Slots
+    constraint: Slots
     corners: Slots
     jellies: Jellies
 
@@ -98,7 +98,7 @@ class Inversions(NamedTuple):
 
 @inner_kernel
 def find_inverted(
-    position: Floats, element_rest: Floats, triangles: Triangles, found: Inversions, inverted: Flags
+    position: Floats, constraint_rest: Floats, triangles: Triangles, found: Inversions, inverted: Flags
 ) -> None:
     """Mark the particles, of all those in jellies, that belong to an inverted jelly."""
     corners = triangles.corners
@@ -110,13 +110,13 @@ def find_inverted(
         found.is_inverted[g] = False
     for t in range(corners.shape[0]):
         area = wind(position, corners[t, 0], corners[t, 1], corners[t, 2], jellies.member, t, turns)
-        wanted = element_rest[triangles.element[t], 0]
-        if wanted * element_rest[triangles.element[t], 1] > 0.0 and not area * wanted > 0.0:
+        wanted = constraint_rest[triangles.constraint[t], 0]
+        if wanted * constraint_rest[triangles.constraint[t], 1] > 0.0 and not area * wanted > 0.0:
             found.is_inverted[jellies.group[t]] = True
     for i in range(turns.shape[0]):
         inverted[jellies.particle[i]] = False
     for g in range(found.is_inverted.shape[0]):
-        once = 1 if element_rest[triangles.element[jellies.first[g]], 1] > 0.0 else -1
+        once = 1 if constraint_rest[triangles.constraint[jellies.first[g]], 1] > 0.0 else -1
         for i in range(jellies.start[g], jellies.start[g + 1]):
             if jellies.inner[i] and turns[i] != once:
                 found.is_inverted[g] = True
@@ -126,11 +126,11 @@ def find_inverted(
 
 
 def triangles_of(world: World) -> Triangles:
-    """The triangles of a world, as its elements are now."""
-    kept = (world.element_kind == AREA) & (world.element_corners == 3) & world.element_active
-    element = np.flatnonzero(kept)
-    corners = world.corner_particle[world.element_first[element, None] + np.arange(3)].astype(np.int64)
-    return Triangles(element, corners, group_triangles(corners))
+    """The triangles of a world, as its constraints are now."""
+    kept = (world.constraint_kind == AREA) & (world.constraint_corners == 3) & world.constraint_active
+    constraint = np.flatnonzero(kept)
+    corners = world.corner_particle[world.constraint_first[constraint, None] + np.arange(3)].astype(np.int64)
+    return Triangles(constraint, corners, group_triangles(corners))
 
 
 def new_inversions(triangles: Triangles) -> Inversions:

@@ -8,7 +8,7 @@ from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_RI
 from sandbox.physics.collision.types import Colliders, Flags
 from sandbox.physics.state import Slots
 from sandbox.physics.terrain import Terrain
-from sandbox.physics.world import HAND_MATERIAL, World
+from sandbox.physics.world import GRAB_MATERIAL, World
 
 # Owner of the first chain of terrain, the others below it; particles and bodies are above.
 TERRAIN_OWNER = -2_000_000_000
@@ -18,8 +18,8 @@ class Outline(NamedTuple):
     """What the edges of a world's springs are, and of its terrain, which topology alone decides; see Colliders.
 
     shielded: particles inside a solid body that no torn spring lays bare; discs do not hit them. held (n,): particles
-    that a spring or an element holds. solid (k, 2): first edge and one past the last of each owner's edges where any is
-    solid, terrain's last. dynamic (2,): edges of bodies, and how many of those in solid are bodies'.
+    that a spring or a constraint holds. solid (k, 2): first edge and one past the last of each owner's edges where any
+    is solid, terrain's last. dynamic (2,): edges of bodies, and how many of those in solid are bodies'.
     """
 
     edge_a: Slots
@@ -86,8 +86,8 @@ def _shielded(world: World, edges: Slots) -> Flags:
     solid = edges[world.edge[edges] != LINE]
     shielded = np.isin(world.owner, world.owner[world.particle_a[solid]])
     for bare in (edges, np.flatnonzero(~world.spring_active)):
-        # A hand that holds nothing tears nothing.
-        bare = bare[world.material[bare] != HAND_MATERIAL]
+        # A grab that holds nothing tears nothing.
+        bare = bare[world.material[bare] != GRAB_MATERIAL]
         shielded[world.particle_a[bare]] = shielded[world.particle_b[bare]] = False
     return shielded
 

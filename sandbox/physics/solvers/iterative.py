@@ -1,4 +1,4 @@
-"""Iterative, warm-started: springs and elements in order, N times, on a velocity change.
+"""Iterative, warm-started: springs and constraints in order, N times, on a velocity change.
 
 No proven limit. Only springs are warm-started. Hooke springs are no constraints: they act once, explicitly, before the
 iterations. Source: Nissen's demo programs after the article.
@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.types import NO_CONTACTS, Contacts, Flags
-from sandbox.physics.constraints import AREA, BEND, Elements, element_rate, evaluate, explicit_mass, look
+from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, constraint_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.solvers.contact.gauss_seidel import (
@@ -34,7 +34,8 @@ AREA_SHARE = 0.5
 
 
 class Wanted(NamedTuple):
-    """Scratch of the elements: corners' places and gradients (q, 2), and of each (t,) what `_iterate_elements` says.
+    """Scratch of the constraints: corners' places and gradients (q, 2), and of each (t,) what `_iterate_constraints`
+    says.
 
     wanted = -(Cs C / h + Cd dC/dt) m; impulse = the sum of its j. Of a bend, damped = Cd m, kept = 1 - Cd and whole =
     kept + Cd m / present mass. Of an area, as of a spring, damped = m, kept = 0 and whole = 1, then 1 / AREA_SHARE.
@@ -67,25 +68,25 @@ class Pulling(NamedTuple):
 
 
 @inner_kernel
-def _prepare_elements(particles: Particles, elements: Elements, h: float, wanted: Wanted) -> None:
+def _prepare_constraints(particles: Particles, constraints: ConstraintArrays, h: float, wanted: Wanted) -> None:
     # wanted = -(Cs C / h + Cd dC/dt) m
-    for k in range(elements.kind.shape[0]):
+    for k in range(constraints.kind.shape[0]):
         wanted.whole[k] = 0.0
-        if not elements.active[k]:
+        if not constraints.active[k]:
             continue
-        first = elements.first[k]
-        last = first + elements.corners[k]
-        look(first, last, particles.position, elements.particle, wanted.place)
+        first = constraints.first[k]
+        last = first + constraints.corners[k]
+        look(first, last, particles.position, constraints.particle, wanted.place)
         error = evaluate(
-            elements.kind[k], wanted.place, first, last, elements.rest, k, elements.weight, wanted.slope
+            constraints.kind[k], wanted.place, first, last, constraints.rest, k, constraints.weight, wanted.slope
         )  # fmt: skip
         mass, share = explicit_mass(
-            first, last, particles.inverse_mass, elements.particle, elements.weight, wanted.slope
+            first, last, particles.inverse_mass, constraints.particle, constraints.weight, wanted.slope
         )  # fmt: skip
-        rate = element_rate(first, last, particles.velocity, elements.particle, wanted.slope)
+        rate = constraint_rate(first, last, particles.velocity, constraints.particle, wanted.slope)
         damping = wanted.damping[k]
         wanted.wanted[k] = spring_impulse(wanted.stiffness[k], damping, error, rate, mass, h)
-        if elements.kind[k] == BEND:
+        if constraints.kind[k] == BEND:
             wanted.damped[k] = damping * mass
             wanted.kept[k] = 1.0 - damping
             wanted.whole[k] = wanted.kept[k] + damping * share
@@ -97,21 +98,21 @@ def _prepare_elements(particles: Particles, elements: Elements, h: float, wanted
 
 
 @inner_kernel
-def _iterate_elements(inverse_mass: Floats, elements: Elements, wanted: Wanted, change: Floats) -> None:
+def _iterate_constraints(inverse_mass: Floats, constraints: ConstraintArrays, wanted: Wanted, change: Floats) -> None:
     # A bend obeys (1 - Cd) j = -(Cs C / h + Cd (dC/dt + g . dv)) m, the equation with the velocity after the step
     # (equation.py): so can all of more bends than there are ways to bend. Both go at once into the velocity change dv.
-    for k in range(elements.kind.shape[0]):
+    for k in range(constraints.kind.shape[0]):
         if wanted.whole[k] == 0.0:
             continue
-        first = elements.first[k]
-        last = first + elements.corners[k]
-        rate = element_rate(first, last, change, elements.particle, wanted.slope)
+        first = constraints.first[k]
+        last = first + constraints.corners[k]
+        rate = constraint_rate(first, last, change, constraints.particle, wanted.slope)
         j = (wanted.wanted[k] - wanted.damped[k] * rate - wanted.kept[k] * wanted.impulse[k]) / wanted.whole[k]
         wanted.impulse[k] += j
-        if elements.kind[k] == AREA:
+        if constraints.kind[k] == AREA:
             wanted.whole[k] = 1.0 / AREA_SHARE
         for c in range(first, last):
-            p = elements.particle[c]
+            p = constraints.particle[c]
             change[p, 0] += j * wanted.slope[c, 0] * inverse_mass[p]
             change[p, 1] += j * wanted.slope[c, 1] * inverse_mass[p]
 
@@ -183,18 +184,18 @@ def _iterate_springs(count: int, inverse_mass: Floats, ends: Ends, pulling: Pull
 
 @kernel
 def _iterate(
-    particles: Particles, ends: Ends, active: Flags, pulling: Pulling, elements: Elements, wanted: Wanted,
+    particles: Particles, ends: Ends, active: Flags, pulling: Pulling, constraints: ConstraintArrays, wanted: Wanted,
     contacts: Contacts, terms: ContactTerms, delassus: Delassus, iterations: int, warm_start: float, h: float,
 ) -> None:  # fmt: skip
     velocity, inverse_mass, change = particles.velocity, particles.inverse_mass, pulling.change
     count = _prepare_springs(particles, ends, active, warm_start, h, pulling)
-    _prepare_elements(particles, elements, h, wanted)
+    _prepare_constraints(particles, constraints, h, wanted)
     load_biases(contacts, terms, h)
     load_responses(contacts, terms, inverse_mass, delassus)
     start_impulses(contacts, change, inverse_mass, delassus)
     for _ in range(iterations):
         _iterate_springs(count, inverse_mass, ends, pulling)
-        _iterate_elements(inverse_mass, elements, wanted, change)
+        _iterate_constraints(inverse_mass, constraints, wanted, change)
         sweep(contacts, terms, velocity, change, inverse_mass, delassus)
     add_change(velocity, change, inverse_mass)
 
@@ -215,9 +216,9 @@ def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
         np.zeros(count, np.int64), np.zeros((count, 2)), np.zeros(count), np.zeros(count), change, world.impulse
     )
     wanted = Wanted(
-        *substep.elements, *np.zeros((2, len(world.corner_particle), 2)), *np.zeros((5, world.element_count))
+        *substep.constraints, *np.zeros((2, len(world.corner_particle), 2)), *np.zeros((5, world.constraint_count))
     )
     _iterate(
-        particles_of(world), ends_of(world, substep.springs), world.spring_active, pulling, world.elements, wanted,
+        particles_of(world), ends_of(world, substep.springs), world.spring_active, pulling, world.constraints, wanted,
         contacts, new_terms(len(contacts.particle)), delassus, settings.iterations, settings.warm_start, substep.h,
     )  # fmt: skip

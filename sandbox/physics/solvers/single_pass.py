@@ -1,4 +1,4 @@
-"""Single pass: every spring and element evaluated once on the old velocities, the impulses summed (Nissen 2019).
+"""Single pass: every spring and constraint evaluated once on the old velocities, the impulses summed (Nissen 2019).
 
 Stable for Cs = Cd < 4 / (3 n_eff), see stability.py; never stiff.
 """
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.collision.types import Contacts
-from sandbox.physics.constraints import Elements, element_rate, evaluate, explicit_mass, look
+from sandbox.physics.constraints import ConstraintArrays, constraint_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
 from sandbox.physics.jit import kernel
 from sandbox.physics.substeps import Pair, Substep
@@ -51,24 +51,24 @@ def ends_of(world: World, springs: Pair) -> Ends:
 
 
 @kernel
-def _element_pass(
-    particles: Particles, elements: Elements, stiffness: Floats, damping: Floats, h: float, place: Floats,
+def _constraint_pass(
+    particles: Particles, constraints: ConstraintArrays, stiffness: Floats, damping: Floats, h: float, place: Floats,
     slope: Floats, impulse: Floats,
 ) -> None:  # fmt: skip
     # J = -(Cs C / h + Cd dC/dt) m, along the gradient at each corner
-    for k in range(elements.kind.shape[0]):
-        if not elements.active[k]:
+    for k in range(constraints.kind.shape[0]):
+        if not constraints.active[k]:
             continue
-        first = elements.first[k]
-        last = first + elements.corners[k]
-        look(first, last, particles.position, elements.particle, place)
-        error = evaluate(elements.kind[k], place, first, last, elements.rest, k, elements.weight, slope)
-        mass, _ = explicit_mass(first, last, particles.inverse_mass, elements.particle, elements.weight, slope)
-        rate = element_rate(first, last, particles.velocity, elements.particle, slope)
+        first = constraints.first[k]
+        last = first + constraints.corners[k]
+        look(first, last, particles.position, constraints.particle, place)
+        error = evaluate(constraints.kind[k], place, first, last, constraints.rest, k, constraints.weight, slope)
+        mass, _ = explicit_mass(first, last, particles.inverse_mass, constraints.particle, constraints.weight, slope)
+        rate = constraint_rate(first, last, particles.velocity, constraints.particle, slope)
         j = spring_impulse(stiffness[k], damping[k], error, rate, mass, h)
         for c in range(first, last):
-            impulse[elements.particle[c], 0] += j * slope[c, 0]
-            impulse[elements.particle[c], 1] += j * slope[c, 1]
+            impulse[constraints.particle[c], 0] += j * slope[c, 0]
+            impulse[constraints.particle[c], 1] += j * slope[c, 1]
 
 
 @kernel
@@ -104,16 +104,16 @@ def _explicit_pass(particles: Particles, ends: Ends, chosen: NDArray[np.bool_], 
 
 
 def apply_explicit(
-    world: World, chosen: NDArray[np.bool_], springs: Pair, h: float, elements: Pair | None = None
+    world: World, chosen: NDArray[np.bool_], springs: Pair, h: float, constraints: Pair | None = None
 ) -> None:
     """Evaluate the chosen springs (m,) on the present velocities and apply their summed impulses.
 
-    springs and, for all elements too, elements: their Cs and Cd.
+    springs and, for all constraints too, constraints: their Cs and Cd.
     """
     impulse, particles = np.zeros((world.particle_count, 2)), particles_of(world)
-    if elements is not None and world.element_count:
+    if constraints is not None and world.constraint_count:
         place, slope = np.zeros((2, len(world.corner_particle), 2))
-        _element_pass(particles, world.elements, *elements, h, place, slope, impulse)
+        _constraint_pass(particles, world.constraints, *constraints, h, place, slope, impulse)
     _explicit_pass(particles, ends_of(world, springs), chosen, h, impulse)
 
 
@@ -121,8 +121,8 @@ spring_constant = explicit_spring_constant
 
 
 def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
-    """Bring the velocities to the end of a substep; contacts are swept after springs and elements."""
-    apply_explicit(world, world.spring_active, substep.springs, substep.h, substep.elements)
+    """Bring the velocities to the end of a substep; contacts are swept after springs and constraints."""
+    apply_explicit(world, world.spring_active, substep.springs, substep.h, substep.constraints)
     if contacts is not None:
         from sandbox.physics.solvers.contact.gauss_seidel import new_terms, no_blocks, sweep_masses
 

@@ -68,10 +68,10 @@ def _next_names(prefix: str, names: list[str], count: int = 1) -> list[str]:
 
 def name_added(world: World) -> None:
     """Name the slots that a restored state brought along as the commands that added them did."""
-    if len(world.particle_names) <= world.hand_particle:
+    if len(world.particle_names) <= world.grab_particle:
         # A level without particles reserves its hands at the first grab, behind what was added until then.
-        _name_slots(world, world.hand_particle, world.hand_spring)
-        world.name_hands()
+        _name_slots(world, world.grab_particle, world.grab_spring)
+        world.name_grabs()
     _name_slots(world, world.particle_count, world.spring_count)
 
 

@@ -20,7 +20,7 @@ class SetDrive(Command):
     value: Annotated[float, Field(ge=-1.0, le=1.0)]
 
     def carry_out(self, world: World) -> None:
-        if self.part >= len(world.part_value):
+        if self.part >= len(world.actuator_value):
             raise CommandError(f"there is no driven part {self.part}")
         world.drive(self.part, self.value)
 

@@ -7,11 +7,11 @@ from typing import Annotated
 from pydantic import Field
 
 from sandbox.level.format.quantities import Point
-from sandbox.physics.world import HAND_COUNT, World
+from sandbox.physics.world import GRAB_COUNT, World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot, particle_of
 
-Hand = Annotated[int, Field(ge=0, lt=HAND_COUNT)]
+Hand = Annotated[int, Field(ge=0, lt=GRAB_COUNT)]
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class MoveGrab(Command):
 
     def carry_out(self, world: World) -> None:
         _check_held(world, self.grab)
-        world.move_hand(self.grab, self.target)
+        world.move_grab(self.grab, self.target)
 
 
 @dataclass(frozen=True)

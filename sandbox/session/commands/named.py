@@ -33,7 +33,7 @@ def _listed(names: Callable[[World], Sequence[str]]) -> Callable[[World, str], i
 
 
 def _parts(world: World) -> Sequence[str]:
-    return world.driven.part_names
+    return world.actuators.names
 
 
 def _bodies(world: World) -> Sequence[str]:
@@ -63,6 +63,6 @@ def namespace(annotation: Any) -> Named | None:
 
 def particle_of(world: World, slot: int) -> str:
     """The name of a particle that a command may work on. Raises CommandError."""
-    if slot >= world.particle_count or world.is_hand_particle(slot) or not world.particle_active[slot]:
+    if slot >= world.particle_count or world.is_grab_particle(slot) or not world.particle_active[slot]:
         raise CommandError(f"there is no particle {slot}")
     return world.particle_names[slot]

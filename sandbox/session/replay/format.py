@@ -25,7 +25,7 @@ from sandbox.physics.constraints import AREA
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.state import BY_STORED, COLUMNS, Column, Family, family_of
 from sandbox.physics.terrain import NO_TERRAIN
-from sandbox.physics.world import HAND_COUNT, HAND_MATERIAL, World, WorldSettings
+from sandbox.physics.world import GRAB_COUNT, GRAB_MATERIAL, World, WorldSettings
 
 FORMAT = "spring-sandbox/replay"
 VERSION = 1
@@ -104,19 +104,19 @@ def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> S
         raise ValueError("state.element_first: corners do not lie one element after another")
     if not np.all((arrays["element_kind"] == AREA) | (arrays["element_corners"] == 3)):
         raise ValueError("state.element_kind: a bend has three corners")
-    hands = np.flatnonzero(arrays["material"] == HAND_MATERIAL)
-    if len(hands) not in (0, HAND_COUNT) or np.any(np.diff(hands) != 1):
-        raise ValueError(f"state.material: there are {HAND_COUNT} hands in a row, or none")
-    hand_spring = int(hands[0]) if len(hands) else -1
-    hand_particle = int(arrays["particle_a"][hand_spring]) if len(hands) else -1
-    if len(hands) and hand_particle + HAND_COUNT > len(arrays["mass"]):
+    hands = np.flatnonzero(arrays["material"] == GRAB_MATERIAL)
+    if len(hands) not in (0, GRAB_COUNT) or np.any(np.diff(hands) != 1):
+        raise ValueError(f"state.material: there are {GRAB_COUNT} hands in a row, or none")
+    grab_spring = int(hands[0]) if len(hands) else -1
+    grab_particle = int(arrays["particle_a"][grab_spring]) if len(hands) else -1
+    if len(hands) and grab_particle + GRAB_COUNT > len(arrays["mass"]):
         raise ValueError("state.particle_a: a hand has no particle of its own")
     return Snapshot(
         {BY_STORED[name].name: array for name, array in arrays.items()},
         settings=settings,
         tick=tick,
-        hand_particle=hand_particle,
-        hand_spring=hand_spring,
+        grab_particle=grab_particle,
+        grab_spring=grab_spring,
         terrain=NO_TERRAIN,
     )
 

@@ -61,9 +61,9 @@ class Replay:
         except ValueError as error:
             raise ReplayError(f"{self.source}: line {stored.line}: {error}") from None
         driven = len(actuators(self.level))
-        if len(snapshot.part_value) != driven:
+        if len(snapshot.actuator_value) != driven:
             raise ReplayError(
-                f"{self.source}: line {stored.line}: state.part_value: has {len(snapshot.part_value)} values, "
+                f"{self.source}: line {stored.line}: state.part_value: has {len(snapshot.actuator_value)} values, "
                 f"where the level has {driven} driven parts"
             )
         if state_hash(snapshot) != self.hashes[tick].whole:

@@ -1,6 +1,6 @@
 """Islands of contacts: which hang together by what can move, and which of those a solver's bodies belong to.
 
-An island in which a spring or an element holds anything that can move is the solver's; the others are free.
+An island in which a spring or a constraint holds anything that can move is the solver's; the others are free.
 """
 
 from typing import NamedTuple
@@ -63,7 +63,7 @@ def _join(contacts: Contacts, count: int, inverse_mass: Floats, label: Slots) ->
 def find_islands(contacts: Contacts, count: int, inverse_mass: Floats, held: Flags, islands: Islands) -> int:
     """The islands of the first `count` contacts; how many contacts are bound.
 
-    held (n,): particles that a spring or an element holds.
+    held (n,): particles that a spring or a constraint holds.
     """
     label = islands.label
     _join(contacts, count, inverse_mass, label)

@@ -39,20 +39,20 @@ def _error(k: int, constraints: Constraints, gradient: Floats) -> float:
 def _load_constants(k: int, constraints: Constraints, state: State, inputs: Inputs, parts: int) -> None:
     # What the step's own arrays say of a constraint; Cs and Cd capped for one of so many parts.
     s = constraints.slot[k]
-    stiffness = inputs.element_stiffness[s]
-    damping = inputs.element_damping[s]
+    stiffness = inputs.constraint_stiffness[s]
+    damping = inputs.constraint_damping[s]
     if parts > 1:
         stiffness, damping = capped(stiffness, damping, highest_coefficient(parts))
     constraints.stiffness[k] = stiffness
     constraints.damping[k] = damping
     if parts > 0:
-        stiffness = state.element_stiffness[s]
-        damping = state.element_damping[s]
+        stiffness = state.constraint_stiffness[s]
+        damping = state.constraint_damping[s]
         if constraints.first[k + 1] - constraints.first[k] > TRIANGLE:
             stiffness, damping = capped(stiffness, damping, HIGHEST_OF_RING)
         load_range(k, constraints, stiffness, damping)
     for axis in range(2):
-        constraints.rest[k, axis] = state.element_rest[s, axis]
+        constraints.rest[k, axis] = state.constraint_rest[s, axis]
     for c in range(constraints.first[k], constraints.first[k + 1]):
         constraints.weight[c] = state.corner_weight[constraints.corner[c]]
 

@@ -48,7 +48,7 @@ def open_bank(body: int, span: Span, system: System, bank: Floats, moved: float,
             bank[p] = 0.0
     held = bank[lowest] if begun else 0.0
     if bodies.ranged[body]:
-        # Of the start, and of the work of hands and drives.
+        # Of the start, and of the work of grabs and drives.
         excess = start_excess(span, system, h)
         excess_moved = potential_excess(span, system, rows.moved, rows.moved, 0.0, h)
         held += max(0.0, excess_moved - excess)
@@ -61,7 +61,7 @@ def open_bank(body: int, span: Span, system: System, bank: Floats, moved: float,
     present = start_potential(span, system, h)
     if not begun:
         held += UNDERDAMPED_BANK_SHARE * (before + present)
-    # Work done by forces, hands and drives since then counts as energy of the start.
+    # Work done by forces, grabs and drives since then counts as energy of the start.
     return max(0.0, held + UNDERDAMPED_BANK_SHARE * (kinetic_after - before + moved - present))
 
 

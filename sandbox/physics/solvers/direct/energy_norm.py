@@ -58,7 +58,7 @@ def _extremes(stiffness: Floats, damping: Floats, least: Floats, most: Floats) -
 
 
 def extremes(stiffness: Floats, damping: Floats) -> tuple[Floats, Floats]:
-    """Least and most k h^2 / m_r of springs or elements (m,), h of the tick, over the parts that a tick may have.
+    """Least and most k h^2 / m_r of springs or constraints (m,), h of the tick, over the parts that a tick may have.
 
     stiffness, damping: Cs and Cd (m,) of the tick.
     """

@@ -209,13 +209,13 @@ def _begin_again(islands: BodyIslands, system: System, share: float) -> None:
 @kernel
 def _solve_islands(
     contacts: Contacts, lent_room: Any, lent_system: Any, lent_state: Any, stiffness: Floats, damping: Floats,
-    element_stiffness: Floats, element_damping: Floats, start: Floats, start_length: Floats, parts: int, h: float,
+    constraint_stiffness: Floats, constraint_damping: Floats, start: Floats, start_length: Floats, parts: int, h: float,
 ) -> None:  # fmt: skip
     # Load all rows, and bring what contacts touch to the end of a step of h [s].
     (system,) = contents(lent_system)
     (state,) = contents(lent_state)
     (touch,) = contents(lent_room)
-    inputs = Inputs(stiffness, damping, element_stiffness, element_damping, start, start_length)
+    inputs = Inputs(stiffness, damping, constraint_stiffness, constraint_damping, start, start_length)
     islands, terms, delassus = touch.islands, touch.terms, touch.delassus
     load_rows(system, state, inputs, h)
     load_biases(contacts, terms, h)

@@ -183,20 +183,21 @@ def _lay_out_matrix(
 
 def _choose_constraints(world: World, free: NDArray[np.bool_]) -> _Chosen:
     """The constraints of a world that belong into the matrix; free (n,): particles that are not pinned."""
-    sizes = world.element_corners.astype(np.int64)
+    sizes = world.constraint_corners.astype(np.int64)
     owner = np.repeat(np.arange(len(sizes)), sizes)
     movable = np.zeros(len(sizes), dtype=np.bool_)
     movable[owner[free[world.corner_particle]]] = True
-    slot = np.flatnonzero(world.element_active & movable)
+    slot = np.flatnonzero(world.constraint_active & movable)
     corner = np.flatnonzero(np.isin(owner, slot))
     particle = world.corner_particle[corner].astype(np.int64)
     start = np.append(0, np.cumsum(sizes[slot]))
-    kind = world.element_kind[slot].astype(np.int64)
+    kind = world.constraint_kind[slot].astype(np.int64)
     return _Chosen(slot, kind, start, corner, particle, _links(start, particle, free))
 
 
 def _links(start: Slots, particle: Slots, free: NDArray[np.bool_]) -> Slots:
-    """Pairs (2, k): of a narrow element all, of a wide one each free corner and the next free one, past the pinned."""
+    """Pairs (2, k): of a narrow constraint all, of a wide one each free corner and the next free one, past the
+    pinned."""
     sizes = np.diff(start)
     three = start[:-1][sizes == NARROW, None] + np.array([0, 1, 2])
     pairs = [particle[three][:, [p, q]].T for p, q in ((0, 1), (1, 2), (2, 0))]
@@ -238,7 +239,7 @@ def _lay_out_constraints(
 
 
 def _number_wide(narrow: NDArray[np.bool_], body: Slots) -> tuple[Slots, int]:
-    """Number of each element among the wide ones of its body, -1 for narrow ones; and the most that a body has."""
+    """Number of each constraint among the wide ones of its body, -1 for narrow ones; and the most that a body has."""
     seen: dict[int, int] = {}
     wide = np.full(len(body), -1, dtype=np.int64)
     for k in np.flatnonzero(~narrow).tolist():

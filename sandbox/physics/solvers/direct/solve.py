@@ -25,13 +25,13 @@ _STATE = attrgetter(*State._fields)
 
 @kernel
 def _solve_bodies(
-    lent_system: Any, lent_state: Any, stiffness: Floats, damping: Floats, element_stiffness: Floats,
-    element_damping: Floats, start: Floats, start_length: Floats, touched: bool, parts: int, h: float,
+    lent_system: Any, lent_state: Any, stiffness: Floats, damping: Floats, constraint_stiffness: Floats,
+    constraint_damping: Floats, start: Floats, start_length: Floats, touched: bool, parts: int, h: float,
 ) -> None:  # fmt: skip
     # What nothing touches, and s += 0.3 (v' - s) of all; touched: some bodies are, and rows are loaded.
     (system,) = contents(lent_system)
     (state,) = contents(lent_state)
-    inputs = Inputs(stiffness, damping, element_stiffness, element_damping, start, start_length)
+    inputs = Inputs(stiffness, damping, constraint_stiffness, constraint_damping, start, start_length)
     bodies, rows, springs = system.bodies, system.rows, system.springs
     if not touched:
         load_rows(system, state, inputs, h)
@@ -66,7 +66,7 @@ def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
         apply_explicit(world, layout.hooke, substep.springs, substep.h)
     state = world.derived(_lent_state)
     touched = contacts is not None and len(contacts.particle) > 0
-    inputs = (*substep.springs, *substep.elements, *substep.before)
+    inputs = (*substep.springs, *substep.constraints, *substep.before)
     parts = substep.substeps if world.settings.substeps == AUTO else 0
     if contacts is not None and touched:
         from sandbox.physics.solvers.direct.island_solve import solve_touched

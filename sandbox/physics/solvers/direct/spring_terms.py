@@ -52,7 +52,7 @@ def load_springs(
         s = springs.slot[k]
         a = springs.row_a[k]
         b = springs.row_b[k]
-        # A hand's spring pulls at the whole body, so that a heavy rope lifts as readily as a light one.
+        # A grab's spring pulls at the whole body, so that a heavy rope lifts as readily as a light one.
         mass = body_mass if state.material[s] == -1 else reduced_mass(rows.inverse_mass[a], rows.inverse_mass[b])
         stiffness = inputs.stiffness[s]
         damping = inputs.damping[s]
@@ -255,7 +255,7 @@ def update_springs(span: Span, system: System, h: float) -> tuple[float, float, 
         error /= h
         energy += 0.5 * springs.norm[k] * error * error
         extent = rest + springs.length[k]
-        # One of rest length 0, such as a hand's, has no strain to be spared.
+        # One of rest length 0, such as a grab's, has no strain to be spared.
         if rest > 0.0 and extent > SHORTEST and missed > misfit * extent:
             misfit = missed / extent
     return energy, 2.0 * misfit, before > CANCELLATION * after and 2.0 * misfit < ROUNDING_MISFIT

@@ -115,7 +115,7 @@ def step_body(body: int, span: Span, system: System, energy_bank: Floats, h: flo
             after = _damp(span, system, allowed, h)
     limit = bank_limit(body, span, system, h)
     saved = held + before - after
-    # An inverted body keeps all that it lost for the way back to its form; one that hands move, no more than others do.
+    # An inverted body keeps all that it lost for the way back to its form; one that grabs move, no more than others do.
     if not (bodies.inverted[body] and not bodies.anchored[body]):
         saved = min(saved, limit)
     energy_bank[bodies.lowest[body]] = saved if saved > 0.0 else 0.0

@@ -37,23 +37,23 @@ class State(NamedTuple):
     damping: Floats
     material: NDArray[np.int32]
     tension: Floats
-    element_rest: Floats
-    element_stiffness: Floats
-    element_damping: Floats
+    constraint_rest: Floats
+    constraint_stiffness: Floats
+    constraint_damping: Floats
     corner_weight: Floats
     terrain: Terrain
 
 
 class Inputs(NamedTuple):
-    """What a substep is given: Cs and Cd of springs (m,) and elements (t,) in it, and its start.
+    """What a substep is given: Cs and Cd of springs (m,) and constraints (t,) in it, and its start.
 
     start [m/s] (n, 2), start_length [m] (m,): velocities and rest lengths before forces and drives.
     """
 
     stiffness: Floats
     damping: Floats
-    element_stiffness: Floats
-    element_damping: Floats
+    constraint_stiffness: Floats
+    constraint_damping: Floats
     start: Floats
     start_length: Floats
 
@@ -142,7 +142,7 @@ class Springs(NamedTuple):
 
 
 class Constraints(NamedTuple):
-    """The constraints of many corners (elements) of the matrix by body: t of them, q corners.
+    """The constraints of many corners of the matrix by body: t of them, q corners.
 
     first (t+1,): where corners begin; row (q,); corner (q,): slots; block (t, 3): where the pairs of a narrow one's
     corners (0, 1), (1, 2), (2, 0) lie, -1: one is pinned; wide (t,): number among the body's wide ones, -1: narrow.
