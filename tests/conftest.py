@@ -1,5 +1,6 @@
 """What holds in every test."""
 
+import ctypes
 import gc
 import sys
 from weakref import WeakKeyDictionary
@@ -14,12 +15,17 @@ TOPOLOGY = [column.name for column in COLUMNS if column.topology]
 FIRST_LOOKS, LATER = 10, 16
 # Of a process that runs tests [bytes].
 MOST_MEMORY = 1e9
+# A setting of the C library, by its number in malloc.h: what is as large [bytes] gets pages of its own.
+M_MMAP_THRESHOLD, OWN_PAGES_FROM = -3, 1_000_000
 
 
 def pytest_collection_finish():
     """Leave what is imported out of garbage collection, which takes long, and is put off while so much is alive."""
     gc.collect()
     gc.freeze()
+    if hasattr(ctypes.pythonapi, "mallopt"):
+        # Pictures that are let go of return to the system, and leave no holes that the next do not fit in.
+        ctypes.pythonapi.mallopt(M_MMAP_THRESHOLD, OWN_PAGES_FROM)
 
 
 @pytest.fixture(autouse=True, scope="session")
