@@ -61,13 +61,13 @@ def test_everything_arrives_in_the_world():
     assert world.limits.compression.tolist() == [never, 0.02, never]
     assert world.limits.yielding.tolist() == [never, never, 0.1]
     assert world.limits.yield_share.tolist() == [0.25, 0.25, 0.5]
-    driven = world.driven
-    assert driven.part_names == ("w", "v", ":0", ":2")
+    actuators = world.actuators
+    assert actuators.names == ("w", "v", ":0", ":2")
     assert world.actuator_value.tolist() == [0.0, 1.0, 0.0, 0.0]
-    assert [world.spring_names[s] for s in driven.muscles.spring] == ["m:0", "m:1", "m:2", "m:3", ":1"]
-    assert [world.spring_names[s] for s in driven.hydraulics.spring] == [":0", ":2"]
-    assert [world.particle_names[s] for s in driven.motors.hub] == ["w.0", "v.0"]
-    rim = driven.motors.rim[driven.motors.rim_start[1] : driven.motors.rim_start[2]]
+    assert [world.spring_names[s] for s in actuators.muscles.spring] == ["m:0", "m:1", "m:2", "m:3", ":1"]
+    assert [world.spring_names[s] for s in actuators.hydraulics.spring] == [":0", ":2"]
+    assert [world.particle_names[s] for s in actuators.motors.hub] == ["w.0", "v.0"]
+    rim = actuators.motors.rim[actuators.motors.rim_start[1] : actuators.motors.rim_start[2]]
     assert [world.particle_names[s] for s in rim] == [f"v.{k}" for k in range(1, 13)]
 
 

@@ -206,7 +206,7 @@ def test_nothing_depends_on_whether_old_files_can_be_removed(folders, monkeypatc
 def test_a_kernel_needs_the_values_of_its_names_and_those_of_what_it_calls(monkeypatch):
     from sandbox.physics.jit.needs import digest_of_needs
 
-    contacts = importlib.import_module("sandbox.physics.solvers.direct.solve")
+    contacts = importlib.import_module("sandbox.physics.solvers.contact.free_contacts")
     kernels = [value for value in vars(contacts).values() if hasattr(value, "py_func")]
     before = list(map(digest_of_needs, kernels))
     assert len(set(before)) == len(kernels) and list(map(digest_of_needs, kernels)) == before
