@@ -31,6 +31,7 @@ LIBRARIES = {
 LONGEST_FILE = 600
 LONGEST_FUNCTION = 60
 MOST_FILES = 25
+MOST_ARGUMENTS = 12
 
 
 @functools.cache
@@ -176,6 +177,18 @@ def test_the_window_needs_none_of_the_libraries_that_take_long_to_import():
 def test_no_file_is_longer_than_600_lines():
     lengths = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in PACKAGE.rglob("*.py")}
     assert {str(path.relative_to(ROOT)): length for path, length in lengths.items() if length > LONGEST_FILE} == {}
+
+
+def test_no_function_takes_more_than_12_arguments():
+    many = {}
+    for name, tree in sources().items():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                given = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+                count = len([one for one in given if one.arg not in ("self", "cls")])
+                if count > MOST_ARGUMENTS:
+                    many[f"{name}.{node.name}"] = count
+    assert many == {}
 
 
 def test_no_folder_holds_more_than_25_files():

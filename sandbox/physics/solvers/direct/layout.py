@@ -17,7 +17,14 @@ from sandbox.physics.jit import bundle
 from sandbox.physics.solvers.direct.system import Bodies, Constraints, Goals, Matrix, Rows, Springs, System
 from sandbox.physics.solvers.linear.dissection import Dissection, dissect_bodies, make_fronts, spring_places
 from sandbox.physics.solvers.linear.fronts import Fronts
-from sandbox.physics.solvers.linear.minimum_degree import minimum_degree, update_targets
+from sandbox.physics.solvers.linear.minimum_degree import (
+    Columns,
+    Heap,
+    Marks,
+    QuotientGraph,
+    minimum_degree,
+    update_targets,
+)
 from sandbox.physics.solvers.linear.parallel import hire
 from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, Floats, Slots, World
 
@@ -146,10 +153,9 @@ def _order_small(count: int, link_a: Slots, link_b: Slots) -> tuple[Slots, tuple
         order = np.zeros(count, dtype=np.int64)
         column_start, column = np.zeros(count + 1, dtype=np.int64), np.zeros(capacity, dtype=np.int64)
         counts, marks = np.zeros((5, count), dtype=np.int64), np.full((2, count), -1, dtype=np.int64)
-        if minimum_degree(
-            start, near.copy(), degree.copy(), np.zeros_like(near), counts[0], order, column_start, column,
-            np.zeros(count, dtype=np.bool_), marks[0], counts[1], marks[1], counts[2], counts[3], counts[4],
-        ):  # fmt: skip
+        graph = QuotientGraph(start, near.copy(), degree.copy(), np.zeros_like(near), counts[0])
+        found = Marks(np.zeros(count, dtype=np.bool_), marks[0], counts[1], marks[1])
+        if minimum_degree(graph, order, Columns(column_start, column), found, Heap(*counts[2:])):
             break
         capacity *= 2
     return order, (np.repeat(order, np.diff(column_start)), column[: column_start[-1]])

@@ -42,6 +42,28 @@ class Dissection(NamedTuple):
     to_parent: Slots
 
 
+class Halving(NamedTuple):
+    """Nodes (n,) while they are split: neighbours near[start[k]:start[k + 1]], place, order by each; part; scratch."""
+
+    start: Slots
+    near: Slots
+    x: Floats
+    y: Floats
+    by_x: Slots
+    by_y: Slots
+    part: Slots
+    spare: Slots
+
+
+class FoundFronts(NamedTuple):
+    """The fronts as they are found: see Dissection."""
+
+    first: Slots
+    last: Slots
+    child: Slots
+    place: Slots
+
+
 @inner_kernel
 def _partition(first, last, split, apart, left, part, nodes, spare):  # type: ignore[no-untyped-def]
     # The left half, the right one and what separates them, each in the order that it has.
@@ -64,7 +86,9 @@ def _partition(first, last, split, apart, left, part, nodes, spare):  # type: ig
 
 
 @inner_kernel
-def _split(first, last, left, start, near, x, y, by_x, by_y, part, spare):  # type: ignore[no-untyped-def]
+def _split(first: int, last: int, left: int, nodes: Halving) -> int:
+    start, near, part, by_x, by_y = nodes.start, nodes.near, nodes.part, nodes.by_x, nodes.by_y
+    x, y = nodes.x, nodes.y
     middle = (first + last) // 2
     longer = by_x
     if y[by_y[last - 1]] - y[by_y[first]] > x[by_x[last - 1]] - x[by_x[first]]:
@@ -80,13 +104,13 @@ def _split(first, last, left, start, near, x, y, by_x, by_y, part, spare):  # ty
                 part[node] = left + 2
                 apart -= 1
                 break
-    _partition(first, last, middle, apart, left, part, by_x, spare)
-    _partition(first, last, middle, apart, left, part, by_y, spare)
+    _partition(first, last, middle, apart, left, part, by_x, nodes.spare)
+    _partition(first, last, middle, apart, left, part, by_y, nodes.spare)
     return apart
 
 
 @kernel
-def _dissect(start, near, x, y, by_x, by_y, part, spare, stack, waiting, first, last, child, place, leaf):  # type: ignore[no-untyped-def]
+def _dissect(nodes: Halving, stack: Slots, waiting: Slots, fronts: FoundFronts, leaf: int) -> int:
     # by_x becomes the elimination order. stack: first and last row, level, side, where the separator begins (-1: not
     # split yet). waiting: the fronts whose parent is yet to come, by level and side.
     count = 0
@@ -101,7 +125,7 @@ def _dissect(start, near, x, y, by_x, by_y, part, spare, stack, waiting, first, 
         apart = stack[top, 4]
         if apart < 0 and end - begin > leaf:
             middle = (begin + end) // 2
-            apart = _split(begin, end, left, start, near, x, y, by_x, by_y, part, spare)
+            apart = _split(begin, end, left, nodes)
             left += 3
             stack[top, 4] = apart
             top += 1
@@ -111,12 +135,12 @@ def _dissect(start, near, x, y, by_x, by_y, part, spare, stack, waiting, first, 
             _push(stack, top, begin, middle, level + 1, 0)
             top += 1
         else:
-            first[count] = begin if apart < 0 else apart
-            last[count] = end
-            place[count, 0] = level
-            place[count, 1] = side
+            fronts.first[count] = begin if apart < 0 else apart
+            fronts.last[count] = end
+            fronts.place[count, 0] = level
+            fronts.place[count, 1] = side
             for other in range(2):
-                child[count, other] = waiting[level + 1, other]
+                fronts.child[count, other] = waiting[level + 1, other]
                 waiting[level + 1, other] = -1
             waiting[level, side] = count
             count += 1
@@ -207,9 +231,8 @@ def dissect(link_a: Slots, link_b: Slots, position: Floats) -> Dissection:
     part, spare = np.full(count, -1, dtype=np.int64), np.zeros(count, dtype=np.int64)
     stack, waiting = np.zeros((3 * DEEPEST, 5), dtype=np.int64), np.full((DEEPEST, 2), -1, dtype=np.int64)
     stack[0] = 0, count, 0, 0, -1
-    fronts = _dissect(
-        start, near, x, y, order, by_y, part, spare, stack, waiting, first, last, child, place, LEAF_SIZE
-    )  # fmt: skip
+    nodes = Halving(start, near, x, y, order, by_y, part, spare)
+    fronts = _dissect(nodes, stack, waiting, FoundFronts(first, last, child, place), LEAF_SIZE)
     first, last, child, place = (array[:fronts].copy() for array in (first, last, child, place))
     rank = np.zeros(count, dtype=np.int64)
     rank[order] = np.arange(count)

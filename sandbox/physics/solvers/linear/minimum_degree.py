@@ -4,11 +4,52 @@ Everything here is integer work, a pure function of which particles the springs 
 library's choice enters, because the order decides the last bits of a tick.
 """
 
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
 from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.state import Slots
+
+
+class QuotientGraph(NamedTuple):
+    """What nodes (n,) are joined to: near_count nodes and element_count elements each, in rows that begin at start."""
+
+    start: Slots
+    near: Slots
+    near_count: Slots
+    element: Slots
+    element_count: Slots
+
+
+class Columns(NamedTuple):
+    """What eliminating a node joins, which is its element: node[start[k]:start[k + 1]] for the k-th."""
+
+    start: Slots
+    node: Slots
+
+
+class Marks(NamedTuple):
+    """By element: absorbed; outside: members beyond the newest one, counted: for which step. mark: step of a node."""
+
+    absorbed: NDArray[np.bool_]
+    mark: Slots
+    outside: Slots
+    counted: Slots
+
+
+class Heap(NamedTuple):
+    """Nodes by degree, least first, ties by lowest index; place: where each node is in it."""
+
+    node: Slots
+    place: Slots
+    degree: Slots
 
 
 @inner_kernel
-def _sift_up(heap, place, degree, at):  # type: ignore[no-untyped-def]
+def _sift_up(queue: Heap, at: int) -> None:
+    heap, place, degree = queue.node, queue.place, queue.degree
     node = heap[at]
     while at > 0:
         parent = (at - 1) // 2
@@ -23,7 +64,8 @@ def _sift_up(heap, place, degree, at):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _sift_down(heap, place, degree, at, size):  # type: ignore[no-untyped-def]
+def _sift_down(queue: Heap, at: int, size: int) -> None:
+    heap, place, degree = queue.node, queue.place, queue.degree
     node = heap[at]
     while 2 * at + 1 < size:
         child = 2 * at + 1
@@ -43,24 +85,23 @@ def _sift_down(heap, place, degree, at, size):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _gather(  # type: ignore[no-untyped-def]
-    step, pivot, start, near, near_count, element, element_count, column_start, column, absorbed, mark
-):
+def _gather(step: int, pivot: int, graph: QuotientGraph, columns: Columns, marks: Marks) -> int:
     # The nodes that eliminating the pivot joins to one another: its neighbours and those of the elements it takes in.
     # An element whose member is eliminated is taken in by it, so the others hold no eliminated node.
-    top = column_start[step]
+    start, column, mark = graph.start, columns.node, marks.mark
+    top = columns.start[step]
     mark[pivot] = step
-    for at in range(start[pivot], start[pivot] + near_count[pivot]):
-        node = near[at]
+    for at in range(start[pivot], start[pivot] + graph.near_count[pivot]):
+        node = graph.near[at]
         if top == column.shape[0]:
             return -1
         mark[node] = step
         column[top] = node
         top += 1
-    for at in range(start[pivot], start[pivot] + element_count[pivot]):
-        older = element[at]
-        absorbed[older] = True
-        for member in range(column_start[older], column_start[older + 1]):
+    for at in range(start[pivot], start[pivot] + graph.element_count[pivot]):
+        older = graph.element[at]
+        marks.absorbed[older] = True
+        for member in range(columns.start[older], columns.start[older + 1]):
             node = column[member]
             if mark[node] != step:
                 if top == column.shape[0]:
@@ -72,95 +113,83 @@ def _gather(  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _prune(  # type: ignore[no-untyped-def]
-    step, start, near, near_count, element, element_count, column_start, column, absorbed, mark, outside, counted
-):
+def _prune(step: int, graph: QuotientGraph, columns: Columns, marks: Marks) -> None:
     # What the new element covers leaves its members' lists; how many members each of their older elements has outside.
+    start, near, element, column_start = graph.start, graph.near, graph.element, columns.start
     for at in range(column_start[step], column_start[step + 1]):
-        node = column[at]
+        node = columns.node[at]
         kept = start[node]
-        for place in range(start[node], start[node] + near_count[node]):
-            if mark[near[place]] != step:
+        for place in range(start[node], start[node] + graph.near_count[node]):
+            if marks.mark[near[place]] != step:
                 near[kept] = near[place]
                 kept += 1
-        near_count[node] = kept - start[node]
+        graph.near_count[node] = kept - start[node]
         kept = start[node]
-        for place in range(start[node], start[node] + element_count[node]):
+        for place in range(start[node], start[node] + graph.element_count[node]):
             older = element[place]
-            if not absorbed[older]:
+            if not marks.absorbed[older]:
                 element[kept] = older
                 kept += 1
-                if counted[older] != step:
-                    counted[older] = step
-                    outside[older] = column_start[older + 1] - column_start[older]
-                outside[older] -= 1
+                if marks.counted[older] != step:
+                    marks.counted[older] = step
+                    marks.outside[older] = column_start[older + 1] - column_start[older]
+                marks.outside[older] -= 1
         element[kept] = step
-        element_count[node] = kept + 1 - start[node]
+        graph.element_count[node] = kept + 1 - start[node]
 
 
 @inner_kernel
-def _bound_degrees(  # type: ignore[no-untyped-def]
-    step, left, start, near_count, element, element_count, column_start, column, outside, heap, place, degree
-):
+def _bound_degrees(step: int, left: int, graph: QuotientGraph, columns: Columns, marks: Marks, queue: Heap) -> None:
     # Neighbours outside every element, in the new element, and in each older one beyond it: at least the degree, which
     # cannot exceed what was left before nor the nodes left. An older element inside the new one says nothing more.
+    start, element, column_start, degree = graph.start, graph.element, columns.start, queue.degree
     members = column_start[step + 1] - column_start[step] - 1
     for at in range(column_start[step], column_start[step + 1]):
-        node = column[at]
-        bound = near_count[node] + members
+        node = columns.node[at]
+        bound = graph.near_count[node] + members
         kept = start[node]
-        for other in range(start[node], start[node] + element_count[node]):
+        for other in range(start[node], start[node] + graph.element_count[node]):
             older = element[other]
-            if older == step or outside[older] > 0:
+            if older == step or marks.outside[older] > 0:
                 element[kept] = older
                 kept += 1
                 if older != step:
-                    bound += outside[older]
-        element_count[node] = kept - start[node]
+                    bound += marks.outside[older]
+        graph.element_count[node] = kept - start[node]
         before = degree[node]
         degree[node] = min(bound, before + members, left - 1)
         if degree[node] < before:
-            _sift_up(heap, place, degree, place[node])
+            _sift_up(queue, queue.place[node])
         elif degree[node] > before:
-            _sift_down(heap, place, degree, place[node], left)
+            _sift_down(queue, queue.place[node], left)
 
 
 @kernel
-def minimum_degree(  # type: ignore[no-untyped-def]
-    start, near, near_count, element, element_count, order, column_start, column, absorbed, mark, outside, counted,
-    heap, place, degree,
-):  # fmt: skip
-    """Order the nodes by approximate minimum degree, ties by lowest index; False where `column` is too short.
+def minimum_degree(graph: QuotientGraph, order: Slots, columns: Columns, marks: Marks, queue: Heap) -> bool:
+    """Order the nodes by approximate minimum degree, ties by lowest index; False where columns are too short.
 
-    start (n+1), near: neighbours in compressed rows, changed on the way. order (n,): nodes as they are eliminated.
-    column_start (n+1), column: for each of them, the nodes still present that it is joined to by then. mark and
-    counted hold -1. Source: Amestoy, Davis, Duff 1996, without their merging of like nodes.
+    graph: of n nodes, without elements; it is changed on the way. order (n,): nodes as they are eliminated; columns:
+    for each of them, the nodes still present that it is joined to by then. mark and counted hold -1.
+    Source: Amestoy, Davis, Duff 1996, without their merging of like nodes.
     """
     size = order.shape[0]
     for node in range(size):
-        degree[node] = near_count[node]
-        heap[node] = node
-        _sift_up(heap, place, degree, node)
+        queue.degree[node] = graph.near_count[node]
+        queue.node[node] = node
+        _sift_up(queue, node)
     for step in range(order.shape[0]):
-        pivot = heap[0]
+        pivot = queue.node[0]
         size -= 1
-        heap[0] = heap[size]
+        queue.node[0] = queue.node[size]
         if size > 0:
-            _sift_down(heap, place, degree, 0, size)
+            _sift_down(queue, 0, size)
         order[step] = pivot
-        top = _gather(
-            step, pivot, start, near, near_count, element, element_count, column_start, column, absorbed, mark
-        )
+        top = _gather(step, pivot, graph, columns, marks)
         if top < 0:
             return False
-        column_start[step + 1] = top
-        _prune(
-            step, start, near, near_count, element, element_count, column_start, column, absorbed, mark, outside,
-            counted,
-        )  # fmt: skip
-        _bound_degrees(
-            step, size, start, near_count, element, element_count, column_start, column, outside, heap, place, degree
-        )  # fmt: skip
+        columns.start[step + 1] = top
+        _prune(step, graph, columns, marks)
+        _bound_degrees(step, size, graph, columns, marks, queue)
     return True
 
 
