@@ -225,3 +225,11 @@ def test_what_something_touches_is_typed_in_words():
         ("default, balls", ("default", "balls")),
     ):
         assert field.set(document, field.typed(text)).level.particles[0].collides == value
+
+
+def test_walls_that_could_not_be_read_again_are_refused_in_one_line():
+    document = Document(empty_level())
+    with pytest.raises(EditError, match=r"^the walls: box\.0: -1e\+300 is below") as refused:
+        set_walls(document, WallsDef.model_construct(box=(-1e300, 0.0, 1e300, 1.0)))
+    assert "\n" not in str(refused.value)
+    assert set_walls(document, WallsDef.model_construct(box=(-1.0, 0.0, 1.0, 1.0))).level.walls is not None

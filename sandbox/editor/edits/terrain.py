@@ -4,7 +4,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Literal
 
-from sandbox.editor.document import Document, EditError, check_terrain, checked, validated
+from pydantic import ValidationError
+
+from sandbox.editor.document import Document, EditError, check_terrain, checked, first_fault, validated
 from sandbox.editor.edits.names import free_id
 from sandbox.editor.items import Definition, Item, Selection, changed
 from sandbox.level.faults.level_error import shown
@@ -47,6 +49,11 @@ def set_walls(document: Document, walls: WallsDef | None) -> Document:
     """Put walls around the level, or none. Raises EditError."""
     if walls == document.level.walls:
         return document
+    if walls is not None:
+        try:
+            walls = WallsDef.model_validate(walls.__dict__)
+        except ValidationError as error:
+            raise EditError(first_fault(error, "the walls", depth=0)) from None
     return replace(document, level=checked(replaced(document.level, walls=walls)))
 
 
