@@ -317,7 +317,7 @@ def _joined(made: list[Expansion[Any]]) -> _Joined:
         pinned=np.concatenate([np.zeros(0, dtype=np.bool_), *(each.pinned for each in made)]),
         pairs=np.concatenate([none, *(each.pairs + first for each, first in zip(made, firsts, strict=False))]),
         numbers=np.concatenate([none[:, 0], *(each.numbers for each in made)]),
-        rest_length=np.concatenate([np.zeros(0), *(each.rest_length for each in made)]),
+        rest_length=np.concatenate([np.zeros(0), *(_lengths_about_origin(each) for each in made)]),
         spring_counts=[len(each.pairs) for each in made],
     )
 
@@ -360,6 +360,11 @@ def _links(level: Level, names: _Names) -> _Links:
 
 def _about_origin(made: Expansion[Any]) -> Floats:
     return made.local_form[0] if made.body.pose is None else made.position
+
+
+def _lengths_about_origin(made: Expansion[Any]) -> Floats:
+    # Of a form that bodies share, the same whichever of them was expanded first.
+    return made.rest_length if _form_key(made.body) is None else distances(made.local_form[0], made.pairs)
 
 
 def _shared(

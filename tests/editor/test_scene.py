@@ -90,3 +90,12 @@ def test_the_scene_of_a_level_that_was_read_takes_the_expansions_of_its_check(mo
     monkeypatch.setattr("sandbox.level.build.plan.expansion", lambda body: pytest.fail(body.id))
     monkeypatch.setattr("sandbox.editor.scene.expansion", lambda body: pytest.fail(body.id))
     assert make_scene(level).parts.names.plan is kept_plan(level)
+
+
+def test_lengths_of_springs_depend_on_the_form_alone_not_on_which_body_of_it_was_expanded_first():
+    level = zoo()
+    moved = Document(level, frozenset(items_of(level)))
+    for _ in range(3):
+        before = make_scene(moved.level)
+        moved = move(moved, 0.1, -0.7)
+        assert (make_scene(moved.level, before).rest_length == make_scene(moved.level).rest_length).all()
