@@ -9,6 +9,7 @@ import numpy as np
 
 from sandbox.physics.collision.types import Contacts, Flags, weight_of
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.solvers.contact.union_find import root_of, united
 from sandbox.physics.state import Floats, Slots
 
 
@@ -29,14 +30,6 @@ class Islands(NamedTuple):
 
 
 @inner_kernel
-def _root(label: Slots, node: int) -> int:
-    while label[node] != node:
-        label[node] = label[label[node]]
-        node = label[node]
-    return node
-
-
-@inner_kernel
 def _join(contacts: Contacts, count: int, inverse_mass: Floats, label: Slots) -> None:
     # Label the particles that touch each other alike; what cannot move joins nothing.
     for p in range(label.shape[0]):
@@ -47,16 +40,10 @@ def _join(contacts: Contacts, count: int, inverse_mass: Floats, label: Slots) ->
             p, _ = weight_of(contacts, c, end)
             if p < 0 or inverse_mass[p] == 0.0:
                 continue
-            node = _root(label, p)
-            if first < 0:
-                first = node
-            elif node < first:
-                label[first] = node
-                first = node
-            else:
-                label[node] = first
+            node = root_of(label, p)
+            first = united(label, first, node)
     for p in range(label.shape[0]):
-        label[p] = _root(label, p)
+        label[p] = root_of(label, p)
 
 
 @inner_kernel

@@ -8,6 +8,7 @@ import numpy as np
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
 from sandbox.physics.solvers.contact.gauss_seidel import ContactTerms, Delassus, new_terms
+from sandbox.physics.solvers.contact.union_find import root_of, united
 from sandbox.physics.solvers.direct.system import Flags, System
 from sandbox.physics.world import Floats, Slots
 
@@ -117,14 +118,6 @@ def new_islands(system: System, particle_count: int) -> IslandRoom:
 
 
 @inner_kernel
-def _root(label: Slots, node: int) -> int:
-    while label[node] != node:
-        label[node] = label[label[node]]
-        node = label[node]
-    return node
-
-
-@inner_kernel
 def _join_nodes(contacts: Contacts, block: Slots, inverse_mass: Floats, label: Slots, nodes: int) -> None:
     # Label the nodes that touch each other alike: particles (n,), then blocks; what cannot move joins nothing.
     count = block.shape[0]
@@ -134,16 +127,10 @@ def _join_nodes(contacts: Contacts, block: Slots, inverse_mass: Floats, label: S
             p, _ = weight_of(contacts, c, end)
             if p < 0 or inverse_mass[p] == 0.0:
                 continue
-            node = _root(label, p if block[p] < 0 else count + block[p])
-            if first < 0:
-                first = node
-            elif node < first:
-                label[first] = node
-                first = node
-            else:
-                label[node] = first
+            node = root_of(label, p if block[p] < 0 else count + block[p])
+            first = united(label, first, node)
     for node in range(nodes):
-        label[node] = _root(label, node)
+        label[node] = root_of(label, node)
 
 
 @inner_kernel
