@@ -1,12 +1,13 @@
 # make play: install into .venv and run the app.    make test: install into .venv and run every test.
 # Kernels are compiled before, or each worker would compile all of them.
+# make abuse: what stirring, throwing and driving does to things, in figures; hours.
 # make pictures: draw the gallery's pictures of shipped levels anew, after one was changed.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 WORKERS ?= 2
 
-.PHONY: play test lint pictures bench clean
+.PHONY: play test lint pictures bench abuse clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
@@ -26,6 +27,12 @@ pictures: $(VENV)/installed
 
 bench: $(VENV)/installed-dev
 	for bench in tests/bench/*.py; do echo "## $$bench"; PYTHONPATH=. $(BIN)/python "$$bench" || exit 1; done
+
+abuse: $(VENV)/installed-dev
+	for script in tests/abuse/[a-z]*.py; do \
+		module=$$(basename "$$script" .py); echo "## $$module"; \
+		SDL_VIDEODRIVER=dummy $(BIN)/python -m "tests.abuse.$$module" --all || exit 1; \
+	done
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)

@@ -185,7 +185,7 @@ def test_a_level_setting_is_three_files(package):
     put(
         package / "physics/forces.py",
         "    world.velocity[world.inverse_mass > 0.0, 1] += world.settings.lift * h\n",
-        before="    if len(motors.hub):",
+        before="    _add_gravity_and_air(forces.items, h)",
     )
     script = """
 from sandbox.physics.settings import WorldSettings
@@ -237,7 +237,7 @@ driver = Driver(parse_level(level(), "level"))
 driver.app.documents.new()
 driver.frames(2)
 driver.click_widget(driver.editor.palette.tools["triangle"])
-assert list(driver.editor.palette.tools).index("triangle") == 13
+assert list(driver.editor.palette.tools).index("triangle") == 15
 driver.fill(driver.editor.options.fields["mass"], "3")
 driver.drag((0, 0), (1, 0), (2, 0))
 driver.key(pygame.K_v)

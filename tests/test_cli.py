@@ -106,6 +106,26 @@ def test_probe_and_dump_write_what_happened(rope, tmp_path, capsys):
     assert [repr(value) for value in dumped["particles"]["rope.4"]["position"]] == rows[-1][2:4]
 
 
+def test_probe_and_dump_say_what_motors_give(tmp_path, capsys):
+    table, last = tmp_path / "out.csv", tmp_path / "last.json"
+    arguments = ["--probe", "rear wheel, car.0", "-o", str(table), "--dump", str(last)]
+    assert main(["run", "truck_bridge", "--ticks", "2", *(text.replace("car", "truck") for text in arguments)]) == 0
+    rows = [line.split(",") for line in table.read_text().splitlines()]
+    assert rows[0][2:5] == ["rear wheel.torque", "rear wheel.share", "truck.0.x"]
+    # The truck starts from rest: its motors give all they have, clockwise.
+    assert [float(text) for text in rows[-1][2:4]] == [pytest.approx(-900.0), pytest.approx(1.0)]
+    assert json.loads(last.read_text())["motors"]["front wheel"]["share"] == pytest.approx(1.0)
+
+
+def test_probe_and_dump_say_how_discs_turn(tmp_path, capsys):
+    table, last = tmp_path / "out.csv", tmp_path / "last.json"
+    assert main(["run", "hourglass", "--ticks", "60", "--probe", "grain 6", "-o", str(table), "--dump", str(last)]) == 0
+    rows = [line.split(",") for line in table.read_text().splitlines()]
+    assert rows[0][2:] == [f"grain 6.{quantity}" for quantity in ("x", "y", "vx", "vy", "angle", "spin")]
+    grain = json.loads(last.read_text())["particles"]["grain 6"]
+    assert [float(text) for text in rows[-1][6:]] == [grain["angle"], grain["spin"]] and grain["angle"] != 0.0
+
+
 def test_replay_tells_equal_refused_and_diverged_apart(rope, tmp_path, capsys, monkeypatch):
     replay = tmp_path / "run.jsonl"
     main(["run", rope, "--ticks", "70", "--record", str(replay)])
@@ -548,5 +568,6 @@ def test_a_headless_run_loads_no_drawing_and_without_contacts_nothing_that_finds
     for modules in runs:
         assert not {name for name in modules if name.startswith(("pygame", "sandbox.app", "sandbox.editor"))}
     for modules in runs[:2]:
-        assert contacts(modules) <= {"sandbox.physics.solvers.contact"}
+        # Which terrain a triangle that is about to turn over must not cross.
+        assert contacts(modules) <= {"sandbox.physics.solvers.contact", "sandbox.physics.collision.terrain_clamp"}
     assert len(contacts(loaded("run", str(touching), "--ticks", "2", "--solver", "direct"))) > 8

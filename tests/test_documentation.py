@@ -3,6 +3,7 @@
 import ast
 import functools
 import json
+import math
 import re
 import subprocess
 from pathlib import Path
@@ -12,6 +13,8 @@ import pytest
 
 from sandbox.level.format.files import load_level, parse_level
 from sandbox.physics.energy import kinetic_energy, spring_energy, spring_lengths
+from sandbox.physics.equation import of_body, of_springs
+from sandbox.physics.firmness import lowest_mode_of
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.stability import report
 from sandbox.physics.step import step
@@ -21,6 +24,7 @@ from sandbox.session.commands import COMMAND_TYPES
 from sandbox.session.replay.reader import read_script
 from sandbox.session.session import Session
 from sandbox.session.summary import run_checks
+from tests.support.wobbles import firm_world
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -49,8 +53,8 @@ def test_the_program_in_the_readme_prints_that_every_tick_is_equal(tmp_path, mon
 
 
 def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_carried_out(tmp_path):
-    lines, driving, pumping = re.findall(r"```jsonl\n(.*?)```", COMMANDS, re.DOTALL)
-    shown = (lines + driving + pumping).splitlines()
+    lines, driving, pumping, firming = re.findall(r"```jsonl\n(.*?)```", COMMANDS, re.DOTALL)
+    shown = (lines + driving + pumping + firming).splitlines()
     assert {json.loads(line)["command"]["type"] for line in shown} == set(COMMAND_TYPES)
     table = COMMANDS.split("|---|---|---|")[1]
     named = {
@@ -79,6 +83,12 @@ def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_ca
         session.advance()
     assert not session.messages
     assert np.count_nonzero(session.world.constraint_rest > wanted) == 1
+    (tmp_path / "firm.jsonl").write_text(firming)
+    session = Session(load_level("jelly_pile"), read_script(tmp_path / "firm.jsonl"))
+    for _ in range(100):
+        session.advance()
+    assert not session.messages
+    assert 0 < np.count_nonzero(session.world.lowest_mode) < len(session.world.lowest_mode) / 2
 
 
 def rows(page, heading):
@@ -186,9 +196,18 @@ def test_two_springs_in_a_row_move_in_the_direct_solver_as_worked_out_by_hand():
     assert spring_lengths(rigid) == pytest.approx([1.0, 1.0], abs=1e-6)
 
 
+def test_the_triangle_worked_by_hand_is_what_the_code_finds():
+    form = {"particles": [[0, 0], [1, 0], [0.5, math.sqrt(0.75)]], "springs": [[0, 1], [1, 2], [2, 0]]}
+    world = firm_world({"sag": 0}, type="mesh", **form)
+    assert lowest_mode_of(world.forms[0].shape) == pytest.approx(0.75)
+    assert of_body(0.5, 0.5, 0.75) == pytest.approx((0.429, 0.429), abs=5e-4)
+    assert of_springs(*of_body(0.5, 0.5, 0.75), 0.75) == pytest.approx((0.5, 0.5))
+    assert "Cd_a = 0.75/1.75 = 0.429" in PROSE
+
+
 def test_the_halved_coefficients_on_the_page_are_those_of_the_code():
     stiffness, damping = np.array([0.5]), np.array([0.75])
-    halve(stiffness, damping, 2)
+    halve(stiffness, damping, np.zeros(1), 2)
     assert (stiffness[0], damping[0]) == pytest.approx((0.177, 0.5), abs=5e-4)
     assert "(Cs, Cd) = (0.5, 0.75) becomes (0.177, 0.5)" in PROSE
 

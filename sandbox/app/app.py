@@ -259,7 +259,7 @@ class App:
         with self.profile.part("ui"):
             if self.screen is not None:
                 left = None if self.ui.has_sheet else self.screen.notices_left
-                legend = self.mode == "play"
+                legend = self.play is not None and self.mode == "play" and self.play.stage.renderer.lattice
                 parts = self.screen.status(*self._figures)
                 if not self.ready and self.mode == "edit":
                     parts.append(("preparing the physics", WARNING))

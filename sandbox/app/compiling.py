@@ -100,7 +100,7 @@ def _stamp() -> Path:
     """The file that says that all kernels of these very sources are in the cache."""
     digest = hashlib.blake2b(digest_size=10)
     package = Path(__file__).resolve().parents[1]
-    for file in [*sorted((package / "physics").rglob("*.py")), package / "app" / "draw" / "lines.py"]:
+    for file in sorted([*(package / "physics").rglob("*.py"), *(package / "app" / "draw" / "raster").glob("*.py")]):
         digest.update(file.read_bytes())
     versions = [sys.implementation.cache_tag, *map(version, ("numba", "numpy", "llvmlite"))]
     settings = [os.environ.get(name, "") for name in ("NUMBA_CACHE_DIR", "NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES")]
@@ -132,7 +132,7 @@ def warm_up_rest() -> None:
     """Compile what the app needs beside ticks: measures, drawing, Cs and Cd of substeps; or load it."""
     import numpy as np
 
-    from sandbox.app.draw.lines import warm_up_lines
+    from sandbox.app.draw.raster.painter import expect_painting
     from sandbox.physics.constraints import AREA
     from sandbox.physics.energy import total_energy
     from sandbox.physics.settings import WorldSettings
@@ -146,7 +146,7 @@ def warm_up_rest() -> None:
     total_energy(world)
     substep_coefficients(world, 2)
     constraint_coefficients(world, 2)
-    warm_up_lines()
+    expect_painting()
 
 
 class Child:

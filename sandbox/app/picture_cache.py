@@ -27,7 +27,7 @@ SECONDS = 0.8
 # Levels of more particles than this are drawn as they are built: the gallery stays quick.
 PARTICLES = 3000
 # Rises when the same level is drawn otherwise.
-VERSION = 1
+VERSION = 2
 # Pictures that are kept, those used last.
 KEPT = 300
 # Pictures in the size of cards that are held in memory: all of a page, and its neighbours'.

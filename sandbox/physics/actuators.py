@@ -62,23 +62,28 @@ def _floats() -> Floats:
 @dataclass(frozen=True, eq=False)
 class Muscles:
     """Springs whose rest length follows a wave: slot, amplitude as a share of the natural length, period [ticks] of 2
-    or more, phase 0..1; each (k,)."""
+    or more, phase 0..1, force [N] at most; each (k,), force also (0,): without limits."""
 
     spring: Slots = field(default_factory=_slots)
     amplitude: Floats = field(default_factory=_floats)
     period: Slots = field(default_factory=_slots)
     phase: Floats = field(default_factory=_floats)
+    force: Floats = field(default_factory=_floats)
 
 
 @dataclass(frozen=True, eq=False)
 class Hydraulics:
-    """Springs whose rest length goes from shortest to longest [m] at rate [m/s] times their part's value; each (k,)."""
+    """Springs whose rest length goes from shortest to longest [m] at rate [m/s] times their part's value.
+
+    force [N] at most; each (k,), force also (0,): without limits.
+    """
 
     spring: Slots = field(default_factory=_slots)
     shortest: Floats = field(default_factory=_floats)
     longest: Floats = field(default_factory=_floats)
     rate: Floats = field(default_factory=_floats)
     part: Slots = field(default_factory=_slots)
+    force: Floats = field(default_factory=_floats)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,7 @@
-"""Connected components of what links join."""
+"""Connected components of what links join; union-find with path halving (Tarjan 1975)."""
 
-from sandbox.physics.jit import kernel
+from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.state import Slots
 
 
 @kernel
@@ -22,3 +23,24 @@ def label_bodies(link_a, link_b, label):  # type: ignore[no-untyped-def]
     # Labels never point upwards, so one ascending pass flattens them.
     for node in range(label.shape[0]):
         label[node] = label[label[node]]
+
+
+@inner_kernel
+def root_of(label: Slots, node: int) -> int:
+    """The label of the set that a node is in."""
+    while label[node] != node:
+        label[node] = label[label[node]]
+        node = label[node]
+    return node
+
+
+@inner_kernel
+def united(label: Slots, first: int, node: int) -> int:
+    """The label of two sets, by their labels, once they are one; first below 0: there was none before."""
+    if first < 0:
+        return node
+    if node < first:
+        label[first] = node
+        return node
+    label[node] = first
+    return first

@@ -24,6 +24,13 @@ BEND = 1
 # The gradient of an angle grows as 1 / length; a link shorter than its rest length over this [1] bends as if it were
 # that long. A higher bound makes crushed links stiffer than a factorisation can hold, a lower one costs them spin.
 STEEPEST = 30.0
+# The direct solver holds a triangle from outside at this share of its area. Higher stiffens what is merely squeezed,
+# lower leaves more to the clamp of triangles, which takes motion where this stores its energy.
+FLOOR = 0.25
+# Strength of the floor, k h^2 / m of a spring at FLOOR_RATE [Hz]: somewhat more than Cs 0.9, Cd 0.99; one k [N/m] for
+# every number of substeps. Weaker lets loads through, stronger makes what lands on its floors rebound.
+FLOOR_STRENGTH = 100.0
+FLOOR_RATE = 60.0
 
 Floats = NDArray[np.float64]
 

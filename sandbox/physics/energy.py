@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from sandbox.physics.constraints import constraint_values
+from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, constraint_values
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
-from sandbox.physics.world import GRAB_MATERIAL, LAW_HOOKE, Floats, World
+from sandbox.physics.world import GRAB_MATERIAL, LAW_HOOKE, TRIANGLE, Floats, World
 
 # The energy of what blew up is inf or NaN, and no fault.
 _unbounded = np.errstate(over="ignore", invalid="ignore")
@@ -26,9 +26,12 @@ def spring_lengths(world: World) -> Floats:
 
 @_unbounded
 def kinetic_energy(world: World) -> float:
-    """Sum of m v^2 / 2 over the free particles [J]."""
+    """Sum of m v^2 / 2 over the free particles [J], and of I omega^2 / 2 of those that turn, I = m r^2 / 2."""
     free = world.particle_active & (world.inverse_mass > 0.0)
-    return float(0.5 * np.sum(world.mass[free, None] * world.velocity[free] ** 2))
+    energy = 0.5 * np.sum(world.mass[free, None] * world.velocity[free] ** 2)
+    if world.spin.any():
+        energy += 0.25 * np.sum(world.mass[free] * (world.radius[free] * world.spin[free]) ** 2)
+    return float(energy)
 
 
 @_unbounded
@@ -49,12 +52,21 @@ def spring_energy(world: World) -> float:
 
 @_unbounded
 def constraint_energies(world: World) -> Floats:
-    """Energy [J] of every constraint (t,), k C^2 / 2 with the k that the world's solver gives it; 0 where inactive."""
+    """Energy [J] of every constraint (t,), k C^2 / 2 with the k that the world's solver gives it; 0 where inactive.
+
+    With that of the floor under a triangle, where the solver has them.
+    """
     value, mass, _ = measure_constraints(world)
     constant = SOLVERS[world.settings.solver].spring_constant(
         *constraint_coefficients(world), mass, substep_time(world.settings)
     )
-    return np.asarray(0.5 * constant * value * value)
+    energies = np.asarray(0.5 * constant * value * value)
+    if SOLVERS[world.settings.solver].has_floors:
+        wanted, form = world.constraint_rest.T
+        has_floor = (world.constraint_kind == AREA) & (world.constraint_corners == TRIANGLE) & (wanted * form > 0.0)
+        below = np.minimum(0.0, np.sign(wanted) * (value + (1.0 - FLOOR) * wanted))
+        energies += np.where(has_floor, 0.5 * FLOOR_STRENGTH * FLOOR_RATE**2 * mass * below * below, 0.0)
+    return energies
 
 
 def measure_constraints(world: World) -> tuple[Floats, Floats, Floats]:

@@ -1,11 +1,15 @@
 """Where velocities take particles: the last part of a step."""
 
+import math
+
 from sandbox.physics.collision.types import Flags
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.state import Floats
 
 # s += SLOW_SHARE (v' - s), per step. Higher leaves fast vibration undamped, lower damps slow turning.
 SLOW_SHARE = 0.3
+# One turn [rad].
+FULL_TURN = 6.283185307179586
 
 
 @inner_kernel
@@ -26,7 +30,18 @@ def advance(position: Floats, velocity: Floats, active: Flags, h: float) -> None
             position[p, 1] += velocity[p, 1] * h
 
 
+@inner_kernel
+def turn(angle: Floats, spin: Floats, h: float) -> None:
+    """Turn discs over h [s], angles [rad] kept between -pi and pi."""
+    for p in range(spin.shape[0]):
+        if spin[p] != 0.0:
+            angle[p] += h * spin[p]
+            if abs(angle[p]) > 0.5 * FULL_TURN:
+                angle[p] -= FULL_TURN * math.floor(angle[p] / FULL_TURN + 0.5)
+
+
 @kernel
-def integrate(position: Floats, velocity: Floats, active: Flags, h: float) -> None:
+def integrate(position: Floats, velocity: Floats, active: Flags, angle: Floats, spin: Floats, h: float) -> None:
     """Advance all particles by h [s]."""
     advance(position, velocity, active, h)
+    turn(angle, spin, h)

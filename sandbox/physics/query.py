@@ -3,10 +3,15 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.constraints import AREA
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import GRAB_COUNT, Floats, Slots, World
 
 Point = tuple[float, float]
+
+# A hand reaches so many times as far into a soft body as that goes, so that all of it bears some of the force. With 1
+# a jelly that stands at nine tenths of its height is stretched to twice its length when it is thrown by a corner.
+REACH = 1.5
 
 # A mistuned Hooke spring blows up for the user to see: what overflows is far from everything, and no fault.
 _far_away = np.errstate(over="ignore", invalid="ignore")
@@ -35,6 +40,21 @@ def nearest_particle(state: World | Snapshot, point: Point, within: float) -> in
     separation = state.position - np.asarray(point)
     distance = np.sqrt(np.sum(separation * separation, axis=1)) - state.radius
     return _nearest(distance, shown_particles(state), within)
+
+
+def grip_radius(state: World | Snapshot, particle: int) -> float:
+    """How far [m] a hand reaches into the body of a particle that it takes: 0 where it is not soft.
+
+    A body that keeps areas is soft: it would tear where one particle bears all of a hand's force.
+    """
+    soft = np.zeros(len(state.mass), dtype=np.bool_)
+    sizes = state.constraint_corners
+    soft[state.corner_particle[np.repeat(state.constraint_active & (state.constraint_kind == AREA), sizes)]] = True
+    of_body = state.particle_active & (state.owner == state.owner[particle])
+    if not np.any(soft & of_body):
+        return 0.0
+    away = state.origin[of_body] - state.origin[particle]
+    return REACH * float(np.sqrt(np.max(np.sum(away * away, axis=1))))
 
 
 @_far_away

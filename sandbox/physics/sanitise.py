@@ -1,8 +1,9 @@
 """Quarantine: a value that no physics can give is taken back before it spreads.
 
-A particle whose position, velocity or mass is not finite, or is absurd, gets its last good values back and is frozen:
-pinned where it was, until somebody unpins it. An absurd constant of a spring or a constraint gets its last good value
-back. Positions and velocities are good as the last tick ended with them, masses and constants as they were last set.
+A particle whose position, velocity, angle, spin or mass is not finite, or is absurd, gets its last good values back and
+is frozen: pinned where it was, until somebody unpins it; so is one whose radius, surface or gravity scale is. An absurd
+constant of a spring or a constraint gets its last good value back, the impulse of a contact is begun anew. Motion is
+good as the last tick ended with it, all else as it was last set.
 """
 
 from typing import Any, NamedTuple
@@ -18,29 +19,44 @@ from sandbox.physics.world import World
 # Larger than anything that a level or a command can ask for (1e6 m, 1e9 m/s, 1e9 kg, 1e15 N/m), and small enough that
 # energies stay finite; a mistuned spring that passes it is frozen there.
 ABSURD = 1e18
-# What is guarded of springs and constraints.
+# What a tick moves, in the order of the arrays below, and what is guarded of springs and constraints.
+_MOTION = ("position", "velocity", "angle", "spin")
 _CONSTANTS = [column for column in GUARDED if column.family is not Family.PARTICLE]
 
 
+_CONSTANTS_OF_PARTICLES = ("radius", "gravity_scale", "friction", "restitution", "rolling")
+
+
 class CheckedArrays(NamedTuple):
-    """The arrays of a world that are looked at, see StateArrays, and where positions and velocities are kept."""
+    """The arrays of a world that are looked at, see StateArrays, and where those of its motion are kept."""
 
     position: Floats
     velocity: Floats
+    angle: Floats
+    spin: Floats
     mass: Floats
     inverse_mass: Floats
+    radius: Floats
+    gravity_scale: Floats
+    friction: Floats
+    restitution: Floats
+    rolling: Floats
     rest_length: Floats
     stiffness: Floats
     damping: Floats
     hooke_stiffness: Floats
     hooke_damping: Floats
+    lowest_mode: Floats
     constraint_rest: Floats
     constraint_stiffness: Floats
     constraint_damping: Floats
+    constraint_lowest_mode: Floats
     corner_weight: Floats
     corner_form: Floats
     good_position: Floats
     good_velocity: Floats
+    good_angle: Floats
+    good_spin: Floats
 
 
 @inner_kernel
@@ -53,6 +69,8 @@ def _sound_motion(arrays: CheckedArrays) -> bool:
             and -ABSURD <= position[p, 1] <= ABSURD
             and -ABSURD <= velocity[p, 0] <= ABSURD
             and -ABSURD <= velocity[p, 1] <= ABSURD
+            and -ABSURD <= arrays.angle[p] <= ABSURD
+            and -ABSURD <= arrays.spin[p] <= ABSURD
         ):
             return False
     return True
@@ -66,6 +84,7 @@ def _sound_elements(arrays: CheckedArrays) -> bool:
             and -ABSURD <= arrays.constraint_rest[k, 1] <= ABSURD
             and 0.0 <= arrays.constraint_stiffness[k] <= 1.0
             and 0.0 <= arrays.constraint_damping[k] <= 1.0
+            and 0.0 <= arrays.constraint_lowest_mode[k] <= ABSURD
         ):
             return False
     for c in range(arrays.corner_weight.shape[0]):
@@ -85,7 +104,15 @@ def _are_sound(items: Any) -> bool:
     if not _sound_motion(arrays) or not _sound_elements(arrays):
         return False
     for p in range(arrays.mass.shape[0]):
-        if not (0.0 < arrays.mass[p] <= ABSURD and 0.0 <= arrays.inverse_mass[p] <= ABSURD):
+        if not (
+            0.0 < arrays.mass[p] <= ABSURD
+            and 0.0 <= arrays.inverse_mass[p] <= ABSURD
+            and 0.0 <= arrays.radius[p] <= ABSURD
+            and -ABSURD <= arrays.gravity_scale[p] <= ABSURD
+            and 0.0 <= arrays.friction[p] <= ABSURD
+            and 0.0 <= arrays.restitution[p] <= 1.0
+            and 0.0 <= arrays.rolling[p] <= 1.0
+        ):
             return False
     for s in range(arrays.rest_length.shape[0]):
         if not (
@@ -94,6 +121,7 @@ def _are_sound(items: Any) -> bool:
             and 0.0 <= arrays.damping[s] <= 1.0
             and 0.0 <= arrays.hooke_stiffness[s] <= ABSURD
             and 0.0 <= arrays.hooke_damping[s] <= ABSURD
+            and 0.0 <= arrays.lowest_mode[s] <= ABSURD
         ):
             return False
     return True
@@ -101,7 +129,7 @@ def _are_sound(items: Any) -> bool:
 
 @kernel
 def _keep_if_sound(items: Any) -> bool:
-    # Keep positions and velocities as good, if all of them are; else keep nothing and say so.
+    # Keep what a tick moves as good, if all of it is; else keep nothing and say so.
     arrays = contents(items)[0]
     if not _sound_motion(arrays):
         return False
@@ -109,22 +137,39 @@ def _keep_if_sound(items: Any) -> bool:
         for axis in range(2):
             arrays.good_position[p, axis] = arrays.position[p, axis]
             arrays.good_velocity[p, axis] = arrays.velocity[p, axis]
+        arrays.good_angle[p] = arrays.angle[p]
+        arrays.good_spin[p] = arrays.spin[p]
     return True
 
 
 def _checked_arrays(world: World) -> Any:
-    own = [getattr(world, name) for name in CheckedArrays._fields[:-2]]
-    return bundle((CheckedArrays._make([*own, world.good["position"], world.good["velocity"]]),))
+    good = [world.good[name] for name in _MOTION]
+    own = [getattr(world, name) for name in CheckedArrays._fields[: -len(good)]]
+    return bundle((CheckedArrays._make([*own, *good]),))
+
+
+@kernel
+def _are_bounded(impulse: Floats) -> bool:
+    for c in range(impulse.shape[0]):
+        if not (-ABSURD <= impulse[c, 0] <= ABSURD and -ABSURD <= impulse[c, 1] <= ABSURD):
+            return False
+    return True
 
 
 def contain_inputs(world: World) -> None:
     """Before a tick: take back whatever something outside the physics has put there."""
+    if not _are_bounded(world.contact_impulse):
+        for slot in np.flatnonzero(_outside(world.contact_impulse, -ABSURD)).tolist():
+            world.contact_impulse[slot] = 0.0
+            owner = world.slot_name("contact_impulse", slot)
+            world.contained.append(Containment(world.tick, "contact_impulse", owner, frozen=False))
     if _are_sound(world.derived(_checked_arrays)):
         return
-    for name in ("mass", "position", "velocity", "inverse_mass"):
+    for name in ("mass", *_MOTION, "inverse_mass", *_CONSTANTS_OF_PARTICLES):
         values = getattr(world, name)
-        lowest = -ABSURD if values.ndim == 2 else 0.0
-        bad = _outside(values, lowest) | ((values == 0.0) if name == "mass" else False)
+        lowest = -ABSURD if name in (*_MOTION, "gravity_scale") else 0.0
+        highest = 1.0 if name in ("restitution", "rolling") else ABSURD
+        bad = _outside(values, lowest, highest) | ((values == 0.0) if name == "mass" else False)
         _freeze(world, bad, name)
     for column in _CONSTANTS:
         name, stored = column.name, column.stored
@@ -140,7 +185,7 @@ def contain_outcome(world: World) -> None:
     """After a tick: take back what the tick itself has blown up, and keep the rest as good."""
     if _keep_if_sound(world.derived(_checked_arrays)):
         return
-    for name in ("position", "velocity"):
+    for name in _MOTION:
         _freeze(world, _outside(getattr(world, name), -ABSURD), name)
     _keep_if_sound(world.derived(_checked_arrays))
 

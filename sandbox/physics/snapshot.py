@@ -75,10 +75,11 @@ def canonical_bytes(array: NDArray[Any]) -> bytes:
 
 
 def hash_by_array(world: World | Snapshot) -> dict[str, str]:
-    """blake2b of each state array, 16 hexadecimal digits, by its name in files."""
+    """blake2b of each state array in use, 16 hexadecimal digits, by its name in files."""
     return {
         column.stored: hashlib.blake2b(canonical_bytes(getattr(world, column.name)), digest_size=8).hexdigest()
         for column in COLUMNS
+        if not column.sparse or (getattr(world, column.name) != column.usual).any()
     }
 
 
@@ -89,7 +90,7 @@ def state_hash(world: World | Snapshot, arrays: Mapping[str, str] | None = None)
     """
     by_array = hash_by_array(world) if arrays is None else arrays
     settings = (text for setting in fields(world.settings) for text in _canonical(setting, world.settings))
-    text = "\n".join([*(by_array[column.stored] for column in COLUMNS), str(world.tick), *settings])
+    text = "\n".join([*by_array.values(), str(world.tick), *settings])
     return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()
 
 

@@ -7,7 +7,7 @@ All springs evaluated on the old velocities are stable where (Cs + 2 Cd) n_eff <
 and n_a, n_b the springs on its ends, for every topology, mass and time step. With Cs = Cd = C that is
 C < 4 / (3 n_eff), which holds the article's 1 / (n + 1) inside (Nissen 2019, limitations and pitfalls).
 Stable as well, and closer where soft and hard springs meet: m_r (w_a S_a + w_b S_b) < 4 for every spring, with S the
-sum of Cs + 2 Cd over the springs on an end; a grab at a particle of many soft springs is inside this one alone.
+sum of Cs + 2 Cd over the springs on an end.
 A constraint counts as one more spring at each of its corners, and has the most of them for its n_eff.
 A Hooke spring counts as the Cs and Cd that it amounts to: k h^2 / m_r and c h / m_r.
 """
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from sandbox.physics.energy import measure_constraints, reduced_masses
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import halve, substep_time
-from sandbox.physics.world import LAW_HOOKE, Floats, World
+from sandbox.physics.world import LAW_HAND, LAW_HOOKE, Floats, World
 
 # (Cs + 2 Cd) times an eigenvalue stays below this, or the mode grows; from the linear theory, not a setting.
 BOUND = 4.0
@@ -58,7 +58,8 @@ class CoefficientLimits:
 
 
 def _working(world: World) -> NDArray[np.bool_]:
-    return world.spring_active & (reduced_masses(world) > 0.0)
+    # A hand's is none: what it holds is as a pin that moves, which makes no network less stable.
+    return world.spring_active & (reduced_masses(world) > 0.0) & (world.law != LAW_HAND)
 
 
 def _held_corners(world: World) -> NDArray[np.int64]:
@@ -153,7 +154,7 @@ def _incidence(world: World) -> tuple[NDArray[np.int64], NDArray[np.int64], Floa
 def _demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
     """Cs + 2 Cd of a substep (m,) from Cs and Cd per tick; a Hooke spring's are those that it amounts to."""
     stiffness, damping = stiffness.copy(), damping.copy()
-    halve(stiffness, damping, world.settings.fewest_substeps)
+    halve(stiffness, damping, world.lowest_mode, world.settings.fewest_substeps)
     working, mass = _working(world), reduced_masses(world)
     hooke = (world.law == LAW_HOOKE) & working
     h = substep_time(world.settings)
@@ -165,7 +166,7 @@ def _demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
 def _constraint_demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
     """Cs + 2 Cd of a substep (t,) from a constraint's Cs and Cd per tick; 0 where it does nothing."""
     stiffness, damping = stiffness.copy(), damping.copy()
-    halve(stiffness, damping, world.settings.fewest_substeps)
+    halve(stiffness, damping, world.constraint_lowest_mode, world.settings.fewest_substeps)
     return np.where(constraint_count(world) > 0.0, stiffness + 2.0 * damping, 0.0)
 
 
@@ -225,7 +226,7 @@ def _equal_limit(world: World, effective: float) -> float:
 
     def inside(c: float) -> bool:
         stiffness, damping = np.array([c]), np.array([c])
-        halve(stiffness, damping, world.settings.fewest_substeps)
+        halve(stiffness, damping, np.zeros(1), world.settings.fewest_substeps)
         return bool((stiffness[0] + 2.0 * damping[0]) * effective < BOUND)
 
     return _largest(inside)
@@ -297,7 +298,6 @@ def coefficient_limits(world: World, material: int | None = None) -> Coefficient
     chosen &= (counts > 0.0) & is_nissen
     if not chosen.any():
         return CoefficientLimits(1.0, 1.0, "no spring of this material does anything")
-    judged = chosen | _grabs_beside(world, chosen)
 
     def limit(name: str) -> float:
         def inside(c: float) -> bool:
@@ -306,7 +306,7 @@ def coefficient_limits(world: World, material: int | None = None) -> Coefficient
             springs[name][chosen[: world.spring_count]] = c
             constraints[name][chosen[world.spring_count :]] = c
             loads = _summed_loads(world, _demands(world, **springs), _constraint_demands(world, **constraints))
-            return bool(np.all(loads[judged] < BOUND))
+            return bool(np.all(loads[chosen] < BOUND))
 
         return _largest(inside)
 
@@ -314,15 +314,3 @@ def coefficient_limits(world: World, material: int | None = None) -> Coefficient
     at = f"n_eff {counts[tightest]:.3g} at {_owner_name(world, tightest)}"
     reason = f"proven: Cs + 2 Cd of joined springs add up to less than {BOUND:g}, {at}"
     return CoefficientLimits(limit("stiffness"), limit("damping"), reason)
-
-
-def _grabs_beside(world: World, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The grabs' springs (m + t,) that hold a particle of the chosen springs and constraints.
-
-    A grab is as hard as it is: what the others may add to it there is less.
-    """
-    springs = chosen[: world.spring_count]
-    corners = world.corner_particle[np.repeat(chosen[world.spring_count :], world.constraint_corners)]
-    ends = np.concatenate([world.particle_a[springs], world.particle_b[springs], corners])
-    grabs = _working(world) & (world.material < 0) & np.isin(world.particle_b, ends)
-    return np.append(grabs, np.zeros(world.constraint_count, dtype=np.bool_))

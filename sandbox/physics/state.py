@@ -16,6 +16,11 @@ Slots = NDArray[np.int64]
 Scalar = TypeVar("Scalar", bound=np.generic)
 
 
+# Rolling resistance, unless somebody says otherwise: a torque of at most this share of the push times the radius. Less
+# lets a disc in a heap turn for ever; ten times as much is seen on a slope of 10 degrees.
+ROLLING_RESISTANCE = 1e-3
+
+
 class Family(Enum):
     """Arrays that go together: one row for each of these."""
 
@@ -25,6 +30,7 @@ class Family(Enum):
     CORNER = "corner of a constraint"
     ACTUATOR = "actuator"
     CONTACT = "contact"
+    HAND = "hand"
 
 
 @dataclass(eq=False)
@@ -33,7 +39,8 @@ class Column:
 
     width: numbers a row, 1 = a flat array (n,), 2 = (n, 2). guarded: the last good values are kept, and taken back where
     the present ones are absurd (sanitise.py). topology: solvers and collision derive from it what they keep from step
-    to step (World.derived), so that it is only written by methods of World.
+    to step (World.derived), so that it is only written by methods of World. sparse: no part of the state where all of
+    it is `usual`, so that worlds without what it is for have the hashes that they had before there was such a thing.
     """
 
     stored: str
@@ -44,6 +51,8 @@ class Column:
     width: int
     guarded: bool
     topology: bool
+    sparse: bool
+    usual: float
     name: str = field(default="", init=False)
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -64,17 +73,19 @@ def _array(
     width: int = 1,
     guarded: bool = False,
     topology: bool = False,
+    sparse: bool = False,
+    usual: float = 0,
 ) -> NDArray[Scalar]:
     """A line of the table, which a type checker takes for the array that an instance holds under that name."""
-    return cast(Any, Column(stored, family, dtype, unit, meaning, width, guarded, topology))
+    return cast(Any, Column(stored, family, dtype, unit, meaning, width, guarded, topology, sparse, usual))
 
 
-P, S, E, C, A, T = Family
+P, S, E, C, A, T, H = Family
 F64, I64, I32, I8, BOOL = np.float64, np.int64, np.int32, np.int8, np.bool_
 
 
 class StateArrays:
-    """Particles, springs, constraints, actuators and contacts as a struct of arrays.
+    """Particles, springs, constraints, actuators, contacts and hands as a struct of arrays.
 
     The order of the lines is that in which arrays are hashed and stored. It and the names in quotes are part of the
     replay contract: they do not follow a rename in code, and new lines go to the end of their family.
@@ -87,16 +98,21 @@ class StateArrays:
     origin = _array("origin", P, F64, "m", "where it was created, which orders the direct solver's elimination", width=2, topology=True)
     mass = _array("mass", P, F64, "kg", "its mass, pinned or not", guarded=True)
     inverse_mass = _array("inverse_mass", P, F64, "1/kg", "0 = pinned", topology=True)
-    radius = _array("radius", P, F64, "m", "of its disc")
-    gravity_scale = _array("gravity_scale", P, F64, "1", "how many times the world's gravity pulls at it")
+    radius = _array("radius", P, F64, "m", "of its disc", guarded=True)
+    gravity_scale = _array("gravity_scale", P, F64, "1", "how many times the world's gravity pulls at it", guarded=True)
     particle_active = _array("particle_active", P, BOOL, "", "whether its slot is in use", topology=True)
     slow_velocity = _array("slow_velocity", P, F64, "m/s", "the slow part of the velocity, for the direct solver", width=2)
     energy_bank = _array("energy_bank", P, F64, "J", "what a body's earlier losses still allow it, at its free particle of lowest slot; -1: to be begun anew")
-    friction = _array("friction", P, F64, "1", "of two that touch the geometric mean counts")
-    restitution = _array("restitution", P, F64, "1", "of two that touch the larger counts")
+    friction = _array("friction", P, F64, "1", "of two that touch the geometric mean counts", guarded=True)
+    restitution = _array("restitution", P, F64, "1", "of two that touch the larger counts", guarded=True)
     owner = _array("owner", P, I32, "", "the body that it belongs to, negative: its own", topology=True)
     group = _array("group", P, I64, "", "its collision group, one bit", topology=True)
     collides = _array("collides", P, I64, "", "bits of the groups that it touches, TERRAIN_GROUP for terrain, 0 = nothing", topology=True)
+    parting_reserve = _array("parting_reserve", P, F64, "J", "what a body has lost and may spend on coming apart from others, at its free particle of lowest slot", sparse=True)
+    angle = _array("angle", P, F64, "rad", "how far its disc has turned, -pi..pi; it is only shown", guarded=True, sparse=True)
+    spin = _array("spin", P, F64, "rad/s", "how fast its disc turns; 0 where springs, constraints or a pin hold it", guarded=True, sparse=True)
+    rolls = _array("rolls", P, BOOL, "", "whether its disc turns while nothing holds it", sparse=True, usual=True)
+    rolling = _array("rolling", P, F64, "1", "rolling resistance; of two that touch the larger counts", guarded=True, sparse=True, usual=ROLLING_RESISTANCE)
 
     particle_a = _array("particle_a", S, I32, "slot", "its first end", topology=True)
     particle_b = _array("particle_b", S, I32, "slot", "its second end", topology=True)
@@ -104,7 +120,7 @@ class StateArrays:
     natural_length = _array("natural_length", S, F64, "m", "the rest length it was made with, before it yielded or was driven")
     stiffness = _array("stiffness", S, F64, "1", "Cs of a tick", guarded=True)
     damping = _array("damping", S, F64, "1", "Cd of a tick", guarded=True)
-    law = _array("law", S, I8, "", "LAW_NISSEN or LAW_HOOKE", topology=True)
+    law = _array("law", S, I8, "", "LAW_NISSEN, LAW_HOOKE or LAW_HAND", topology=True)
     hooke_stiffness = _array("hooke_stiffness", S, F64, "N/m", "k of a Hooke spring", guarded=True)
     hooke_damping = _array("hooke_damping", S, F64, "N s/m", "c of a Hooke spring", guarded=True)
     material = _array("material", S, I32, "", "index into material_names, -1 = a grab's", topology=True)
@@ -112,6 +128,7 @@ class StateArrays:
     impulse = _array("impulse", S, F64, "N s", "what the iterative solver keeps for its warm start", width=2)
     tension = _array("tension", S, F64, "N s", "the impulse by which it pulled in the last step, of a whole tick where substeps are \"auto\", for the direct solver")
     edge = _array("edge", S, I8, "", "no line that others meet, one of two sides, or the outline of a solid body on its left or right", topology=True)
+    lowest_mode = _array("lowest_mode", S, F64, "1", "eigenvalue of the slowest wobble of the body whose firmness its Cs and Cd come from, 0: they are its own", guarded=True, sparse=True)
 
     constraint_kind = _array("element_kind", E, I8, "", "AREA or BEND (constraints.py)", topology=True)
     constraint_first = _array("element_first", E, I32, "corner", "where its corners begin", topology=True)
@@ -121,16 +138,22 @@ class StateArrays:
     constraint_damping = _array("element_damping", E, F64, "1", "Cd of a tick", guarded=True)
     constraint_material = _array("element_material", E, I32, "", "index into material_names, -1 = Cs and Cd of its own")
     constraint_active = _array("element_active", E, BOOL, "", "whether it holds; it goes with any of the springs along its sides", topology=True)
+    constraint_lowest_mode = _array("element_lowest_mode", E, F64, "1", "the same of a constraint", guarded=True, sparse=True)
 
     corner_particle = _array("corner_particle", C, I32, "slot", "the particle there", topology=True)
     corner_weight = _array("corner_weight", C, F64, "m^2 or 1/m^2", "square of the gradient there, at rest", guarded=True)
     corner_form = _array("corner_form", C, F64, "m", "where it stands at rest", width=2, guarded=True, topology=True)
 
     actuator_value = _array("part_value", A, F64, "1", "how it is driven, -1..1")
+    actuator_impulse = _array("part_impulse", A, F64, "N m s", "what a motor gave its wheel in the last step, of a whole tick where substeps are \"auto\"", sparse=True)
 
     contact_particle = _array("contact_particle", T, I32, "slot", "the particle of a contact of the last step")
     contact_feature = _array("contact_feature", T, I64, "", "what it touched there (contacts.py)")
     contact_impulse = _array("contact_impulse", T, F64, "N s", "along and across", width=2)
+
+    hand_strength = _array("hand_strength", H, F64, "m/s^2", "largest force over the mass of the body held; 0: it holds nothing", sparse=True)
+    hand_radius = _array("hand_radius", H, F64, "m", "what of a body is so near to the particle held bears the force with it; 0: nothing", sparse=True)
+    hand_force = _array("hand_force", H, F64, "N", "what it pulled with in the last substep", width=2, sparse=True)
     # fmt: on
 
 
@@ -138,6 +161,8 @@ class StateArrays:
 COLUMNS: tuple[Column, ...] = tuple(column for column in vars(StateArrays).values() if isinstance(column, Column))
 BY_NAME: dict[str, Column] = {column.name: column for column in COLUMNS}
 BY_STORED: dict[str, Column] = {column.stored: column for column in COLUMNS}
+# Those that no state goes without.
+ALWAYS_STORED: frozenset[str] = frozenset(column.stored for column in COLUMNS if not column.sparse)
 GUARDED: tuple[Column, ...] = tuple(column for column in COLUMNS if column.guarded)
 
 

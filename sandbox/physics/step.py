@@ -7,10 +7,12 @@ import numpy as np
 
 from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles, StrainLimits
 from sandbox.physics.breaking import yield_and_break
+from sandbox.physics.collision.triangle_clamp import clamp_world, has_triangles
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_springs
 from sandbox.physics.forces import Before, apply_forces, forces_of
 from sandbox.physics.integrate import integrate
+from sandbox.physics.joints.joint_set import joints_of, keep_joints, load_joints
 from sandbox.physics.sanitise import contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
     from sandbox.physics.collision.collide import Collisions
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
-PHYSICS_VERSION = 1
+PHYSICS_VERSION = 2
 
 
 def _collisions(world: World) -> "Collisions | None":
@@ -55,21 +57,28 @@ def step(world: World) -> None:
     # What a solver keeps is an impulse of one substep: exact, as their number is a power of two.
     scale = settings.fewest_substeps / count
     world.scale_impulses(scale)
-    collisions = world.derived(_collisions)
+    collisions, folds = world.derived(_collisions), has_triangles(world)
     if collisions is not None:
         collisions.begin(world)
-    if collisions is not None and collisions.is_free and not len(world.actuators.motors.hub):
+    joints = joints_of(world)
+    if collisions is not None and collisions.is_free and joints is None:
         collisions.step_free(forces_of(world), count, solver.follows, world.tick, h)
     else:
         for _ in range(count):
             forces = apply_forces(world, h)
+            if joints is not None:
+                load_joints(joints, world, springs, h)
             before = Before(forces.particles.before, rest_length)
             contacts = None if collisions is None else collisions.collide(forces, world.tick, h)
             solver.solve(world, Substep(h, count, springs, constraints, before), contacts)
+            if joints is not None:
+                keep_joints(joints, world, h)
             if collisions is not None:
-                collisions.finish(h)
-            else:
-                integrate(world.position, world.velocity, world.particle_active, h)
+                collisions.finish(h, not folds)
+            if folds:
+                clamp_world(world, solver.follows, h)
+            if folds or collisions is None:
+                integrate(world.position, world.velocity, world.particle_active, world.angle, world.spin, h)
             rest_length = world.rest_length
     if collisions is not None:
         collisions.end(world)
@@ -111,6 +120,7 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
             free.add_particles(["a", "b"], np.zeros((2, 2)), group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
             step(free)
     if "direct" in solvers:
+        from sandbox.physics.solvers.direct import lowest_mode
         from sandbox.physics.solvers.direct.layout import layout_of
         from sandbox.physics.solvers.linear import parallel
         from sandbox.physics.solvers.linear.dissection import dissect
@@ -119,3 +129,4 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
         dissect(np.array([0]), np.array([1]), world.position)
         system = layout_of(world).system
         parallel.warm_up(system.matrix.fronts, system.rows.change)
+        lowest_mode.warm_up()

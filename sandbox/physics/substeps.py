@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.equation import half_step
+from sandbox.physics.equation import half_step_of_network
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
 from sandbox.physics.settings import AUTO, WorldSettings
@@ -48,31 +48,36 @@ def substep_coefficients(world: World, count: int | None = None) -> Pair:
 
     count: substeps in the tick (None: the fewest that the settings give it).
     """
-    return _halved((world.stiffness, world.damping), count or world.settings.fewest_substeps)
+    springs = world.stiffness, world.damping
+    return _halved(springs, world.lowest_mode, count or world.settings.fewest_substeps)
 
 
 def constraint_coefficients(world: World, count: int | None = None) -> Pair:
     """Cs and Cd (t,) of constraints, as `substep_coefficients` gives those of springs."""
-    return _halved(world.constraint_coefficients, count or world.settings.fewest_substeps)
+    modes = world.constraint_lowest_mode
+    return _halved(world.constraint_coefficients, modes, count or world.settings.fewest_substeps)
 
 
-def _halved(coefficients: Pair, count: int) -> Pair:
+def _halved(coefficients: Pair, lowest_mode: Floats, count: int) -> Pair:
     # Of nothing there is nothing to copy, which takes a fifth of the tick of a few discs.
     if not len(coefficients[0]):
         return coefficients
     stiffness, damping = (values.copy() for values in coefficients)
-    halve(stiffness, damping, count)
+    halve(stiffness, damping, lowest_mode, count)
     return stiffness, damping
 
 
 @kernel
-def halve(stiffness: Floats, damping: Floats, substeps: int) -> None:
-    """Turn Cs and Cd (m,) of a tick into those of a substep, in place; substeps is a power of two."""
+def halve(stiffness: Floats, damping: Floats, lowest_mode: Floats, substeps: int) -> None:
+    """Turn Cs and Cd (m,) of a tick into those of a substep, in place; substeps is a power of two.
+
+    lowest_mode (m,): that of the body whose firmness they come from, 0: they are their own.
+    """
     # One exact halving of h at a time.
     for s in range(stiffness.shape[0]):
         count = 1
         while count < substeps:
-            stiffness[s], damping[s] = half_step(stiffness[s], damping[s])
+            stiffness[s], damping[s] = half_step_of_network(stiffness[s], damping[s], lowest_mode[s])
             count *= 2
 
 

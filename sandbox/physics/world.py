@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from sandbox.physics.actuators import Actuators, StrainLimits, Surface, unlimited
 from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, rest_of_area, rest_of_bend, sides_gone
 from sandbox.physics.events import Containment
+from sandbox.physics.forms import FirmBody
 from sandbox.physics.names import Names
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.state import BY_NAME, BY_STORED, COLUMNS, GUARDED, Family, Floats, Slots, StateArrays
@@ -19,18 +20,19 @@ Derived = TypeVar("Derived")
 # An energy bank that the direct solver begins anew at its next step: something outside changed the body.
 BANK_UNOPENED = -1.0
 
-LAW_NISSEN = 0
-LAW_HOOKE = 1
+# The last is of a grab's spring while it holds: it pulls at nothing, its hand does (joints/hands.py).
+LAW_NISSEN, LAW_HOOKE, LAW_HAND = range(3)
 
 # How many particles can be held at once. A grab is a pinned cursor particle and one spring, in slots reserved when
 # the world is built, so that grabbing never moves another slot.
 GRAB_COUNT = 10
 # The material index of a grab's spring: of no material, so that no slider reaches it.
 GRAB_MATERIAL = -1
-# Cs and Cd of a grab's spring, for a whole tick. (Cs + 2 Cd) = 0.8 of the proven bound 4, so that a body inside the
-# article's 1/(n+1) stays bounded while it is held; higher values grip harder and use that margin up.
-GRAB_STIFFNESS = 0.2
-GRAB_DAMPING = 0.3
+# Cs and Cd of a grab's spring, which nothing reads; hashes hold them.
+GRAB_STIFFNESS, GRAB_DAMPING = 0.2, 0.3
+# Largest force of a hand over the mass of the body that it holds [m/s^2], where nothing else is said: ten times its
+# weight. Lower lags behind the mouse, higher tears what is soft.
+HAND_STRENGTH = 100.0
 
 # The material index of a constraint with Cs and Cd of its own, which no slider reaches.
 OWN_MATERIAL = -1
@@ -73,6 +75,7 @@ class World(StateArrays):
         # Bodies that keep areas, and the constraints of each.
         self.area_names: list[str] = []
         self.area_constraints: list[range] = []
+        self.forms: list[FirmBody] = []  # bodies that may be stiff by their form
         self.grab_particle = -1
         self.grab_spring = -1
         self.terrain: Terrain = NO_TERRAIN
@@ -122,10 +125,10 @@ class World(StateArrays):
                 self.good[column.name] = values.copy()
 
     def _append(self, family: Family, count: int, **arrays: ArrayLike) -> None:
-        """Append `count` rows to the arrays of a family: (count, ...) or one value for all; 0 where none is given."""
+        """Append `count` rows to the arrays of a family: (count, ...) or one value for all; as usual where none is."""
         for column in COLUMNS:
             if column.family is family:
-                present, given = getattr(self, column.name), arrays.pop(column.name, 0)
+                present, given = getattr(self, column.name), arrays.pop(column.name, column.usual)
                 added = np.broadcast_to(np.asarray(given, present.dtype), (count, *present.shape[1:]))
                 setattr(self, column.name, np.concatenate([present, added]))
                 if column.guarded:
@@ -153,6 +156,8 @@ class World(StateArrays):
             self.impulse[:] = 0.0
             self.tension[:] = 0.0
             self.contact_impulse[:] = 0.0
+            self.actuator_impulse[:] = 0.0
+            self.hand_force[:] = 0.0
         if (settings.substeps == AUTO) != (self._settings.substeps == AUTO):
             self.energy_bank[:] = BANK_UNOPENED
             self.scale_impulses(self._settings.fewest_substeps / settings.fewest_substeps)
@@ -164,6 +169,7 @@ class World(StateArrays):
             self.impulse *= factor
             self.tension *= factor
             self.contact_impulse *= factor
+            self.actuator_impulse *= factor
 
     @property
     def has_contacts(self) -> bool:
@@ -245,6 +251,8 @@ class World(StateArrays):
                 return f"contact of {self.particle_names[self.contact_particle[slot]]}"
             case Family.CORNER:
                 return f"corner at {self.particle_names[self.corner_particle[slot]]}"
+            case Family.HAND:
+                return f"hand {slot}"
         bend = self.constraint_kind[slot] == BEND
         middle = self.corner_particle[self.constraint_first[slot] + bend]
         return f"{'bend' if bend else 'area'} at {self.particle_names[middle]}"
@@ -272,11 +280,12 @@ class World(StateArrays):
         owner: ArrayLike | None = None,
         group: ArrayLike = 0,
         collides: ArrayLike = 0,
+        **others: ArrayLike,
     ) -> int:
         """Append particles, one per name, and return the first slot.
 
         position [m] (k, 2); velocity [m/s] (k, 2) or one for all; the others (k,) or one for all; owner: None = each
-        its own.
+        its own; others: arrays of the state by name, such as spin, which springs and constraints take away again.
         A pinned particle starts at rest. Raises ValueError for a name that is taken or a mass that is not above 0.
         """
         count, first = len(names), self.particle_count
@@ -304,6 +313,7 @@ class World(StateArrays):
             owner=-1 - first - np.arange(count) if owner is None else owner,
             group=group,
             collides=collides,
+            **others | {"spin": np.where(is_pinned, 0.0, others.get("spin", 0.0))},
         )
         return first
 
@@ -340,21 +350,13 @@ class World(StateArrays):
         given = np.broadcast_to(np.asarray(np.nan if rest_length is None else rest_length, dtype=np.float64), count)
         rest = np.where(np.isnan(given), placed, given)
         self._append(
-            Family.SPRING,
-            count,
-            particle_a=a,
-            particle_b=b,
-            rest_length=rest,
-            natural_length=rest,
-            stiffness=stiffness,
-            damping=damping,
-            law=law,
-            hooke_stiffness=hooke_stiffness,
-            hooke_damping=hooke_damping,
-            material=material,
-            spring_active=True,
-            edge=edge,
-        )
+            Family.SPRING, count, particle_a=a, particle_b=b, rest_length=rest, natural_length=rest,
+            stiffness=stiffness, damping=damping, law=law, hooke_stiffness=hooke_stiffness,
+            hooke_damping=hooke_damping, material=material, spring_active=True, edge=edge,
+        )  # fmt: skip
+        # A grab's spring joins nothing yet.
+        joins = np.broadcast_to(np.asarray(material) != GRAB_MATERIAL, count)
+        self.spin[a[joins]] = self.spin[b[joins]] = 0.0
         self._disturb(a, b)
         return first
 
@@ -406,6 +408,7 @@ class World(StateArrays):
             corner_weight=weight.reshape(-1),
             corner_form=places.reshape(-1, 2),
         )
+        self.spin[slots] = 0.0
         self._disturb(slots)
         return first
 
@@ -423,7 +426,7 @@ class World(StateArrays):
         self._disturb(self.corner_particle[corners[0] : corners[1]])
 
     def set_coefficients(self, stiffness: float | None, damping: float | None, material: int | None) -> None:
-        """Set Cs, Cd or both, of one material's springs and areas or (None) of all.
+        """Set Cs, Cd or both, of one material's springs and areas or (None) of all, and end their bodies' firmness.
 
         Grabs, Hooke springs and constraints with Cs and Cd of their own keep theirs.
         """
@@ -433,6 +436,7 @@ class World(StateArrays):
                 if value is not None:
                     getattr(self, name)[chosen] = value
                 self.good[name][chosen] = getattr(self, name)[chosen]
+            self.change(f"{family}lowest_mode", 0.0, chosen)
             if not family:
                 self._disturb(self.particle_a[chosen], self.particle_b[chosen])
             else:
@@ -455,6 +459,7 @@ class World(StateArrays):
             damping=GRAB_DAMPING,
             material=GRAB_MATERIAL,
         )
+        self._append(Family.HAND, GRAB_COUNT)
         self.change("particle_active", False, slice(self.grab_particle, None))
         self.change("spring_active", False, slice(self.grab_spring, None))
 
@@ -463,12 +468,13 @@ class World(StateArrays):
         self.change("inverse_mass", 0.0, particle)
         self.velocity[particle] = 0.0
         self.slow_velocity[particle] = 0.0
+        self.spin[particle] = 0.0
         self._disturb(particle)
 
     def freeze(self, particle: int) -> None:
         """Bring a particle back to its last good values and pin it there."""
-        self.position[particle] = self.good["position"][particle]
-        self.mass[particle] = self.good["mass"][particle]
+        for name in ("position", "angle", "mass", "radius", "gravity_scale", "friction", "restitution", "rolling"):
+            getattr(self, name)[particle] = self.good[name][particle]
         self.pin(particle)
 
     def unpin(self, particle: int) -> None:
@@ -501,6 +507,7 @@ class World(StateArrays):
         """Give the world its driven parts, with the value (k,) of each, -1..1; done once, when the world is built."""
         self.actuators = driven
         self.actuator_value = np.array(values, dtype=np.float64)
+        self.actuator_impulse = np.zeros_like(self.actuator_value)
 
     def drive(self, part: int, value: float) -> None:
         """Drive a part, -1..1: a motor at that share of its speed, a hydraulic at that share of its rate."""
@@ -511,8 +518,15 @@ class World(StateArrays):
         self.rest_length[springs] = lengths
         self.good["rest_length"][springs] = lengths
 
-    def hold(self, grab: int, particle: int, target: tuple[float, float]) -> None:
-        """Join a particle to a grab's cursor at target [m] by a spring of rest length 0: a mouse joint."""
+    def hold(
+        self, grab: int, particle: int, target: tuple[float, float], strength: float = HAND_STRENGTH,
+        radius: float = 0.0,
+    ) -> None:  # fmt: skip
+        """Let a hand hold a particle and draw it to its cursor, at target [m]: a mouse joint (joints/hands.py).
+
+        strength [m/s^2]: largest force over the mass of the body held. radius [m]: what of the body is nearer to the
+        particle bears the force with it; 0: it bears all of it.
+        """
         self.reserve_grabs()
         cursor, spring = self.grab_particle + grab, self.grab_spring + grab
         self.change("particle_active", True, cursor)
@@ -521,8 +535,10 @@ class World(StateArrays):
         self.slow_velocity[cursor] = 0.0
         self.change("particle_b", particle, spring)
         self.change("spring_active", True, spring)
-        self.impulse[spring] = 0.0
-        self.tension[spring] = 0.0
+        self.change("law", LAW_HAND, spring)
+        self.hand_strength[grab], self.hand_radius[grab] = strength, radius
+        self.hand_force[grab] = 0.0
+        self.spin[particle] = 0.0
         self._disturb(particle)
 
     def is_held(self, grab: int) -> bool:
@@ -553,8 +569,9 @@ class World(StateArrays):
         self.slow_velocity[cursor] = 0.0
         self.change("particle_b", 0, spring)
         self.change("spring_active", False, spring)
-        self.impulse[spring] = 0.0
-        self.tension[spring] = 0.0
+        self.change("law", LAW_NISSEN, spring)
+        self.hand_strength[grab] = self.hand_radius[grab] = 0.0
+        self.hand_force[grab] = 0.0
 
     def name_slots(self, particles: Sequence[str], springs: Sequence[str]) -> None:
         """Name the slots that a restored state brought along, from the first one without a name on."""

@@ -3,14 +3,17 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from sandbox.physics.query import nearest_particle
+from sandbox.physics.query import grip_radius, nearest_particle
 from sandbox.physics.snapshot import Snapshot
-from sandbox.physics.world import GRAB_COUNT
+from sandbox.physics.world import GRAB_COUNT, HAND_STRENGTH
 from sandbox.session.commands import Grab, MoveGrab, Release
 from sandbox.tools.tool import NOTHING, Point, PointerEvent, Response, Submission
 
 # A press that moves less than this part of the pick radius is a click. Larger: short drags turn into clicks.
 CLICK_SHARE = 0.35
+# How strong a hand can be: its largest force over the mass of the body that it holds [m/s^2]. Gentle carries three
+# times a body's weight and spares what tears, strong moves what stands under a load.
+STRENGTHS = {"gentle": 30.0, "normal": HAND_STRENGTH, "strong": 300.0}
 
 
 @dataclass
@@ -24,11 +27,13 @@ class Hold:
 class DragTool:
     """Drag particles; a Shift+click keeps hold after the release, a click on a held particle or cancel lets go.
 
-    holds: hand number (0..9) to what it holds. A drag from grab to release is one gesture.
+    holds: hand number (0..9) to what it holds. A drag from grab to release is one gesture. strength: of STRENGTHS, that
+    of the next hold.
     """
 
-    def __init__(self, new_gesture: Callable[[], int]) -> None:
+    def __init__(self, new_gesture: Callable[[], int], strength: str = "normal") -> None:
         self.holds: dict[int, Hold] = {}
+        self.strength = strength
         self._new_gesture = new_gesture
         self._dragged: int | None = None
         self._pressed_at: Point = (0.0, 0.0)
@@ -84,7 +89,8 @@ class DragTool:
         hold = Hold(particle, self._new_gesture())
         self.holds[hand] = hold
         self._dragged = hand
-        return Response((Submission(Grab(hand, particle, event.position), hold.gesture),))
+        grab = Grab(hand, particle, event.position, STRENGTHS[self.strength], grip_radius(snapshot, particle))
+        return Response((Submission(grab, hold.gesture),))
 
     def _move(self, event: PointerEvent) -> Response:
         assert self._dragged is not None

@@ -1,8 +1,10 @@
 """Keys of a level drive its parts while they are held."""
 
+import numpy as np
 import pygame
 import pytest
 
+from sandbox.session.commands import CutSprings, SetSolver
 from tests.app.conftest import small_level
 
 WHEEL = {"type": "wheel", "id": "w", "position": [2, 2], "radius": 1, "thickness": 0.3, "segments": 6, "pin": ["hub"]}
@@ -54,3 +56,22 @@ def test_undo_takes_a_whole_press_back(driving):
     driving.key(pygame.K_z, pygame.KMOD_CTRL)
     driving.frames(2)
     assert not driving.world.velocity.any()
+
+
+def told(driving):
+    """What the status line says."""
+    return [text for text, _ in driving.app.play.status(60.0, 1.0)]
+
+
+def test_the_status_line_says_what_a_motor_gives_and_what_the_single_pass_cannot_carry(driving):
+    driving.post(pygame.KEYDOWN, key=pygame.K_d, mod=0, unicode="d")
+    driving.frames(3)
+    assert any(text.startswith("w ") and text.endswith(" of 50 N m") for text in told(driving))
+    assert any("cannot carry wheels" in text for text in told(driving))
+    driving.playback.submit(SetSolver(solver="direct"))
+    driving.frames(3)
+    assert not any("cannot carry wheels" in text for text in told(driving))
+    spokes = np.flatnonzero(driving.world.particle_a == driving.world.particle_slot("w.hub"))
+    driving.playback.submit(CutSprings(tuple(spokes.tolist())))
+    driving.frames(3)
+    assert "w pushes against nothing" in told(driving)

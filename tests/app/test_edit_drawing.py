@@ -2,16 +2,19 @@
 
 import math
 
+import numpy as np
 import pygame
 import pytest
 
 from sandbox.editor.tools.drawing_options import described
+from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.bridge import BridgeDef
 from sandbox.level.kinds.girder import GirderDef
 from sandbox.level.kinds.jelly import JellyDef
 from sandbox.level.kinds.rope import RopeDef
 from sandbox.level.kinds.web import WebDef
 from sandbox.level.kinds.wheel import WheelDef
+from sandbox.physics.collision.filter import NO_EDGE
 
 CTRL = pygame.KMOD_CTRL
 
@@ -59,6 +62,28 @@ def test_a_polygon_is_drawn_by_clicks_and_closed_by_enter(edit):
     driver.key(pygame.K_RETURN)
     (body,) = driver.editor.document.level.bodies
     assert len(body.shape.polygon) == 3
+
+
+@pytest.mark.parametrize("key", [pygame.K_o, pygame.K_y])
+def test_round_things_drawn_by_mouse_have_particles_on_their_outline_and_undo_takes_them_back(edit, key):
+    driver = edit()
+    driver.key(key)
+    if key == pygame.K_o:
+        driver.drag((0, 1), (0.5, 1), (1, 1))
+    else:
+        driver.drag(*stroke(0.0))
+    (body,) = driver.editor.document.level.bodies
+    assert body.mesh == "fitted"
+    form = expansion(body).form
+    border = np.unique(expansion(body).pairs[expansion(body).edges != NO_EDGE])
+    middle, radius = ((0, 1), 1.0) if key == pygame.K_o else ((0.13, 1.21), 0.95)
+    away = np.hypot(*(form[border] - middle).T)
+    assert np.abs(away - radius).max() < 0.08
+    assert len(border) >= 20
+    driver.key(pygame.K_z, CTRL)
+    assert driver.editor.document.level.bodies == ()
+    driver.key(pygame.K_y, CTRL)
+    assert driver.editor.document.level.bodies == (body,)
 
 
 def stroke(overlap):

@@ -116,10 +116,10 @@ def test_dropping_a_level_opens_it_for_editing_while_editing_and_plays_it_while_
     assert driver.app.mode == "edit" and driver.editor.level_file.path == path
 
 
-def test_a_wheel_that_is_drawn_on_ground_and_given_a_motor_is_driven_by_its_key(edit):
+def test_a_wheel_that_is_drawn_and_given_a_motor_is_driven_by_its_key(edit):
     driver = edit()
     driver.key(pygame.K_d)
-    for corner in ((-4, -2), (4, -2), (4, -1), (-4, -1)):
+    for corner in ((-4, -2), (4, -2), (4, -1.5), (-4, -1.5)):
         driver.click_at(*corner)
     driver.key(pygame.K_RETURN)
     driver.key(pygame.K_q)

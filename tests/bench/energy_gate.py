@@ -137,14 +137,14 @@ def energies(graphs: Graphs, count: int, *, start: bool = False) -> Floats:
     mass = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
     constant = SOLVERS[world.settings.solver].spring_constant(world.stiffness, world.damping, mass, h)
     if world.settings.substeps == AUTO:
-        constant = extremes(world.stiffness, world.damping)[start] * mass / (h * h)
+        constant = extremes(world.stiffness, world.damping, world.lowest_mode)[start] * mass / (h * h)
     separation = world.position[world.particle_b] - world.position[world.particle_a]
     error = np.sqrt(np.sum(separation**2, axis=1)) - world.rest_length
     value, effective, _ = measure_constraints(world)
     stiffness, damping = world.constraint_coefficients
     of_constraints = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, effective, h)
     if world.settings.substeps == AUTO:
-        of_constraints = extremes(stiffness, damping)[start] * effective / (h * h)
+        of_constraints = extremes(stiffness, damping, world.constraint_lowest_mode)[start] * effective / (h * h)
     moving = np.where(world.inverse_mass > 0.0, world.mass * np.sum(world.velocity**2, axis=1), 0.0)
     return 0.5 * (
         np.bincount(graphs.of_particle, moving, count)

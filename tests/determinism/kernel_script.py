@@ -110,9 +110,14 @@ def busy_world(solver: str, substeps: int):
     world.add_constraints(AREA, [(k, k + 1, k + side) for k in cells], stiffness=0.05, damping=0.07)
     world.add_constraints(AREA, [(0, 1, 2, 8, 14, 13, 12, 6)], inflation=1.3, stiffness=0.04, damping=0.06)
     world.add_constraints(BEND, [(k, k + 1, k + 2) for k in range(18, 22)], stiffness=0.05, damping=0.02, material=-1)
+    world.change("lowest_mode", 0.07, slice(20, 60))
+    world.change("constraint_lowest_mode", 0.07, slice(2, None))
     world.limits = StrainLimits(*np.array([[0.6], [0.5], [0.15], [0.2]]))
-    muscles = Muscles(np.array([3, 30]), np.array([0.3, 0.2]), np.array([7, 12]), np.array([0.0, 0.3]))
-    hydraulics = Hydraulics(np.array([40]), np.array([0.2]), np.array([0.9]), np.array([1.7]), np.array([1]))
+    limited = np.array([np.inf, 15.0])
+    muscles = Muscles(np.array([3, 30]), np.array([0.3, 0.2]), np.array([7, 12]), np.array([0.0, 0.3]), limited)
+    hydraulics = Hydraulics(
+        np.array([40]), np.array([0.2]), np.array([0.9]), np.array([1.7]), np.array([1]), np.array([25.0])
+    )
     rim = np.array([8, 9, 13, 15, 19, 20, 21])
     motors = Motors(np.array([14]), np.array([5.0]), np.array([90.0]), np.array([0]), np.array([0, 7]), rim)
     world.fit(Actuators(("motor", "jack"), muscles, hydraulics, motors), [0.7, 1.0])
@@ -121,9 +126,13 @@ def busy_world(solver: str, substeps: int):
 
 
 def touching_world(solver: str, substeps: int):
-    """Discs that fall on a mesh whose springs are edges, between terrain and walls."""
+    """Discs that fall on a mesh whose springs are edges, between terrain and walls; jellies that are in each other.
+
+    The discs turn, but for one; two of them are shot at each other.
+    """
     from sandbox.physics.collision.filter import ALL_GROUPS, LINE
     from sandbox.physics.terrain import Chain, make_terrain
+    from tests.support.contact_scenes import add_jelly
 
     world = busy_world(solver, substeps)
     world.change("edge", LINE)
@@ -132,8 +141,16 @@ def touching_world(solver: str, substeps: int):
     names, points = [f"disc.{k}" for k in range(6)], [(0.3 + 0.41 * k, 2.9 + 0.2 * (k % 2)) for k in range(6)]
     world.add_particles(
         names, points, radius=0.15, friction=0.4, restitution=[0.6, 0.0] * 3, group=2, collides=ALL_GROUPS,
-        velocity=(1.5, -9.0), gravity_scale=2.0,
+        velocity=(1.5, -9.0), gravity_scale=2.0, spin=[3.0 * k for k in range(6)], rolls=[k != 2 for k in range(6)],
+        rolling=[0.01 * k for k in range(6)],
     )  # fmt: skip
+    world.friction[:36] = 0.3
+    world.add_particles(
+        ["shot.0", "shot.1", "shot.2"], [(-1.5, 8.0), (4.5, 8.05), (1.2, 7.6)], radius=[0.15, 0.1, 0.2], friction=0.5,
+        restitution=0.8, group=2, collides=ALL_GROUPS, velocity=[(40.0, 0.0), (-40.0, 0.0), (0.0, 20.0)],
+    )  # fmt: skip
+    for place in ((3.0, 5.0), (3.12, 5.05), (1.0, 1.0)):
+        add_jelly(world, place, size=(0.2, 0.2), angle=0.3, stiffness=0.2, damping=0.4)
     bowl = Chain([(-1.0, -0.6), (3.5, -1.5), (3.5, -0.2), (1.2, -0.9)], "solid")
     line = Chain([(-0.5, 2.0), (-0.6, 0.5)], restitution=1.0)
     world.terrain = make_terrain([bowl, line, Chain([(-2.0, -2.0), (5.0, -2.0), (5.0, 9.0), (-2.0, 9.0)], "hollow")])
@@ -157,9 +174,11 @@ def hashes(advance, solver: str, substeps: int, ticks: int):
     from sandbox.physics.snapshot import state_hash
 
     world = busy_world(solver, substeps)
+    # What is one body is gripped by a hand that reaches far.
+    world.change("owner", 1, slice(36))
     for tick in range(ticks):
         if tick % 10 == 2:
-            world.hold(tick // 10 % 3, 7 + tick % 20, (1.0, 1.5))
+            world.hold(tick // 10 % 3, 7 + tick % 20, (1.0, 1.5), 60.0 + tick, 0.9 * (tick // 10 % 2))
         if tick % 10 > 2:
             world.move_grab(tick // 10 % 3, (1.0 + 0.07 * (tick % 10), 1.5 - 0.031 * tick))
         if tick % 10 == 9:
@@ -171,10 +190,27 @@ def hashes(advance, solver: str, substeps: int, ticks: int):
             world.cut([20, 21])
         if tick == 27:
             world.drive(1, -0.3)
+        if tick == 29:
+            world.velocity[14] = (-70.0, -50.0)  # over its triangles, were those not held
         if tick == 24:
             world.set_coefficients(0.11, 0.05, None)
         advance(world)
         yield state_hash(world)
+
+
+def modes():
+    """The lowest modes of some forms, as text that shows every bit."""
+    import numpy as np
+
+    from sandbox.physics.firmness import lowest_mode_of
+    from sandbox.physics.forms import StiffForm
+
+    generator = np.random.default_rng(1)
+    for count in (4, 9, 30):
+        points, mass = generator.uniform(0.0, 3.0, (count, 2)), generator.uniform(0.1, 9.0, count)
+        pairs = np.array([(a, b) for a in range(count) for b in range(a) if a - b < 4])
+        corners = np.array([(k, k + 1, k + 2) for k in range(count - 2)])
+        yield lowest_mode_of(StiffForm(points, mass, pairs, corners, corners[::2])).hex()
 
 
 def blow_up(advance, solver: str, ticks: int):
@@ -199,4 +235,5 @@ if __name__ == "__main__":
     print("compiled" if COMPILED else "interpreted")
     print("\n".join(hashes(advance, chosen, substeps if substeps == "auto" else int(substeps), int(ticks))))
     print("\n".join(touches(advance, chosen, substeps if substeps == "auto" else int(substeps), int(ticks))))
+    print("\n".join(modes()))
     print("\n".join(blow_up(advance, chosen, 2 * int(ticks))))

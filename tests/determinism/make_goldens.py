@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from sandbox.level.format.files import parse_level, shipped_levels
+from sandbox.physics.firmness import lowest_mode_of
 from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers import SOLVERS
@@ -151,6 +152,15 @@ def inflate(person: Person, ticks: int) -> Iterator[None]:
             yield
 
 
+def firm(person: Person, ticks: int) -> Iterator[None]:
+    """Make a body of the level softer than it was, by its firmness, and then firmer."""
+    names = [body.name for body in person.session.world.forms if lowest_mode_of(body.shape) > 0.0]
+    for hz, ratio in ((1.5, 0.2), (4.0, 0.5)) if names else ():
+        person.do_once(type="set_firmness", body=names[-1], hz=hz, ratio=ratio)
+        for _ in range(ticks // 3):
+            yield
+
+
 def cut_and_regret(person: Person, ticks: int) -> Iterator[None]:
     """Cut springs, take it back, cut them again after all; cut another for good."""
     world = person.session.world
@@ -265,7 +275,7 @@ SCENES = (
     (second_solver, drag, drag_with_another_hand),
     (pin, weather, drive),
     (third_solver, drag, inflate),
-    (shipped_solver, add, drag),
+    (shipped_solver, add, drag, firm),
     (third_solver, other_substeps, slide, drive, drag),
     (second_solver, pin, weather, drag_with_another_hand),
     (shipped_solver, drag, drive, drag_with_another_hand),

@@ -43,7 +43,8 @@ def test_goldens_hold_every_kind_of_change_and_each_level_all_solvers():
         assert solvers >= {"single_pass", "iterative", "direct"}, name
     assert types >= {
         "grab", "move_grab", "release", "pin", "unpin", "cut_springs", "add_particle", "add_spring",
-        "set_coefficients", "set_gravity", "set_air", "set_drive", "set_inflation", "set_solver", "undo", "redo",
+        "set_coefficients", "set_firmness", "set_gravity", "set_air", "set_drive", "set_inflation", "set_solver",
+        "undo", "redo",
     }  # fmt: skip
 
 

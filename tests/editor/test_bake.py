@@ -10,7 +10,12 @@ from sandbox.editor.edits.placing import add_particle
 from sandbox.editor.items import Item
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import NissenMaterial, ParticleDef
+from sandbox.level.format.parse import parse_level
+from sandbox.level.kinds.body_def import FirmnessDef
+from sandbox.physics.firmness import Reach, set_firmness
+from sandbox.physics.forms import Firmness
 from sandbox.physics.step import step
+from tests.support.wobbles import firm_level
 from tests.support.zoo import zoo
 
 
@@ -79,6 +84,21 @@ def test_coefficients_are_kept_by_material():
     assert level.materials["default"] == NissenMaterial(stiffness=0.5, damping=0.25)
     assert level.materials["wire"] == document.level.materials["wire"]
     assert keep_coefficients(document, build_world(document.level)) is document
+
+
+def test_firmness_is_kept_by_body_and_ends_where_cs_or_cd_ended_it():
+    jelly = {"shape": {"box": [1, 1]}, "spacing": 0.25}
+    document = Document(parse_level(firm_level({"sag": 0.1}, floor=True, **jelly), "firm"))
+    world = build_world(document.level)
+    assert keep_coefficients(document, world) is document
+    set_firmness(world, 0, *Reach.of(world.forms[0].shape, (0.0, -9.81), 60).coefficients(Firmness(hz=4.0, ratio=0.4)))
+    level = keep_coefficients(document, world).level
+    assert level.bodies[0].firmness == FirmnessDef(hz=4.0, ratio=0.4)
+    assert build_world(level).stiffness == pytest.approx(world.stiffness, rel=1e-5)
+    world.set_coefficients(0.75, 0.8, 0)
+    level = keep_coefficients(document, world).level
+    assert level.bodies[0].firmness is None
+    assert level.materials["default"] == NissenMaterial(stiffness=0.75, damping=0.8)
 
 
 def test_cuts_are_kept_and_loose_springs_that_were_cut_are_gone():

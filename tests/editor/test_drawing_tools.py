@@ -260,6 +260,22 @@ def test_a_jelly_is_eight_cells_across_and_a_long_one_no_finer_than_it_can_be(em
     assert last_body(drawn("box", empty, (0.0, 0.0), (4.0, 2.0), cells=4)).spacing == 0.5
 
 
+def test_circles_and_polygons_are_fitted_finer_where_they_are_thin_and_left_to_a_grid_where_that_takes_too_many(empty):
+    circle = last_body(drawn("circle", empty, (0.0, 0.0), (1.0, 0.0)))
+    assert (circle.mesh, circle.spacing) == ("fitted", 0.25)
+    assert last_body(drawn("circle", empty, (0.0, 0.0), (1.0, 0.0), cells=4)).spacing == 0.5
+    found = []
+    for corners in ([(0, 0), (4, 0), (0, 3)], [(0, 0), (4, 3), (4, 4)], [(0, 0), (9, 8.99), (9, 9)]):
+        drawing = TOOLS["polygon"].drawing(reach=0.001)
+        for corner in corners:
+            click(drawing, empty, (float(corner[0]), float(corner[1])))
+        drawing.finish()
+        found.append(last_body(drawing.done(empty)))
+    assert [body.mesh for body in found] == ["fitted", "fitted", "grid"]
+    assert found[0].spacing == 0.375 and found[1].spacing <= 0.5
+    assert len(make_scene(empty_level().model_copy(update={"bodies": (found[1],)})).position) < 1_500
+
+
 def test_a_box_without_height_is_refused(empty):
     drawing = TOOLS["box"].drawing(reach=REACH)
     drawing.down(at(empty, (0.0, 0.0)))

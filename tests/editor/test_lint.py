@@ -139,6 +139,28 @@ def test_a_motor_whose_hub_is_fixed_to_nothing_is_found():
     assert not any("motor" in text for each in held for text in texts(each))
 
 
+def test_a_motor_that_turns_nothing_that_cannot_climb_or_that_no_solver_carries_is_found():
+    def cart(torque, solver="direct", cut=()):
+        wheel = WheelDef(
+            type="wheel", id="w", position=(0.0, 1.0), radius=1.0, thickness=0.3, segments=6, particle_mass=1.0,
+            motor=MotorDef(speed=1.0, torque=torque), cut=cut,
+        )  # fmt: skip
+        load = ParticleDef(id="load", position=(0.0, 0.5), mass=7.0)
+        springs = (SpringDef(a="w.hub", b="load"),)
+        ground = TerrainDef(id="ground", polyline=((-9.0, -0.1), (9.0, -0.1)))
+        return level_of(
+            bodies=(wheel,), particles=(load,), springs=springs, terrain=(ground,), settings=Settings(solver=solver)
+        )
+
+    # 20 kg over the corner of a wheel of six: 20 g sin(30 degrees) = 98.1 N m.
+    assert not any("motor" in text or "torque" in text for text in texts(cart(99.0)))
+    (weak,) = [text for text in texts(cart(97.0)) if "torque" in text]
+    assert "97 N m in all, does not lift 20 kg" in weak and "takes 98.1 N m" in weak
+    assert any("turns nothing" in text for text in texts(cart(99.0, cut=tuple(range(6)))))
+    assert any("single pass solver cannot carry wheels" in text for text in texts(cart(99.0, "single_pass")))
+    assert not any("cannot carry" in text for text in texts(cart(99.0, "iterative")))
+
+
 def test_particles_that_lie_on_each_other_are_found_until_they_are_joined():
     level = level_of(bodies=(rope(), rope("other", 0.01, start=4.01)))
     (finding,) = found(level)
@@ -358,6 +380,18 @@ def test_discs_that_overlap_are_found_where_they_touch_and_nothing_joins_them():
         replaced(level, particles=(pair[0], replaced(pair[1], position=(0.8, 0.0)))),
     )
     assert [text for each in others for text in texts(each)] == []
+
+
+def test_discs_that_turn_in_vain_or_shake_heaps_are_found():
+    ball = ParticleDef(id="a", radius=0.5, spin=3.0, pinned=True)
+    level = level_of(particles=(ball,), contacts=ContactsDef(), settings=Settings(gravity=(0.0, 0.0)))
+    assert ["its spin of 3 rad/s is lost" in text for text in texts(level)] == [True]
+    for changes in ({"spin": 0.0}, {"pinned": False}):
+        assert texts(replaced(level, particles=(replaced(ball, **changes),))) == []
+    rough = ParticleDef(id="a", radius=0.5, rolling=0.06)
+    assert ["rolling resistance of 0.06" in text for text in texts(replaced(level, particles=(rough,)))] == [True]
+    for changes in ({"rolling": 0.05}, {"rolls": False}):
+        assert texts(replaced(level, particles=(replaced(rough, **changes),))) == []
 
 
 def test_bodies_that_cross_are_pushed_apart_where_they_touch_each_other():

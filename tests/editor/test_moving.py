@@ -13,9 +13,10 @@ from sandbox.editor.items import Item, items_of
 from sandbox.editor.scene import make_scene
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import ParticleDef
+from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.bridge import BridgeDef
 from sandbox.level.kinds.girder import GirderDef
-from sandbox.level.kinds.jelly import CircleShape, JellyDef
+from sandbox.level.kinds.jelly import CircleShape, JellyDef, PolygonShape
 from sandbox.level.kinds.rope import RopeDef
 from tests.support.zoo import zoo
 
@@ -257,3 +258,28 @@ def test_distributing_makes_gaps_even_and_leaves_the_outermost():
     ]
     with pytest.raises(EditError, match="three things"):
         distribute(row((0.0, 0.0), (1.0, 0.0)), "x")
+
+
+@pytest.mark.parametrize("change", ["mirror", "turn", "stretch"])
+def test_the_outline_holes_and_pins_of_a_fitted_jelly_go_where_a_motion_takes_them(change):
+    hole = ((-0.4, -0.3), (0.3, -0.3), (0.3, 0.2))
+    body = JellyDef(
+        type="jelly", id="j", mesh="fitted", shape=PolygonShape(polygon=((-2, -1), (1, -1), (2, 1), (-1, 1.5))),
+        holes=(hole,), spacing=0.25, position=(3.0, 1.0), pinned=(0, 7),
+    )  # fmt: skip
+    before = add_body(Document(empty_level()), body)
+    after, where = {
+        "mirror": lambda: (mirror(before, "x", (0.0, 0.0)), np.array([[-1.0, 0.0], [0.0, 1.0]])),
+        "turn": lambda: (rotate(before, math.pi / 2.0, (0.0, 0.0)), np.array([[0.0, 1.0], [-1.0, 0.0]])),
+        "stretch": lambda: (scale(before, 1.5, 1.0, (0.0, 0.0)), np.diag([1.5, 1.0])),
+    }[change]()
+    old, new = (expansion(document.level.bodies[0]) for document in (before, after))
+    assert len(new.body.pinned) == 2
+    for corner in (*body.shape.polygon, *hole):
+        image = (np.array(corner) + body.position) @ where
+        assert np.hypot(*(new.form - image).T).min() < 1e-9
+    # Where they were, but for a part of the spacing, which another mesh may need.
+    pinned = old.form[list(body.pinned)] @ where
+    for place in pinned:
+        assert np.hypot(*(new.form[list(new.body.pinned)] - place).T).min() < 0.2
+    assert new.mass.sum() == pytest.approx(old.mass.sum(), rel=0.3)

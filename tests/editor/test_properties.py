@@ -1,6 +1,7 @@
 """What can be changed of a selection, a level and its checks: fields, values, typed text."""
 
 import json
+import math
 
 import pytest
 from hypothesis import given, settings
@@ -16,7 +17,8 @@ from sandbox.editor.panel.typed import line_text, list_text, number_text, read_l
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import parse_level
 from sandbox.level.format.model import Level, ParticleDef, Settings, SpringDef
-from sandbox.level.kinds.bodies import KINDS
+from sandbox.level.kinds.bodies import KINDS, expansion
+from sandbox.level.kinds.body_def import BodyDef
 
 LEVEL = {
     "format": "spring-sandbox/level",
@@ -81,7 +83,8 @@ def test_nothing_selected_has_no_properties(level):
 def test_every_field_of_every_kind_of_item_can_be_reached(level):
     for item, part in zip(items_of(level), definitions(level), strict=True):
         shown = {name.partition(".")[0] for name in fields(Document(level, frozenset([item])))}
-        assert type(part).model_fields.keys() - shown - {"type", "polyline", "polygon"} <= {"extras"}, item
+        hidden = {"extras"} if not isinstance(part, BodyDef) or expansion(part).may_be_stiff else {"extras", "firmness"}
+        assert type(part).model_fields.keys() - shown - {"type", "polyline", "polygon"} <= hidden, item
     assert "extras" in fields(chosen(level, "mesh"))
     assert {type(part) for part in level.bodies} == set(KINDS.values())
 
@@ -120,7 +123,8 @@ def test_several_kinds_have_the_fields_that_they_share(level):
     # Ends that are held are not the rim that is.
     assert "pin" not in fields(chosen(level, "rope", "web"))
     everything = set(fields(Document(level, frozenset(items_of(level)))))
-    assert everything == {"group", "extras", "drive", "motor", "hydraulic", "bending"}
+    firmness = {"firmness", "firmness.sag", "firmness.hz", "firmness.ratio"}
+    assert everything == {"group", "extras", "drive", "motor", "hydraulic", "bending", *firmness}
 
 
 def test_one_axis_of_many_is_set_and_the_other_stays(level):
@@ -204,6 +208,27 @@ def test_the_outline_of_a_jelly_changes_its_kind_and_its_size(level):
     assert body(changed(document, "shape.box", "3", axis=1), "box").shape.box == (2.0, 3.0)
 
 
+def test_another_mesh_weighs_as_much_and_pins_go_to_the_nearest(level):
+    grid = chosen(level, "disc")
+    grid = fields(grid)["pinned"].set(grid, [0])
+    fitted = fields(grid)["mesh"].set(grid, "fitted")
+    before, after = (expansion(body(document, "disc")) for document in (grid, fitted))
+    assert after.form_count[0] != before.form_count[0]
+    assert after.mass.sum() == pytest.approx(before.mass.sum())
+    assert math.dist(before.form[0], after.form[body(fitted, "disc").pinned[0]]) < 0.3
+    with_hole = changed(fitted, "holes", "[[-0.2, -0.2], [0.2, -0.2], [0, 0.2]]")
+    assert body(with_hole, "disc").holes == (((-0.2, -0.2), (0.2, -0.2), (0, 0.2)),)
+    shown = fields(with_hole)["holes"]
+    assert shown.typed(shown.texts[0]) == [[[-0.2, -0.2], [0.2, -0.2], [0, 0.2]]]
+    assert shown.typed(f"[{shown.texts[0]}]") == shown.typed(shown.texts[0])
+    assert body(changed(with_hole, "holes", ""), "disc").holes == ()
+    back = fields(with_hole)["mesh"].set(with_hole, "grid")
+    assert body(back, "disc").holes == ()
+    assert expansion(body(back, "disc")).mass.sum() == pytest.approx(before.mass.sum())
+    with pytest.raises(EditError, match="does not lie inside the outline"):
+        changed(with_hole, "holes", "[[5, 5], [6, 5], [5, 6]]")
+
+
 def test_outlines_of_several_kinds_are_mixed_and_can_be_made_alike(level):
     document = chosen(level, "box", "disc", "kite")
     assert fields(document)["shape"].value is MIXED
@@ -262,7 +287,7 @@ def test_a_hydraulic_begins_as_long_as_its_spring(level):
     document = Document(level, frozenset([Item("spring", 0)]))
     driven = fields(document)["hydraulic"].set(document, True)
     assert driven.level.springs[0].hydraulic.__dict__ == {
-        "key": None, "reverse_key": None, "shortest": 3.0, "longest": 4.5, "rate": 1.5,
+        "key": None, "reverse_key": None, "shortest": 3.0, "longest": 4.5, "rate": 1.5, "force": None,
     }  # fmt: skip
     with pytest.raises(EditError, match="is above longest"):
         changed(driven, "hydraulic.shortest", "5")

@@ -12,6 +12,7 @@ from sandbox.level.format.canonical import level_text
 from sandbox.level.format.limits import MOTOR_LIMIT
 from sandbox.level.format.parse import parse_level
 from sandbox.level.format.salvage import salvage
+from sandbox.physics.joints.limited_springs import force_limits
 
 WHEEL = {"type": "wheel", "id": "w", "radius": 1, "thickness": 0.3, "segments": 6}
 ROPE = {"type": "rope", "id": "r", "start": [0, 5], "end": [4, 5], "segments": 4}
@@ -149,6 +150,18 @@ FAULTS = [
         {"bodies": [{**WHEEL, "id": f"w{k}", "motor": {"speed": 1, "torque": 1}} for k in range(MOTOR_LIMIT + 1)]},
         f"bodies.{MOTOR_LIMIT}.motor: brings the level above {MOTOR_LIMIT} motors; take some out",
     ),
+    (
+        {"bodies": [{**ROPE, "drive": {"amplitude": 0.2, "period": 9, "force": 0}}]},
+        "bodies.0.drive.force: 0 is not above 0",
+    ),
+    (
+        {**ENDS, "springs": [{"a": "p", "b": "q", "hydraulic": {**HYDRAULIC, "force": "10 N"}}]},
+        'springs.0.hydraulic.force: "10 N" is text, not a number',
+    ),
+    (
+        {"bodies": [{**ROPE, "segments": 101, "drive": {"amplitude": 0.2, "period": 9, "force": 5}}]},
+        "bodies.0.drive.force: brings the level above 100 springs of limited force; take some out",
+    ),
 ]  # fmt: skip
 
 
@@ -169,3 +182,11 @@ def test_a_level_of_before_reads_as_it_did():
     assert not world.limits.exist and world.actuators.names == ()
     assert np.all(world.gravity_scale[: world.grab_particle] == 1.0) and world.settings.drag == 0.0
     assert "drive" not in level_text(plain)
+
+
+def test_the_force_of_a_muscle_is_that_of_each_of_its_springs_and_of_a_hydraulic_its_own():
+    drive = {"amplitude": 0.2, "period": 9, "force": 5}
+    springs = [{"a": "p", "b": "q", "hydraulic": {**HYDRAULIC, "force": 70}}, {"a": "p", "b": "q"}]
+    built = build_world(level(bodies=[{**ROPE, "drive": drive}], **ENDS, springs=springs))
+    limits = force_limits(built)[: built.grab_spring]
+    assert limits.tolist() == [5.0] * (len(limits) - 2) + [70.0, np.inf]

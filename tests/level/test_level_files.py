@@ -305,6 +305,7 @@ def levels(draw):
         "extras": extras,
         "gravity_scale": st.floats(-1e3, 1e3),
     }
+    turning = {"rolls": st.booleans(), "rolling": coefficients, "angle": st.floats(-9, 9), "spin": st.floats(-9, 9)}
     settings = some(
         {},
         gravity=points,
@@ -319,7 +320,9 @@ def levels(draw):
     return draw(some(head, description=texts, tags=st.lists(texts, max_size=3), extras=extras)) | {
         "materials": materials,
         "bodies": [draw(changed_bodies(name, draw(chosen))) for name in names[3:]],
-        "particles": [draw(some({"id": st.just(name)}, pinned=st.booleans(), **optional)) for name in names[:3]],
+        "particles": [
+            draw(some({"id": st.just(name)}, pinned=st.booleans(), **turning, **optional)) for name in names[:3]
+        ],
         "springs": [
             {"a": names[0], "b": names[1], "material": draw(chosen)} | draw(some({}, drive=wave)),
             {"a": names[1], "b": names[2], "hydraulic": draw(jack)},

@@ -49,6 +49,11 @@ def test_a_level_without_terrain_walls_or_contacts_has_none(path):
         ({"particles": [{"id": "b", "collides": ["balls"]}]}, 'particles.0.collides.0: there is no group "balls"'),
         ({"particles": [{"id": "b", "collides": 3}]}, "particles.0.collides: 3: use true, false or a list"),
         ({"particles": [{"id": "b", "collision_group": "terrain"}]}, "is the group of terrain and walls"),
+        ({"particles": [{"id": "b", "rolls": 1}]}, "particles.0.rolls: 1 is not true or false"),
+        ({"particles": [{"id": "b", "rolling": 1.5}]}, "particles.0.rolling: 1.5 is above the limit 1"),
+        ({"particles": [{"id": "b", "rolling": -0.1}]}, "particles.0.rolling: -0.1 is below the limit 0"),
+        ({"particles": [{"id": "b", "spin": 1e5}]}, "particles.0.spin: 100000.0 is above the limit 10000"),
+        ({"particles": [{"id": "b", "angle": "up"}]}, "particles.0.angle"),
     ],
 )
 def test_each_fault_is_one_clear_line(parts, told):
@@ -110,3 +115,26 @@ def test_the_outline_of_a_jelly_is_closed_and_has_it_on_its_left(shape):
 def test_every_spring_of_a_rope_is_a_line():
     body = level(bodies=[{"type": "rope", "id": "r", "start": [0, 0], "end": [1, 0], "segments": 5}]).bodies[0]
     assert np.all(expansion(body).edges == LINE)
+
+
+def test_loose_particles_roll_unless_they_say_otherwise_and_start_as_they_are_turned():
+    rope = {"type": "rope", "id": "r", "start": [5, 0], "end": [6, 0], "segments": 1}
+    balls = [
+        {"id": "a"},
+        {"id": "b", "rolls": False, "rolling": 0.02, "angle": 1.0, "spin": -3.0},
+        {"id": "c", "pinned": True, "spin": 2.0},
+        {"id": "d", "spin": 2.0},
+    ]
+    world = build_world(level(bodies=[rope], particles=balls, springs=[{"a": "d", "b": "r.0"}]))
+    assert world.rolls[:6].tolist() == [True, True, True, False, True, True]
+    assert world.rolling[:6].tolist() == [1e-3, 1e-3, 1e-3, 0.02, 1e-3, 1e-3]
+    assert world.angle[:6].tolist() == [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]
+    assert world.spin[:6].tolist() == [0.0, 0.0, 0.0, -3.0, 0.0, 0.0]
+
+
+def test_discs_that_are_welded_roll_where_both_do():
+    balls = [{"id": name, "rolls": name != "c", "rolling": 0.01 * k} for k, name in enumerate("abc")]
+    world = build_world(level(particles=balls, welds=[["a", "b"]]))
+    assert world.rolls[:2].tolist() == [True, False] and world.rolling[:2].tolist() == [0.01, 0.02]
+    world = build_world(level(particles=balls, welds=[["a", "c"]]))
+    assert world.rolls[:2].tolist() == [False, True] and world.rolling[:2].tolist() == [0.02, 0.01]

@@ -142,7 +142,7 @@ def held(world):
     """Kinetic and spring energy [J] as the direct solver's test measures them, and what is saved in its banks."""
     h = substep_time(world.settings)
     if world.settings.substeps == AUTO:
-        constant = reduced_masses(world) * extremes(world.stiffness, world.damping)[0] / (h * h)
+        constant = reduced_masses(world) * extremes(world.stiffness, world.damping, world.lowest_mode)[0] / (h * h)
     else:
         constant = implicit_spring_constant(*substep_coefficients(world), reduced_masses(world), h)
     error = (spring_lengths(world) - world.rest_length) * world.spring_active

@@ -1,9 +1,8 @@
-"""Gravity scale, wind, drag and motors."""
+"""Gravity scale, wind and drag."""
 
 import numpy as np
 import pytest
 
-from sandbox.physics.actuators import Actuators, Motors
 from sandbox.physics.energy import gravity_energy, kinetic_energy, total_energy
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
@@ -68,77 +67,3 @@ def test_drag_without_wind_only_takes_energy_out():
         assert total_energy(world) <= energy * (1.0 + 1e-12)
         energy = max(total_energy(world), 0.95 * energy)
     assert kinetic_energy(world) < 1e-3
-
-
-def wheel(solver, *, mount=True, pinned=(), speed=6.0, torque=20.0):
-    """A wheel of six spokes about slot 0, motor and all; mount: slots 7 and 8 are joined to its hub."""
-    angles = np.arange(6) * np.pi / 3.0
-    points = [(0, 0), *np.stack([np.cos(angles), np.sin(angles)], axis=1).tolist(), (0.3, -2.0), (-0.3, -2.0)]
-    springs = [(0, k) for k in range(1, 7)] + [(k, k % 6 + 1) for k in range(1, 7)]
-    springs += [(0, 7), (0, 8), (7, 8)] if mount else []
-    stiffness, damping = SOFT[solver]
-    world = network(
-        points, springs, masses=[1, 1, 1, 1, 1, 1, 1, 3, 5], pinned=pinned, solver=solver, stiffness=stiffness,
-        damping=damping,
-    )  # fmt: skip
-    rim = np.arange(1, 7)
-    motors = Motors(
-        np.array([0]), np.array([speed]), np.array([torque]), np.array([0]), np.array([0, 6]), rim
-    )  # fmt: skip
-    world.fit(Actuators(("wheel",), motors=motors), [1.0])
-    return world
-
-
-def spin(world, group):
-    """Angular velocity [rad/s] of a group of slots about its centre of mass."""
-    mass = world.mass[group, None]
-    r = world.position[group] - (mass * world.position[group]).sum(0) / mass.sum()
-    v = world.velocity[group] - (mass * world.velocity[group]).sum(0) / mass.sum()
-    return float((mass[:, 0] * (r[:, 0] * v[:, 1] - r[:, 1] * v[:, 0])).sum() / (mass * r * r).sum())
-
-
-@pytest.mark.parametrize("solver", list(SOLVERS))
-def test_a_motor_turns_wheel_and_mount_against_each_other_and_keeps_momentum(solver):
-    world = wheel(solver)
-    for _ in range(180):
-        step(world)
-        assert np.abs(world.mass @ world.velocity).max() <= 1e-11
-    if solver != "direct":  # whose springs act along directions ahead, which keeps no angular momentum to the bit
-        x, v = world.position, world.velocity
-        assert abs(np.sum(world.mass * (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]))) <= 1e-11
-    assert spin(world, np.arange(1, 7)) > 0.5
-    assert spin(world, np.array([0, 7, 8])) < -0.1
-
-
-@pytest.mark.parametrize("solver", list(SOLVERS))
-def test_a_motor_on_a_pinned_hub_reaches_its_speed_and_stops_driving_at_value_0(solver):
-    world = wheel(solver, mount=False, pinned=(0,), torque=1e6)
-    run(world, 120)
-    assert spin(world, np.arange(1, 7)) == pytest.approx(6.0, rel=0.05)
-    world.drive(0, -0.5)
-    run(world, 120)
-    assert spin(world, np.arange(1, 7)) == pytest.approx(-3.0, rel=0.05)
-    world.drive(0, 0.0)
-    world.settings = type(world.settings)(gravity=(0.0, 0.0), solver=solver, drag=2.0)
-    run(world, 300)
-    assert abs(spin(world, np.arange(1, 7))) < 0.1
-
-
-def test_a_motor_gives_no_more_than_its_torque():
-    world = wheel("direct", mount=False, pinned=(0,), speed=1e3, torque=3.0)
-    run(world, 30)
-    # 3 N m on 6 kg m^2 for half a second.
-    assert spin(world, np.arange(1, 7)) == pytest.approx(0.25, rel=0.01)
-
-
-def test_a_motor_without_anything_to_push_against_does_nothing():
-    world = wheel("iterative", mount=False)
-    run(world, 60)
-    assert np.abs(world.velocity).max() == 0.0
-
-
-def test_a_wheel_of_which_a_particle_is_pinned_turns_its_mount_instead():
-    world = wheel("iterative", pinned=(2,), torque=0.5)
-    step(world)
-    assert np.all(world.velocity[2] == 0.0)
-    assert spin(world, np.array([0, 7, 8])) < 0.0

@@ -10,6 +10,8 @@ from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
 from sandbox.physics.world import World
+from tests.support.contact_scenes import FLOOR, add_discs, add_jelly
+from tests.support.contact_scenes import world as contact_world
 
 IMPOSSIBLE = (math.nan, math.inf, -math.inf, 1e308, -1e308)
 
@@ -111,6 +113,20 @@ def test_a_mistuned_hooke_spring_freezes_its_own_particle_and_nothing_else(solve
     assert np.array_equal(world.position[:30], quiet.position[:30])
 
 
+@pytest.mark.parametrize("name", ["angle", "spin"])
+@pytest.mark.parametrize("value", IMPOSSIBLE)
+def test_how_a_disc_turns_is_guarded(name, value):
+    world = contact_world(FLOOR)
+    add_discs(world, [(0.0, 0.1), (1.0, 0.1)], velocity=(1.0, 0.0))
+    _steps(world, 10)
+    turned = float(world.angle[0])
+    getattr(world, name)[0] = value
+    _steps(world, 3)
+    assert {(hit.array, hit.name) for hit in world.contained} == {(name, "disc.0")}
+    assert (world.angle[0], world.spin[0], world.inverse_mass[0]) == (turned, 0.0, 0.0)
+    assert world.spin[1] < 0.0 and np.isfinite(world.angle).all()
+
+
 def test_hands_and_new_particles_are_guarded_too():
     world = _net("single_pass")
     step(world)
@@ -122,3 +138,27 @@ def test_hands_and_new_particles_are_guarded_too():
     assert {hit.name for hit in world.contained} == {"late", "+hand.0"}
     assert world.position[added].tolist() == [5.0, 5.0]
     assert sys.float_info.max > np.abs(world.position).max() < 1e6
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("name", ["radius", "friction", "restitution", "gravity_scale", "rolling", "contact_impulse"])
+@pytest.mark.parametrize("value", [math.nan, math.inf, -1e308])
+def test_what_levels_set_of_a_surface_is_guarded_and_only_what_was_hit_freezes(solver, name, value):
+    w = contact_world(FLOOR, solver=solver)
+    jelly = add_jelly(w, (0.0, 0.2), size=(0.3, 0.3), stiffness=0.05, damping=0.1)
+    disc = add_discs(w, [(2.0, 0.1)])
+    _steps(w, 5)
+    before = getattr(w, name).copy()
+    slot = int(np.flatnonzero(w.contact_particle == disc)[0]) if name == "contact_impulse" else disc
+    getattr(w, name)[slot] = value
+    step(w)
+    assert [hit.array for hit in w.contained] == [name]
+    assert w.contained[0].name.endswith(w.particle_names[disc])
+    assert np.isfinite(getattr(w, name)).all()
+    frozen = w.inverse_mass == 0.0
+    assert np.flatnonzero(frozen).tolist() == ([] if name == "contact_impulse" else [disc])
+    if name != "contact_impulse":
+        assert np.array_equal(getattr(w, name), before)
+    _steps(w, 30)
+    assert len(w.contained) == 1
+    assert np.abs(w.velocity[jelly]).max() < 1.0

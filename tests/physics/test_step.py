@@ -113,7 +113,7 @@ def test_substep_coefficients_are_as_many_halvings_as_substeps_need():
     world = network([(0, 0), (1, 0)], [(0, 1)], stiffness=0.3, damping=0.6, substeps=8)
     expected = [world.stiffness.copy(), world.damping.copy()]
     for _ in range(3):
-        halve(*expected, 2)
+        halve(*expected, np.zeros(1), 2)
     assert np.array_equal(substep_coefficients(world), expected)
     assert substep_time(world.settings) == 1.0 / 480.0
     assert (world.stiffness[0], world.damping[0]) == (0.3, 0.6)

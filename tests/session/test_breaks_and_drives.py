@@ -179,7 +179,8 @@ def test_a_state_with_another_number_of_parts_is_refused(tmp_path):
     advance(session, 60)
     session.stop_recording()
     replay = read_replay(tmp_path / "run.replay")
-    replay.states[60].arrays["part_value"] = replay.states[60].arrays["mass"]
+    for name in ("part_value", "part_impulse"):
+        replay.states[60].arrays[name] = replay.states[60].arrays["mass"]
     with pytest.raises(ValueError, match="where the level has 2 driven parts"):
         replay.state(60)
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.state import BY_STORED, Family, family_of
+from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands import AddParticle, AddSpring, CutSprings, Grab, MoveGrab, Pin, Release
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
@@ -309,5 +310,5 @@ def test_an_abandoned_recording_verifies_as_far_as_it_goes(tmp_path):
 def test_the_header_holds_the_level_and_its_digest(recorded):
     head = json.loads(recorded.read_text().splitlines()[0])
     assert head["format"] == "spring-sandbox/replay"
-    assert (head["version"], head["physics_version"]) == (1, 1)
+    assert (head["version"], head["physics_version"]) == (1, PHYSICS_VERSION)
     assert head["level"]["name"] == "Test rope"

@@ -107,8 +107,8 @@ def energy(of: World) -> float:
     if of.settings.substeps == AUTO:
         h = substep_time(of.settings)
         error, (value, mass, _) = spring_lengths(of) - of.rest_length, measure_constraints(of)
-        constant, _ = extremes(of.stiffness, of.damping)
-        constants, _ = extremes(of.constraint_stiffness, of.constraint_damping)
+        constant, _ = extremes(of.stiffness, of.damping, of.lowest_mode)
+        constants, _ = extremes(of.constraint_stiffness, of.constraint_damping, of.constraint_lowest_mode)
         springs = float(np.sum(constant * reduced_masses(of) * error**2) + np.sum(constants * mass * value**2)) / (
             h * h
         )

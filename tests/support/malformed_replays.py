@@ -116,6 +116,8 @@ def bad_commands() -> Iterator[tuple[str, Any]]:
     yield "above the limit", {"type": "set_coefficients", "stiffness": 1.5}
     yield "unknown material", {"type": "set_coefficients", "stiffness": 0.5, "material": "gold"}
     yield "a point of three", {"type": "grab", "grab": 0, "particle": "rope.3", "target": [1, 2, 3]}
+    yield "a hand of no strength", {"type": "grab", "grab": 0, "particle": "rope.3", "target": [1, 2], "strength": 0}
+    yield "an endless grip", {"type": "grab", "grab": 0, "particle": "rope.3", "target": [1, 2], "radius": 1e300}
     yield "hand 99", {"type": "grab", "grab": 99, "particle": "rope.3", "target": [1, 2]}
     yield "far away", {"type": "grab", "grab": 0, "particle": "rope.3", "target": [1e300, 0]}
     yield "springs is text", {"type": "cut_springs", "springs": "rope:3"}

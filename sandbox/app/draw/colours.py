@@ -32,11 +32,8 @@ MATERIAL_COLOURS: tuple[Colour, ...] = (
     (255, 128, 116), (176, 196, 116), (128, 178, 178),
 )  # fmt: skip
 
-# Springs by signed strain: compressed, at rest, stretched, torn at.
-COMPRESSED: Colour = (77, 155, 255)
+# Springs of the material that needs no definition.
 RELAXED: Colour = (150, 161, 180)
-STRETCHED: Colour = (255, 170, 70)
-OVERSTRETCHED: Colour = (255, 82, 82)
 
 
 def material_colours(names: Iterable[str]) -> dict[str, Colour]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Box, Camera, bounds
 from sandbox.app.draw.renderer import Renderer
+from sandbox.app.draw.themes import THEMES
 from sandbox.level.format.model import Level
 from sandbox.physics.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
@@ -37,13 +38,20 @@ def _points(snapshot: Snapshot) -> NDArray[np.float64]:
 
 
 def draw_picture(
-    level: Level, snapshot: Snapshot, size: tuple[int, int], box: Box | None = None, scale: float | None = None
-) -> pygame.Surface:
-    """A picture of a state of a level; size [pixels]; box [m], None = the level's view; scale: thickness of lines."""
+    level: Level, snapshot: Snapshot, size: tuple[int, int], box: Box | None = None, scale: float | None = None,
+    theme: str | None = None, lattice: bool = False,
+) -> pygame.Surface:  # fmt: skip
+    """A picture of a state of a level; size [pixels]; box [m], None = the level's view; scale: thickness of lines.
+
+    theme: its name, None = the level's; lattice: whether springs are shown by their strain.
+    """
     surface = pygame.Surface(size, 0, 32)
     camera = Camera(viewport=(0, 0, *size))
     camera.fit(view_of(level, snapshot) if box is None else box)
-    renderer = Renderer(max(0.6, min(size[0] / 1280, size[1] / 720)) if scale is None else scale)
+    renderer = Renderer(max(0.6, min(size[0] / 1280, size[1] / 720)) if scale is None else scale, level)
+    if theme is not None:
+        renderer.theme = THEMES[theme]
+    renderer.lattice = lattice
     renderer.draw(surface, camera, snapshot, snapshot, 1.0)
     return surface
 

@@ -6,49 +6,75 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.app.draw.areas import draw_areas
-from sandbox.app.draw.camera import Camera, grid_spacing
-from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, GRID, GRID_AXIS, PARTICLE, PINNED, packed
+from sandbox.app.draw.backdrop import GRID_STEP as GRID_STEP
+from sandbox.app.draw.backdrop import Backdrop
+from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import ACCENT, DANGER, WARNING, packed
+from sandbox.app.draw.effects import Effects
 from sandbox.app.draw.lines import Canvas
-from sandbox.app.draw.strain_colours import strain_colours
-from sandbox.app.draw.terrain import draw_terrain
+from sandbox.app.draw.raster.painter import MarkList, Painter
+from sandbox.app.draw.strain_colours import strain_place, strain_tones
+from sandbox.app.draw.textures import Tiles
+from sandbox.app.draw.themes import DARK, THEMES, Theme
+from sandbox.app.draw.things.cast import Cast, cast_of
+from sandbox.app.draw.things.ensemble import Ensemble
+from sandbox.app.draw.things.frame import Frame, strain_of
 from sandbox.app.play.playback import interpolated
 from sandbox.app.profile import Profile
-from sandbox.level.format.limits import BODY_RADIUS
+from sandbox.level.format.model import Level
+from sandbox.physics.joints.pulls import Pull
 from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.snapshot import Snapshot
 
-# Sizes [pixels at scale 1]: springs, the smallest particle that can still be seen, pins, and the grid's wish.
+# Sizes [pixels at scale 1]: springs, the smallest particle that can still be seen, and pins; what the editor draws.
 SPRING_WIDTH = 2.2
 SMALLEST_RADIUS = 2.6
 PIN_RADIUS = 5.0
-GRID_STEP = 64.0
 # A dense mesh seen from afar would be a solid block with full-width springs: they go down to this width.
 THINNEST_SPRING = 0.9
 # Width of springs and radius of particles, at most, as a part of the distance between particles.
 DENSITY = 0.14
 CROWDED = 0.19
-# Particles of bodies this many times heavier than most are drawn larger.
-HEAVY = 8.0
+# Where shadows fall [pixels at scale 1].
+SHADOW = (4.0, 8.0)
+# The lattice: half widths at rest and strained [pixels at scale 1]; more springs are lines of a pixel, with steps.
+LATTICE_HALF, LATTICE_MORE, MOST_SMOOTH = 0.65, 1.0, 6_000
+NODE = 2.2
 
 
 @dataclass
 class Overlay:
-    """What a person is doing, drawn over the world: the particle under the pointer, a cut [m], a cursor [m]."""
+    """What a person is doing, drawn over the world: the particle under the pointer, a cut [m], a cursor [m], pulls."""
 
     hovered: int | None = None
     trail: list[tuple[float, float]] = field(default_factory=list)
     cursor: tuple[float, float] | None = None
+    pulls: list[Pull] = field(default_factory=list)
 
 
 class Renderer:
-    """Draws on a surface; scale: pixels per layout unit; non_finite: particles the last drawing had to leave out."""
+    """Draws on a surface; scale: pixels per layout unit; level: what it shows, None = springs and discs alone.
 
-    def __init__(self, scale: float = 1.0) -> None:
+    lattice: whether springs are shown by their strain, in front of the things that they are. non_finite: particles the
+    last drawing had to leave out. compiled: whether kernels may be used.
+    """
+
+    def __init__(self, scale: float = 1.0, level: Level | None = None) -> None:
         self.scale = scale
         self.compiled = True
+        self.lattice = False
         self.non_finite = 0
-        self._neighbours: tuple[tuple[int, int, int], NDArray[np.float64]] | None = None
+        self.level = level
+        self.theme: Theme = DARK
+        if level is not None and level.look is not None and level.look.theme is not None:
+            self.theme = THEMES[level.look.theme]
+        self.effects = Effects()
+        self._painter = Painter()
+        self._backdrop = Backdrop()
+        self._cast: Cast | None = None
+        self._ensemble: Ensemble | None = None
+        self._key: tuple[NDArray[np.bool_], ...] = ()
+        self._tiles: tuple[str, Tiles] | None = None
 
     def draw(
         self,
@@ -62,112 +88,103 @@ class Renderer:
     ) -> None:
         """Draw the world at a part alpha (0..1) of the way from one snapshot to the next."""
         profile, overlay = profile or Profile(), overlay or Overlay()
-        canvas = Canvas(surface, self.compiled)
+        painter = self._painter
+        painter.compiled = self.compiled
+        painter.begin(surface)
         with np.errstate(over="ignore", invalid="ignore"):
             position = interpolated(previous, current, alpha)
             pixels = camera.project(position)
-            surface.fill(BACKGROUND)
-            self._draw_grid(canvas, camera)
-            draw_terrain(canvas, camera, current.terrain, self.scale)
-            with profile.part("springs"):
-                draw_areas(canvas, camera, current, pixels)
-                self._draw_springs(canvas, camera, current, position, pixels)
-            with profile.part("particles"):
-                self._draw_particles(canvas, camera, current, pixels)
-                self._draw_hands(canvas, current, pixels, overlay)
-        self._draw_overlay(canvas, camera, pixels, overlay)
+            behind = (1.0 - alpha) / current.settings.tick_rate
+            frame = Frame(
+                current, pixels, current.angle - behind * current.spin, strain_of(current, position), camera.zoom,
+                self.scale, self.theme, self._tiles_now(), (current.tick + alpha) / current.settings.tick_rate,
+            )  # fmt: skip
+            particles, springs = shown_particles(current), shown_springs(current)
+            self.non_finite = int(np.count_nonzero(particles & ~np.isfinite(pixels).all(axis=1)))
+            with profile.part("stage"):
+                self._backdrop.draw(
+                    painter, camera, current.terrain, self.level, self.theme, frame.tiles, self.scale
+                )  # fmt: skip
+            with profile.part("things"):
+                if self.level is not None:
+                    self._draw_things(self.level, frame, particles, springs, camera)
+                    self.effects.see(current, frame.seconds, self._cast.strikes if self._cast is not None else None)
+            with profile.part("marks"):
+                if self.lattice or self.level is None:
+                    self._draw_lattice(frame, particles, springs)
+                self._draw_held(frame, current, camera, overlay)
+        self._draw_overlay(Canvas(surface, self.compiled), camera, pixels, overlay)
 
-    def _draw_grid(self, canvas: Canvas, camera: Camera) -> None:
-        left, top, width, height = camera.viewport
-        spacing = grid_spacing(camera.zoom, GRID_STEP * self.scale)
-        (x0, y1), (x1, y0) = camera.to_world((left, top)), camera.to_world((left + width, top + height))
-        for low, high, vertical in ((x0, x1, True), (y0, y1, False)):
-            for index in range(int(np.ceil(low / spacing)), int(np.floor(high / spacing)) + 1):
-                colour = GRID_AXIS if index == 0 else GRID
-                at = camera.to_pixels((index * spacing, index * spacing))
-                if vertical:
-                    canvas.surface.fill(colour, (round(at[0]), top, 1, height))
-                else:
-                    canvas.surface.fill(colour, (left, round(at[1]), width, 1))
+    def _tiles_now(self) -> Tiles:
+        if self._tiles is None or self._tiles[0] != self.theme.name:
+            self._tiles = self.theme.name, Tiles(self.theme)
+        return self._tiles[1]
 
-    def _draw_springs(
-        self,
-        canvas: Canvas,
-        camera: Camera,
-        current: Snapshot,
-        position: NDArray[np.float64],
-        pixels: NDArray[np.float64],
+    def _draw_things(
+        self, level: Level, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_], camera: Camera
     ) -> None:
-        shown = np.flatnonzero(shown_springs(current))
-        a, b = current.particle_a[shown], current.particle_b[shown]
-        separation = position[b] - position[a]
-        length = np.sqrt(np.sum(separation * separation, axis=1))
-        rest = current.rest_length[shown]
-        strain = np.divide(length - rest, rest, out=np.zeros_like(length), where=rest > 0.0)
-        ends = np.concatenate([pixels[a], pixels[b]], axis=1)
-        canvas.lines(np.ascontiguousarray(ends), strain_colours(strain), self._spring_width(camera, rest))
+        painter = self._painter
+        ensemble = self._ensemble_of(level, frame, particles, springs)
+        ensemble.soft.trace(painter, frame)
+        thrown, shapes = ensemble.thrown(frame)
+        offset = (SHADOW[0] * self.scale, SHADOW[1] * self.scale)
+        painter.shadows(thrown, shapes, offset, packed(self.theme.shadow), self.theme.shadow_strength)
+        if not self.lattice:
+            dust = MarkList()
+            self.effects.mark_dust(dust, camera, self.theme, self.scale)
+            painter.marks(dust, frame.tiles.array)
+        ensemble.draw(painter, frame, self.lattice)
 
-    def _spring_width(self, camera: Camera, rest: NDArray[np.float64]) -> float:
-        spacing = float(np.median(rest)) * camera.zoom if len(rest) else np.inf
-        return float(np.clip(spacing * DENSITY, THINNEST_SPRING * self.scale, SPRING_WIDTH * self.scale))
+    def _ensemble_of(
+        self, level: Level, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_]
+    ) -> Ensemble:
+        held = frame.state.inverse_mass == 0.0
+        key = particles, springs, held
+        is_same = len(self._key) == 3 and all(map(np.array_equal, key, self._key))
+        if self._ensemble is None or not is_same:
+            self._cast = self._cast or cast_of(level)
+            self._ensemble, self._key = Ensemble(self._cast, frame.state, particles, springs), key
+        return self._ensemble
 
-    def _draw_particles(self, canvas: Canvas, camera: Camera, current: Snapshot, pixels: NDArray[np.float64]) -> None:
-        shown = shown_particles(current)
-        finite = np.isfinite(pixels).all(axis=1)
-        self.non_finite = int(np.count_nonzero(shown & ~finite))
-        visible = np.flatnonzero(shown & finite)
-        pinned = current.inverse_mass[visible] == 0.0
-        radii = current.radius[visible] * camera.zoom * self._weight(current, visible)
-        # Particles of the usual radius shrink with the mesh that they belong to, or a cloth is a field of dots.
-        crowded = self._nearest_neighbours(current)[visible] * camera.zoom * CROWDED
-        usual = radii <= BODY_RADIUS * camera.zoom
-        radii = np.where(usual, np.minimum(np.maximum(radii, SMALLEST_RADIUS * self.scale), crowded), radii)
-        radii = np.maximum(radii, THINNEST_SPRING * self.scale)
-        centres = np.ascontiguousarray(pixels[visible])
-        rim = np.minimum(1.4 * self.scale, crowded * 0.4)
-        canvas.discs(centres, radii + rim, np.full(len(visible), packed(BACKGROUND)))
-        canvas.discs(centres, radii, np.where(pinned, packed(PINNED), packed(PARTICLE)))
-        self._draw_pins(canvas, centres[pinned], radii[pinned])
+    def _draw_lattice(self, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_]) -> None:
+        state, chosen = frame.state, np.flatnonzero(springs)
+        pairs = np.stack([state.particle_a[chosen], state.particle_b[chosen]], axis=1).astype(np.int64)
+        strain = frame.strain[chosen]
+        place = np.abs(strain_place(strain))
+        # What is strained most lies on top.
+        order = np.argsort(place, kind="stable")
+        ends, tones = frame.ends(pairs)[order], strain_tones(strain, self.theme.strain)[order]
+        if len(chosen) > MOST_SMOOTH:
+            Canvas(self._painter.surface, self.compiled).plain_lines(np.ascontiguousarray(ends), tones)
+        else:
+            layer = MarkList()
+            layer.strokes(ends, (LATTICE_HALF + LATTICE_MORE * place[order]) * self.scale, tones)
+            if self.level is None:
+                self._mark_nodes(layer, frame, particles)
+            self._painter.marks(layer, frame.tiles.array)
 
-    def _nearest_neighbours(self, current: Snapshot) -> NDArray[np.float64]:
-        """Rest length [m] of the shortest spring of every particle (n,); infinite where it has none."""
-        key = (len(current.mass), len(current.rest_length), int(np.count_nonzero(current.spring_active)))
-        if self._neighbours is None or self._neighbours[0] != key:
-            nearest = np.full(len(current.mass), np.inf)
-            working = current.spring_active & (current.rest_length > 0.0)
-            for ends in (current.particle_a, current.particle_b):
-                np.minimum.at(nearest, ends[working], current.rest_length[working])
-            self._neighbours = key, nearest
-        return self._neighbours[1]
+    def _mark_nodes(self, layer: MarkList, frame: Frame, particles: NDArray[np.bool_]) -> None:
+        at = frame.at[particles]
+        radius = np.maximum(frame.state.radius[particles] * frame.zoom, NODE * self.scale)
+        layer.discs(at, radius, packed(self.theme.strain[1]))
 
-    @staticmethod
-    def _weight(current: Snapshot, visible: NDArray[np.int64]) -> NDArray[np.float64]:
-        """How much larger than usual particles of bodies are drawn (n,): the heavy end of a rope looks heavy."""
-        mass, usual = current.mass[visible], current.radius[visible] == BODY_RADIUS
-        if not usual.any():
-            return np.ones(len(visible))
-        ratio = mass / np.median(mass[usual])
-        return np.where(usual & (ratio >= HEAVY), ratio**0.25, 1.0)
-
-    def _draw_pins(self, canvas: Canvas, centres: NDArray[np.float64], radii: NDArray[np.float64]) -> None:
-        size = np.maximum(radii + 2.0 * self.scale, PIN_RADIUS * self.scale)
-        for extra, colour in ((0.0, PINNED), (-1.8 * self.scale, BACKGROUND), (-3.4 * self.scale, PINNED)):
-            canvas.discs(centres, np.maximum(size + extra, 0.5), np.full(len(centres), packed(colour)))
-
-    def _draw_hands(self, canvas: Canvas, current: Snapshot, pixels: NDArray[np.float64], overlay: Overlay) -> None:
-        """A line from every held particle to the cursor that pulls it."""
-        if current.grab_spring < 0:
-            return
-        hands = slice(current.grab_spring, current.grab_spring + 10)
-        active = np.flatnonzero(current.spring_active[hands]) + current.grab_spring
-        a, b = current.particle_a[active], current.particle_b[active]
-        ends = np.ascontiguousarray(np.concatenate([pixels[a], pixels[b]], axis=1))
-        canvas.lines(ends, np.full(len(active), packed(ACCENT)), 1.4 * self.scale)
-        for radius, colour in ((8.0, ACCENT), (6.4, BACKGROUND), (4.2, ACCENT)):
-            count = len(active)
-            canvas.discs(
-                np.ascontiguousarray(pixels[b]), np.full(count, radius * self.scale), np.full(count, packed(colour))
-            )
+    def _draw_held(self, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
+        """Pins, sparks, and a line from what is held to the cursor, of another colour where it pulls its most."""
+        layer = MarkList()
+        if not self.lattice:
+            self.effects.mark_sparks(layer, camera, self.scale)
+        if self._ensemble is not None:
+            self._ensemble.balls.mark_pins(layer, frame)
+        if current.grab_spring >= 0:
+            hands = slice(current.grab_spring, current.grab_spring + 10)
+            active = np.flatnonzero(current.spring_active[hands]) + current.grab_spring
+            pairs = np.stack([current.particle_a[active], current.particle_b[active]], axis=1).astype(np.int64)
+            strained = np.isin(pairs[:, 0], [pull.cursor for pull in overlay.pulls if pull.at_limit])
+            colours = np.where(strained, packed(WARNING), packed(self.theme.accent))
+            layer.strokes(frame.ends(pairs), 0.8 * self.scale, colours)
+            for radius, colour in ((8.0, colours), (6.4, packed(self.theme.card)), (4.2, colours)):
+                layer.discs(frame.at[pairs[:, 1]], radius * self.scale, colour)
+        self._painter.marks(layer, frame.tiles.array)
 
     def _draw_overlay(self, canvas: Canvas, camera: Camera, pixels: NDArray[np.float64], overlay: Overlay) -> None:
         surface, scale = canvas.surface, self.scale

@@ -1,25 +1,28 @@
 """Panel: Cs and Cd with their Hz reading and proven limit, gravity, and the solver with its settings."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pygame
 
 from sandbox.app.draw.colours import WARNING
+from sandbox.app.play.firmness_rows import ALL_BODIES, FirmnessRows
 from sandbox.app.play.playback import Playback
-from sandbox.app.widgets.fields import Field
+from sandbox.app.widgets.fields import Field, typed_number
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.sliders import LogSlider
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.limits import GRAVITY_LIMIT, SUBSTEPS
 from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
+from sandbox.physics.firmness import WORDS
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.stability import CoefficientLimits, coefficient_limits
 from sandbox.physics.world import LAW_HOOKE
 from sandbox.session.commands import Command, SetCoefficients, SetGravity, SetSolver
+from sandbox.tools.drag import STRENGTHS
 
 # Sizes in layout units.
 PANEL_WIDTH = 292.0
@@ -27,8 +30,11 @@ MARGIN = 18.0
 INSIDE = PANEL_WIDTH - 2 * MARGIN
 ROW = 28.0
 ENTRY_WIDTH = 82.0
+HAND_LABEL = 46.0
 # Height that everything takes; in a lower window rows and gaps shrink by the same part.
-FULL_HEIGHT = 636.0
+FULL_HEIGHT = 670.0
+# What is added where there are bodies whose firmness can be set.
+FIRMNESS_HEIGHT = 121.0
 # Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
 LOOK_EVERY = 15
 ALL_MATERIALS = "All springs"
@@ -37,10 +43,13 @@ SOLVER_LABELS = {"single_pass": "Single pass", "iterative": "Iterative", "direct
 
 
 class Panel:
-    """The panel at the right of a window; `say` shows a line to the person."""
+    """The panel at the right of a window; `say` shows a line to the person, choose_strength: of the hand."""
 
-    def __init__(self, ui: Ui, playback: Playback, say: Callable[[str], None], top: float, height: float) -> None:
-        self._ui, self.playback, self._say = ui, playback, say
+    def __init__(
+        self, ui: Ui, playback: Playback, say: Callable[[str], None], choose_strength: Callable[[str], None],
+        top: float, height: float,
+    ) -> None:  # fmt: skip
+        self._ui, self.playback, self._say, self._choose_strength = ui, playback, say, choose_strength
         self.material: int | None = None
         self._gesture: int | None = None
         self._limits: CoefficientLimits | None = None
@@ -48,9 +57,13 @@ class Panel:
         self._refreshes = -1
         self._refreshed_at: tuple[object, ...] = ()
         self._y = 0.0
-        self._tight = min(1.0, height / FULL_HEIGHT)
+        self.firmness = FirmnessRows(playback, say)
+        full = FULL_HEIGHT + (FIRMNESS_HEIGHT if self.firmness.bodies else 0.0)
+        self._tight = min(1.0, height / full)
         self.back = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
         self._build_springs()
+        if self.firmness.bodies:
+            self._build_firmness()
         self._build_world()
         self.refresh()
 
@@ -73,15 +86,15 @@ class Panel:
         self._ui.label(self._place(MARGIN, 0, INSIDE - ENTRY_WIDTH - 8, ROW), text, self.back)
         return self._ui.field(self._row(ROW, 4, MARGIN + INSIDE - ENTRY_WIDTH, ENTRY_WIDTH), "", commit, self.back, 24)
 
-    def _pair(self, first: str, second: str, commits: tuple[Callable[[str], bool], ...]) -> tuple[Field, Field]:
-        """Two labelled lines to type into, side by side."""
-        half, fields = (INSIDE - 12) / 2, []
-        for index, (text, commit) in enumerate(zip((first, second), commits, strict=True)):
-            x = MARGIN + index * (half + 12)
-            self._ui.label(self._place(x, 0, half, 18), text, self.back, "@muted")
-            fields.append(self._ui.field(self._place(x, 19, half, ROW), "", commit, self.back, 24))
+    def _beside(self, titles: Sequence[str], commits: Sequence[Callable[[str], bool]]) -> list[Field]:
+        """Labelled lines to type into, side by side."""
+        width, fields = (INSIDE - 12 * (len(titles) - 1)) / len(titles), []
+        for index, (text, commit) in enumerate(zip(titles, commits, strict=True)):
+            x = MARGIN + index * (width + 12)
+            self._ui.label(self._place(x, 0, width, 18), text, self.back, "@muted")
+            fields.append(self._ui.field(self._place(x, 19, width, ROW), "", commit, self.back, 24))
         self._row(19 + ROW, 6)
-        return fields[0], fields[1]
+        return fields
 
     def _build_springs(self) -> None:
         ui = self._ui
@@ -94,8 +107,8 @@ class Panel:
         self.damping_limit = self._limit_label()
         self.damping_field = self._named_field("Cd  damping", lambda text: self._type_coefficient(text, False))
         self.damping = self._slider(lambda value: self._slide(value, False))
-        self.frequency, self.ratio = self._pair(
-            "Frequency [Hz]", "Damping ratio", (self._type_frequency, self._type_ratio)
+        self.frequency, self.ratio = self._beside(
+            ("Frequency [Hz]", "Damping ratio"), (self._type_frequency, self._type_ratio)
         )
         self.note = TextBlock(ui, self._row(45, 8), "", self.back)
 
@@ -107,12 +120,26 @@ class Panel:
     def _slider(self, changed: Callable[[float], None]) -> LogSlider:
         return LogSlider(self._ui, self._row(28, 2, MARGIN - 8, INSIDE + 16), changed, self._end_gesture, self.back)
 
+    def _build_firmness(self) -> None:
+        ui, rows = self._ui, self.firmness
+        ui.label(self._place(MARGIN, 0, 84, ROW), "Firmness", self.back)
+        names = [ALL_BODIES, *rows.bodies]
+        rows.menu = ui.menu(self._row(ROW, 5, MARGIN + 84, INSIDE - 84), names, ALL_BODIES, rows.choose_body, self.back)
+        tips = {
+            word: f"Sags by {100 * sag:g} % of its height" if sag else "Gives way to nothing"
+            for word, sag in WORDS.items()
+        }
+        words = [(word, word.capitalize(), tips[word]) for word in WORDS]
+        rows.words = ui.choice(self._row(ROW - 2, 6), words, rows.choose_word, self.back)
+        rows.fields = self._beside(
+            ("Sag [%]", "Wobble [Hz]", "Ratio"), (rows.type_sag, rows.type_frequency, rows.type_ratio)
+        )
+
     def _build_world(self) -> None:
         ui = self._ui
         self._heading("World")
-        self.gravity_x, self.gravity_y = self._pair(
-            "Gravity x [m/s²]",
-            "Gravity y [m/s²]",
+        self.gravity_x, self.gravity_y = self._beside(
+            ("Gravity x [m/s²]", "Gravity y [m/s²]"),
             (lambda text: self._type_gravity(text, 0), lambda text: self._type_gravity(text, 1)),
         )
         self._row(4)
@@ -123,9 +150,13 @@ class Panel:
         counts = [(str(count), str(count), "") for count in SUBSTEPS]
         counts.insert(0, (AUTO, "Auto", "Every tick takes as many as it needs, 1 to 8"))
         self.substeps = ui.choice(self._row(ROW - 2, 6), counts, self._choose_substeps, self.back)
-        self.iterations, self.warm_start = self._pair(
-            "Iterations", "Warm start (0 to 1)", (self._type_iterations, self._type_warm_start)
+        self.iterations, self.warm_start = self._beside(
+            ("Iterations", "Warm start (0 to 1)"), (self._type_iterations, self._type_warm_start)
         )
+        ui.label(self._place(MARGIN, 0, HAND_LABEL, ROW - 2), "Hand", self.back, "@muted")
+        options = [(name, name.capitalize(), _strength_tip(strength)) for name, strength in STRENGTHS.items()]
+        place = self._row(ROW - 2, 8, MARGIN + HAND_LABEL, INSIDE - HAND_LABEL)
+        self.hand = ui.choice(place, options, self._choose_strength, self.back)
         self._heading("Energy [J]")
         columns = (self._place(MARGIN, 0, INSIDE / 2, 34), self._place(MARGIN + INSIDE / 2, 0, INSIDE / 2, 34))
         self.energies = [TextBlock(ui, place, "", self.back) for place in columns]
@@ -148,6 +179,7 @@ class Panel:
         if self._refreshes % LOOK_EVERY == 0 or self.playback.clock.paused:
             self._show_energy()
         self._refreshes += 1
+        self.firmness.refresh(self._refreshes % LOOK_EVERY == 0)
         fresh = (self.playback.revision, self.material)
         if fresh == self._refreshed_at and self._refreshes % LOOK_EVERY:
             return
@@ -256,20 +288,8 @@ class Panel:
     def _end_gesture(self) -> None:
         self._gesture = None
 
-    def _number(self, text: str, what: str, low: float, high: float) -> float | None:
-        """A typed number in low..high, or None with a line that says what is wrong."""
-        try:
-            value = float(text.strip().replace(",", "."))
-        except ValueError:
-            self._say(f"{what}: {text.strip() or 'nothing'!r} is not a number.")
-            return None
-        if not low <= value <= high:
-            self._say(f"{what}: {value:g} is outside {low:g} to {high:g}. The old value stays.")
-            return None
-        return value
-
     def _type_coefficient(self, text: str, is_stiffness: bool) -> bool:
-        value = self._number(text, "Cs" if is_stiffness else "Cd", 0.0, 1.0)
+        value = typed_number(self._say, text, "Cs" if is_stiffness else "Cd", 0.0, 1.0)
         if value is None or not self._has_springs():
             return False
         self._set(value, is_stiffness)
@@ -282,7 +302,7 @@ class Panel:
         return True
 
     def _type_frequency(self, text: str) -> bool:
-        frequency = self._number(text, "Frequency", 0.0, math.inf)
+        frequency = typed_number(self._say, text, "Frequency", 0.0, math.inf)
         if frequency is None:
             return False
         ratio = _typed_or_none(self.ratio.text)
@@ -291,7 +311,7 @@ class Panel:
         return self._set_frequency(frequency, 1.0 if ratio is None else ratio)
 
     def _type_ratio(self, text: str) -> bool:
-        ratio = self._number(text, "Damping ratio", 0.0, math.inf)
+        ratio = typed_number(self._say, text, "Damping ratio", 0.0, math.inf)
         if ratio is None:
             return False
         frequency = _typed_or_none(self.frequency.text)
@@ -312,7 +332,7 @@ class Panel:
         return True
 
     def _type_gravity(self, text: str, axis: int) -> bool:
-        value = self._number(text, "Gravity", -GRAVITY_LIMIT, GRAVITY_LIMIT)
+        value = typed_number(self._say, text, "Gravity", -GRAVITY_LIMIT, GRAVITY_LIMIT)
         if value is None:
             return False
         x, y = self.playback.session.world.settings.gravity
@@ -320,7 +340,7 @@ class Panel:
         return True
 
     def _type_iterations(self, text: str) -> bool:
-        value = self._number(text, "Iterations", 1, 1000)
+        value = typed_number(self._say, text, "Iterations", 1, 1000)
         if value is None or value != int(value):
             if value is not None:
                 self._say(f"Iterations: {value:g} is not a whole number.")
@@ -329,11 +349,15 @@ class Panel:
         return True
 
     def _type_warm_start(self, text: str) -> bool:
-        value = self._number(text, "Warm start", 0.0, 1.0)
+        value = typed_number(self._say, text, "Warm start", 0.0, 1.0)
         if value is None:
             return False
         self._submit(SetSolver(warm_start=value))
         return True
+
+
+def _strength_tip(strength: float) -> str:
+    return f"Pulls with at most {strength:g} N for each kg of what it holds, from the next hold on"
 
 
 def _reading(value: float) -> str:

@@ -11,16 +11,28 @@ from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colou
 from sandbox.app.edit.bake_choice import ask_to_keep
 from sandbox.app.loop import SPEEDS
 from sandbox.app.play.drive_keys import DriveKeys
+from sandbox.app.play.hand_labels import draw_labels
 from sandbox.app.play.panel import PANEL_WIDTH, Panel
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.stage import Stage
-from sandbox.app.play.status import STATUS_HEIGHT, status_parts
+from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
+from sandbox.app.play.stuck import NOTICE, StuckBodies
 from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Pixel, Pointer
-from sandbox.app.shortcuts import Mode
+from sandbox.app.shortcuts import Mode, tip_of
 from sandbox.app.widgets.ui import Ui
+from sandbox.editor.storage.preferences import preference, set_preference
+from sandbox.physics.joints.readings import motor_readings
 from sandbox.physics.query import shown_particles, shown_springs
+from sandbox.physics.solvers import SOLVERS
+from sandbox.session.commands import Free
+from sandbox.tools.drag import STRENGTHS
+
+# Where the button is that frees what is stuck, below the bar, and its size [layout units].
+FREE_PLACE, FREE_SIZE = (16.0, 12.0), (110.0, 34.0)
+# Under what the strength of the hand is remembered.
+HAND = "hand"
 
 
 class PlayScreen:
@@ -38,7 +50,11 @@ class PlayScreen:
         self.show_panel = True
         self.panel: Panel | None = None
         self.stage = Stage(playback, self.viewport, app.scale)
+        kept = preference(HAND)
+        if isinstance(kept, str) and kept in STRENGTHS:
+            self.stage.drag.strength = kept
         self._keys = DriveKeys(playback)
+        self.stuck = StuckBodies()
         self.actions = self._actions()
         app.follow(playback)
 
@@ -70,10 +86,13 @@ class PlayScreen:
         self._ui = ui
         self.toolbar = Toolbar(ui, self._app.act, self.of_document)
         self.stage.place(self.viewport, ui.scale)
+        place = ui.rect(FREE_PLACE[0], BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
+        self.free = ui.button(place, "Free it", self._free, tip=tip_of("free", "play"))
+        self.free.hide()
         before, self.panel = self.panel, None
         if self.show_panel:
             height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
-            self.panel = Panel(ui, self.playback, self._app.say, BAR_HEIGHT, height)
+            self.panel = Panel(ui, self.playback, self._app.say, self.choose_strength, BAR_HEIGHT, height)
             if before is not None and before.playback is self.playback:
                 self.panel.choose_material(before.material)
 
@@ -86,6 +105,9 @@ class PlayScreen:
             "tool_pin": lambda: stage.choose_tool("pin"),
             "tool_cut": lambda: stage.choose_tool("cut"),
             "let_go": stage.let_go,
+            "lattice": stage.toggle_lattice,
+            "hand": self._next_strength,
+            "free": self._free,
             "undo": lambda: self.playback.submit_undo(),
             "redo": lambda: self.playback.submit_redo(),
             "pause": lambda: self.playback.toggle_pause(),
@@ -118,6 +140,29 @@ class PlayScreen:
         else:
             documents.edit_level(self.playback.level)
 
+    def choose_strength(self, name: str) -> None:
+        """Let the hand be gentle, normal or strong from its next hold on, in later runs too."""
+        self.stage.drag.strength = name
+        set_preference(HAND, name)
+        if self.stage.drag.holds:
+            self._app.say(f"What is held now stays in a hand of its old strength; the next hold is {name}.")
+
+    def _next_strength(self) -> None:
+        names = list(STRENGTHS)
+        name = names[(names.index(self.stage.drag.strength) + 1) % len(names)]
+        self.choose_strength(name)
+        self._app.say(f"Hand: {name}, at most {STRENGTHS[name] / 10.0:g} times the weight of what it holds.")
+
+    def _free(self) -> None:
+        """Free what is stuck, all in one gesture."""
+        if not self.stuck.particles:
+            self._app.say("Nothing is stuck.")
+            return
+        gesture = self.playback.session.new_gesture()
+        for particle in self.stuck.particles:
+            self.playback.submit(Free(particle), gesture)
+        self.stuck = StuckBodies()
+
     def _slower(self) -> None:
         clock = self.playback.clock
         clock.speed = SPEEDS[(SPEEDS.index(clock.speed) + 1) % len(SPEEDS)]
@@ -125,6 +170,7 @@ class PlayScreen:
     def _reset(self) -> None:
         self.leave()
         self.stage.replace_playback(self.playback.reset())
+        self.stuck = StuckBodies()
         self._app.follow(self.playback)
         if self.panel is not None:
             self.panel.playback = self.playback
@@ -172,11 +218,13 @@ class PlayScreen:
         """Let time pass, where no page is open and the physics is ready."""
         self.stage.update(frame_time if ready and not self._ui.has_sheet else 0.0, pointer, profile)
         self.stage.renderer.compiled = ready
+        self._show_stuck()
         for message in self.playback.messages:
             self._app.say(message)
         self.playback.messages.clear()
         if self.panel is not None and ready:
             self.panel.refresh()
+            self.panel.hand.show(self.stage.drag.strength)
         self.toolbar.show(
             BarState(
                 self.playback.level.name,
@@ -190,9 +238,22 @@ class PlayScreen:
             )
         )
 
+    def _show_stuck(self) -> None:
+        before = len(self.stuck.particles)
+        self.stuck.update(self.playback.session.world)
+        found = len(self.stuck.particles)
+        if found > before:
+            self._app.say(NOTICE)
+        if bool(found) != bool(self.free.visible):
+            (self.free.show if found else self.free.hide)()
+
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
-        """Draw the world."""
+        """Draw the world, and what hands pull with."""
         self.stage.draw(surface, profile)
+        surface.set_clip(self.viewport)
+        self.stuck.draw(surface, self._ui, self.camera, self.playback.current)
+        draw_labels(surface, self._ui, self.camera, self.playback.current, self.stage.pulls())
+        surface.set_clip(None)
 
     def status(self, ticks: float, frame: float) -> list[tuple[str, Colour]]:
         """State, recording, tick and figures of the run."""
@@ -204,6 +265,8 @@ class PlayScreen:
             parts.append((playback.verdict or f"replay, {playback.replay.ticks:,} ticks", TEXT))
         parts.append((f"tick {playback.session.tick:,}", MUTED))
         counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
+        world = playback.session.world
+        parts += motor_parts(motor_readings(world), SOLVERS[world.settings.solver].carries)
         return parts + status_parts(*counts, ticks, frame, self.stage.renderer.non_finite, playback.behind)
 
     def _state(self) -> str:

@@ -11,6 +11,7 @@ from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Overlay, Renderer
 from sandbox.app.play.playback import Playback
 from sandbox.app.profile import Profile
+from sandbox.physics.joints.pulls import Pull, pulls_of
 from sandbox.physics.query import nearest_particle, shown_particles
 from sandbox.tools.cut import CutTool
 from sandbox.tools.drag import DragTool
@@ -30,17 +31,17 @@ class Stage:
     def __init__(self, playback: Playback, viewport: tuple[int, int, int, int], scale: float) -> None:
         self.playback = playback
         self.camera = Camera(viewport=viewport)
-        self.renderer = Renderer(scale)
+        self.renderer = Renderer(scale, playback.level)
         self.cursor: tuple[float, float] | None = None
         self.pressed_by_key = False
         self._hovered: int | None = None
-        self._make_tools()
+        self._make_tools("normal")
         self._first_box = view_of(playback.level, playback.current)
         self._fit(self._first_box)
 
-    def _make_tools(self) -> None:
+    def _make_tools(self, strength: str) -> None:
         new_gesture = self.playback.session.new_gesture
-        self.drag, self.cut, self.pin = DragTool(new_gesture), CutTool(new_gesture), PinTool(new_gesture)
+        self.drag, self.cut, self.pin = DragTool(new_gesture, strength), CutTool(new_gesture), PinTool(new_gesture)
         self.tools: dict[str, Tool] = {"drag": self.drag, "pin": self.pin, "cut": self.cut}
         self.tool_name = "drag"
 
@@ -61,7 +62,7 @@ class Stage:
         name = self.tool_name
         self.playback = playback
         self.pressed_by_key = False
-        self._make_tools()
+        self._make_tools(self.drag.strength)
         self.tool_name = name
 
     def fit(self) -> None:
@@ -116,6 +117,10 @@ class Stage:
         )
         self.playback.respond(self.tool.handle(event, self.playback.current))
 
+    def toggle_lattice(self) -> None:
+        """Show springs by their strain, or things as they look."""
+        self.renderer.lattice = not self.renderer.lattice
+
     def let_go(self) -> None:
         """Give up what the tools do and hold."""
         for tool in self.tools.values():
@@ -161,6 +166,11 @@ class Stage:
 
     # A frame.
 
+    def pulls(self) -> list[Pull]:
+        """What the hands pull with."""
+        world = self.playback.session.world
+        return pulls_of(world) if world.any_held() else []
+
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
         """Apply what is due and let time pass; pointer: where the mouse is over the world, if it is."""
         with profile.part("commands"):
@@ -178,7 +188,7 @@ class Stage:
         """Draw the world into the viewport."""
         surface.set_clip(self.camera.viewport)
         playback = self.playback
-        overlay = Overlay(self._hovered, self.cut.trail, self.cursor)
+        overlay = Overlay(self._hovered, self.cut.trail, self.cursor, self.pulls())
         alpha = playback.clock.alpha(playback.session.world.settings.tick_rate)
         self.renderer.draw(surface, self.camera, playback.previous, playback.current, alpha, overlay, profile)
         surface.set_clip(None)

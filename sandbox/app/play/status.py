@@ -8,9 +8,11 @@ import numpy as np
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, SURFACE, TEXT, WARNING, Colour
-from sandbox.app.draw.strain_colours import FULL_STRAIN, SLIGHT_STRAIN, strain_colours
+from sandbox.app.draw.strain_colours import FULL_STRAIN, SLIGHT_STRAIN, strain_tones
+from sandbox.app.draw.themes import DARK
 from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
+from sandbox.physics.joints.readings import MotorReading
 
 # Sizes in layout units.
 STATUS_HEIGHT = 30.0
@@ -18,6 +20,8 @@ NOTICE_SECONDS = 6.0
 SECONDS_A_LETTER = 0.06
 NOTICES = 4
 LEGEND_WIDTH = 96.0
+# Motors that are named one by one; of more the line says how many are at their limit.
+NAMED_MOTORS = 2
 NOTICE_COLOUR: Colour = (33, 39, 49)
 
 
@@ -95,7 +99,7 @@ class StatusLine:
         if self._legend is None:
             place = np.linspace(-1.0, 1.0, width)
             full = np.log1p(FULL_STRAIN / SLIGHT_STRAIN)
-            colours = strain_colours(np.sign(place) * np.expm1(np.abs(place) * full) * SLIGHT_STRAIN)
+            colours = strain_tones(np.sign(place) * np.expm1(np.abs(place) * full) * SLIGHT_STRAIN, DARK.strain)
             self._legend = pygame.Surface((width, ui.px(6)), 0, 32)
             pixels = pygame.surfarray.pixels2d(self._legend)
             pixels[:] = colours[:, None]
@@ -183,4 +187,24 @@ def status_parts(
         (f"{ticks:.0f} ticks/s", MUTED),
         (f"{frame:.1f} ms/frame", MUTED),
     ]
+    return parts
+
+
+def motor_parts(readings: list[MotorReading], carries: bool) -> list[tuple[str, Colour]]:
+    """What motors give, in figures; carries: whether the solver can carry wheels at all."""
+    if not readings:
+        return []
+    parts: list[tuple[str, Colour]] = []
+    if not carries:
+        parts.append(("a single pass cannot carry wheels under a load: take another solver", WARNING))
+    if len(readings) > NAMED_MOTORS:
+        full = sum(reading.at_limit for reading in readings)
+        told = f"{full} at their limit" if full else "none at its limit"
+        return [*parts, (f"{len(readings)} motors, {told}", WARNING if full else MUTED)]
+    for reading in readings:
+        if reading.pushes:
+            text = f"{reading.name} {abs(reading.torque):.3g} of {reading.limit:.3g} N m"
+            parts.append((text, WARNING if reading.at_limit else MUTED))
+        else:
+            parts.append((f"{reading.name} pushes against nothing", WARNING))
     return parts

@@ -64,3 +64,18 @@ class Choice:
         self.chosen = chosen
         for value, button in self.buttons.items():
             (button.select if value == chosen else button.unselect)()
+
+
+def typed_number(
+    say: Callable[[str], object], text: str, what: str, low: float, high: float, unit: str = ""
+) -> float | None:
+    """A typed number in low..high, its unit behind it or not; or None, and what is wrong said in one line."""
+    try:
+        value = float(text.strip().removesuffix(unit).replace(",", "."))
+    except ValueError:
+        say(f"{what}: {text.strip() or 'nothing'!r} is not a number.")
+        return None
+    if not low <= value <= high:
+        say(f"{what}: {value:g} is outside {low:g} to {high:g}. The old value stays.")
+        return None
+    return value

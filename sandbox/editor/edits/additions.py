@@ -13,13 +13,16 @@ from sandbox.editor.panel.typed import significant
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef, MuscleDef
 from sandbox.level.format.limits import TORQUE_LIMIT
-from sandbox.level.format.model import SpringDef
+from sandbox.level.format.look import BodyLook, ParticleLook
+from sandbox.level.format.model import ParticleDef, SpringDef
 from sandbox.level.kinds.bodies import expansion
-from sandbox.level.kinds.body_def import BendingDef
+from sandbox.level.kinds.body_def import BendingDef, FirmnessDef
 from sandbox.level.kinds.wheel import WheelDef
 
 # A new muscle swings by this share of its length, once in so many ticks: a second, at 60 ticks in one.
 MUSCLE = MuscleDef(amplitude=0.2, period=60)
+# A body is given this firmness first.
+SOFT = FirmnessDef(sag=0.1)
 # A new motor turns at this rate [rad/s], with the torque that holds this share of its wheel's weight at the rim.
 MOTOR_SPEED = 3.0
 MOTOR_SHARE = 0.5
@@ -62,6 +65,11 @@ def _hydraulic(part: Definition, scene: Scene | None) -> HydraulicDef:
     return HydraulicDef(shortest=shortest, longest=longest, rate=significant(longest - shortest, DIGITS))
 
 
+def _look(part: Definition, _: Scene | None) -> BodyLook | ParticleLook:
+    # All of it is automatic at first.
+    return ParticleLook() if isinstance(part, ParticleDef) else BodyLook()
+
+
 def _same(first: Any, *_: Any) -> Any:
     return first
 
@@ -71,4 +79,6 @@ _FIRST: dict[str, Callable[[Definition, Scene | None], Any]] = {
     "motor": _motor,
     "hydraulic": _hydraulic,
     "bending": partial(_same, BendingDef()),
+    "firmness": partial(_same, SOFT),
+    "look": _look,
 }

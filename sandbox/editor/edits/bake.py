@@ -8,22 +8,30 @@ from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.edits.materials import set_material
 from sandbox.editor.edits.placing import repinned, without_springs
 from sandbox.editor.items import with_same
+from sandbox.editor.panel.typed import significant
 from sandbox.editor.scene import Mask, Scene, Slots, make_scene
 from sandbox.level.format.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL
 from sandbox.level.format.model import NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody
+from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.kinds.geometry import Points
+from sandbox.physics.equation import of_body, of_springs
+from sandbox.physics.firmness import Reach
+from sandbox.physics.forms import Firmness
 from sandbox.physics.world import World
 
+# Digits of the frequency and damping ratio that a body keeps.
+FIRMNESS_DIGITS = 6
 _ANOTHER = "what was played is not the level as it is now"
 
 
 def keep_coefficients(document: Document, world: World) -> Document:
-    """Take over Cs and Cd of every material as the played world has them. Raises EditError."""
+    """Take over Cs and Cd of every material as the played world has them, and firmness. Raises EditError."""
     _slots(make_scene(document.level), world)
+    document, is_firm = _keep_firmness(document, world)
     for number, name in enumerate(world.material_names):
-        springs = np.flatnonzero(world.material == number)
+        springs = np.flatnonzero((world.material == number) & ~is_firm)
         material = document.level.materials.get(name, NissenMaterial() if name == DEFAULT_MATERIAL else None)
         if not len(springs) or not isinstance(material, NissenMaterial):
             continue
@@ -34,14 +42,43 @@ def keep_coefficients(document: Document, world: World) -> Document:
     return document
 
 
+def _keep_firmness(document: Document, world: World) -> tuple[Document, Mask]:
+    """Take over the firmness of every body; and which springs (m,) have their Cs and Cd from one."""
+    level, is_firm = document.level, world.lowest_mode > 0.0
+    forms = {form.name: form for form in world.forms}
+
+    def kept(_: int, body: AnyBody) -> AnyBody:
+        form = forms.get(body.id)
+        if form is None:
+            return body
+        reach = Reach.of(form.shape, level.settings.gravity, level.settings.tick_rate)
+        mode = float(world.lowest_mode[form.springs[0]])
+        present = float(world.stiffness[form.springs[0]]), float(world.damping[form.springs[0]])
+        if body.firmness is not None:
+            pair = reach.coefficients(body.firmness.asked)
+            if present == (pair if pair == (1.0, 1.0) else of_springs(*pair, reach.lowest_mode)):
+                is_firm[form.springs] = True
+                return body
+        if mode == 0.0:
+            return body if body.firmness is None else replaced(body, firmness=None)
+        hz, ratio = reach.reading(*of_body(*present, mode))[1:]
+        near = reach.nearest(Firmness(hz=significant(hz, FIRMNESS_DIGITS), ratio=significant(ratio, FIRMNESS_DIGITS)))
+        return replaced(body, firmness=FirmnessDef(hz=near.hz, ratio=near.ratio))
+
+    new = with_same(level, bodies=tuple(kept(index, body) for index, body in enumerate(level.bodies)))
+    return (document if new is level else replace(document, level=checked(new))), is_firm
+
+
 def keep_pose(document: Document, world: World) -> Document:
     """Let everything start where it is in the played world; all rest lengths stay. Raises EditError."""
     level = document.level
     scene = make_scene(level)
-    now = world.position[_slots(scene, world)]
+    slots = _slots(scene, world)
+    now, angle = world.position[slots], world.angle[slots]
     if not np.all(np.abs(now) <= COORDINATE_LIMIT):
         raise EditError("something has flown out of the world; go back to before it did")
     moved = np.any(now != scene.position, axis=1)
+    turned = angle != [*[0.0] * (len(angle) - len(level.particles)), *(particle.angle for particle in level.particles)]
     firsts = np.cumsum([0, *scene.parts.bodies.counts]).tolist()
 
     def posed(index: int, body: AnyBody) -> AnyBody:
@@ -50,6 +87,8 @@ def keep_pose(document: Document, world: World) -> Document:
 
     def placed(index: int, particle: ParticleDef) -> ParticleDef:
         slot = firsts[-1] + index
+        if turned[slot]:
+            particle = replaced(particle, angle=float(angle[slot]))
         return replaced(particle, position=_points(now[slot : slot + 1])[0]) if moved[slot] else particle
 
     def measured(index: int, spring: SpringDef) -> SpringDef:

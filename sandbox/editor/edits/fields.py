@@ -127,7 +127,12 @@ def set_setting(document: Document, field: str, value: Any) -> Document:
     level = document.level
     settings = {**level.settings.__dict__, field: with_tuples(value)}
     new = _read({"format": level.format, "version": VERSION, "name": "-", "settings": settings}, 1).settings
-    return document if new == level.settings else replace(document, level=replaced(level, settings=new))
+    if new == level.settings:
+        return document
+    level = replaced(level, settings=new)
+    # What firmness bodies can have depends on gravity and ticks.
+    is_firm = any(body.firmness is not None for body in level.bodies)
+    return replace(document, level=checked(level) if is_firm else level)
 
 
 def with_tuples(value: Any) -> Any:

@@ -30,12 +30,13 @@ def shifted(body: Placed, dx: float, dy: float) -> Placed:
 
 
 def mapped_particle(particle: ParticleDef, motion: Motion) -> ParticleDef:
-    """A loose particle, its place and start velocity mapped; its disc grows with a scale."""
+    """A loose particle, its place and start motion mapped; its disc grows with a scale."""
     return replaced(
         particle,
         position=motion.point(particle.position),
         radius=particle.radius * motion.factor,
         velocity=mapped_velocity(particle.velocity, motion),
+        spin=-particle.spin if motion.is_mirror else particle.spin,
     )
 
 

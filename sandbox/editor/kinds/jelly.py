@@ -1,4 +1,7 @@
-"""Jellies in the editor: a box from corner to corner, a circle from its centre, a polygon by clicks or by hand."""
+"""Jellies in the editor: a box from corner to corner, a circle from its centre, a polygon by clicks or by hand.
+
+Circles and polygons are fitted; a box is a grid, which fits it as well.
+"""
 
 import math
 from dataclasses import dataclass
@@ -8,16 +11,21 @@ from sandbox.editor.document import EditError
 from sandbox.editor.kinds.editing import BodyEditing, mapped_centre
 from sandbox.editor.kinds.motion import Motion
 from sandbox.editor.tools.drawing_bodies import BodyDrawing, length, rounded
-from sandbox.editor.tools.drawing_options import BodyOptions, count_option, mass_option, material_option
+from sandbox.editor.tools.drawing_options import BodyOptions, count_option, mass_option, material_option, sag_option
 from sandbox.editor.tools.drawing_outline import OutlineDrawing
 from sandbox.editor.tools.editor_tool import EditorTool
 from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
+from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.fitting import Loop, fitting_spacing
 from sandbox.level.kinds.jelly import BoxShape, CircleShape, JellyDef, PolygonShape
 
 # Cells across the shorter side, and about how many cells the whole of one has at most.
 CELLS_ACROSS = 8
 JELLY_CELLS = 1_000
+# Particles of a fitted one, about, where a finer mesh is tried; the ghost at the pointer waits for that.
+FITTED_MOST = 1_500
 # Digits of a spacing that is found so; a person reads it.
 SPACING_DIGITS = 3
 # Angles this close to a quarter turn [rad] count as one: a box at it can be stretched along its sides.
@@ -31,6 +39,8 @@ class JellyOptions(BodyOptions):
     cells: int | None = count_option("cells", "Cells across the shorter side; empty = 8, fewer in long shapes.", 1)
     particle_mass: float = mass_option(0.1)
     material: str = material_option("jelly")
+    # Soft, and yet it stands: on a fine grid its material alone would let it lie flat.
+    sag: float | None = sag_option(5.0)
 
 
 def jelly_spacing(width: float, height: float, cells: int | None) -> float:
@@ -41,6 +51,15 @@ def jelly_spacing(width: float, height: float, cells: int | None) -> float:
     # A long thin jelly is coarser, but one cell thick at least.
     spacing = min(max(shorter / CELLS_ACROSS, math.sqrt(width * height / JELLY_CELLS)), shorter)
     return float(f"{spacing:.{SPACING_DIGITS}g}") if spacing > 0.0 else 0.0
+
+
+def fitted(polygon: Loop, sized: dict[str, Any]) -> dict[str, Any]:
+    """Mesh and spacing of a simple polygon: the spacing given, or one as much smaller as triangles need to fit.
+
+    An outline that would need a great many of them is left to a grid.
+    """
+    spacing = fitting_spacing(polygon, (), sized["spacing"], FITTED_MOST)
+    return sized if spacing is None else {"mesh": "fitted", "spacing": spacing}
 
 
 class JellyDrawing(BodyDrawing[JellyOptions]):
@@ -94,7 +113,7 @@ class CircleDrawing(JellyDrawing):
         """Centre and radius."""
         radius = rounded(length(points))
         spacing = self.sized(2.0 * radius, 2.0 * radius)
-        return {"shape": CircleShape(circle=radius), "position": points[0].point, **spacing}
+        return {"shape": CircleShape(circle=radius), "position": points[0].point, "mesh": "fitted", **spacing}
 
     def sizes(self, points: list[Snap]) -> str:
         """Radius."""
@@ -113,8 +132,8 @@ class PolygonDrawing(OutlineDrawing[JellyOptions], JellyDrawing):
         (left, right), (bottom, top) = ((min(side), max(side)) for side in zip(*corners, strict=True))
         x, y = rounded((left + right) / 2.0), rounded((bottom + top) / 2.0)
         polygon = tuple((rounded(corner[0] - x), rounded(corner[1] - y)) for corner in corners)
-        spacing = self.sized(right - left, top - bottom)
-        return {"shape": PolygonShape(polygon=polygon), "position": (x, y), **spacing}
+        sized = fitted(polygon, self.sized(right - left, top - bottom))
+        return {"shape": PolygonShape(polygon=polygon), "position": (x, y), **sized}
 
 
 def _draw_box(pen: IconPen) -> None:
@@ -157,22 +176,38 @@ class JellyEditing(BodyEditing[JellyDef]):
             return False
         return abs(math.remainder(self.body.angle, math.pi / 2.0)) <= SQUARE
 
+    def with_field(self, field: str, value: Any) -> dict[str, Any]:
+        """Another mesh weighs as much; a grid has no holes."""
+        if field != "mesh" or value == self.body.mesh:
+            return {field: value}
+        changes = {"mesh": value} if value == "fitted" else {"mesh": value, "holes": ()}
+        before, after = (expansion(body).form_count[0] for body in (self.body, replaced(self.body, **changes)))
+        # What cannot be meshed is refused by the level's own check.
+        return changes | ({"particle_mass": self.body.particle_mass * before / after} if after else {})
+
     def mapped(self, motion: Motion) -> dict[str, Any]:
-        """Place, angle, spacing and shape."""
+        """Place, angle, spacing, shape and holes."""
         body = self.body
         result = mapped_centre(body, motion) | {"spacing": body.spacing * motion.factor}
         if motion.is_mirror:
             # The shape itself is mirrored in its own frame, so that the grid lies as it did.
             result["angle"] = -body.angle
         across, up = abs(motion.sx), abs(motion.sy)
+        if isinstance(body.shape, CircleShape):
+            across = up = motion.factor
         if not motion.is_even and round(body.angle / (math.pi / 2.0)) % 2:
             across, up = up, across
         if isinstance(body.shape, BoxShape):
             result["shape"] = BoxShape.model_construct(box=(body.shape.box[0] * across, body.shape.box[1] * up))
         elif isinstance(body.shape, CircleShape):
             result["shape"] = CircleShape.model_construct(circle=body.shape.circle * motion.factor)
-        else:
-            across, up = math.copysign(across, motion.sx), math.copysign(up, motion.sy)
-            corners = tuple((x * across, y * up) for x, y in body.shape.polygon)
-            result["shape"] = PolygonShape.model_construct(polygon=corners)
+        across, up = math.copysign(across, motion.sx), math.copysign(up, motion.sy)
+        if isinstance(body.shape, PolygonShape):
+            result["shape"] = PolygonShape.model_construct(polygon=_scaled(body.shape.polygon, across, up))
+        if body.holes:
+            result["holes"] = tuple(_scaled(hole, across, up) for hole in body.holes)
         return result
+
+
+def _scaled(corners: Loop, across: float, up: float) -> Loop:
+    return tuple((x * across, y * up) for x, y in corners)

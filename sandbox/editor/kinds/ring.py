@@ -14,11 +14,13 @@ from sandbox.editor.tools.drawing_options import (
     mass_option,
     material_option,
     option,
+    sag_option,
 )
 from sandbox.editor.tools.editor_tool import EditorTool
 from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.limits import INFLATION_LIMIT
+from sandbox.level.kinds.body_def import BendingDef
 from sandbox.level.kinds.ring import RingDef
 
 # A part is about this long [m], within these numbers.
@@ -38,6 +40,7 @@ class RingOptions(BodyOptions):
     )  # fmt: skip
     particle_mass: float = mass_option(0.1)
     material: str = material_option("rubber")
+    sag: float | None = sag_option(5.0)
 
 
 class RingDrawing(RoundDrawing[RingOptions]):
@@ -57,7 +60,9 @@ class RingDrawing(RoundDrawing[RingOptions]):
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:
         """A ring's own fields."""
-        return {**self.disc(points), "segments": self._parts(points), "inflation": self.options.inflation}
+        ring = {**self.disc(points), "segments": self._parts(points), "inflation": self.options.inflation}
+        # Without bending a ring has no firmness, and lies down as far as its air lets it.
+        return ring if self.options.sag is None else ring | {"bending": BendingDef()}
 
     def _parts(self, points: list[Snap]) -> int:
         return self.fitting(points) if self.options.segments is None else self.options.segments

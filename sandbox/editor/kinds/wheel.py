@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from sandbox.editor.kinds.editing import BodyEditing, mapped_centre
 from sandbox.editor.kinds.motion import Motion
@@ -13,6 +13,7 @@ from sandbox.editor.tools.drawing_options import (
     flag_option,
     mass_option,
     material_option,
+    sag_option,
     size_option,
 )
 from sandbox.editor.tools.editor_tool import EditorTool
@@ -21,43 +22,51 @@ from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.wheel import WheelDef
 
-# A piece of rim between two spokes is about this long [m], within these numbers of spokes.
+# A piece of rim between two spokes is about this long [m], within these numbers of spokes; fewer roll on corners.
 RIM_LENGTH = 0.5
-SPOKES = (8, 32)
+SPOKES = (16, 32)
 
 
 @dataclass(frozen=True)
-class WheelOptions(BodyOptions):
-    """A wheel; segments None: about 0.5 m of rim each, thickness None: a quarter of the radius."""
+class RimOptions(BodyOptions):
+    """A wheel of whatever tool; segments None: about 0.5 m of rim each, thickness None: a quarter of the radius."""
 
-    segments: int | None = count_option("spokes", "Number of spokes; empty = about 0.5 m of rim each.", 3)
+    segments: int | None = count_option("spokes", "Number of spokes; empty = about 0.5 m of rim each, at least 16.", 3)
     thickness: float | None = size_option("thickness", "Thickness of the rim; empty = a quarter of the radius.")
     particle_mass: float = mass_option(1.0)
-    hub_mass: float | None = mass_option(None, "hub mass", "Mass of the hub; empty = as the others.")
     material: str = material_option("rubber")
+    # Round under ten times its weight as well.
+    sag: float | None = sag_option(0.3)
+
+
+AnyRimOptions = TypeVar("AnyRimOptions", bound=RimOptions)
+
+
+@dataclass(frozen=True)
+class WheelOptions(RimOptions):
+    """A wheel by itself."""
+
+    hub_mass: float | None = mass_option(None, "hub mass", "Mass of the hub; empty = as the others.")
     pin_hub: bool = flag_option(False, "pin hub", "Hold the hub, unless it joins a particle.")
 
 
-class WheelDrawing(RoundDrawing[WheelOptions]):
-    """A wheel; its hub may be held, or joins the particle that it is drawn on."""
+class RimDrawing(RoundDrawing[AnyRimOptions], Generic[AnyRimOptions]):
+    """A wheel from its hub to its rim, whatever becomes of its hub."""
 
-    defaults = WheelOptions()
     kind = "wheel"
     counted = "segments"
 
     def fitting(self, points: list[Snap]) -> int:
-        """OptionInfo 0.5 m of rim to each spoke; an even number, as the box around an odd one is crooked."""
+        """0.5 m of rim to each spoke; an even number, as the box around an odd one is crooked."""
         return 2 * fitting_count(2.0 * math.pi * length(points), 2.0 * RIM_LENGTH, SPOKES[0] // 2, SPOKES[1] // 2)
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:
-        """A wheel's own fields."""
+        """Place, angle, radius, thickness and number of spokes."""
         thickness = self.options.thickness
         return {
             **self.disc(points),
             "thickness": rounded(length(points) / 4.0) if thickness is None else thickness,
             "segments": self._spokes(points),
-            "hub_mass": self.options.hub_mass,
-            "pin": ("hub",) if self.options.pin_hub and points[0].name is None else (),
         }
 
     def _spokes(self, points: list[Snap]) -> int:
@@ -66,6 +75,17 @@ class WheelDrawing(RoundDrawing[WheelOptions]):
     def sizes(self, points: list[Snap]) -> str:
         """Radius and number of spokes."""
         return f"radius {length(points):.3g} m, {self._spokes(points)} spokes"
+
+
+class WheelDrawing(RimDrawing[WheelOptions]):
+    """A wheel; its hub may be held, or joins the particle that it is drawn on."""
+
+    defaults = WheelOptions()
+
+    def fields(self, points: list[Snap]) -> dict[str, Any]:
+        """A wheel's own fields."""
+        held = self.options.pin_hub and points[0].name is None
+        return {**super().fields(points), "hub_mass": self.options.hub_mass, "pin": ("hub",) if held else ()}
 
 
 def _draw_wheel(pen: IconPen) -> None:
@@ -79,7 +99,7 @@ class WheelEditing(BodyEditing[WheelDef]):
     """A wheel stays round; in a mirror its motor turns the other way."""
 
     tools: ClassVar = (EditorTool("wheel", "Q", "Wheel with a hub", _draw_wheel, WheelDrawing),)
-    formless = frozenset({"particle_mass", "hub_mass", "pin", "motor"})
+    formless = frozenset({"particle_mass", "hub_mass", "pin", "motor", "touches_mount"})
 
     def mapped(self, motion: Motion) -> dict[str, Any]:
         """Place, angle, radius, thickness and motor."""

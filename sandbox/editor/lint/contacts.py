@@ -23,6 +23,8 @@ DEEP = 0.5
 ROOM = 1e-3
 # Edges of a polygon that are looked at before the window may draw.
 EDGES = 64
+# More rolling resistance than this keeps heaps from coming to rest.
+MOST_ROLLING = 0.05
 # Discs larger than those of bodies that are held against all others, at most.
 DISCS = 2_000
 
@@ -122,6 +124,26 @@ def overlapping_discs(level: Level, scene: Scene) -> Rule:
             )
             yield Finding("warning", text, frozenset([scene.items[a], scene.items[b]]), place_of(scene, slot))
         yield None
+
+
+def turning_in_vain(level: Level, scene: Scene) -> Rule:
+    """Loose particles with a rolling resistance that shakes heaps, or with a spin though springs or pins hold them."""
+    held = scene.pinned.copy()
+    for ends in (scene.particle_a, scene.particle_b):
+        held[ends] = True
+    slots = np.flatnonzero(scene.particle_item >= len(level.bodies))
+    for slot, particle in zip(slots.tolist(), level.particles, strict=True):
+        item = scene.items[int(scene.particle_item[slot])]
+        if particle.rolling > MOST_ROLLING and particle.rolls:
+            text = (
+                f"{called(item)} has a rolling resistance of {particle.rolling:g}: with more than {MOST_ROLLING:g} "
+                "heaps do not come to rest; lower it, or let it not roll"
+            )
+            yield Finding("warning", text, frozenset([item]), place_of(scene, slot))
+        if particle.spin != 0.0 and held[slot]:
+            text = f"{called(item)} is held and does not turn; its spin of {particle.spin:g} rad/s is lost"
+            yield Finding("hint", text, frozenset([item]), place_of(scene, slot))
+    yield None
 
 
 def _keys(a: Slots, b: Slots | int, count: int) -> Slots:

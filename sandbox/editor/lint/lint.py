@@ -9,9 +9,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from sandbox.editor.lint.checks import hopeless_checks
-from sandbox.editor.lint.contacts import buried_particles, overlapping_discs
+from sandbox.editor.lint.contacts import buried_particles, overlapping_discs, turning_in_vain
 from sandbox.editor.lint.finding import Finding, Rule, called, falling_particles, listed, middle_of, place_of
-from sandbox.editor.lint.motors import idle_motors
+from sandbox.editor.lint.looks import unknown_looks
+from sandbox.editor.lint.motors import motors_in_vain
 from sandbox.editor.lint.places import crossing_bodies, overlapping_particles
 from sandbox.editor.lint.solver import springs_past_limits
 from sandbox.editor.scene import Scene
@@ -27,11 +28,13 @@ def findings(level: Level, scene: Scene) -> Iterator[Finding | None]:
         springs_past_limits(level, scene),
         falling_parts(level, scene),
         idle_items(scene),
-        idle_motors(scene),
+        motors_in_vain(level, scene),
+        unknown_looks(level),
         overlapping_particles(scene),
         crossing_bodies(level, scene),
         buried_particles(level, scene),
         overlapping_discs(level, scene),
+        turning_in_vain(level, scene),
     )
     return itertools.chain.from_iterable(listed(rule) for rule in rules)
 

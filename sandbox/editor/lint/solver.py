@@ -47,7 +47,7 @@ def _network(level: Level, scene: Scene) -> World:
     materials = {name: level.materials.get(name, NissenMaterial()) for name in scene.materials}
     for name, values in coefficients(scene.material, materials).items():
         setattr(world, name, values)
-    world.position, world.energy_bank = scene.position, np.zeros(count)
+    world.position, world.energy_bank, world.spin = scene.position, *np.zeros((2, count))
     add_constraints(world, scene.parts.names.layout, level, scene.parts.bodies.made, first, materials)
     return world
 

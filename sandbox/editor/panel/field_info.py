@@ -20,6 +20,7 @@ Kind = Literal[
     "material",
     "list",
     "pairs",
+    "outlines",
     "words",
     "form",
     "part",
@@ -37,6 +38,8 @@ _SHORTER = {
     "the group default": "default",
 }
 _KEYS = ("key", "reverse_key")
+# Fields that are shown as nothing else is.
+_OWN_KINDS: dict[str, Kind] = {"material": "material", "shape": "form", "holes": "outlines", "extras": "extras"}
 _TITLES = {
     "a": "End a",
     "b": "End b",
@@ -49,6 +52,7 @@ _TITLES = {
     "collision_group": "In group",
     "collides": "Touches",
     "particle_radius": "Disc radius",
+    "touches_mount": "Touches mount",
     "licence": "Licence",
     "warm_start": "Warm start",
 }
@@ -58,8 +62,9 @@ _TITLES = {
 class FieldInfo:
     """A field: kind, title, unit, limits (both included but where `above`), tooltip, choices, whether null is a value.
 
-    empty: what null stands for. A `point` is of two numbers; `flags` are any number of the choices, `pairs`
-    lists of numbers in a list; a `form` has a table of its own; a `part` is an object, of that model, or null.
+    empty: what null stands for. A `point` is of two numbers; `flags` are any number of the choices, `pairs` lists of
+    numbers in a list, `outlines` lists of corners in one; a `form` has a table of its own; a `part` is an object, of
+    that model, or null.
     """
 
     kind: Kind
@@ -130,8 +135,8 @@ def _kind(name: str, value: dict[str, Any]) -> Kind:
         return "key"
     if name == "collides":
         return "touches"
-    if name in ("material", "shape", "extras"):
-        return {"material": "material", "shape": "form", "extras": "extras"}[name]  # type: ignore[return-value]
+    if name in _OWN_KINDS:
+        return _OWN_KINDS[name]
     if "enum" in value:
         return "choice"
     if value.get("type") == "array":

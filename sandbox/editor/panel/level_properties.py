@@ -35,7 +35,7 @@ def level_properties(document: Document) -> tuple[Section, ...]:
         value = getattr(level.settings, name)
         settings.append(Property(name, each, str(value) if each.kind == "choice" else value, partial(_set_time, name)))
     return (
-        Section("Level", tuple(of_level)),
+        Section("Level", (*of_level, *_object(document, "look"))),
         Section("Time and solver", tuple(settings)),
         Section("Contacts", tuple(_object(document, "contacts") + _object(document, "walls"))),
     )
@@ -64,7 +64,9 @@ def _first_walls(document: Document) -> dict[str, Any]:
     return {"box": tuple(round(c + s * room, ROOM_DECIMALS) for c, s in zip(box, (-1, -1, 1, 1), strict=True))}
 
 
-_FIRST: dict[str, Callable[[Document], dict[str, Any]]] = {"contacts": lambda _: {}, "walls": _first_walls}
+_FIRST: dict[str, Callable[[Document], dict[str, Any]]] = {
+    "contacts": lambda _: {}, "walls": _first_walls, "look": lambda _: {},
+}  # fmt: skip
 
 
 def _set_level(field: str, document: Document, value: Any) -> Document:

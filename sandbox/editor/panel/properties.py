@@ -13,6 +13,7 @@ from sandbox.editor.edits.names import owner_of
 from sandbox.editor.edits.terrain import FORMS, Form, corners_of, form_of, outlined, with_corners
 from sandbox.editor.items import Definition, Item, Selection, chosen_definitions, chosen_items
 from sandbox.editor.panel.field_info import FieldInfo, abouts
+from sandbox.editor.panel.firmness import firmness_properties
 from sandbox.editor.panel.property import MIXED, Property, Section, part_properties, same, with_axes
 from sandbox.level.format.model import Level, ParticleDef, SpringDef, TerrainDef
 from sandbox.level.format.quantities import Point
@@ -26,11 +27,21 @@ _OUTLINES = ("polyline", "polygon")
 # Sections of the fields that are not of a body's form, in their order.
 _SECTIONS = {
     "Mass": ("mass", "particle_mass", "end_mass", "hub_mass", "masses", "gravity_scale"),
-    "Springs": ("material", "rest_length", "cut"),
-    "Start": ("pin", "pinned", "velocity", "velocities", "pose"),
+    "Springs": ("material", "firmness", "rest_length", "cut"),
+    "Start": ("pin", "pinned", "velocity", "velocities", "pose", "spin"),
     "Shape": ("area", "inflation", "bending"),
     "Drive": ("drive", "hydraulic", "motor"),
-    "Contact": ("particle_radius", "friction", "restitution", "collides", "collision_group"),
+    "Contact": (
+        "particle_radius",
+        "friction",
+        "restitution",
+        "collides",
+        "collision_group",
+        "rolls",
+        "rolling",
+        "touches_mount",
+    ),
+    "Look": ("look",),
     "Other": ("group", "extras"),
 }
 
@@ -48,9 +59,8 @@ def properties(document: Document) -> tuple[Section, ...]:
     made = [made for name, about in _common(kinds, len(parts)).items() for made in _made(selection, parts, name, about)]
     objects = _objects(kinds)
     if objects:
-        # Loose particles have none, and may be many.
-        items = chosen_items(level, frozenset(item for item in selection if item.kind != "particle"))
-        made += [made for name, about in objects.items() for made in _object_properties(items, name, about)]
+        items = chosen_items(level, selection)
+        made += [made for name, about in objects.items() for made in _object_properties(level, items, name, about)]
     if len(parts) == 1:
         facts = _facts(level, next(iter(selection)), parts[0])
         made = [*facts, *made] if isinstance(parts[0], SpringDef) else [*made, *facts]
@@ -93,14 +103,17 @@ def _common(kinds: Iterable[Any], number: int) -> dict[str, FieldInfo]:
 
 
 def _objects(kinds: Iterable[Any]) -> dict[str, FieldInfo]:
-    """The fields of any of the kinds that hold an object or none."""
-    known = (about for kind in kinds for about in abouts(kind).items())
-    return {name: about for name, about in known if about.kind == "part"}
+    """The fields of any of the kinds that hold an object or none, the same object in all that have it."""
+    known = [about for kind in kinds for about in abouts(kind).items() if about[1].kind == "part"]
+    models = {(name, about.model) for name, about in known}
+    return {name: about for name, about in known if sum(name == other for other, _ in models) == 1}
 
 
-def _object_properties(items: dict[Item, Definition], name: str, about: FieldInfo) -> list[Property]:
+def _object_properties(level: Level, items: dict[Item, Definition], name: str, about: FieldInfo) -> list[Property]:
     """The properties of an object that some items may have."""
     holders = {item: part for item, part in items.items() if name in part.__dict__}
+    if name == "firmness":
+        return firmness_properties(level, holders)
     chosen = frozenset(holders)
 
     def change(document: Document, new: Any) -> Document:

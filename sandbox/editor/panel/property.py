@@ -17,6 +17,7 @@ from sandbox.editor.panel.typed import (
     read_line,
     read_list,
     read_number,
+    read_outlines,
     read_pairs,
     read_touched,
     read_words,
@@ -45,6 +46,7 @@ class Property:
     """A field with the value that all items have, or MIXED; of a `point`, of each axis; of `flags`, of each by name.
 
     write: makes a document with another value; None where it is only shown. axes: names of the numbers of a point.
+    remark: what to say of a value in a document that is taken otherwise than it was asked for; "" = nothing.
     """
 
     field: str
@@ -52,6 +54,7 @@ class Property:
     value: Any
     write: Callable[[Document, Any], Document] | None = None
     axes: tuple[str, str] = _AXES
+    remark: Callable[[Document, Any], str] | None = None
 
     @property
     def editable(self) -> bool:
@@ -81,7 +84,7 @@ class Property:
             return None
         read: dict[str, Callable[[str, str], Any]] = {
             "number": read_number, "integer": read_integer, "list": read_list, "pairs": read_pairs,
-            "words": read_words, "touches": read_touched,
+            "outlines": read_outlines, "words": read_words, "touches": read_touched,
         }  # fmt: skip
         if about.kind in read:
             return read[about.kind](about.title, text)
@@ -109,7 +112,7 @@ def _text(about: FieldInfo, value: Any) -> str:
         return ""
     if about.kind in ("number", "integer"):
         return number_text(value)
-    if about.kind in ("list", "pairs", "words"):
+    if about.kind in ("list", "pairs", "outlines", "words"):
         return list_text(value)
     if about.kind == "touches":
         return touched_text(value)
@@ -151,6 +154,8 @@ def part_properties(
         found += [
             Property(f"{name}.{field}", each, same(o[field] for o in objects), partial(_set_inside, change, field))
             for field, each in abouts(about.model).items()
+            # What is by name in a file is written there.
+            if not isinstance(objects[0][field], dict)
         ]
     return found
 

@@ -103,6 +103,18 @@ def read_pairs(title: str, text: str) -> list[Any]:
     return values[0] if is_whole else values
 
 
+def read_outlines(title: str, text: str) -> list[Any]:
+    """A list of outlines, each a list of corners, with or without brackets around the whole. Raises EditError."""
+    values = _read_json(title, text, "a list of outlines such as [[0, 0], [1, 0], [0, 1]]")
+    # In what stands for the whole, brackets and all, a corner is one list deeper.
+    inner = values
+    for _ in range(3):
+        if not inner or not isinstance(inner[0], list):
+            return [] if values == [[]] else values
+        inner = inner[0]
+    return values[0] if len(values) == 1 else values
+
+
 def _read_json(title: str, text: str, wanted: str) -> list[Any]:
     try:
         values: list[Any] = json.loads(f"[{text}]", parse_constant=_refuse_constant)

@@ -14,8 +14,12 @@ from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.messages import worded
+from sandbox.level.format.model import HookeMaterial
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import KINDS, AnyBody, expansion
+from sandbox.level.kinds.body_def import FirmnessDef
+from sandbox.physics.firmness import OutOfReach, Reach
+from sandbox.physics.forms import Firmness
 
 AnyBodyOptions = TypeVar("AnyBodyOptions", bound=BodyOptions)
 AnyLineOptions = TypeVar("AnyLineOptions", bound=LineOptions)
@@ -54,12 +58,34 @@ class BodyDrawing(Drawing[AnyBodyOptions], Generic[AnyBodyOptions]):
         except ValidationError as error:
             place, text = next(worded([dict(fault) for fault in error.errors()]))
             raise EditError(f"{place.replace('_', ' ')}: {text}") from None
-        return joined(add_body(document, body), [point for index, point in enumerate(points) if self.joins(index)])
+        document = add_body(document, body)
+        if self.options.sag is not None:
+            document = firm(document, self.options.sag / 100.0)
+        return joined(document, [point for index, point in enumerate(points) if self.joins(index)])
 
 
 def known_material(document: Document, name: str) -> str:
     """The material that a tool keeps from level to level, or the default one where this level has none of that name."""
     return name if name in document.level.materials else DEFAULT_MATERIAL
+
+
+def firm(document: Document, sag: float) -> Document:
+    """Let the body that was added last sag by that part of its height, or by the nearest that it can.
+
+    Where its form is not stiff without pins, or its springs are of another law, it stays as it is.
+    """
+    level, body = document.level, document.level.bodies[-1]
+    if isinstance(level.materials.get(body.material), HookeMaterial):
+        return document
+    reach = Reach.of(expansion(body).stiff_form, level.settings.gravity, level.settings.tick_rate)
+    if reach.lowest_mode == 0.0:
+        return document
+    try:
+        nearest = reach.nearest(Firmness(sag=sag))
+    except OutOfReach:
+        return document
+    body = replaced(body, firmness=FirmnessDef(sag=nearest.sag))
+    return replace(document, level=checked(replaced(level, bodies=(*level.bodies[:-1], body))))
 
 
 def joined(document: Document, points: Sequence[Snap]) -> Document:

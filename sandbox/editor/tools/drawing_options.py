@@ -11,6 +11,7 @@ from sandbox.level.format.limits import (
     DEFAULT_MATERIAL,
     MASS_RANGE,
     PARTICLE_LIMIT,
+    SAG_LIMIT,
 )
 
 Kind = Literal["count", "number", "flag", "material"]
@@ -50,6 +51,12 @@ def mass_option(default: float | None, label: str = "mass", text: str = "Mass of
     return option(default, OptionInfo("number", label, text, "kg", *MASS_RANGE, optional=default is None))
 
 
+def sag_option(default: float | None) -> Any:
+    """A sag [%] by which a body is as soft as a whole; None: as soft as its material makes it."""
+    text = "Part of its height by which it sags under its weight; empty = as its material has it."
+    return option(default, OptionInfo("number", "sag", text, "%", 0.0, 100.0 * SAG_LIMIT, optional=True))
+
+
 def size_option(label: str, text: str) -> Any:
     """A length [m] that may be left to the drawing."""
     return option(None, OptionInfo("number", label, text, "m", 1e-6, optional=True))
@@ -75,6 +82,8 @@ class BodyOptions(Options):
 
     particle_mass: float
     material: str
+    # Of those that have a firmness, in per cent.
+    sag: float | None = None
 
 
 class LineOptions(BodyOptions):

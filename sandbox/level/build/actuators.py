@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sandbox.level.build.plan import Plan
 from sandbox.level.build.welds import Slots
@@ -79,6 +80,7 @@ def add_actuators(world: World, level: Level, plan: Plan, slots: Slots) -> None:
         longest=np.array([hydraulic.longest for hydraulic in hydraulics], dtype=np.float64),
         rate=np.array([hydraulic.rate for hydraulic in hydraulics], dtype=np.float64),
         part=len(motors) + np.arange(len(hydraulics), dtype=np.int64),
+        force=_forces([hydraulic.force for hydraulic in hydraulics]),
     )
     names = tuple(each.name for each in found)
     equipment = Actuators(names, _muscles(level, plan.bodies), lifting, turning)
@@ -91,6 +93,16 @@ def _muscles(level: Level, bodies: list[Expansion[Any]]) -> Muscles:
     waves = [body.drive for body in level.bodies] + [spring.drive for spring in level.springs]
     counts = [len(made.pairs) for made in bodies] + [1] * len(level.springs)
     rows = [(0.0, 0, 0.0) if wave is None else (wave.amplitude, wave.period, wave.phase) for wave in waves]
+    force = _forces([None if wave is None else wave.force for wave in waves])
     amplitude, period, phase = (np.repeat(column, counts) for column in np.array(rows).reshape(-1, 3).T)
     spring = np.flatnonzero(period)
-    return Muscles(spring, amplitude[spring], period[spring].astype(np.int64), phase[spring])
+    if len(force):
+        force = np.repeat(force, counts)[spring]
+    return Muscles(spring, amplitude[spring], period[spring].astype(np.int64), phase[spring], force)
+
+
+def _forces(given: list[float | None]) -> NDArray[np.float64]:
+    """The largest forces [N] (k,), infinite where there is none; (0,) where no part has any."""
+    if all(force is None for force in given):
+        return np.zeros(0)
+    return np.array([np.inf if force is None else force for force in given])

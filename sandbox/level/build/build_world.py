@@ -1,10 +1,13 @@
 """build_world(level): definitions expanded in file order into the slots of a World."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.level.build.actuators import add_actuators
 from sandbox.level.build.constraints import add_constraints
+from sandbox.level.build.forms import add_forms
 from sandbox.level.build.materials import coefficients, strain_limits
 from sandbox.level.build.plan import Plan
 from sandbox.level.build.surfaces import surface_of, surfaces_of, terrain_of
@@ -13,6 +16,7 @@ from sandbox.level.faults.validate import check_level
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.model import Level, Material, NissenMaterial
 from sandbox.physics.settings import WorldSettings
+from sandbox.physics.state import ROLLING_RESISTANCE
 from sandbox.physics.world import World
 
 
@@ -36,7 +40,8 @@ def build_world(level: Level) -> World:
     world.limits = strain_limits(materials)
     add_actuators(world, level, plan, slots)
     world.reserve_grabs()
-    add_constraints(world, plan.layout, level, plan.bodies, slots, materials)
+    firsts = add_constraints(world, plan.layout, level, plan.bodies, slots, materials)
+    add_forms(world, level, plan, materials, firsts)
     world.terrain, world.surface = terrain_of(level), surface_of(level)
     return world
 
@@ -53,6 +58,7 @@ def _add_particles(world: World, level: Level, plan: Plan, slots: Slots, stays: 
     mass = np.array([p.mass for p in loose], dtype=np.float64)
     pinned = np.array([p.pinned for p in loose], dtype=np.bool_)
     scale = np.array([p.gravity_scale for p in loose], dtype=np.float64)
+    turning = _turning(level, sum(len(made.mass) for made in bodies))
     scales = [np.full(len(made.mass), body.gravity_scale) for body, made in zip(level.bodies, bodies, strict=True)]
     scale = np.concatenate([*scales, scale])
     position = np.concatenate([*(body.position for body in bodies), position])
@@ -70,6 +76,8 @@ def _add_particles(world: World, level: Level, plan: Plan, slots: Slots, stays: 
         mass[first] = both
         radius[first] = max(radius[first], radius[slot])
         pinned[first] |= pinned[slot]
+        turning["rolls"][first] &= turning["rolls"][slot]
+        turning["rolling"][first] = max(turning["rolling"][first], turning["rolling"][slot])
     # Adding 0.0 turns -0.0 into 0.0, so that a sign nobody sees cannot reach the state.
     world.add_particles(
         [names[slot] for slot in kept.tolist()],
@@ -79,10 +87,20 @@ def _add_particles(world: World, level: Level, plan: Plan, slots: Slots, stays: 
         radius=radius[stays] + 0.0,
         pinned=pinned[stays],
         gravity_scale=scale[stays] + 0.0,
-        **{name: values[stays] for name, values in surfaces.items()},
+        **{name: values[stays] for name, values in (surfaces | turning).items()},
     )
     for slot in gone:
         world.name_particle(int(slots[slot]), names[slot])
+
+
+def _turning(level: Level, particles: int) -> dict[str, NDArray[Any]]:
+    """How every particle turns (n,), by argument of add_particles; the first ones are the bodies'."""
+    own = [(True, ROLLING_RESISTANCE, 0.0, 0.0)] * particles
+    loose = [(p.rolls, p.rolling + 0.0, p.angle + 0.0, p.spin + 0.0) for p in level.particles]
+    columns = zip(*(own + loose), strict=True) if own or loose else [()] * 4
+    kinds = (np.bool_, np.float64, np.float64, np.float64)
+    names = ("rolls", "rolling", "angle", "spin")
+    return {name: np.array(column, kind) for name, column, kind in zip(names, columns, kinds, strict=True)}
 
 
 def _add_springs(world: World, level: Level, plan: Plan, slots: Slots, materials: dict[str, Material]) -> None:

@@ -21,11 +21,16 @@ def add_constraints(
     bodies: Sequence[Expansion[Any]],
     slots: Slots,
     materials: dict[str, Material],
-) -> None:
-    """Add the area and bending constraints, body by body; at rest they are those of the body's form."""
+) -> list[int]:
+    """Add the area and bending constraints, body by body; at rest they are those of the body's form.
+
+    Returned is where those of each body begin, and where the last end.
+    """
     index = {name: number for number, name in enumerate(materials)}
+    firsts = []
     for body, made in zip(level.bodies, bodies, strict=True):
         material, bending = materials[body.material], made.bending
+        firsts.append(world.constraint_count)
         # Their error is that of the impulse-based spring; a Hooke material has none for areas.
         areas = made.area_constraints if isinstance(material, NissenMaterial) else NO_POLYGONS
         angles = made.bending_constraints
@@ -42,17 +47,12 @@ def add_constraints(
             if len(areas):
                 world.name_areas(body.id, range(first, first + len(areas)))
         if bending is not None:
-            angles = angles[_has_links(form[angles])]
             world.add_constraints(
                 BEND, particles[angles], form=form[angles], stiffness=bending.stiffness + 0.0,
                 damping=bending.damping + 0.0, material=OWN_MATERIAL,
             )  # fmt: skip
+    return [*firsts, world.constraint_count]
 
 
 def _distinct(corners: Slots) -> NDArray[np.bool_]:
     return np.asarray((np.diff(np.sort(corners, axis=1), axis=1) != 0).all(axis=1))
-
-
-def _has_links(places: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether both links of each triple of places [m] (t, 3, 2) have a length, and so an angle."""
-    return np.asarray((np.diff(places, axis=1) != 0.0).any(axis=2).all(axis=1))

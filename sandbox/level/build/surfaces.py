@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.level.build.axles import free_wheels
 from sandbox.level.format.limits import BODY_RADIUS
 from sandbox.level.format.model import ContactsDef, Level, ParticleDef
 from sandbox.level.kinds.body_def import BodyDef
@@ -65,22 +66,24 @@ def surfaces_of(level: Level, counts: Sequence[int]) -> dict[str, NDArray[Any]]:
     """
     usual, bits = level.contacts or ContactsDef(), group_bits(level)
     sizes = [*counts, *([1] * len(level.particles))]
-    rows = []
+    rows: list[list[Any]] = []
     for index, (_, item) in enumerate(colliding_items(level)):
         if isinstance(item, ParticleDef):
             radius = item.radius
         else:
             radius = BODY_RADIUS if item.particle_radius is None else item.particle_radius
         rows.append(
-            (
+            [
                 radius + 0.0,
                 usual.friction if item.friction is None else item.friction,
                 usual.restitution if item.restitution is None else item.restitution,
                 index,
                 bits[item.collision_group or DEFAULT_GROUP],
                 _touched(item, bits) if level.has_contacts else 0,
-            )
+            ]
         )
+    if level.has_contacts:
+        _free_wheels(level, bits, rows)
     columns = list(zip(*rows, strict=True)) if rows else [()] * 6
     names = ("radius", "friction", "restitution", "owner", "group", "collides")
     kinds = (np.float64, np.float64, np.float64, np.int32, np.int64, np.int64)
@@ -96,6 +99,20 @@ def surface_of(level: Level) -> Surface:
         return Surface()
     usual = level.contacts or ContactsDef()
     return Surface(usual.friction, usual.restitution, group_bits(level)[DEFAULT_GROUP], ALL_GROUPS)
+
+
+def _free_wheels(level: Level, bits: dict[str, int], rows: list[list[Any]]) -> None:
+    """Let wheels pass through what they are mounted on: each is in a group of its own, which its mount does not touch.
+
+    rows: as those of `surfaces_of`, group and collides last.
+    """
+    for number, (wheel, mount) in enumerate(free_wheels(level)):
+        named, own = bits[level.bodies[wheel].collision_group or DEFAULT_GROUP], TERRAIN_GROUP << len(bits) + number
+        rows[wheel][-2] = own
+        for index, row in enumerate(rows):
+            # Who touched the group that it is said to be in touches it still.
+            touches = row[-1] | own if row[-1] & named else row[-1] & ~own
+            row[-1] = touches & ~own if index in mount else touches
 
 
 def _touched(item: Item, bits: dict[str, int]) -> int:

@@ -5,8 +5,9 @@ from collections.abc import Iterator
 from sandbox.level.build.actuators import actuators
 from sandbox.level.faults.level_error import Fault, shown
 from sandbox.level.format.actuator_defs import HydraulicDef
-from sandbox.level.format.limits import MOTOR_LIMIT
+from sandbox.level.format.limits import LIMITED_LIMIT, MOTOR_LIMIT
 from sandbox.level.format.model import Level, SpringDef
+from sandbox.level.kinds.bodies import expansion
 
 
 def actuator_faults(level: Level) -> Iterator[Fault]:
@@ -14,6 +15,7 @@ def actuator_faults(level: Level) -> Iterator[Fault]:
     for index, spring in enumerate(level.springs):
         if spring.hydraulic is not None:
             yield from _hydraulic(f"springs.{index}", spring, spring.hydraulic)
+    yield from _limited(level)
     motors = 0
     for actuator in actuators(level):
         is_spring = isinstance(actuator.drive, HydraulicDef)
@@ -36,3 +38,25 @@ def _hydraulic(path: str, spring: SpringDef, hydraulic: HydraulicDef) -> Iterato
             f"{shown(spring.rest_length)} is not from {shown(hydraulic.shortest)} to {shown(hydraulic.longest)}, "
             "between which the hydraulic goes",
         )
+
+
+def _limited(level: Level) -> Iterator[Fault]:
+    """Whether springs of limited force are too many."""
+    drives = [
+        (f"bodies.{index}.drive", expansion(body).form_count[1])
+        for index, body in enumerate(level.bodies)
+        if body.drive is not None and body.drive.force is not None
+    ]
+    for index, spring in enumerate(level.springs):
+        limited = [
+            name
+            for name, drive in (("drive", spring.drive), ("hydraulic", spring.hydraulic))
+            if drive is not None and drive.force is not None
+        ]
+        drives += [(f"springs.{index}.{name}", 1) for name in limited]
+    total = 0
+    for path, count in drives:
+        total += count
+        if total > LIMITED_LIMIT:
+            yield f"{path}.force", f"brings the level above {LIMITED_LIMIT} springs of limited force; take some out"
+            return

@@ -8,6 +8,7 @@ from sandbox.level.faults.level_error import Fault, shown, suggestion
 from sandbox.level.format.limits import COLLISION_GROUP_LIMIT, CORNER_LIMIT
 from sandbox.level.format.model import Level, TerrainDef
 from sandbox.level.kinds.polygon import is_simple
+from sandbox.level.kinds.wheel import WheelDef
 
 
 def collision_faults(level: Level) -> Iterator[Fault]:
@@ -34,7 +35,11 @@ def collision_faults(level: Level) -> Iterator[Fault]:
         for number, name in enumerate(item.collides if isinstance(item.collides, tuple) else ()):
             if name not in groups:
                 yield f"{path}.collides.{number}", f"there is no group {shown(name)}" + suggestion(name, groups)
-    if len(groups) > COLLISION_GROUP_LIMIT:
+    free = sum(isinstance(body, WheelDef) and not body.touches_mount for body in level.bodies)
+    if free and len(groups) + free > COLLISION_GROUP_LIMIT:
+        most = max(COLLISION_GROUP_LIMIT - len(groups), 0)
+        yield "bodies", f"have {free} wheels that do not touch their mounts; at most {most} may beside the groups"
+    elif len(groups) > COLLISION_GROUP_LIMIT:
         yield "bodies", f"name {len(groups) - 2} collision groups; at most {COLLISION_GROUP_LIMIT - 2} are allowed"
 
 

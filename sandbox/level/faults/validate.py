@@ -7,6 +7,7 @@ from sandbox.level.build.plan import Plan, kept_plan
 from sandbox.level.faults.actuator_faults import actuator_faults
 from sandbox.level.faults.collision_faults import collision_faults
 from sandbox.level.faults.extras_faults import extras_faults
+from sandbox.level.faults.firmness_faults import firmness_faults
 from sandbox.level.faults.level_error import Fault, LevelError, shown
 from sandbox.level.faults.reference_faults import check_faults, material_faults, spring_faults, weld_reference_faults
 from sandbox.level.faults.size_faults import size_fault
@@ -35,13 +36,14 @@ def level_faults(level: Level, plan: Plan) -> Iterator[Fault]:
     if too_large is not None:
         yield too_large
         return
-    # What welds make can only be looked at where all else is sound.
+    # What welds make, and forms of bodies, can only be looked at where all else is sound.
     sound = True
     for fault in _all_faults(level, plan):
         sound = False
         yield fault
     if sound:
         yield from weld_faults(level, plan)
+        yield from firmness_faults(level, plan)
 
 
 def _all_faults(level: Level, plan: Plan) -> Iterator[Fault]:

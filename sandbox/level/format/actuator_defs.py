@@ -2,7 +2,18 @@
 
 from pydantic import Field
 
-from sandbox.level.format.quantities import Amplitude, Description, Key, Period, Phase, Rate, Size, Torque, TurnRate
+from sandbox.level.format.quantities import (
+    Amplitude,
+    Description,
+    Force,
+    Key,
+    Period,
+    Phase,
+    Rate,
+    Size,
+    Torque,
+    TurnRate,
+)
 
 
 class MuscleDef(Description):
@@ -11,6 +22,7 @@ class MuscleDef(Description):
     amplitude: Amplitude = Field(description="How far the rest length swings either way, as a share of it.")
     period: Period = Field(description="Ticks from one swing to the next; it repeats exactly.")
     phase: Phase = Field(default=0.0, description="Part of a period that the wave is ahead; 0 = begins to lengthen.")
+    force: Force | None = Field(default=None, description="Largest force of each spring; null = any.")
 
 
 class _KeyedDef(Description):
@@ -26,6 +38,7 @@ class HydraulicDef(_KeyedDef):
     shortest: Size = Field(description="Least rest length; where it begins, if the spring has no `rest_length`.")
     longest: Size = Field(description="Largest rest length.")
     rate: Rate = Field(description="How fast the rest length grows while driven forward.")
+    force: Force | None = Field(default=None, description="Largest force; null = any.")
 
 
 class MotorDef(_KeyedDef):

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Union, get_args, get_origin
 from pydantic import BaseModel, Tag
 
 from sandbox.level.faults.level_error import Fault, json_path, shown, suggestion
+from sandbox.level.format.look import COLOUR_PATTERN, PALETTE
 from sandbox.level.format.model import Level
 from sandbox.level.format.quantities import ID_PATTERN, KEY_PATTERN
 from sandbox.level.kinds.bodies import KINDS
@@ -121,6 +122,8 @@ def _pattern(value: Any, context: dict[str, Any]) -> str:
         return f"{shown(value)} holds one of . : , or a control character, or begins with +; an id may not"
     if context["pattern"] == KEY_PATTERN:
         return f"{shown(value)} is no key; use a small letter or a digit"
+    if context["pattern"] == COLOUR_PATTERN:
+        return f'{shown(value)} is no colour; use one of {", ".join(PALETTE)}, or "#RRGGBB"'
     return f"{shown(value)} holds control characters; take them out"
 
 

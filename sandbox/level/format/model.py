@@ -16,7 +16,9 @@ from sandbox.level.format.limits import (
     TAG_LIMIT,
     VERSION,
 )
+from sandbox.level.format.look import BodyLook, LevelLook, ParticleLook
 from sandbox.level.format.quantities import (
+    Angle,
     Coefficient,
     Collides,
     CollisionGroup,
@@ -40,9 +42,11 @@ from sandbox.level.format.quantities import (
     Name,
     Point,
     Restitution,
+    Rolling,
     Share,
     Tension,
     Text,
+    TurnRate,
     Velocity,
     YieldShare,
     YieldStrain,
@@ -51,6 +55,7 @@ from sandbox.level.format.quantities import (
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.physics.settings import AUTO, Substeps
 from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.state import ROLLING_RESISTANCE
 
 
 class Settings(Description):
@@ -119,6 +124,7 @@ class MaterialDef(Description):
     yield_limit: YieldShare = Field(
         default=0.25, description="Largest change of the rest length by yielding, as a share of it as built."
     )
+    look: BodyLook | None = Field(default=None, description="How what is made of it looks; null = automatic.")
 
 
 class NissenMaterial(MaterialDef):
@@ -165,7 +171,15 @@ class ParticleDef(Description):
     restitution: Restitution = None
     collides: Collides = True
     collision_group: CollisionGroup = None
+    rolls: bool = Field(
+        default=True,
+        description="Whether friction turns its disc, while no spring and no pin holds it; false = it slides.",
+    )
+    rolling: Rolling = ROLLING_RESISTANCE
+    angle: Angle = Field(default=0.0, description="How far its disc has turned at the start; it is only shown.")
+    spin: TurnRate = Field(default=0.0, description="How fast its disc turns at the start, anticlockwise.")
     group: Group = None
+    look: ParticleLook | None = Field(default=None, description="How it looks; null = automatic.")
     extras: Extras = Field(default={})
 
 
@@ -263,6 +277,7 @@ class Level(Description):
     checks: tuple[CheckDef, ...] = Field(
         default=(), max_length=CHECK_LIMIT, description="What must hold of the level's run."
     )
+    look: LevelLook | None = Field(default=None, description="How it looks; null = automatic.")
     extras: Extras = Field(default={})
 
     @property

@@ -10,6 +10,7 @@ from sandbox.level.format.limits import (
     COORDINATE_LIMIT,
     CORNER_LIMIT,
     DRAG_LIMIT,
+    FORCE_LIMIT,
     FRICTION_LIMIT,
     GRAVITY_LIMIT,
     GRAVITY_SCALE_LIMIT,
@@ -112,6 +113,7 @@ Period = Annotated[int, Field(ge=PERIOD_RANGE[0], le=PERIOD_RANGE[1], json_schem
 Phase = Annotated[float, Field(ge=0.0, le=1.0)]
 TurnRate = Annotated[float, Field(ge=-TURN_LIMIT, le=TURN_LIMIT, json_schema_extra=unit("rad/s"))]
 Torque = Annotated[float, Field(ge=0.0, le=TORQUE_LIMIT, json_schema_extra=unit("N m"))]
+Force = Annotated[float, Field(gt=0.0, le=FORCE_LIMIT, json_schema_extra=unit("N"))]
 Rate = Annotated[float, Field(ge=0.0, le=RATE_LIMIT, json_schema_extra=unit("m/s"))]
 Key = Annotated[str, Field(pattern=KEY_PATTERN, max_length=1)]
 Seconds = Annotated[float, Field(ge=0.0, le=SECONDS_LIMIT, json_schema_extra=unit("s"))]
@@ -121,6 +123,13 @@ Group = Annotated[Name | None, Field(description="Group that it is selected and 
 Corners = Annotated[tuple[Point, ...], Field(min_length=2, max_length=CORNER_LIMIT)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 FrictionCoefficient = Annotated[float, Field(ge=0.0, le=FRICTION_LIMIT)]
+Rolling = Annotated[
+    Share,
+    Field(
+        description="Rolling resistance: the torque against its turning, as a share of what presses it on times its "
+        "radius; of two discs the larger counts."
+    ),
+]
 
 
 def _groups(value: Any) -> Any:

@@ -83,8 +83,15 @@ _NAMES = f"""\
   found anew in every step, along the way that each particle goes in it, so that what is fast does not pass.
 - A particle is a disc; the edge of a body is as thick as the particles at its ends. Discs do not turn: they slide, and
   do not roll; a `wheel` or a jelly circle rolls.
+- A wheel with `"touches_mount": false` passes through what it is mounted on: all that welds and loose springs join to
+  its hub, directly or by way of others, other wheels too. It takes up one of the 60 collision groups.
 - Friction between two surfaces is the geometric mean of theirs, restitution the larger one; below 0.5 m/s nothing
   bounces.
+- A loose particle, which no spring and no pin holds, is a disc that turns: friction makes it roll, on terrain, on edges
+  of bodies and on others. It rolls down a slope up to tan(angle) = 3 times the friction, and slides beyond. With
+  `"rolls": false` it slides and never turns: what discs are to stand on each other, in heaps or towers, wants that.
+  `rolling` is its rolling resistance; with more than 0.05 heaps do not come to rest. A disc that gets a spring, or is
+  pinned or held, loses its `spin`.
 - A particle whose centre gets inside solid terrain is out after at most 20 ticks and another 20 for each metre of
   depth, at 60 Hz; one inside a jelly is pushed out too. Weight up to a thousand times that on Earth is held.
 - Momentum is kept to rounding. Where no material has Cs above Cd, nothing is driven and nothing overlaps at the start,
@@ -121,6 +128,27 @@ _NAMES = f"""\
   are. A spring that would lose its length so is refused.
 """
 
+_FIRMNESS = """\
+## Firmness of a body
+
+- Cs and Cd of a material are those of each spring, so a body on a grid twice as fine is four times as soft. `firmness`
+  is of the body: it has the slowest wobble of its form, whatever the grid, the size and the masses, and its springs,
+  areas and bends get the Cs and Cd, all the same, that make it so. It keeps it when it is scaled, and at any number of
+  substeps. Cs and Cd of its material then do nothing for it; its limits of strain hold.
+- `{"sag": 0.1}`: standing on the ground it is 10 % lower than drawn, whatever its height H [m] along gravity g
+  [m/s^2]: that is a frequency of `sqrt(0.055 g / (sag H))` Hz, 2.3 Hz for a metre. In words: 0.25 jelly, 0.1 soft,
+  0.02 firm, 0.003 hard, 0 rigid. A box comes within 1 % of its height at up to 0.1, within 3 % at 0.25; a disc, which
+  stands on a point, sags twice as far. The damping ratio is 0.15, or a little more than the least that is possible.
+- `{"hz": 2.3, "ratio": 0.15}`: frequency and damping ratio of the slowest wobble. The ratio is at least about pi hz /
+  tick rate, where Cs would exceed Cd; beyond that it is refused, and the nearest is named.
+- Only forms that are stiff without pins have one: jellies, wheels, girders, bridges, braced meshes, ropes and rings
+  with `bending`. The wobble of a slender one is its bending. A ring's area as a whole keeps Cs and Cd of its material.
+  Those of a Hooke material have none.
+- The direct solver moves as it says. The other two have the same Cs and Cd, which they follow as far as they can.
+- Whatever sets Cs or Cd of its springs while the level runs (`set_coefficients`) ends it, `set_firmness` begins it
+  again.
+"""
+
 _ACTUATORS = """\
 ## What breaks, yields and is driven
 
@@ -137,13 +165,33 @@ _ACTUATORS = """\
 - A hydraulic and a motor are driven by a value of -1..1: 1 while the `key` is held down, -1 while the `reverse_key`
   is, 0 otherwise; the command `set_drive` gives any value between. A hydraulic's rest length changes by `rate` times
   the value a second, within `shortest` and `longest`. A motor without keys has the value 1 from the start.
+- A muscle or hydraulic with a `force` pulls and pushes with no more than that, damping included, and gives way beyond.
+  Where it is held back its rest length waits for it, so that it does not leap when it is let go.
 - A motor brings the wheel's turning rate, against that of its mount, to `speed` times the value, with at most `torque`;
   at the value 0 the wheel turns freely. The mount is the hub with everything that springs join to it from outside the
   wheel; it gets the reaction, so that momentum and angular momentum are kept. Where the hub or part of its mount is
-  pinned, the reaction goes to the ground. A wheel whose hub nothing holds has no mount, and its motor does nothing.
+  pinned, the reaction goes to the ground. A wheel whose hub nothing holds has no mount, and its motor does nothing; nor
+  does one of which no spoke is left. Torque means what it says: all of it is given until the speed is reached. To roll
+  over the corners of a wheel of `segments` takes `M g radius sin(pi / segments + slope)` of all motors of a vehicle of
+  mass M together. Under `single_pass` motors turn wheels that float, and carry none under a load.
 - `wind` and `drag`: in a step of h seconds a free particle's velocity becomes `(v + drag h wind) / (1 + drag h)`, which
   never overshoots. Drag is a rate for every mass, so heavy and light particles slow down alike.
 - `gravity_scale` of welded particles is their mean by mass.
+"""
+
+_LOOKS = """\
+## Looks
+
+- `look` says how things are drawn, and nothing else: neither a run nor its hashes nor recordings' checks know it. What
+  a body says counts more than what its material says, and that more than what is found automatically.
+- A name of a skin, a line, a ball or a ground that is not listed counts as left out; the editor's findings name it.
+  A colour that is none is refused, and so is a key that is not known.
+- Automatic: a word in the material's name ("wood", "rope", "steel", "cloth" ...); then the kind of body: rings that
+  hold an area are balloons, wheels have tyres, bridges are painted and have a deck; then stiffness: from 0.85 on rubber
+  (bodies) or steel (lines), loose springs below 0.3 are coils, and soft jelly that is pinned is cloth. A loose particle
+  of 20 kg or more is a ball of steel, one that is pinned and large a bumper, and more than 60 of them are sand. Terrain
+  goes by a word in its id; what is wide is soil.
+- Colours are given out by order in the file. Jellies have faces in levels of at most 16 bodies.
 """
 
 # Each is one mistake in the example above; the reference shows what the program says to it.
@@ -163,7 +211,7 @@ _MISTAKES = [
 
 def format_reference() -> str:
     """The reference as Markdown."""
-    return "\n".join([_INTRO, *_tables(), _NAMES, _ACTUATORS, _limits(), _errors()])
+    return "\n".join([_INTRO, *_tables(), _NAMES, _FIRMNESS, _ACTUATORS, _LOOKS, _limits(), _errors()])
 
 
 def _tables() -> Iterator[str]:
@@ -245,6 +293,7 @@ A file beyond one of these is refused before anything is built; nothing is ever 
 | velocities, a mesh's own added to the body's | {limits.SPEED_LIMIT:g} m/s each way |
 | text, in `extras` as well | {limits.TEXT_LIMIT} characters |
 | motors | {limits.MOTOR_LIMIT} |
+| springs of limited force | {limits.LIMITED_LIMIT} |
 | numbers | finite: no NaN, Infinity, 1e999; true and "1" are no numbers, 1.0 is no whole number |
 | keys | no key twice in one object |
 """

@@ -19,6 +19,7 @@ TITLES = {
         for kind, each in EXPANSIONS.items()
         for name, model in {kind: each.model, **each.alternatives}.items()
     },
+    "FirmnessDef": "Firmness",
     "BendingDef": "Bending",
     "ParticleDef": "Loose particle",
     "SpringDef": "Loose spring",
@@ -26,6 +27,9 @@ TITLES = {
     "HydraulicDef": "Hydraulic",
     "MotorDef": "Motor",
     "CheckDef": "Acceptance check",
+    "LevelLook": "Level look",
+    "BodyLook": "Body look",
+    "ParticleLook": "Particle look",
 }
 
 

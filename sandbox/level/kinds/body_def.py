@@ -1,12 +1,13 @@
 """What a level file says of a body of any kind: BodyDef, the base of their models."""
 
 from collections.abc import Iterable
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from sandbox.level.format.actuator_defs import MuscleDef
-from sandbox.level.format.limits import DEFAULT_MATERIAL
+from sandbox.level.format.limits import DEFAULT_MATERIAL, FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
+from sandbox.level.format.look import BodyLook
 from sandbox.level.format.quantities import (
     Coefficient,
     Collides,
@@ -23,9 +24,39 @@ from sandbox.level.format.quantities import (
     Point,
     Restitution,
     Velocity,
+    unit,
 )
+from sandbox.physics.forms import Firmness
 
 End = Literal["start", "end"]
+
+
+class FirmnessDef(Description):
+    """How soft a body is as a whole, whatever its grid, size and mass: by `sag`, or by `hz` and `ratio`."""
+
+    sag: Annotated[float, Field(ge=0.0, le=SAG_LIMIT)] | None = Field(
+        default=None,
+        description="Part of its height by which it sags under its weight where it stands; 0 = rigid.",
+    )
+    hz: Annotated[float, Field(ge=FREQUENCY_RANGE[0], le=FREQUENCY_RANGE[1])] | None = Field(
+        default=None, description="Frequency of its slowest wobble.", json_schema_extra=unit("Hz")
+    )
+    ratio: Annotated[float, Field(ge=0.0, le=RATIO_LIMIT)] | None = Field(
+        default=None, description="Damping ratio of that wobble; null = 0.15, or the least that is possible."
+    )
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> "FirmnessDef":
+        if (self.sag is None) == (self.hz is None):
+            raise ValueError("say sag, or hz: one of the two")
+        if self.sag is not None and self.ratio is not None:
+            raise ValueError("ratio goes with hz; take it out beside sag")
+        return self
+
+    @property
+    def asked(self) -> Firmness:
+        """What is asked of the body."""
+        return Firmness(self.sag, self.hz, self.ratio)
 
 
 class BodyDef(Description):
@@ -35,6 +66,11 @@ class BodyDef(Description):
     id: Id = Field(description="Name of the body; `id.k` is its k-th particle and `id:k` its k-th spring, from 0.")
     velocity: Velocity = Field(default=(0.0, 0.0), description="Start velocity of every particle that is not pinned.")
     material: Name = Field(default=DEFAULT_MATERIAL, description="Name of the material of its springs.")
+    firmness: FirmnessDef | None = Field(
+        default=None,
+        description="How soft it is as a whole; null = each spring has Cs and Cd of the material. For forms that are "
+        "stiff without pins.",
+    )
     pinned: tuple[Index, ...] = Field(default=(), description="Particles that are held, by index.")
     cut: tuple[Index, ...] = Field(
         default=(), description="Springs that are left out, by index; the others keep their names."
@@ -56,6 +92,7 @@ class BodyDef(Description):
     collides: Collides = True
     collision_group: CollisionGroup = None
     group: Group = None
+    look: BodyLook | None = Field(default=None, description="How it looks; null = as its material says, or automatic.")
     extras: Extras = Field(default={})
 
 

@@ -14,9 +14,11 @@ from sandbox.level.format.quantities import Description
 from sandbox.level.kinds.body_def import BendingDef, BodyDef
 from sandbox.level.kinds.geometry import Pairs, Points, distances
 from sandbox.physics.collision.filter import LINE
+from sandbox.physics.forms import StiffForm
 
 Body = TypeVar("Body", bound=BodyDef)
 Floats = NDArray[np.float64]
+WHOLE_MOTIONS = 3
 NO_POLYGONS: Pairs = np.zeros((0, 3), dtype=np.int64)
 
 
@@ -183,7 +185,8 @@ class Expansion(Generic[Body]):
     def bending_constraints(self) -> Pairs:
         """Triples (t, 3) of a body with bending, in order of their middle ones: where just two springs meet.
 
-        Of the two ends, the one of the earlier spring comes first.
+        Of the two ends, the one of the earlier spring comes first. Both springs have a length in the form, and so an
+        angle.
         """
         if self.bending is None:
             return NO_POLYGONS
@@ -193,7 +196,21 @@ class Expansion(Generic[Body]):
         joints = np.flatnonzero(count == 2)
         first, second = order[start[joints]], order[start[joints] + 1]
         # The other end of a spring is next to it in the list.
-        return np.stack([ends[first ^ 1], particle[joints], ends[second ^ 1]], axis=1)
+        angles = np.stack([ends[first ^ 1], particle[joints], ends[second ^ 1]], axis=1)
+        return angles[(np.diff(self.form[angles], axis=1) != 0.0).any(axis=2).all(axis=1)]
+
+    @property
+    def may_be_stiff(self) -> bool:
+        """Whether enough holds it that its form may be stiff without pins: a sieve, as a count is."""
+        # n particles move in 2 n ways, in three of them as a whole. One of two is a spring, and no body to be firm.
+        held = len(self.pairs) + len(self.stiff_form.areas) + len(self.stiff_form.bends)
+        return held >= 2 * self.form_count[0] - WHOLE_MOTIONS >= WHOLE_MOTIONS
+
+    @cached_property
+    def stiff_form(self) -> StiffForm:
+        """What its firmness depends on: the form and what holds it, but an area of more than three corners."""
+        areas = self.area_constraints if self.area_constraints.shape[1] == 3 else NO_POLYGONS
+        return StiffForm(self.local_form[0], self.mass, self.pairs, areas, self.bending_constraints)
 
     def change_faults(self, path: str) -> Iterator[Fault]:
         """Whether pins, cuts and pose speak of particles and springs that the form has."""

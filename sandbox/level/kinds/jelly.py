@@ -1,4 +1,4 @@
-"""Jelly: a soft body on a square grid inside a box, a circle or a polygon."""
+"""Jelly: a soft body inside a box, a circle or a polygon, on a square grid or fitted to its outline."""
 
 import math
 from collections.abc import Iterator
@@ -9,13 +9,24 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Discriminator, Field, Tag
 
-from sandbox.level.faults.level_error import Fault
-from sandbox.level.format.limits import COORDINATE_LIMIT, PARTICLE_LIMIT
+from sandbox.level.faults.level_error import Fault, shown
+from sandbox.level.format.limits import COORDINATE_LIMIT, CORNER_LIMIT, PARTICLE_LIMIT
 from sandbox.level.format.quantities import Angle, Description, Mass, Point, Size, Spacing, unit
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import NO_POLYGONS, Expansion
+from sandbox.level.kinds.fitting import (
+    FittedMesh,
+    Loop,
+    TooCoarse,
+    corners_of,
+    disc_counts,
+    disc_rings,
+    fitted_mesh,
+    fitted_work,
+    fitting_spacing,
+)
 from sandbox.level.kinds.geometry import Pairs, Points, turn
-from sandbox.level.kinds.polygon import BORDER, grid_bounds, is_simple, largest_part, polygon_grid
+from sandbox.level.kinds.polygon import BORDER, grid_bounds, holds, is_simple, largest_part, loops_touch, polygon_grid
 from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 
 
@@ -56,13 +67,24 @@ Shape = Annotated[
 
 
 class JellyDef(BodyDef):
-    """A soft body: particles on a square grid inside a shape, each joined to its eight neighbours."""
+    """A soft body: particles on a square grid inside a shape, each joined to its eight neighbours, or fitted to it."""
 
     type: Literal["jelly"] = Field(description="Kind of body.")
     shape: Shape = Field(description='`{"box": [w, h]}`, `{"circle": radius}` or `{"polygon": [[x, y], ...]}`.')
     position: Point = Field(default=(0.0, 0.0), description="Place of the centre, the shape's own [0, 0].")
     angle: Angle = Field(default=0.0, description="Turn about the centre, counter-clockwise.")
-    spacing: Spacing = Field(description="Distance of neighbours in the grid; a box stretches it to fit.")
+    mesh: Literal["grid", "fitted"] = Field(
+        default="grid",
+        description='"grid": particles on a square grid; "fitted": evenly on the outline, in even triangles inside.',
+    )
+    holes: tuple[Annotated[tuple[Point, ...], Field(min_length=3)], ...] = Field(
+        default=(),
+        max_length=CORNER_LIMIT,
+        description='Holes of a "fitted" mesh, each the corners of a polygon inside the shape, relative to the '
+        "jelly's position; none touches another or the outline.",
+        json_schema_extra=unit("m"),
+    )
+    spacing: Spacing = Field(description="Distance of neighbours in the mesh; a box stretches its grid to fit.")
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
     area: bool = Field(
         default=True,
@@ -84,12 +106,27 @@ class Jelly(Expansion[JellyDef]):
 - Jelly, circle and polygon: the whole multiples of `spacing` on either side of the centre, the shape's own [0, 0],
   that lie inside the shape or on its border; row by row from the bottom left.
 - Springs of a jelly: all to the right, all upward, then per cell the diagonal that rises to the right and the other;
-  where both ends exist. The shape is turned by `angle` afterwards."""
+  where both ends exist. The shape is turned by `angle` afterwards.
+- Jelly, fitted: first the outline, counter-clockwise from its first corner that is kept, of a circle from the right;
+  then each hole, clockwise; then what is inside. A corner is kept where the outline turns by 20 degrees or more from
+  half a spacing before it to half a spacing after; of two nearer than half a spacing the sharper. Between two that are
+  kept particles stand on the outline at equal distances along it, as near to `spacing` as a whole number of them is.
+- Jelly, fitted circle without holes: `round(radius / spacing)` rings, at least 1, the k-th of 6 k particles, from the
+  border inwards, each counter-clockwise from the right; the centre last.
+- Jelly, fitted, any other: inside are the points of a lattice of even triangles about the shape's own [0, 0], row by
+  row from the bottom left, which are moved a little where that makes triangles more even. The triangles are those of
+  Delaunay. None has an angle below 20 degrees, or half the sharpest corner of the outline if that is less, and none
+  below 5; where the spacing is too large for that, the file is refused and the message names one that is not.
+- Springs of a fitted jelly: the sides of its triangles, by their lower particles, then by their higher ones."""
 
     @property
     def polygon_work(self) -> tuple[int, int]:
-        """Of a polygon its corners, and a look at every column and side in each row."""
+        """Of a polygon its corners, and a look at every column and side in each row; of a fitted mesh its triangles."""
         shape = self.body.shape
+        if self._is_fitted:
+            corners = len(shape.polygon) if isinstance(shape, PolygonShape) else 0
+            work = 0 if self._is_disc else fitted_work(self._outline, self.body.holes, self.body.spacing)
+            return corners + sum(map(len, self.body.holes)), work
         if not isinstance(shape, PolygonShape):
             return 0, 0
         _, _, columns, rows = grid_bounds(shape.polygon, self.body.spacing)
@@ -98,6 +135,10 @@ class Jelly(Expansion[JellyDef]):
     @cached_property
     def form_count(self) -> tuple[int, int]:
         """Set points, and pairs of neighbours both of which are set; of a circle beyond the limit a number above it."""
+        if self._is_disc:
+            return disc_counts(disc_rings(self._outline, self.body.spacing))
+        if self._is_fitted:
+            return (0, 0) if self._fitted is None else (len(self._fitted.places), len(self._fitted.pairs))
         if isinstance(self.body.shape, BoxShape):
             columns, rows = self._box_grid()
             across, up = columns - 1, rows - 1
@@ -111,6 +152,9 @@ class Jelly(Expansion[JellyDef]):
     @cached_property
     def local_form(self) -> tuple[Points, Pairs]:
         body = self.body
+        if self._fitted is not None:
+            x, y = self._fitted.places.T
+            return _turned(x, y, body.angle), self._fitted.pairs
         left, bottom, cells = self._grid
         if isinstance(body.shape, BoxShape):
             columns, rows = self._box_grid()
@@ -119,15 +163,13 @@ class Jelly(Expansion[JellyDef]):
             across = (left + np.arange(cells.shape[1], dtype=np.float64)) * body.spacing
             up = (bottom + np.arange(cells.shape[0], dtype=np.float64)) * body.spacing
         row, column = np.nonzero(cells)
-        x, y = across[column], up[row]
-        cosine, sine = turn(body.angle)
-        return np.stack([x * cosine - y * sine, x * sine + y * cosine], axis=1), _neighbours(self._numbers)
+        return _turned(across[column], up[row], body.angle), _neighbours(self._numbers)
 
     @property
     def edges(self) -> NDArray[np.int8]:
-        """Kind of edge (m,): solid are the sides that one square or triangle of its grid has alone."""
+        """Kind of edge (m,): solid are the sides that one square or triangle of its mesh has alone."""
         pairs, count = self.pairs, self.form_count[0]
-        sides, inner = _sides(self._numbers, count)
+        sides, inner = _sides(self._numbers, count) if self._fitted is None else _keys(self._fitted.triangles, count)
         there, back = pairs[:, 0] * count + pairs[:, 1], pairs[:, 1] * count + pairs[:, 0]
         left, right = np.isin(there, sides), np.isin(back, sides)
         hidden = np.isin(there, inner) | np.isin(back, inner) | (left & right)
@@ -135,13 +177,15 @@ class Jelly(Expansion[JellyDef]):
         return np.where(hidden, NO_EDGE, kind).astype(np.int8)
 
     def polygons(self) -> Pairs:
-        """Triangles (t, 3), counter-clockwise: two of each cell of its grid, one of a cell of three corners.
+        """Triangles (t, 3), counter-clockwise: those fitted, or two of each cell of its grid, one of three corners.
 
         Cells are cut along one diagonal and the other in turns, as a chessboard is coloured: no way of shearing is
         easier.
         """
         if not self.body.area:
             return NO_POLYGONS
+        if self._fitted is not None:
+            return self._fitted.triangles
         corners = _corners(self._numbers)
         row, column = np.indices(corners.shape[:2])
         corners = corners.reshape(-1, 4)
@@ -155,18 +199,78 @@ class Jelly(Expansion[JellyDef]):
         return both[(both >= 0).all(axis=1)]
 
     def faults(self, path: str) -> Iterator[Fault]:
-        """Whether its shape is one, lies inside the world, and holds a point of the grid."""
-        yield from self.outline_faults(path)
-        if self.form_count[0] == 0:
+        """Whether its shape is one, lies inside the world, and holds a point of the grid or even triangles."""
+        outline = list(self.outline_faults(path))
+        yield from outline
+        if self.form_count[0] or (self._is_fitted and outline):
+            return
+        if not self._is_fitted:
             yield f"{path}.spacing", "no point of the grid lies inside the polygon; make it smaller"
+            return
+        finer = fitting_spacing(self._outline, self.body.holes, self.body.spacing)
+        advice = "draw it simpler" if finer is None else f"{shown(finer)} would do"
+        yield f"{path}.spacing", f"{shown(self.body.spacing)} is too coarse for triangles to fit the outline; {advice}"
 
     def outline_faults(self, path: str) -> Iterator[Fault]:
-        """Whether its shape is one, and lies inside the world."""
+        """Whether its shape is one, its holes lie apart inside it, and all of it inside the world."""
         shape = self.body.shape
         if isinstance(shape, PolygonShape) and not is_simple(shape.polygon):
-            yield f"{path}.shape.polygon", "its sides touch or cross, or a corner comes twice; draw it without"
+            yield f"{path}.shape.polygon", _NOT_SIMPLE
+        elif self.body.holes and not self._is_fitted:
+            yield f"{path}.holes", 'need "mesh": "fitted"; a grid has none'
+        else:
+            yield from self._hole_faults(path)
         if self._farthest() > COORDINATE_LIMIT:
             yield f"{path}.position", f"takes the shape beyond the limit {COORDINATE_LIMIT:.15g}"
+
+    def _hole_faults(self, path: str) -> Iterator[Fault]:
+        holes = self.body.holes
+        for index, hole in enumerate(holes):
+            place = f"{path}.holes.{index}"
+            if not is_simple(hole):
+                yield place, _NOT_SIMPLE
+            elif loops_touch([hole, self._corners]) or not holds(self._corners, hole[0]):
+                yield place, "does not lie inside the outline; move it in, or take it out"
+            else:
+                for other, before in enumerate(holes[:index]):
+                    if loops_touch([hole, before]) or holds(before, hole[0]) or holds(hole, before[0]):
+                        yield place, f"touches hole {other} or overlaps it; move them apart, or make them one"
+                        break
+
+    @property
+    def _is_fitted(self) -> bool:
+        return self.body.mesh == "fitted"
+
+    @property
+    def _is_disc(self) -> bool:
+        """Whether it is fitted in rings."""
+        return self._is_fitted and isinstance(self.body.shape, CircleShape) and not self.body.holes
+
+    @property
+    def _outline(self) -> Loop | float:
+        """Corners of the shape, or the radius of a circle."""
+        shape = self.body.shape
+        if isinstance(shape, CircleShape):
+            return shape.circle
+        if isinstance(shape, PolygonShape):
+            return shape.polygon
+        x, y = shape.box[0] / 2.0, shape.box[1] / 2.0
+        return (-x, -y), (x, -y), (x, y), (-x, y)
+
+    @cached_property
+    def _corners(self) -> Loop:
+        """Corners of the outline, of a circle those that its mesh has on it."""
+        return corners_of(self._outline, self.body.spacing)
+
+    @cached_property
+    def _fitted(self) -> FittedMesh | None:
+        """The mesh, where it is fitted; None where it is not, or cannot be."""
+        if not self._is_fitted or any(True for _ in self.outline_faults("")):
+            return None
+        try:
+            return fitted_mesh(self._outline, self.body.holes, self.body.spacing)
+        except TooCoarse:
+            return None
 
     @cached_property
     def _grid(self) -> tuple[int, int, NDArray[np.bool_]]:
@@ -217,6 +321,7 @@ class Jelly(Expansion[JellyDef]):
         return max(max(abs(across + x * cosine - y * sine), abs(up + x * sine + y * cosine)) for x, y in corners)
 
 
+_NOT_SIMPLE = "its sides touch or cross, or a corner comes twice; draw it without"
 _ALL, _FIRST, _LAST = slice(None), slice(None, -1), slice(1, None)
 # Both ends of the springs of a grid [rows, columns]: to the right, upward, rising to the right, and falling.
 _NEIGHBOURS = (
@@ -253,6 +358,17 @@ def _sides(numbers: Pairs, count: int) -> tuple[NDArray[np.int64], NDArray[np.in
     directed = np.concatenate(sides)
     inner = np.concatenate([full[:, [0, 2]], full[:, [1, 3]]])
     return directed[:, 0] * count + directed[:, 1], inner[:, 0] * count + inner[:, 1]
+
+
+def _keys(triangles: Pairs, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Keys a n + b of the sides a to b of triangles (t, 3), counter-clockwise; they have no diagonals."""
+    ends = np.roll(triangles, -1, axis=1)
+    return (triangles * count + ends).reshape(-1), np.zeros(0, dtype=np.int64)
+
+
+def _turned(x: NDArray[np.float64], y: NDArray[np.float64], angle: float) -> Points:
+    cosine, sine = turn(angle)
+    return np.stack([x * cosine - y * sine, x * sine + y * cosine], axis=1)
 
 
 def _stretched(size: float, points: int) -> Points:

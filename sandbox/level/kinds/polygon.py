@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-Corners = Sequence[tuple[float, float]]
+Corners = Sequence[tuple[float, float]] | NDArray[np.float64]
 
 # Grid points this close to the border, in units of the spacing, count as on it: beyond rounding, below what is seen.
 BORDER = 1e-9
@@ -112,6 +112,27 @@ def is_simple(corners: Corners) -> bool:
         if _folds_back(a[side], b[side], b[after]):
             return False
     return True
+
+
+def holds(corners: Corners, point: tuple[float, float]) -> bool:
+    """Whether a simple polygon holds a point that is not on its border."""
+    x, y = point
+    a = np.array(corners, dtype=np.float64) - np.array([x, y])
+    b = np.roll(a, -1, axis=0)
+    crossing = (a[:, 1] > 0.0) != (b[:, 1] > 0.0)
+    left = (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 0.0) == (b[:, 1] > a[:, 1])
+    return bool(np.count_nonzero(crossing & left) % 2)
+
+
+def loops_touch(loops: Sequence[Corners]) -> bool:
+    """Whether a side of a closed line touches one of another."""
+    sides = [(np.array(loop, dtype=np.float64), np.roll(np.array(loop), -1, axis=0)) for loop in loops]
+    return any(
+        bool(np.any(_touch(a, b, *others)))
+        for number, (starts, ends) in enumerate(sides)
+        for others in sides[:number]
+        for a, b in zip(starts, ends, strict=True)
+    )
 
 
 def _side_of(p: NDArray[np.float64], q: NDArray[np.float64], r: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -28,6 +28,11 @@ class WheelDef(BodyDef):
     hub_mass: Mass | None = Field(default=None, description="Mass of the hub; null = `particle_mass`.")
     pin: tuple[Literal["hub"], ...] = Field(default=(), max_length=1, description='"hub": the hub is held.')
     motor: MotorDef | None = Field(default=None, description="Motor that turns it about its hub; null = none.")
+    touches_mount: bool = Field(
+        default=True,
+        description="Whether it touches what it is mounted on: all that welds and loose springs join to its hub, "
+        "directly or by way of others.",
+    )
 
 
 class Wheel(Expansion[WheelDef]):

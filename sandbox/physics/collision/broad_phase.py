@@ -88,8 +88,8 @@ def cell_size(box: Floats) -> float:
 
 
 @inner_kernel
-def _cell_number(column: int, row: int) -> int:
-    # One number of a cell: both are within FARTHEST.
+def cell_number(column: int, row: int) -> int:
+    """One number of a cell: both are within FARTHEST."""
     return column * 0x100000000 + row
 
 
@@ -145,7 +145,7 @@ def _fill(boxes: Boxes, grid: Grid) -> None:
                     grid.at[bucket] = entry + 1
                     first = (1 if column == cells[k, 0] else 0) + (2 if row == cells[k, 1] else 0)
                     grid.object[entry] = 4 * k + first
-                    grid.cell[entry] = _cell_number(column, row)
+                    grid.cell[entry] = cell_number(column, row)
 
 
 @inner_kernel
@@ -162,7 +162,8 @@ def fill_grid(boxes: Boxes, cell: float, grid: Grid) -> tuple[int, int]:
 
 
 @inner_kernel
-def _overlap(box: Floats, p: int, k: int) -> bool:
+def overlap(box: Floats, p: int, k: int) -> bool:
+    """Whether the boxes of two objects do."""
     return (
         box[p, 0] <= box[k, 2] and box[k, 0] <= box[p, 2] and box[p, 1] <= box[k, 3] and box[k, 1] <= box[p, 3]
     )  # fmt: skip
@@ -173,7 +174,7 @@ def _pair_with_all(boxes: Boxes, p: int, past_discs: int, other: Slots, count: i
     # The objects that a particle with a large box may touch.
     particles = boxes.filter.shape[0]
     for k in range(boxes.is_target.shape[0]):
-        if boxes.is_target[k] and k != p and (k >= particles or k < past_discs) and _overlap(boxes.box, p, k):
+        if boxes.is_target[k] and k != p and (k >= particles or k < past_discs) and overlap(boxes.box, p, k):
             if count < other.shape[0]:
                 other[count] = k
             count += 1
@@ -203,14 +204,14 @@ def find_pairs(boxes: Boxes, grid: Grid, larges: int, pairs: Pairs) -> int:
             continue
         for at in range(larges):
             k = grid.large[at]
-            if k != p and (k >= particles or k < past_discs) and _overlap(box, p, k):
+            if k != p and (k >= particles or k < past_discs) and overlap(box, p, k):
                 if count < room:
                     other[count] = k
                 count += 1
         for column in range(left, cells[p, 2] + 1):
             for row in range(bottom, cells[p, 3] + 1):
                 bucket = bucket_of(column, row, buckets)
-                here = _cell_number(column, row)
+                here = cell_number(column, row)
                 # Boxes that share many cells are found in the first of them alone.
                 seen = (0 if column == left else 1) + (0 if row == bottom else 2)
                 for at in range(grid.start[bucket], grid.start[bucket + 1]):
@@ -222,7 +223,7 @@ def find_pairs(boxes: Boxes, grid: Grid, larges: int, pairs: Pairs) -> int:
                         and k != p
                         and found & seen == seen
                         and grid.cell[entry] == here
-                        and _overlap(box, p, k)
+                        and overlap(box, p, k)
                     ):
                         if count < room:
                             other[count] = k

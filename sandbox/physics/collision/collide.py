@@ -24,8 +24,18 @@ from sandbox.physics.collision.broad_phase import (
 from sandbox.physics.collision.contacts import bound_solids, carry_over, fill_boxes, find_contacts, find_terrain
 from sandbox.physics.collision.inversion import Inversions, Triangles, find_inverted, new_inversions, triangles_of
 from sandbox.physics.collision.outline import Outline, colliders_of, outline_of
+from sandbox.physics.collision.overlaps import (
+    CROSSINGS,
+    OVERLAPS,
+    Overlaps,
+    find_crossings,
+    new_overlaps,
+    pair_overlaps,
+)
+from sandbox.physics.collision.parting import MovedParticles, part_overlaps
 from sandbox.physics.collision.restitution import find_bounces
 from sandbox.physics.collision.terrain_clamp import clamp_at_terrain
+from sandbox.physics.collision.turning import SURFACE_WEIGHT, load_arms
 from sandbox.physics.collision.types import (
     NO_CONTACTS,
     NOTHING_KEPT,
@@ -39,7 +49,7 @@ from sandbox.physics.collision.types import (
     room_to_keep,
 )
 from sandbox.physics.forces import Forces, add_gravity_and_air
-from sandbox.physics.integrate import advance, follow
+from sandbox.physics.integrate import advance, follow, turn
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
 from sandbox.physics.solvers.contact.free_contacts import Work, new_work, solve_free_contacts
 from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, new_islands, sort_free_contacts
@@ -50,8 +60,9 @@ from sandbox.physics.world import World
 # What a step may find before it asks for more room, at least; and by how much more than it needs it then gets.
 LEAST_ROOM = 64
 MORE_ROOM = 2
-# Places in `counts`: contacts of the present step and of the last, entries of the grid, pairs by boxes, with terrain.
-CONTACTS, KEPT, ENTRIES, PAIRS, TERRAIN_PAIRS = range(5)
+# Places in `counts`: contacts of the present step and of the last, entries of the grid, pairs by boxes, with terrain,
+# crossings of outlines, pairs of shapes that overlap.
+CONTACTS, KEPT, ENTRIES, PAIRS, TERRAIN_PAIRS, CROSSED, OVERLAPPING = range(7)
 # What `_collide` returns where there is too little room.
 NO_ROOM = -1
 
@@ -63,6 +74,7 @@ class CollidingParticles(NamedTuple):
     velocity: Floats
     slow_velocity: Floats
     origin: Floats
+    mass: Floats
     inverse_mass: Floats
     radius: Floats
     friction: Floats
@@ -70,11 +82,20 @@ class CollidingParticles(NamedTuple):
     group: Slots
     collides: Slots
     particle_active: Flags
+    energy_bank: Floats
+    parting_reserve: Floats
+    angle: Floats
+    spin: Floats
+    rolls: Flags
+    rolling: Floats
     constraint_rest: Floats
 
 
 class CollisionRoom(NamedTuple):
-    """What a step fills in. bounds (k, 5): see bound_solids. bound: the contacts that are left to a solver."""
+    """What a step fills in. bounds (k, 5): see bound_solids. bound: the contacts that are left to a solver.
+
+    moved (n,): scratch.
+    """
 
     boxes: Boxes
     grid: Grid
@@ -88,11 +109,13 @@ class CollisionRoom(NamedTuple):
     islands: Islands
     work: Work
     inversions: Inversions
+    overlaps: Overlaps
+    moved: Flags
     counts: Slots
 
 
 @inner_kernel
-def _load_particles(particles: CollidingParticles, colliders: Colliders) -> None:
+def _load_particles(particles: CollidingParticles, held: Flags, colliders: Colliders) -> None:
     for p in range(particles.radius.shape[0]):
         for axis in range(2):
             colliders.position[p, axis] = particles.position[p, axis]
@@ -104,6 +127,9 @@ def _load_particles(particles: CollidingParticles, colliders: Colliders) -> None
         colliders.group[p] = particles.group[p]
         colliders.collides[p] = particles.collides[p] if particles.particle_active[p] else 0
         colliders.inverse_mass[p] = particles.inverse_mass[p]
+        colliders.rolling[p] = particles.rolling[p]
+        turns = particles.rolls[p] and not held[p] and particles.radius[p] > 0.0
+        colliders.turning[p] = SURFACE_WEIGHT * particles.inverse_mass[p] if turns else 0.0
 
 
 @kernel
@@ -114,12 +140,23 @@ def _bound_terrain(items: Any) -> None:
 
 
 @inner_kernel
+def _find_overlaps(outline: Outline, colliders: Colliders, room: CollisionRoom, larges: int) -> bool:
+    # Which bodies part in this step; whether there is room for them.
+    overlaps = room.overlaps
+    room.counts[CROSSED] = find_crossings(room.boxes, room.grid, larges, colliders, outline, overlaps)
+    if overlaps.counts[CROSSINGS] > overlaps.edge.shape[0]:
+        return False
+    room.counts[OVERLAPPING] = pair_overlaps(colliders, outline, room.bounds, overlaps)
+    return room.counts[OVERLAPPING] <= overlaps.shape.shape[0]
+
+
+@inner_kernel
 def _detect(
     particles: CollidingParticles, outline: Outline, terrain: Terrain, triangles: Triangles, colliders: Colliders,
     room: CollisionRoom, tick: int, h: float,
 ) -> int:  # fmt: skip
     # Broad and narrow phase: the contacts of the step, but for bounces and impulses; their number, or NO_ROOM.
-    _load_particles(particles, colliders)
+    _load_particles(particles, outline.held, colliders)
     if triangles.constraint.shape[0] > 0:
         find_inverted(
             particles.position, particles.constraint_rest, triangles, room.inversions, colliders.inverted
@@ -135,6 +172,8 @@ def _detect(
     if room.counts[PAIRS] > room.pairs.other.shape[0] or room.counts[TERRAIN_PAIRS] > room.terrain_pairs.other.shape[0]:
         return NO_ROOM
     bound_solids(colliders, outline, 0, outline.dynamic[1], room.bounds)
+    if not _find_overlaps(outline, colliders, room, larges):
+        return NO_ROOM
     count = find_contacts(
         colliders, outline, room.pairs, room.terrain_pairs, room.bounds, room.near, room.kept, room.counts[KEPT], tick,
         h, room.contacts,
@@ -158,6 +197,7 @@ def _copy_bound(contacts: Contacts, count: int, bound: Flags, to: Contacts) -> N
             to.friction[k] = contacts.friction[c]
             to.restitution[k] = contacts.restitution[c]
             to.bounce[k] = contacts.bounce[c]
+            to.rolling[k] = contacts.rolling[c]
             for axis in range(2):
                 to.normal[k, axis] = contacts.normal[c, axis]
                 to.impulse[k, axis] = contacts.impulse[c, axis]
@@ -174,21 +214,30 @@ def _before_solver(
     if count == NO_ROOM:
         return count
     contacts = room.contacts
+    if room.overlaps.counts[OVERLAPS] > 0:
+        moved = MovedParticles(
+            particles.velocity, start, particles.mass, particles.inverse_mass, particles.energy_bank,
+            particles.parting_reserve,
+        )  # fmt: skip
+        part_overlaps(outline, colliders, room.bounds, moved, room.overlaps, room.moved)
     find_bounces(contacts, count, start, particles.velocity, h)
     carry_over(contacts, count, room.kept, room.counts[KEPT])
     bound = find_islands(contacts, count, particles.inverse_mass, outline.held, room.islands)
     found = sort_free_contacts(count, room.islands) if bound < count else 0
     solve_free_contacts(
-        contacts, room.islands, found, particles.inverse_mass, particles.radius, start, particles.velocity, h, room.work
+        contacts, room.islands, found, colliders, start, particles.velocity, particles.spin, h, room.work
     )
     if bound > 0:
         _copy_bound(contacts, count, room.islands.bound, room.bound)
+        load_arms(room.bound, bound, colliders)
     return bound
 
 
 @inner_kernel
-def _after_solver(particles: CollidingParticles, terrain: Terrain, room: CollisionRoom, h: float) -> int:
-    # Keep the contacts, clamp at terrain, move; how many contacts there are.
+def _after_solver(
+    particles: CollidingParticles, terrain: Terrain, room: CollisionRoom, moves: bool, h: float
+) -> int:  # fmt: skip
+    # Keep the contacts, clamp at terrain, move if asked to; how many contacts there are.
     contacts = room.contacts
     count = room.counts[CONTACTS]
     k = 0
@@ -210,7 +259,9 @@ def _after_solver(particles: CollidingParticles, terrain: Terrain, room: Collisi
     for p in range(ahead.shape[0]):
         particles.position[p, 0] += ahead[p, 0]
         particles.position[p, 1] += ahead[p, 1]
-    advance(particles.position, particles.velocity, particles.particle_active, h)
+    if moves:
+        advance(particles.position, particles.velocity, particles.particle_active, h)
+        turn(particles.angle, particles.spin, h)
     return count
 
 
@@ -234,16 +285,16 @@ def _collide(items: Any, forces: Any, first: int, last: int, follows: bool, tick
             return substep
         if follows:
             follow(particles.velocity, particles.slow_velocity, particles.particle_active)
-        _after_solver(particles, terrain, room, h)
+        _after_solver(particles, terrain, room, True, h)
         substep += 1
         if substep == last:
             return substep
 
 
 @kernel
-def _finish(items: Any, h: float) -> int:
+def _finish(items: Any, moves: bool, h: float) -> int:
     particles, _, terrain, _, _, room = contents(items)
-    return _after_solver(particles, terrain, room, h)
+    return _after_solver(particles, terrain, room, moves, h)
 
 
 @dataclass(eq=False)
@@ -305,9 +356,12 @@ class Collisions:
             done = _collide(self.items, forces.items, done, substeps, follows, tick, h)
         self.count = int(self.room.counts[KEPT])
 
-    def finish(self, h: float) -> None:
-        """Keep a step's contacts with their impulses, stop what would cross terrain, and move particles over h [s]."""
-        self.count = _finish(self.items, h)
+    def finish(self, h: float, moves: bool) -> None:
+        """Keep a step's contacts with their impulses, stop what would cross terrain, and move particles over h [s].
+
+        moves: False leaves the last to what follows.
+        """
+        self.count = _finish(self.items, moves, h)
 
     def end(self, world: World) -> None:
         """Make the contacts of a tick's last step those of the world's state."""
@@ -325,26 +379,32 @@ def _make_collisions(world: World) -> Collisions | None:
         return None
     outline, triangles = outline_of(world), triangles_of(world)
     particles = CollidingParticles._make([getattr(world, name) for name in CollidingParticles._fields])
-    wanted = np.full(5, len(world.contact_particle))
+    wanted = np.full(7, len(world.contact_particle))
+    wanted[[CROSSED, OVERLAPPING]] = 0
     wanted[ENTRIES] = world.particle_count
     made = Collisions(
-        particles, outline, world.terrain, triangles, colliders_of(world, outline),
+        particles, outline, world.terrain, triangles, colliders_of(world, outline, _room(wanted)[OVERLAPPING]),
         _make_room(outline, triangles, wanted), not outline.held.any(), wanted, None,
     )  # fmt: skip
     _bundle_up(made)
     return made
 
 
+def _room(wanted: Slots) -> list[int]:
+    return (MORE_ROOM * wanted + LEAST_ROOM).tolist()
+
+
 def _make_room(outline: Outline, triangles: Triangles, wanted: Slots) -> CollisionRoom:
     particles = len(outline.held)
     objects = particles + int(outline.dynamic[0])
-    contacts, kept, entries, pairs, terrain_pairs = (MORE_ROOM * wanted + LEAST_ROOM).tolist()
+    contacts, kept, entries, pairs, terrain_pairs, crossings, overlaps = _room(wanted)
     contacts = max(contacts, kept)
     return CollisionRoom(
         new_boxes(particles, objects), new_grid(objects, entries), new_pairs(particles, pairs),
         new_pairs(particles, terrain_pairs), np.zeros((len(outline.solid), 5)), room_near(), room_for(contacts),
         room_for(contacts), room_to_keep(contacts), new_islands(particles, contacts), new_work(particles, contacts),
-        new_inversions(triangles), np.zeros(5, np.int64),
+        new_inversions(triangles), new_overlaps(len(outline.solid_of), crossings, overlaps),
+        np.zeros(particles, np.bool_), np.zeros(7, np.int64),
     )  # fmt: skip
 
 
@@ -358,6 +418,8 @@ def _grow(collisions: Collisions) -> None:
     old = collisions.room
     collisions.wanted = np.maximum(collisions.wanted, old.counts)
     collisions.room = _make_room(collisions.outline, collisions.triangles, collisions.wanted)
+    parted = np.zeros_like(collisions.room.overlaps.shape)
+    collisions.colliders = collisions.colliders._replace(parted=parted)
     collisions.room.counts[:] = old.counts
     count = len(old.kept.particle)
     new = collisions.room.kept

@@ -1,7 +1,7 @@
 """Inversion: which jellies are so out of shape that springs and areas alone may not find back.
 
-A jelly is a group of triangles that share sides. It is inverted while a triangle of it is turned over, or while the
-triangles about one of its inner particles do not wind round that particle just once.
+A jelly is a group of triangles that share sides. It is inverted while a triangle of it is turned over, or drawn out to
+LARGEST times its area, or while the triangles about one of its inner particles do not wind round that just once.
 """
 
 from typing import NamedTuple
@@ -14,6 +14,11 @@ from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.world import World
+
+# A jelly of which a triangle is drawn out to so many times its area wants to be back in a step, and cannot be without
+# turning others over on its way: held from that, it would stand still. The softest jelly comes to a hundredth of it
+# when it is stirred at 80 m/s.
+LARGEST = 1e4
 
 
 class Jellies(NamedTuple):
@@ -96,6 +101,12 @@ class Inversions(NamedTuple):
     is_inverted: Flags
 
 
+@inlined_kernel
+def is_out_of_shape(area: float, wanted: float, form: float) -> bool:
+    """Whether a triangle of this area [m^2], which wants and at rest has those, is turned over or drawn out."""
+    return wanted * form > 0.0 and not 0.0 < area * wanted < LARGEST * wanted * wanted
+
+
 @inner_kernel
 def find_inverted(
     position: Floats, constraint_rest: Floats, triangles: Triangles, found: Inversions, inverted: Flags
@@ -109,9 +120,9 @@ def find_inverted(
     for g in range(found.is_inverted.shape[0]):
         found.is_inverted[g] = False
     for t in range(corners.shape[0]):
-        area = wind(position, corners[t, 0], corners[t, 1], corners[t, 2], jellies.member, t, turns)
-        wanted = constraint_rest[triangles.constraint[t], 0]
-        if wanted * constraint_rest[triangles.constraint[t], 1] > 0.0 and not area * wanted > 0.0:
+        doubled = wind(position, corners[t, 0], corners[t, 1], corners[t, 2], jellies.member, t, turns)
+        k = triangles.constraint[t]
+        if is_out_of_shape(0.5 * doubled, constraint_rest[k, 0], constraint_rest[k, 1]):
             found.is_inverted[jellies.group[t]] = True
     for i in range(turns.shape[0]):
         inverted[jellies.particle[i]] = False

@@ -23,10 +23,25 @@ OWN_REACH = 2.0
 DISC, EDGE, TERRAIN = 0, 1, 2
 
 
+@inner_kernel
+def are_parting(p: int, v: int, colliders: Colliders) -> bool:
+    """Whether the shapes of two vertices part in this step (overlaps.py)."""
+    s = min(colliders.shape[p], colliders.shape[v])
+    t = max(colliders.shape[p], colliders.shape[v])
+    for pair in range(colliders.parted_count[0]):
+        if colliders.parted[pair, 0] == s and colliders.parted[pair, 1] == t:
+            return True
+    return False
+
+
 @inlined_kernel
 def may_collide(p: int, v: int, colliders: Colliders) -> bool:
-    """Whether the groups of two vertices let them touch."""
-    return colliders.collides[p] & colliders.group[v] != 0 and colliders.collides[v] & colliders.group[p] != 0
+    """Whether the groups of two vertices let them touch, and they are not to part."""
+    return (
+        colliders.collides[p] & colliders.group[v] != 0
+        and colliders.collides[v] & colliders.group[p] != 0
+        and not (colliders.parting[p] and colliders.parting[v] and are_parting(p, v, colliders))
+    )
 
 
 @inlined_kernel
@@ -67,6 +82,7 @@ def add_contact(
         # Friction: the geometric mean, so that ice is slippery for all; restitution: the livelier of the two.
         contacts.friction[count] = math.sqrt(colliders.friction[p] * colliders.friction[surface])
         contacts.restitution[count] = max(colliders.restitution[p], colliders.restitution[surface])
+        contacts.rolling[count] = max(colliders.rolling[p], colliders.rolling[surface])
     return count + 1
 
 
@@ -81,6 +97,8 @@ def collide_disc(p: int, q: int, h: float, colliders: Colliders, contacts: Conta
     dy = colliders.position[p, 1] - colliders.position[q, 1]
     wx = h * (colliders.velocity[p, 0] - colliders.velocity[q, 0])
     wy = h * (colliders.velocity[p, 1] - colliders.velocity[q, 1])
+    if _is_corner_before(p, dx, dy, colliders):
+        return count
     reach = colliders.radius[p] + colliders.radius[q]
     distance = math.sqrt(dx * dx + dy * dy)
     travel = math.sqrt(wx * wx + wy * wy)
@@ -102,6 +120,16 @@ def collide_disc(p: int, q: int, h: float, colliders: Colliders, contacts: Conta
             nx = 0.0
             ny = 1.0
     return add_contact(count, contacts, p, 3 * q + DISC, q, -1, 0.0, nx, ny, gap, q, colliders)
+
+
+@inner_kernel
+def _is_corner_before(p: int, dx: float, dy: float, colliders: Colliders) -> bool:
+    # Whether p is a corner of a solid body, and looks towards d: what lies behind it is inside, and edges push it out.
+    for at in range(colliders.edge_start[p], colliders.edge_start[p + 1]):
+        if colliders.side[colliders.edge_of[at]] != 0:
+            nx, ny = _corner_normal(p, colliders)
+            return nx * dx + ny * dy > 0.0
+    return False
 
 
 @inlined_kernel
@@ -173,8 +201,8 @@ def closest(p: int, a: int, b: int, position: Floats) -> tuple[float, float, flo
 
 
 @inner_kernel
-def _edge_normal(e: int, colliders: Colliders) -> tuple[float, float]:
-    # Unit normal on the right of the edge, away from what is solid.
+def edge_normal(e: int, colliders: Colliders) -> tuple[float, float]:
+    """Unit normal on the right of the edge, away from what is solid."""
     dx = colliders.position[colliders.edge_b[e], 0] - colliders.position[colliders.edge_a[e], 0]
     dy = colliders.position[colliders.edge_b[e], 1] - colliders.position[colliders.edge_a[e], 1]
     length = math.sqrt(dx * dx + dy * dy)
@@ -215,7 +243,7 @@ def _corner_normal(v: int, colliders: Colliders) -> tuple[float, float]:
     for at in range(colliders.edge_start[v], colliders.edge_start[v + 1]):
         e = colliders.edge_of[at]
         if colliders.side[e] != 0:
-            ex, ey = _edge_normal(e, colliders)
+            ex, ey = edge_normal(e, colliders)
             nx += ex
             ny += ey
     length = math.sqrt(nx * nx + ny * ny)
@@ -225,9 +253,9 @@ def _corner_normal(v: int, colliders: Colliders) -> tuple[float, float]:
 
 
 @inner_kernel
-def _winds(x: float, y: float, first: int, last: int, colliders: Colliders) -> int:
-    # How often solid edges run round a place: a ray to the right crosses one that has it on its left going up, or on
-    # its right going down.
+def winds(x: float, y: float, first: int, last: int, colliders: Colliders) -> int:
+    """How often solid edges first..last run round a place."""
+    # A ray to the right crosses one that has it on its left going up, or on its right going down.
     winding = 0
     for e in range(first, last):
         a = colliders.edge_a[e]
@@ -248,7 +276,7 @@ def _winds(x: float, y: float, first: int, last: int, colliders: Colliders) -> i
 @inner_kernel
 def is_enclosed(p: int, k: int, solid: Slots, bounds: Floats, colliders: Colliders) -> bool:
     """Whether particle p is inside the solid edges of span k."""
-    winding = _winds(colliders.position[p, 0], colliders.position[p, 1], solid[k, 0], solid[k, 1], colliders)
+    winding = winds(colliders.position[p, 0], colliders.position[p, 1], solid[k, 0], solid[k, 1], colliders)
     # A hollow chain runs the other way round: nothing is counted outside it, -1 inside.
     return winding == 0 if bounds[k, 4] > 0.0 else winding > 0
 
@@ -326,7 +354,7 @@ def push_out(
     count: int,
 ) -> int:
     """Contact of a particle inside a solid body with the edge that is nearest; the number of contacts then."""
-    nx, ny = _edge_normal(e, colliders)
+    nx, ny = edge_normal(e, colliders)
     if region != 0:
         nx, ny = _corner_normal(_end_of(e, region, colliders), colliders)
     reach = colliders.radius[p] + colliders.radius[colliders.edge_a[e]]
@@ -397,7 +425,7 @@ def _collide_outside(
                 nx = (colliders.position[p, 0] - _along(e, near.share[j], 0, colliders)) / near.distance[j]
                 ny = (colliders.position[p, 1] - _along(e, near.share[j], 1, colliders)) / near.distance[j]
             else:
-                nx, ny = _edge_normal(e, colliders)
+                nx, ny = edge_normal(e, colliders)
             count = _add_edge(p, e, near.share[j], nx, ny, gap, colliders, dynamic, contacts, count)
         elif fast:
             when, share, nx, ny, gap = _sweep_edge(p, e, wx, wy, reach, near.signed[j], colliders)
@@ -419,7 +447,7 @@ def _sweep_edge(
     p: int, e: int, wx: float, wy: float, reach: float, signed: float, colliders: Colliders
 ) -> tuple[float, float, float, float, float]:
     # Where the way w of a particle first comes within reach of an edge: when (2: never), share, normal, gap.
-    nx, ny = _edge_normal(e, colliders)
+    nx, ny = edge_normal(e, colliders)
     if colliders.side[e] == 0 and signed < 0.0:
         nx, ny, signed = -nx, -ny, -signed
     approach = -(wx * nx + wy * ny)

@@ -19,7 +19,9 @@ class Outline(NamedTuple):
 
     shielded: particles inside a solid body that no torn spring lays bare; discs do not hit them. held (n,): particles
     that a spring or a constraint holds. solid (k, 2): first edge and one past the last of each owner's edges where any
-    is solid, terrain's last. dynamic (2,): edges of bodies, and how many of those in solid are bodies'.
+    is solid, terrain's last. dynamic (2,): edges of bodies, and how many of those in solid are bodies'. Shapes are the
+    owners of edges of bodies, in the order of their edges: shape, by vertex, -1: none; solid_of = by shape, the row of
+    solid, -1: lines alone; particles of shape s: member[member_start[s]:member_start[s + 1]].
     """
 
     edge_a: Slots
@@ -35,6 +37,10 @@ class Outline(NamedTuple):
     shielded: Flags
     held: Flags
     dynamic: Slots
+    shape: Slots
+    solid_of: Slots
+    member_start: Slots
+    member: Slots
 
 
 def outline_of(world: World) -> Outline:
@@ -73,7 +79,22 @@ def _make_outline(world: World) -> Outline:
         _shielded(world, chosen),
         held,
         np.array([len(chosen), np.count_nonzero(solid[:, 0] < len(chosen))]),
+        *_shapes(world, owner, a, solid),
     )
+
+
+def _shapes(world: World, owner: Slots, edge_a: Slots, solid: Slots) -> tuple[Slots, Slots, Slots, Slots]:
+    """The shapes of an outline whose edges of bodies begin at edge_a: see Outline."""
+    owners = owner[edge_a][np.sort(np.unique(owner[edge_a], return_index=True)[1])] if len(edge_a) else edge_a
+    order = np.argsort(owners, kind="stable")
+    found = np.searchsorted(owners[order], owner)
+    found = np.append(order, -1)[np.minimum(found, len(owners))]
+    shape = np.where(np.append(owners, 0)[found] == owner, found, -1) if len(owners) else np.full(len(owner), -1)
+    solid_of = np.full(len(owners), -1)
+    first = solid[solid[:, 0] < len(edge_a), 0]
+    solid_of[shape[edge_a[first]]] = np.arange(len(first))
+    members = np.flatnonzero(world.particle_active & (shape[: world.particle_count] >= 0))
+    return shape, solid_of, *_listed(shape[members], members, len(owners))
 
 
 def _sides(solid: Flags, a: Slots, b: Slots, owner: Slots) -> Slots:
@@ -111,18 +132,22 @@ def _solid(owner: Slots, side: Slots) -> Slots:
     return spans[[bool(side[first:last].any()) for first, last in spans.tolist()]] if len(spans) else spans
 
 
-def colliders_of(world: World, outline: Outline) -> Colliders:
-    """The colliders of an outline: terrain is filled in, what is known of particles is left to each tick and step."""
+def colliders_of(world: World, outline: Outline, pairs: int) -> Colliders:
+    """The colliders of an outline: terrain is filled in, what is known of particles is left to each tick and step.
+
+    pairs: room for so many pairs of shapes that part.
+    """
     terrain, count = world.terrain, world.particle_count
     total = count + len(terrain.vertex)
     position, velocity, origin = np.zeros((3, total, 2))
-    radius, friction, restitution, inverse_mass = np.zeros((4, total))
+    radius, friction, restitution, inverse_mass, turning, rolling = np.zeros((6, total))
     group, collides = np.full(total, TERRAIN_GROUP), np.full(total, ALL_GROUPS)
     position[count:] = origin[count:] = terrain.vertex
     for ends in (terrain.edge_a, terrain.edge_b):
         friction[count + ends], restitution[count + ends] = terrain.friction, terrain.restitution
     return Colliders(
         position, velocity, origin, radius, friction, restitution, outline.owner, group, collides, inverse_mass,
-        outline.edge_a, outline.edge_b, outline.side, outline.number, outline.edge_start, outline.edge_of,
-        outline.near_start, outline.near_of, outline.shielded, np.zeros(total, np.bool_),
+        turning, rolling, outline.edge_a, outline.edge_b, outline.side, outline.number, outline.edge_start,
+        outline.edge_of, outline.near_start, outline.near_of, outline.shielded, np.zeros(total, np.bool_),
+        outline.shape, np.zeros(total, np.bool_), np.zeros((pairs, 2), np.int64), np.zeros(1, np.int64),
     )  # fmt: skip

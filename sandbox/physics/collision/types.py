@@ -18,9 +18,12 @@ class Colliders(NamedTuple):
     """What can collide: particles, then the vertices of terrain; edges between them, then those of terrain.
 
     By vertex: position [m], velocity [m/s], origin [m], radius [m], friction, restitution, owner, group, collides,
-    inverse_mass [1/kg]. By edge: edge_a, edge_b, side (1: solid on the left, 0: two sides), number = its spring, or of
+    inverse_mass [1/kg], turning [1/kg] = the weight of its surface (turning.py), 0: it does not turn, rolling. By edge:
+    edge_a, edge_b, side (1: solid on the left, 0: two sides), number = its spring, or of
     terrain. Edges of vertex v: edge_of[edge_start[v]:edge_start[v + 1]]; particles that a spring joins to p: near_of
     likewise. shielded (n,): see outline.py. inverted, by vertex: whether its body is now, and so does not touch itself.
+    shape, by vertex: the number of the outline of its owner, -1: none. parting, by vertex: whether it does not touch
+    shapes that its own parts from; parted (k, 2): these pairs of shapes, the lower first, parted_count (1,) of them.
     """
 
     position: Floats
@@ -33,6 +36,8 @@ class Colliders(NamedTuple):
     group: Slots
     collides: Slots
     inverse_mass: Floats
+    turning: Floats
+    rolling: Floats
     edge_a: Slots
     edge_b: Slots
     side: Slots
@@ -43,6 +48,10 @@ class Colliders(NamedTuple):
     near_of: Slots
     shielded: Flags
     inverted: Flags
+    shape: Slots
+    parting: Flags
+    parted: Slots
+    parted_count: Slots
 
 
 class Near(NamedTuple):
@@ -61,6 +70,10 @@ class Contacts(NamedTuple):
     end_a, end_b: the other disc and -1, or the ends of an edge; -1, -1: terrain. share: place along the edge. normal:
     towards the particle. gap [m], below 0: penetration; bounce [m/s]: the velocity along the normal that is left where
     it bounces, below 0: it does not; impulse [N s] (k, 2) along normal and tangent.
+
+    Of its particle and of the other disc (k, 2): turning [1/kg], arm = that of friction over the radius, ratio = the
+    smaller radius over its own; and their rolling resistance. couple (k, 2): what an impulse across does to an edge as
+    well, on whose surface it acts: that times the impulse is added to end_a and taken from end_b.
     """
 
     particle: Slots
@@ -74,6 +87,11 @@ class Contacts(NamedTuple):
     restitution: Floats
     bounce: Floats
     impulse: Floats
+    turning: Floats
+    arm: Floats
+    ratio: Floats
+    rolling: Floats
+    couple: Floats
 
 
 class KeptContacts(NamedTuple):
@@ -97,10 +115,13 @@ def weight_of(contacts: Contacts, c: int, end: int) -> tuple[int, float]:
 
 def room_for(count: int) -> Contacts:
     """Contacts to be filled in."""
-    slots, numbers, pairs = np.zeros((4, count), dtype=np.int64), np.zeros((5, count)), np.zeros((2, count, 2))
-    gap, friction, restitution, bounce, share = numbers
+    slots, numbers, pairs = np.zeros((4, count), dtype=np.int64), np.zeros((6, count)), np.zeros((6, count, 2))
+    gap, friction, restitution, bounce, share, rolling = numbers
     particle, feature, end_a, end_b = slots
-    return Contacts(particle, feature, end_a, end_b, share, pairs[0], gap, friction, restitution, bounce, pairs[1])
+    return Contacts(
+        particle, feature, end_a, end_b, share, pairs[0], gap, friction, restitution, bounce, pairs[1], pairs[2],
+        pairs[3], pairs[4], rolling, pairs[5],
+    )  # fmt: skip
 
 
 def room_to_keep(count: int) -> KeptContacts:

@@ -125,7 +125,6 @@ class KernelCache(caching.NullCache):
             _keep(begin, begin + end, content)
 
     def _find(self, sig: Any, target_context: Any) -> Any:
-        target_context.refresh()
         for processor in _processors(target_context):
             name = "".join(self._file_names(sig, processor))
             for folder in cache_folders():

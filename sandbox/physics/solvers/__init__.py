@@ -21,13 +21,16 @@ class Solver:
 
     proven_limit: whether the limits of `stability` hold for it. bounded: whether it needs none, because it tests the
     energy of every step. follows: whether it keeps the slow part of velocities, which is all that it does to particles
-    that nothing holds.
+    that nothing holds. carries: whether what joints give, such as a motor's torque, carries wheels under a load.
+    has_floors: whether it holds triangles from outside, with an energy of its own.
     """
 
     module: str
     proven_limit: bool
     bounded: bool
     follows: bool = False
+    carries: bool = True
+    has_floors: bool = False
 
     @cached_property
     def solve(self) -> "Callable[[World, Substep, Contacts | None], None]":
@@ -48,7 +51,7 @@ class Solver:
 
 
 SOLVERS = {
-    "single_pass": Solver("single_pass", proven_limit=True, bounded=False),
+    "single_pass": Solver("single_pass", proven_limit=True, bounded=False, carries=False),
     "iterative": Solver("iterative", proven_limit=False, bounded=False),
-    "direct": Solver("direct.solve", proven_limit=False, bounded=True, follows=True),
+    "direct": Solver("direct.solve", proven_limit=False, bounded=True, follows=True, has_floors=True),
 }

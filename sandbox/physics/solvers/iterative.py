@@ -4,24 +4,27 @@ No proven limit. Only springs are warm-started. Hooke springs are no constraints
 iterations. Source: Nissen's demo programs after the article.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from sandbox.physics.collision.types import NO_CONTACTS, Contacts, Flags
 from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, constraint_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
-from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
+from sandbox.physics.joints.joint_set import joints_of
+from sandbox.physics.joints.joint_sweep import iterate_joints, joints_by_mass, no_joints, start_masses
+from sandbox.physics.joints.limited_springs import unlimited_active
 from sandbox.physics.solvers.contact.gauss_seidel import (
     ContactTerms,
-    Delassus,
     add_change,
     load_biases,
     load_responses,
-    new_terms,
     no_blocks,
     start_impulses,
+    store_spins,
     sweep,
+    terms_of,
 )
 from sandbox.physics.solvers.single_pass import Ends, Particles, apply_explicit, ends_of, particles_of
 from sandbox.physics.substeps import Substep
@@ -185,19 +188,27 @@ def _iterate_springs(count: int, inverse_mass: Floats, ends: Ends, pulling: Pull
 @kernel
 def _iterate(
     particles: Particles, ends: Ends, active: Flags, pulling: Pulling, constraints: ConstraintArrays, wanted: Wanted,
-    contacts: Contacts, terms: ContactTerms, delassus: Delassus, iterations: int, warm_start: float, h: float,
+    contacts: Contacts, terms: ContactTerms, lent_masses: Any, iterations: int, warm_start: float, h: float,
 ) -> None:  # fmt: skip
+    (delassus,) = contents(lent_masses)
     velocity, inverse_mass, change = particles.velocity, particles.inverse_mass, pulling.change
     count = _prepare_springs(particles, ends, active, warm_start, h, pulling)
     _prepare_constraints(particles, constraints, h, wanted)
     load_biases(contacts, terms, h)
     load_responses(contacts, terms, inverse_mass, delassus)
-    start_impulses(contacts, change, inverse_mass, delassus)
+    start_impulses(contacts, terms, change, inverse_mass, delassus)
+    start_masses(delassus.joints, change, inverse_mass)
     for _ in range(iterations):
         _iterate_springs(count, inverse_mass, ends, pulling)
         _iterate_constraints(inverse_mass, constraints, wanted, change)
+        iterate_joints(delassus.joints, velocity, change, inverse_mass)
         sweep(contacts, terms, velocity, change, inverse_mass, delassus)
     add_change(velocity, change, inverse_mass)
+
+
+def _lent_masses(world: World) -> Any:
+    joints = joints_of(world)
+    return bundle((no_blocks(world.particle_count, no_joints() if joints is None else joints_by_mass(joints.rows)),))
 
 
 spring_constant = explicit_spring_constant
@@ -208,7 +219,6 @@ def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
     hooke = world.spring_active & (world.law == LAW_HOOKE)
     if hooke.any():
         apply_explicit(world, hooke, substep.springs, substep.h)
-    delassus = no_blocks(0 if contacts is None else world.particle_count)
     contacts = NO_CONTACTS if contacts is None else contacts
     count, settings = world.spring_count, world.settings
     change = np.zeros((world.particle_count, 2))
@@ -218,7 +228,9 @@ def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
     wanted = Wanted(
         *substep.constraints, *np.zeros((2, len(world.corner_particle), 2)), *np.zeros((5, world.constraint_count))
     )
+    terms = terms_of(world, contacts)
     _iterate(
-        particles_of(world), ends_of(world, substep.springs), world.spring_active, pulling, world.constraints, wanted,
-        contacts, new_terms(len(contacts.particle)), delassus, settings.iterations, settings.warm_start, substep.h,
+        particles_of(world), ends_of(world, substep.springs), unlimited_active(world), pulling, world.constraints,
+        wanted, contacts, terms, world.derived(_lent_masses), settings.iterations, settings.warm_start, substep.h,
     )  # fmt: skip
+    store_spins(world, terms)

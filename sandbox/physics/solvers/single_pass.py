@@ -1,9 +1,11 @@
 """Single pass: every spring and constraint evaluated once on the old velocities, the impulses summed (Nissen 2019).
 
-Stable for Cs = Cd < 4 / (3 n_eff), see stability.py; never stiff.
+Stable for Cs = Cd < 4 / (3 n_eff), see stability.py; never stiff. Joints are springs of it as well: what they are
+clamped at carries only what springs as soft as these pass on, no wheel under a load.
 """
 
-from typing import NamedTuple
+import math
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +13,17 @@ from numpy.typing import NDArray
 from sandbox.physics.collision.types import Contacts
 from sandbox.physics.constraints import ConstraintArrays, constraint_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
-from sandbox.physics.jit import kernel
+from sandbox.physics.jit import bundle, contents, kernel
+from sandbox.physics.joints.joint_set import joints_of
+from sandbox.physics.joints.joint_sweep import Joints, couple_masses, iterate_joint, joints_by_mass
+from sandbox.physics.joints.limited_springs import force_limits
+from sandbox.physics.joints.rows import ALONE, FIRST_OF_TWO, clamped, row_velocity
 from sandbox.physics.substeps import Pair, Substep
 from sandbox.physics.world import Floats, World
+
+# Cs and Cd of a joint: (Cs + 2 Cd) n < 4 for n = 1, which leaves room for the springs of what it acts on.
+JOINT_STIFFNESS = 0.05
+JOINT_DAMPING = 0.5
 
 
 class Particles(NamedTuple):
@@ -25,7 +35,10 @@ class Particles(NamedTuple):
 
 
 class Ends(NamedTuple):
-    """What an explicit solver reads of springs (m,): see StateArrays; stiffness and damping of the substep."""
+    """What an explicit solver reads of springs (m,): see StateArrays; stiffness and damping of the substep.
+
+    limit [N]: the force that each gives at most.
+    """
 
     particle_a: NDArray[np.int32]
     particle_b: NDArray[np.int32]
@@ -35,6 +48,7 @@ class Ends(NamedTuple):
     law: NDArray[np.int8]
     hooke_stiffness: Floats
     hooke_damping: Floats
+    limit: Floats
 
 
 def particles_of(world: World) -> Particles:
@@ -46,7 +60,7 @@ def ends_of(world: World, springs: Pair) -> Ends:
     """The springs of a world as they are now, with their Cs and Cd in a substep."""
     return Ends(
         world.particle_a, world.particle_b, world.rest_length, *springs, world.law, world.hooke_stiffness,
-        world.hooke_damping,
+        world.hooke_damping, force_limits(world),
     )  # fmt: skip
 
 
@@ -92,6 +106,8 @@ def _explicit_pass(particles: Particles, ends: Ends, chosen: NDArray[np.bool_], 
             j = spring_impulse(ends.stiffness[s], ends.damping[s], x, u, mass, h)
         else:
             j = -(ends.hooke_stiffness[s] * x + ends.hooke_damping[s] * u) * h
+        if ends.limit[s] < math.inf:
+            j = clamped(j, ends.limit[s] * h)
         impulse[a, 0] -= j * nx
         impulse[a, 1] -= j * ny
         impulse[b, 0] += j * nx
@@ -117,16 +133,88 @@ def apply_explicit(
     _explicit_pass(particles, ends_of(world, springs), chosen, h, impulse)
 
 
+class ExplicitJoints(NamedTuple):
+    """Joints of the single pass, and scratch by row: effective mass = 1 / (g W g), 0: a hand's; impulse in this step.
+
+    rows.impulse is that of the spring part, -Cs m lag / h, whose lag runs on until the limit is reached.
+    """
+
+    joints: Joints
+    mass: Floats
+    given: Floats
+
+
+@kernel
+def _find_joint_impulses(lent: Any, velocity: Floats, inverse_mass: Floats, still: Floats) -> None:
+    # J = -(Cs lag / h + Cd (u - target)) m, the lag's part kept from step to step
+    (explicit,) = contents(lent)
+    rows = explicit.joints.rows
+    couple_masses(explicit.joints, inverse_mass)
+    for k in range(rows.limit.shape[0]):
+        response = explicit.joints.response[k, k]
+        explicit.mass[k] = 1.0 / response if response > 0.0 and rows.pair[k] == ALONE else 0.0
+        lag = rows.impulse[k] if rows.pair[k] == ALONE else 0.0
+        u = row_velocity(rows, k, velocity, still)
+        explicit.given[k] = clamped(lag - JOINT_DAMPING * (u - rows.target[k]) * explicit.mass[k], rows.limit[k])
+
+
+@kernel
+def _give_joint_impulses(lent: Any, velocity: Floats, inverse_mass: Floats, still: Floats) -> None:
+    (explicit,) = contents(lent)
+    joints, rows = explicit.joints, explicit.joints.rows
+    for k in range(rows.limit.shape[0]):
+        for e in range(rows.first[k], rows.first[k + 1]):
+            p = rows.particle[e]
+            velocity[p, 0] += rows.gradient[e, 0] * explicit.given[k] * inverse_mass[p]
+            velocity[p, 1] += rows.gradient[e, 1] * explicit.given[k] * inverse_mass[p]
+    # A hand comes last and has its velocity at once, as a pin that is moved: that is stable wherever the springs are.
+    for k in range(rows.limit.shape[0]):
+        if rows.pair[k] != ALONE:
+            rows.impulse[k] = 0.0
+    for k in range(rows.limit.shape[0]):
+        if rows.pair[k] == FIRST_OF_TWO:
+            iterate_joint(joints, k, still, velocity, inverse_mass)
+
+
+@kernel
+def _let_joints_follow(lent: Any, velocity: Floats, still: Floats) -> None:
+    # lag += h (u' - target)
+    (explicit,) = contents(lent)
+    rows = explicit.joints.rows
+    for k in range(rows.limit.shape[0]):
+        u = row_velocity(rows, k, velocity, still)
+        lag = rows.impulse[k] - JOINT_STIFFNESS * (u - rows.target[k]) * explicit.mass[k]
+        rows.impulse[k] = clamped(lag, rows.limit[k]) if rows.pair[k] == ALONE else rows.impulse[k]
+
+
+def _lent_joints(world: World) -> Any:
+    joints = joints_of(world)
+    if joints is None:
+        return None
+    count = len(joints.rows.limit)
+    return bundle((ExplicitJoints(joints_by_mass(joints.rows), np.zeros(count), np.zeros(count)),))
+
+
 spring_constant = explicit_spring_constant
 
 
 def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
-    """Bring the velocities to the end of a substep; contacts are swept after springs and constraints."""
+    """Bring the velocities to the end of a substep; contacts are swept after springs, constraints and joints."""
+    joints = world.derived(_lent_joints)
+    if joints is not None:
+        still = np.zeros((world.particle_count, 2))
+        _find_joint_impulses(joints, world.velocity, world.inverse_mass, still)
     apply_explicit(world, world.spring_active, substep.springs, substep.h, substep.constraints)
+    if joints is not None:
+        _give_joint_impulses(joints, world.velocity, world.inverse_mass, still)
     if contacts is not None:
-        from sandbox.physics.solvers.contact.gauss_seidel import new_terms, no_blocks, sweep_masses
+        from sandbox.physics.solvers.contact.gauss_seidel import lent_masses, store_spins, sweep_masses, terms_of
 
+        terms = terms_of(world, contacts)
         sweep_masses(
-            contacts, new_terms(len(contacts.particle)), world.velocity, np.zeros((world.particle_count, 2)),
-            world.inverse_mass, no_blocks(world.particle_count), world.settings.iterations, substep.h,
+            contacts, terms, world.velocity, np.zeros((world.particle_count, 2)),
+            world.inverse_mass, world.derived(lent_masses), world.settings.iterations, substep.h,
         )  # fmt: skip
+        store_spins(world, terms)
+    if joints is not None:
+        _let_joints_follow(joints, world.velocity, still)

@@ -11,6 +11,8 @@ from sandbox.session.commands.adding import AddParticle, AddSpring
 from sandbox.session.commands.command import COMMAND_TYPES, Command, CommandError, apply
 from sandbox.session.commands.cutting import CutSprings
 from sandbox.session.commands.driving import SetDrive
+from sandbox.session.commands.firmness import SetFirmness
+from sandbox.session.commands.freeing import Free
 from sandbox.session.commands.grabbing import Grab, MoveGrab, Release
 from sandbox.session.commands.history import Redo, Undo
 from sandbox.session.commands.inflation import SetInflation
@@ -25,6 +27,7 @@ __all__ = [
     "Command",
     "CommandError",
     "CutSprings",
+    "Free",
     "Grab",
     "MoveGrab",
     "Pin",
@@ -33,6 +36,7 @@ __all__ = [
     "SetAir",
     "SetCoefficients",
     "SetDrive",
+    "SetFirmness",
     "SetGravity",
     "SetInflation",
     "SetSolver",

@@ -6,22 +6,32 @@ from typing import Annotated
 
 from pydantic import Field
 
-from sandbox.level.format.quantities import Point
-from sandbox.physics.world import GRAB_COUNT, World
+from sandbox.level.format.quantities import Length, Point
+from sandbox.physics.world import GRAB_COUNT, HAND_STRENGTH, World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot, particle_of
 
+# The strongest hand [m/s^2]: more than any body bears.
+STRONGEST_HAND = 1e6
 Hand = Annotated[int, Field(ge=0, lt=GRAB_COUNT)]
+# Largest force of a hand over the mass of the body that it holds [m/s^2].
+Strength = Annotated[float, Field(gt=0.0, le=STRONGEST_HAND)]
 
 
 @dataclass(frozen=True)
 class Grab(Command):
-    """Hold a particle with hand number `grab` (0..9) at target [m]."""
+    """Hold a particle with hand number `grab` (0..9) at target [m].
+
+    strength [m/s^2]: the hand pulls with at most this times the mass of the body. radius [m]: what of the body is
+    nearer to the particle bears the force with it, the nearer the more; 0 = it bears all of it.
+    """
 
     type = "grab"
     grab: Hand
     particle: ParticleSlot
     target: Point
+    strength: Strength = HAND_STRENGTH
+    radius: Length = 0.0
 
     def carry_out(self, world: World) -> None:
         name = particle_of(world, self.particle)
@@ -29,7 +39,7 @@ class Grab(Command):
             raise CommandError(f"hand {self.grab} holds something already")
         if world.inverse_mass[self.particle] == 0.0:
             raise CommandError(f"{name} is pinned: unpin it to drag it")
-        world.hold(self.grab, self.particle, self.target)
+        world.hold(self.grab, self.particle, self.target, self.strength, self.radius)
 
     def begins(self) -> Hashable:
         return "hand", self.grab

@@ -40,6 +40,10 @@ def _bodies(world: World) -> Sequence[str]:
     return world.area_names
 
 
+def _forms(world: World) -> Sequence[str]:
+    return [body.name for body in world.forms]
+
+
 def _materials(world: World) -> Sequence[str]:
     return world.material_names
 
@@ -49,6 +53,7 @@ ParticleSlot = Annotated[_Slot, Named("particle", lambda world: world.particle_n
 SpringSlot = Annotated[_Slot, Named("spring", lambda world: world.spring_names, World.spring_slot)]
 PartSlot = Annotated[_Slot, Named("driven part", _parts, _listed(_parts))]
 BodySlot = Annotated[_Slot, Named("body that keeps an area", _bodies, _listed(_bodies))]
+FormSlot = Annotated[_Slot, Named("body whose form may be stiff", _forms, _listed(_forms))]
 MaterialSlot = Annotated[_Slot, Named("material", _materials, _listed(_materials))]
 
 

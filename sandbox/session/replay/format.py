@@ -111,6 +111,8 @@ def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> S
     grab_particle = int(arrays["particle_a"][grab_spring]) if len(hands) else -1
     if len(hands) and grab_particle + GRAB_COUNT > len(arrays["mass"]):
         raise ValueError("state.particle_a: a hand has no particle of its own")
+    if len(arrays["hand_force"]) != len(hands):
+        raise ValueError("state.hand_force: there is one of each hand")
     return Snapshot(
         {BY_STORED[name].name: array for name, array in arrays.items()},
         settings=settings,

@@ -97,7 +97,7 @@ def _compare(replay: Replay, world: World) -> str | None:
     if state_hash(world, present) == recorded.whole:
         return None
     pairs = zip(BY_STORED, recorded.arrays, strict=True)
-    return next((name for name, expected in pairs if present[name] != expected), "settings")
+    return next((name for name, expected in pairs if present.get(name, "") != expected), "settings")
 
 
 def _locate(replay: Replay, tick: int, array: str, world: World) -> Divergence:
@@ -105,7 +105,7 @@ def _locate(replay: Replay, tick: int, array: str, world: World) -> Divergence:
     if array == "settings":
         return Divergence(tick, array, None, replay.hashes[tick].whole, state_hash(world))
     clean = _clean_session(replay, verified=tick - 1, tick=tick)
-    if hash_by_array(clean.world)[array] == replay.hashes[tick].arrays[list(BY_STORED).index(array)]:
+    if hash_by_array(clean.world).get(array, "") == replay.hashes[tick].arrays[list(BY_STORED).index(array)]:
         return _first_difference(tick, array, getattr(clean.world, BY_STORED[array].name), world)
     later = min((stored for stored in replay.states if stored >= tick), default=None)
     if later is None:

@@ -35,6 +35,7 @@ from sandbox.app.draw.renderer import (
     THINNEST_SPRING,
 )
 from sandbox.app.edit.canvas.edited_terrain import Ground, paint_ground, paint_walls
+from sandbox.app.edit.canvas.flesh import Flesh
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene
 from sandbox.level.format.limits import BODY_RADIUS
@@ -46,6 +47,8 @@ PLAIN_FROM = 6_000
 # What is only a preview is this much paler.
 GHOST_SHARE = 0.45
 HIGHLIGHT_WIDTH = 2.4
+# Springs and particles over what they look like are so much thinner.
+FINE = 0.55
 # The smooth picture is made of so many springs or particles at a time, for so long [s] in every frame.
 CHUNK = 2_000
 SLICE = 0.006
@@ -58,13 +61,14 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class Part:
-    """Particles and springs of a scene to draw; tint: in place of their own colours; ghost: pale."""
+    """Particles and springs of a scene to draw; tint: in place of their own colours; ghost: pale; is_fine: thin."""
 
     scene: Scene
     particles: Mask
     springs: Mask
     tint: Colour | None = None
     ghost: bool = False
+    is_fine: bool = False
 
 
 class SelectionMasks(NamedTuple):
@@ -87,6 +91,7 @@ class ScenePainter:
     def __init__(self, scale: float) -> None:
         self.scale = scale
         self.compiled = True
+        self._flesh = Flesh()
         self._layer: pygame.Surface | None = None
         self._scene: Scene | None = None
         self._key: tuple[object, ...] = ()
@@ -138,7 +143,11 @@ class ScenePainter:
         if not hidden:
             paint_ground(canvas, camera, Ground(scene, items, ACCENT), self.scale)
         away = springs | hanging_springs(scene, particles) if hidden else springs
-        yield from self._slices(layer, camera, Part(scene, ~particles, ~away), plain)
+        # What moves is drawn elsewhere.
+        has_flesh = self._flesh.paint(
+            layer, camera, scene, ~(particles & hidden), ~(away & hidden), self.scale, self.compiled
+        )
+        yield from self._slices(layer, camera, Part(scene, ~particles, ~away, is_fine=has_flesh), plain)
         if not hidden:
             yield from self._slices(layer, camera, Part(scene, particles, springs, ACCENT), plain)
 
@@ -181,7 +190,7 @@ class ScenePainter:
         if plain:
             canvas.plain_lines(np.ascontiguousarray(ends), colours)
         else:
-            width = self._width(camera, scene.rest_length[springs])
+            width = self._width(camera, scene.rest_length[springs]) * (FINE if part.is_fine else 1.0)
             passes = [(colours, width)]
             if part.tint is not None:
                 under = np.full(len(springs), packed(mixed(BACKGROUND, part.tint, 0.55)))
@@ -222,6 +231,7 @@ class ScenePainter:
         radii = np.maximum(own * camera.zoom, smallest)
         # Particles of the usual radius shrink with the mesh that they belong to, or it is a field of dots.
         radii = np.where(own <= BODY_RADIUS, np.minimum(radii, max(smallest, crowded)), radii)
+        radii = radii * (FINE if part.is_fine else 1.0)
         centres = np.ascontiguousarray(pixels[shown])
         colour = mixed(PARTICLE, BACKGROUND, GHOST_SHARE) if part.ghost else PARTICLE
         if plain:

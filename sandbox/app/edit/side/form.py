@@ -110,7 +110,7 @@ class Form:
         return each.field, about.kind, about.title, about.unit, about.choices, each.axes, lines, self._is_long(each)
 
     def _is_long(self, each: Property) -> bool:
-        return each.about.kind in ("list", "pairs", "words") and len(each.texts[0]) > TEXT_LENGTH
+        return each.about.kind in ("list", "pairs", "outlines", "words") and len(each.texts[0]) > TEXT_LENGTH
 
     def _lines(self, each: Property) -> int:
         """Lines that a text takes which is only shown."""
@@ -323,7 +323,11 @@ class Form:
         if each is None:
             return False
         self._is_stale = True
-        return self._screen.edit(each.about.title, lambda document: each.set(document, value))
+        remark = "" if each.remark is None else each.remark(self._screen.document, value)
+        taken = self._screen.edit(each.about.title, lambda document: each.set(document, value))
+        if taken and remark:
+            self._screen.say(sentence(remark))
+        return taken
 
     def _type(self, name: str, axis: int, text: str) -> bool:
         each = self.properties.get(name)

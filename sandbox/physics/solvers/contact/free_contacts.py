@@ -12,7 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.restitution import SLOWEST_BOUNCE
-from sandbox.physics.collision.types import Contacts
+from sandbox.physics.collision.turning import rolling_ratios, spin_of
+from sandbox.physics.collision.types import Colliders, Contacts
+from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inlined_kernel, inner_kernel, unsigned
 from sandbox.physics.solvers.contact.free_islands import Islands
 from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH
@@ -29,16 +31,27 @@ OVERLAP_SHARE = 0.05
 SOFTNESS = 0.013
 # Share of the smaller radius to which contacts sink in under the load of the last step; less costs small steps.
 DEEPEST = 0.04
+# The normal of discs is that of their centres where these lie off it by more than this share of the radii. More costs
+# angular momentum, less time.
+ALONG_CENTRES = 1e-12
 
-# Columns of a contact constraint: normal, gap [m], friction, bounce [m/s], restitution, effective mass [kg], weight
-# [1/kg] of its two particles, velocity [m/s] of what cannot move, impulse [N s] of a small step along and across, depth
-# [m] = as deep as it should sink. A row is what an iteration reads of a contact, and lies together.
-NX, NY, GAP, FRICTION, BOUNCE, RESTITUTION, MASS, WEIGHT_P, WEIGHT_Q, DRIFT_X, DRIFT_Y, ALONG, ACROSS, DEPTH = range(14)
-COLUMNS = 16
-# Columns of a place: velocity [m/s], way [m] so far; and what forces add to the velocity [m/s] in the step, what the
-# impulses of a small step add to it.
-VX, VY, WX, WY = range(4)
-GAIN_X, GAIN_Y, PUSHED_X, PUSHED_Y = range(4)
+# Columns of a contact constraint, a row that lies together. What every iteration reads of it: normal; gap [m] without
+# what its particles are apart, of two discs minus their radii; how far two discs are apart at the start [m], else 0;
+# impulse [N s] of a small step along, bounce [m/s], and the way of its normal: FOLLOWS the centres of discs, is COMING
+# where they are followed along their way and have not met yet, STANDS where one of those is pinned, or is no disc.
+NX, NY, GAP, APART_X, APART_Y, ALONG, BOUNCE, WAY = range(8)
+FOLLOWS, COMING, STANDS = 0.0, 1.0, 2.0
+# And where it pushes: impulse across, friction, effective mass [kg] along and across, weight [1/kg] of its particles
+# and of their surfaces (0: it does not turn), the arm of friction as a share of the radii, and 1 over those [1/m];
+# rolling resistance, its effective mass [kg], the smaller radius over each one's.
+ACROSS, FRICTION, MASS, MASS_ACROSS, WEIGHT_P, WEIGHT_Q, TURN_P, TURN_Q, ARM, PER_REACH = range(8, 18)
+ROLLING, ROLLING_MASS, RATIO_P, RATIO_Q = range(18, 22)
+# Restitution; and the depth [m] as deep as it should sink.
+RESTITUTION, DEPTH = 22, 23
+COLUMNS = 24
+# Columns of a place: velocity [m/s], way [m] so far, speed of its surface [m/s] = spin times radius; and what the
+# impulses of a small step add to the first and the last.
+VX, VY, WX, WY, SURFACE, PUSHED_X, PUSHED_Y, PUSHED_SURFACE = range(8)
 
 
 class Work(NamedTuple):
@@ -48,11 +61,12 @@ class Work(NamedTuple):
     are sorted by level, one above the highest before it at the same particles: what lies side by side in a level does
     not wait for each other's velocities, which makes an iteration twice as fast.
 
-    By contact: constraint (k, COLUMNS); end (k, 2) = places of its particles (-1: none); contact. place (k, 2), level:
-    the ends and the level before they are sorted; at (k + 1,): where each level begins. By place of a particle:
-    particle, weight [1/kg], motion (m, 4) and push (m, 4), see the columns, highest = level so far; what cannot move
-    has a place for each contact. local (n,): the place of a particle, -1: none. ahead [m] (n, 2): how much further than
-    h v' each particle has gone in the step. There is room for more.
+    By contact: constraint (k, COLUMNS); end (k, 2) = places of its particle and of what it pushes; contact. place
+    (k, 2), level: the ends and the level before they are sorted; at (k + 1,): where each level begins. By place:
+    particle, weight [1/kg], turning [1/kg] = the weight of its surface, motion (m, 8), see the columns, gain [m/s]
+    (m, 2) = what forces add to the velocity in the step, highest = level so far; what cannot move has a place for each
+    contact. local (n,): the place of a particle, -1: none. ahead [m] (n, 2): how much further than h v' each particle
+    has gone in the step. There is room for more.
     """
 
     constraint: Floats
@@ -63,33 +77,56 @@ class Work(NamedTuple):
     at: Slots
     particle: Slots
     weight: Floats
+    turning: Floats
     motion: Floats
-    push: Floats
+    gain: Floats
     highest: Slots
     local: Slots
     ahead: Floats
 
 
 @inner_kernel
-def _place_of(p: int, inverse_mass: Floats, start: Floats, velocity: Floats, work: Work, count: int) -> tuple[int, int]:
+def _place_of(p: int, colliders: Colliders, start: Floats, spin: Floats, work: Work, count: int) -> tuple[int, int]:
     # The place of a particle, and the number of places then.
-    if inverse_mass[p] > 0.0 and work.local[p] >= 0:
+    if colliders.inverse_mass[p] > 0.0 and work.local[p] >= 0:
         return work.local[p], count
     work.local[p] = count
     work.particle[count] = p
-    work.weight[count] = inverse_mass[p]
+    work.weight[count] = colliders.inverse_mass[p]
+    work.turning[count] = colliders.turning[p]
     work.highest[count] = 0
     for axis in range(2):
         work.motion[count, VX + axis] = start[p, axis]
         work.motion[count, WX + axis] = 0.0
-        work.push[count, GAIN_X + axis] = velocity[p, axis] - start[p, axis]
-        work.push[count, PUSHED_X + axis] = 0.0
+        work.motion[count, PUSHED_X + axis] = 0.0
+        work.gain[count, axis] = colliders.velocity[p, axis] - start[p, axis]
+    work.motion[count, SURFACE] = spin[p] * colliders.radius[p]
+    work.motion[count, PUSHED_SURFACE] = 0.0
+    return count, count + 1
+
+
+@inner_kernel
+def _place_of_edge(contacts: Contacts, c: int, start: Floats, work: Work, count: int) -> tuple[int, int]:
+    # The place of an edge that cannot move, be it of terrain or of a body, and the number of places then.
+    a = contacts.end_a[c]
+    b = contacts.end_b[c]
+    share = contacts.share[c]
+    work.particle[count] = contacts.particle[c]
+    work.weight[count] = 0.0
+    work.turning[count] = 0.0
+    work.highest[count] = 0
+    for column in range(8):
+        work.motion[count, column] = 0.0
+    for axis in range(2):
+        if b >= 0:
+            work.motion[count, VX + axis] = (1.0 - share) * start[a, axis] + share * start[b, axis]
+        work.gain[count, axis] = 0.0
     return count, count + 1
 
 
 @inner_kernel
 def _place_contacts(
-    contacts: Contacts, islands: Islands, first: int, last: int, inverse_mass: Floats, start: Floats, velocity: Floats,
+    contacts: Contacts, islands: Islands, first: int, last: int, colliders: Colliders, start: Floats, spin: Floats,
     work: Work, count: int,
 ) -> int:  # fmt: skip
     # The places and levels of an island's contacts, and where each level begins; the number of places then.
@@ -97,16 +134,16 @@ def _place_contacts(
         work.at[level] = 0
     for i in range(first, last):
         c = islands.contact[i]
-        q = -1
-        level = 0
         if contacts.end_b[c] < 0 and contacts.end_a[c] >= 0:
-            q, count = _place_of(contacts.end_a[c], inverse_mass, start, velocity, work, count)
-            level = work.highest[q]
-        p, count = _place_of(contacts.particle[c], inverse_mass, start, velocity, work, count)
+            q, count = _place_of(contacts.end_a[c], colliders, start, spin, work, count)
+        else:
+            q, count = _place_of_edge(contacts, c, start, work, count)
+        level = work.highest[q]
+        p, count = _place_of(contacts.particle[c], colliders, start, spin, work, count)
         level = max(level, work.highest[p])
         if work.weight[p] > 0.0:
             work.highest[p] = level + 1
-        if q >= 0 and work.weight[q] > 0.0:
+        if work.weight[q] > 0.0:
             work.highest[q] = level + 1
         work.place[i, 0] = p
         work.place[i, 1] = q
@@ -119,9 +156,10 @@ def _place_contacts(
 
 @inner_kernel
 def _fill_constraints(
-    contacts: Contacts, islands: Islands, first: int, last: int, radius: Floats, start: Floats, work: Work
+    contacts: Contacts, islands: Islands, first: int, last: int, colliders: Colliders, work: Work
 ) -> None:
     # The constraints of an island's contacts, level by level.
+    radius = colliders.radius
     row = work.constraint
     for i in range(first, last):
         level = work.level[i]
@@ -133,33 +171,67 @@ def _fill_constraints(
         work.contact[k] = c
         work.end[k, 0] = p
         work.end[k, 1] = q
-        weight = work.weight[p]
-        mass = weight
+        mass = work.weight[p] + work.weight[q]
         smaller = radius[contacts.particle[c]]
-        row[k, WEIGHT_P] = weight
-        row[k, WEIGHT_Q] = 0.0
-        row[k, DRIFT_X] = 0.0
-        row[k, DRIFT_Y] = 0.0
-        a = contacts.end_a[c]
-        b = contacts.end_b[c]
-        if b >= 0:
-            share = contacts.share[c]
-            for axis in range(2):
-                row[k, DRIFT_X + axis] = (1.0 - share) * start[a, axis] + share * start[b, axis]
-        elif a >= 0:
-            mass += work.weight[q]
-            smaller = min(smaller, radius[a])
-            row[k, WEIGHT_Q] = work.weight[q]
-        row[k, MASS] = 1.0 / mass
-        row[k, DEPTH] = DEEPEST * smaller
+        row[k, WEIGHT_P] = work.weight[p]
+        row[k, WEIGHT_Q] = work.weight[q]
+        row[k, APART_X] = 0.0
+        row[k, APART_Y] = 0.0
+        row[k, TURN_P] = work.turning[p]
+        row[k, TURN_Q] = work.turning[q]
+        row[k, ARM] = 1.0
+        row[k, PER_REACH] = 0.0
+        row[k, WAY] = STANDS
+        row[k, GAP] = contacts.gap[c]
         row[k, NX] = contacts.normal[c, 0]
         row[k, NY] = contacts.normal[c, 1]
-        row[k, GAP] = contacts.gap[c]
+        row[k, ALONG] = contacts.impulse[c, 0]
+        row[k, ACROSS] = contacts.impulse[c, 1]
+        disc = contacts.end_a[c] if contacts.end_b[c] < 0 else -1
+        if disc >= 0:
+            smaller = min(smaller, radius[disc])
+        row[k, MASS] = 1.0 / mass
+        row[k, MASS_ACROSS] = 1.0 / (mass + work.turning[p] + work.turning[q])
+        row[k, DEPTH] = DEEPEST * smaller
         row[k, FRICTION] = contacts.friction[c]
         row[k, BOUNCE] = contacts.bounce[c]
         row[k, RESTITUTION] = contacts.restitution[c]
-        row[k, ALONG] = contacts.impulse[c, 0]
-        row[k, ACROSS] = contacts.impulse[c, 1]
+        if disc >= 0:
+            _fill_pair(contacts, c, k, colliders, work)
+        ratio_p, ratio_q = rolling_ratios(contacts.particle[c], disc, colliders)
+        row[k, RATIO_P] = ratio_p
+        row[k, RATIO_Q] = ratio_q
+        answer = ratio_p * ratio_p * row[k, TURN_P] + ratio_q * ratio_q * row[k, TURN_Q]
+        row[k, ROLLING] = contacts.rolling[c] if answer > 0.0 else 0.0
+        row[k, ROLLING_MASS] = 1.0 / answer if answer > 0.0 else 0.0
+
+
+@inner_kernel
+def _fill_pair(contacts: Contacts, c: int, k: int, colliders: Colliders, work: Work) -> None:
+    # What the constraint of two discs has of their places.
+    row = work.constraint
+    p = contacts.particle[c]
+    q = contacts.end_a[c]
+    nx = contacts.normal[c, 0]
+    ny = contacts.normal[c, 1]
+    dx = colliders.position[p, 0] - colliders.position[q, 0]
+    dy = colliders.position[p, 1] - colliders.position[q, 1]
+    reach = colliders.radius[p] + colliders.radius[q]
+    row[k, APART_X] = dx
+    row[k, APART_Y] = dy
+    row[k, WAY] = FOLLOWS
+    row[k, GAP] = -reach
+    row[k, PER_REACH] = 1.0 / reach if reach > 0.0 else 0.0
+    row[k, ARM] = (nx * dx + ny * dy) * row[k, PER_REACH]
+    if abs(nx * dy - ny * dx) > ALONG_CENTRES * reach:
+        # Discs that are followed along their way will meet with their centres along the normal, but do not lie so yet.
+        row[k, ARM] = 1.0
+        row[k, WAY] = STANDS
+        if row[k, WEIGHT_P] > 0.0 and row[k, WEIGHT_Q] > 0.0:
+            row[k, WAY] = COMING
+            row[k, BOUNCE] = -1.0
+            row[k, ALONG] = 0.0
+            row[k, ACROSS] = 0.0
 
 
 @inner_kernel
@@ -183,90 +255,181 @@ def _plan(work: Work, first: int, last: int, h: float) -> tuple[int, float]:
 
 
 @inner_kernel
-def _bias(bounce: float, gap: float, small: float, softness: float, pushes: bool) -> tuple[float, float]:
-    # The velocity b [m/s] by which a contact is to end apart from its surfaces staying together, and how soft it is.
+def _bias(bounce: float, gap: float, rate: float, softness: float, pushes: bool) -> tuple[float, float]:
+    # The velocity b [m/s] by which a contact is to end apart from its surfaces staying together, and how soft it is;
+    # rate: small steps in a second.
     if bounce >= 0.0:
         return -bounce, 0.0
     if gap > 0.0:
-        return gap / small, 0.0
+        return gap * rate, 0.0
     if pushes:
-        return max(OVERLAP_SHARE * gap / small, -FASTEST_PUSH), softness
+        return max(OVERLAP_SHARE * gap * rate, -FASTEST_PUSH), softness
     return 0.0, 0.0
+
+
+@inlined_kernel
+def _push(work: Work, i: int, nx: float, ny: float, jn: float, jt: float, arm: float) -> None:
+    # Add what the impulses of a contact do to its particles to what the next small step starts with.
+    row = work.constraint
+    motion = work.motion
+    jx = jn * nx - jt * ny
+    jy = jn * ny + jt * nx
+    jt *= arm
+    p = unsigned(work.end[i, 0])
+    motion[p, PUSHED_X] += jx * row[i, WEIGHT_P]
+    motion[p, PUSHED_Y] += jy * row[i, WEIGHT_P]
+    motion[p, PUSHED_SURFACE] -= jt * row[i, TURN_P]
+    q = unsigned(work.end[i, 1])
+    motion[q, PUSHED_X] -= jx * row[i, WEIGHT_Q]
+    motion[q, PUSHED_Y] -= jy * row[i, WEIGHT_Q]
+    motion[q, PUSHED_SURFACE] -= jt * row[i, TURN_Q]
 
 
 @inner_kernel
 def _begin(work: Work, first: int, last: int, scale: float) -> None:
-    # The impulses that contacts bring along, as those of a small step; pushed: what they add to the velocities.
+    # The impulses that contacts bring along, as those of a small step.
     row = work.constraint
-    push = work.push
-    for i in range(first, last):
-        jn = row[i, ALONG] * scale
-        jt = row[i, ACROSS] * scale
-        row[i, ALONG] = jn
-        row[i, ACROSS] = jt
-        jx = jn * row[i, NX] - jt * row[i, NY]
-        jy = jn * row[i, NY] + jt * row[i, NX]
-        p = work.end[i, 0]
-        push[p, PUSHED_X] += jx * row[i, WEIGHT_P]
-        push[p, PUSHED_Y] += jy * row[i, WEIGHT_P]
-        q = work.end[i, 1]
-        if q >= 0:
-            push[q, PUSHED_X] -= jx * row[i, WEIGHT_Q]
-            push[q, PUSHED_Y] -= jy * row[i, WEIGHT_Q]
+    for c in range(first, last):
+        i = unsigned(c)
+        row[i, ALONG] *= scale
+        row[i, ACROSS] *= scale
+        _push(work, i, row[i, NX], row[i, NY], row[i, ALONG], row[i, ACROSS], row[i, ARM])
+
+
+@inner_kernel
+def _time_until(dx: float, dy: float, ux: float, uy: float, reach: float) -> float:
+    # When two discs meet that are d apart and move by u; infinite where they never do.
+    # |d + t u| = reach
+    squared = ux * ux + uy * uy
+    along = dx * ux + dy * uy
+    apart = dx * dx + dy * dy - reach * reach
+    if apart <= 0.0:
+        return 0.0
+    inside = along * along - squared * apart
+    if not (along < 0.0 and inside >= 0.0):
+        return math.inf
+    return apart / (math.sqrt(inside) - along)
+
+
+@inner_kernel
+def _meet(work: Work, i: int, dx: float, dy: float, ux: float, uy: float) -> None:
+    # Two discs that were coming meet when they are d apart and move by u: the normal, and with what speed they part.
+    row = work.constraint
+    distance = math.sqrt(dx * dx + dy * dy)
+    if distance > SHORTEST:
+        row[i, NX] = dx / distance
+        row[i, NY] = dy / distance
+    row[i, ARM] = distance * row[i, PER_REACH]
+    row[i, WAY] = FOLLOWS
+    speed = -(row[i, NX] * ux + row[i, NY] * uy)
+    if speed > 0.0:
+        row[i, BOUNCE] = row[i, RESTITUTION] * speed if speed > SLOWEST_BOUNCE else 0.0
 
 
 @inlined_kernel
-def _iterate(
-    work: Work, first: int, last: int, small: float, passed: float, softness: float, pushes: bool, is_last: bool
-) -> None:
-    # One Gauss-Seidel iteration, after the time `passed`. pushes: what overlaps is pushed apart, with that softness.
-    # is_last: whether the step ends with it; what would meet in the first small step of the next one, and bounce there,
-    # is not slowed before.
-    # J = max(0, J - ((u + b) m + soft J) / (1 + soft));  |J_t| <= friction J
+def _follow(row: Floats, i: int, dx: float, dy: float) -> tuple[float, float, float]:
+    # The normal and the gap of two discs that are d apart.
+    distance = math.sqrt(dx * dx + dy * dy)
+    if distance > SHORTEST:
+        per_distance = 1.0 / distance
+        row[i, NX] = dx * per_distance
+        row[i, NY] = dy * per_distance
+    return row[i, NX], row[i, NY], row[i, GAP] + distance
+
+
+@inlined_kernel
+def _apply(work: Work, i: int, jx: float, jy: float, torque: float, late: float) -> None:
+    # v += J / m, and what it does to the surfaces.
+    row = work.constraint
+    motion = work.motion
+    p = unsigned(work.end[i, 0])
+    q = unsigned(work.end[i, 1])
+    motion[p, VX] += jx * row[i, WEIGHT_P]
+    motion[p, VY] += jy * row[i, WEIGHT_P]
+    motion[p, SURFACE] -= torque * row[i, TURN_P]
+    motion[q, VX] -= jx * row[i, WEIGHT_Q]
+    motion[q, VY] -= jy * row[i, WEIGHT_Q]
+    motion[q, SURFACE] -= torque * row[i, TURN_Q]
+    if late > 0.0:
+        # It acts where discs meet that are coming: what it changes of their ways until then is taken off.
+        motion[p, WX] -= late * jx * row[i, WEIGHT_P]
+        motion[p, WY] -= late * jy * row[i, WEIGHT_P]
+        motion[q, WX] += late * jx * row[i, WEIGHT_Q]
+        motion[q, WY] += late * jy * row[i, WEIGHT_Q]
+
+
+@inlined_kernel
+def _iterate(work: Work, first: int, last: int, small: float, softness: float, pushes: bool, is_last: bool) -> None:
+    # One Gauss-Seidel iteration. Normals follow the centres of discs, so that impulses along them turn nothing. pushes:
+    # what overlaps is pushed apart, with that softness; with the impulses of the other iteration of a small step the
+    # next one starts. is_last: whether the step ends with it; what would meet in the first small step of the next one,
+    # and bounce there, is not slowed before.
+    # J = max(0, J - ((u + b) m + soft J) / (1 + soft));  |J_t| <= friction J, against the slip of the surfaces
     row, end, motion = work.constraint, work.end, work.motion
+    rate = 1.0 / small
+    hardness = 1.0 / (1.0 + softness)
     for c in range(first, last):
         i = unsigned(c)
         p = unsigned(end[i, 0])
+        q = unsigned(end[i, 1])
         nx, ny = row[i, NX], row[i, NY]
-        ux, uy = motion[p, VX], motion[p, VY]
-        wx, wy = motion[p, WX], motion[p, WY]
-        moves = end[i, 1] >= 0
-        if moves:
-            q = unsigned(end[i, 1])
-            ux -= motion[q, VX]
-            uy -= motion[q, VY]
-            wx -= motion[q, WX]
-            wy -= motion[q, WY]
-        else:
-            ux -= row[i, DRIFT_X]
-            uy -= row[i, DRIFT_Y]
-            wx -= passed * row[i, DRIFT_X]
-            wy -= passed * row[i, DRIFT_Y]
+        ux, uy = motion[p, VX] - motion[q, VX], motion[p, VY] - motion[q, VY]
+        wx = row[i, APART_X] + (motion[p, WX] - motion[q, WX])
+        wy = row[i, APART_Y] + (motion[p, WY] - motion[q, WY])
+        late = 0.0
+        if row[i, WAY] == COMING:
+            late = _time_until(wx, wy, ux, uy, -row[i, GAP]) if pushes else math.inf
+            if not late < small:
+                continue
+            _meet(work, i, wx + late * ux, wy + late * uy, ux, uy)
+            nx, ny = row[i, NX], row[i, NY]
         gap = row[i, GAP] + nx * wx + ny * wy
         along = nx * ux + ny * uy
-        mass = row[i, MASS]
         old = row[i, ALONG]
         bounce = row[i, BOUNCE]
+        bias, soft = _bias(bounce, gap, rate, softness, pushes)
+        # What does not meet by any normal does not meet.
+        if old == 0.0 and along + bias >= 0.0:
+            continue
+        arm = row[i, ARM]
+        if row[i, WAY] == FOLLOWS and late == 0.0:
+            if abs(nx * wy - ny * wx) > -ALONG_CENTRES * row[i, GAP]:
+                nx, ny, gap = _follow(row, i, wx, wy)
+                along = nx * ux + ny * uy
+                bias, soft = _bias(bounce, gap, rate, softness, pushes)
+            arm = 1.0 + gap * row[i, PER_REACH]
         if is_last and not bounce >= 0.0 and gap > 0.0 and row[i, RESTITUTION] > 0.0 and along < -SLOWEST_BOUNCE:
             continue
-        bias, soft = _bias(bounce, gap, small, softness, pushes)
-        change = (along + bias) * mass
-        if pushes:
-            change = (change + soft * old) / (1.0 + soft)
+        change = (along + bias) * row[i, MASS]
+        if soft > 0.0:
+            change = (change + soft * old) * hardness
         new = max(0.0, old - change)
         most = row[i, FRICTION] * new
         held = row[i, ACROSS]
-        across = min(most, max(-most, held - (nx * uy - ny * ux) * mass))
+        slip = nx * uy - ny * ux - arm * (motion[p, SURFACE] + motion[q, SURFACE])
+        across = min(most, max(-most, held - slip * row[i, MASS_ACROSS]))
         row[i, ALONG] = new
         row[i, ACROSS] = across
-        jx = (new - old) * nx - (across - held) * ny
-        jy = (new - old) * ny + (across - held) * nx
-        motion[p, VX] += jx * row[i, WEIGHT_P]
-        motion[p, VY] += jy * row[i, WEIGHT_P]
-        if moves:
-            q = unsigned(end[i, 1])
-            motion[q, VX] -= jx * row[i, WEIGHT_Q]
-            motion[q, VY] -= jy * row[i, WEIGHT_Q]
+        jn, jt = new - old, across - held
+        _apply(work, i, jn * nx - jt * ny, jn * ny + jt * nx, arm * jt, late)
+        if not pushes and new > 0.0:
+            row[i, ARM] = arm
+            if row[i, ROLLING] > 0.0:
+                _resist_rolling(work, i, row[i, ROLLING] * new)
+            _push(work, i, nx, ny, new, across, arm)
+
+
+@inlined_kernel
+def _resist_rolling(work: Work, i: int, most: float) -> None:
+    # A torque against the turn of two surfaces on each other, as an impulse at the smaller radius of at most `most`.
+    row = work.constraint
+    motion = work.motion
+    p = unsigned(work.end[i, 0])
+    q = unsigned(work.end[i, 1])
+    turn = row[i, RATIO_P] * motion[p, SURFACE] - row[i, RATIO_Q] * motion[q, SURFACE]
+    j = min(most, max(-most, -turn * row[i, ROLLING_MASS]))
+    motion[p, SURFACE] += j * row[i, RATIO_P] * row[i, TURN_P]
+    motion[q, SURFACE] -= j * row[i, RATIO_Q] * row[i, TURN_Q]
 
 
 @inner_kernel
@@ -275,80 +438,123 @@ def _energy(work: Work, begin: int, end: int, gained: float) -> float:
     total = 0.0
     for k in range(begin, end):
         if work.weight[k] > 0.0:
-            vx = work.motion[k, VX] + gained * work.push[k, GAIN_X]
-            vy = work.motion[k, VY] + gained * work.push[k, GAIN_Y]
+            vx = work.motion[k, VX] + gained * work.gain[k, 0]
+            vy = work.motion[k, VY] + gained * work.gain[k, 1]
             total += 0.5 * (vx * vx + vy * vy) / work.weight[k]
+            if work.turning[k] > 0.0:
+                total += 0.5 * work.motion[k, SURFACE] * work.motion[k, SURFACE] / work.turning[k]
     return total
 
 
 @inner_kernel
-def _restrain(work: Work, first: int, last: int, begin: int, end: int, allowed: float) -> None:
+def _restrain(work: Work, begin: int, end: int, colliders: Colliders, allowed: float) -> None:
     # Many bounces at once can gain energy: what moves is slowed down until it has no more than it had; beside its
     # common motion, where it touches nothing that cannot move. What is carried along gets energy from outside.
     motion = work.motion
     after = _energy(work, begin, end, 0.0)
     if not after > allowed:
         return
-    mass = 0.0
-    px = 0.0
-    py = 0.0
     apart = True
-    for i in range(first, last):
-        if work.constraint[i, DRIFT_X] != 0.0 or work.constraint[i, DRIFT_Y] != 0.0:
-            return
-        apart = apart and work.end[i, 1] >= 0
     for k in range(begin, end):
-        if work.weight[k] > 0.0:
-            mass += 1.0 / work.weight[k]
-            px += motion[k, VX] / work.weight[k]
-            py += motion[k, VY] / work.weight[k]
-        elif motion[k, VX] != 0.0 or motion[k, VY] != 0.0:
-            return
-        else:
+        if not work.weight[k] > 0.0:
+            if motion[k, VX] != 0.0 or motion[k, VY] != 0.0:
+                return
             apart = False
-    vx = px / mass if apart else 0.0
-    vy = py / mass if apart else 0.0
-    common = 0.5 * mass * (vx * vx + vy * vy)
-    factor = math.sqrt(max(0.0, allowed - common) / (after - common)) if after > common else 0.0
+    common = Rigid(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    if apart:
+        common = _rigid_motion(work, begin, end, colliders)
+    beside = after - common.energy
+    factor = math.sqrt(max(0.0, allowed - common.energy) / beside) if beside > 0.0 else 0.0
     for k in range(begin, end):
         if work.weight[k] > 0.0:
+            p = work.particle[k]
+            vx = common.vx - common.spin * (colliders.position[p, 1] + motion[k, WY] - common.y)
+            vy = common.vy + common.spin * (colliders.position[p, 0] + motion[k, WX] - common.x)
             motion[k, VX] = vx + factor * (motion[k, VX] - vx)
             motion[k, VY] = vy + factor * (motion[k, VY] - vy)
+            if work.turning[k] > 0.0:
+                surface = common.spin * colliders.radius[p]
+                motion[k, SURFACE] = surface + factor * (motion[k, SURFACE] - surface)
+
+
+class Rigid(NamedTuple):
+    """The motion of an island as if it were rigid: centre of mass [m], its velocity [m/s], spin [rad/s], energy [J]."""
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    spin: float
+    energy: float
+
+
+@inner_kernel
+def _rigid_motion(work: Work, begin: int, end: int, colliders: Colliders) -> Rigid:
+    # That of the same momentum and angular momentum, at the end of the step: spin = L / I, the discs' own included.
+    motion = work.motion
+    mass = 0.0
+    x = 0.0
+    y = 0.0
+    vx = 0.0
+    vy = 0.0
+    for k in range(begin, end):
+        p = work.particle[k]
+        m = 1.0 / work.weight[k]
+        mass += m
+        x += m * (colliders.position[p, 0] + motion[k, WX])
+        y += m * (colliders.position[p, 1] + motion[k, WY])
+        vx += m * motion[k, VX]
+        vy += m * motion[k, VY]
+    x /= mass
+    y /= mass
+    vx /= mass
+    vy /= mass
+    inertia = 0.0
+    turn = 0.0
+    for k in range(begin, end):
+        p = work.particle[k]
+        m = 1.0 / work.weight[k]
+        dx = colliders.position[p, 0] + motion[k, WX] - x
+        dy = colliders.position[p, 1] + motion[k, WY] - y
+        inertia += m * (dx * dx + dy * dy)
+        turn += m * (dx * (motion[k, VY] - vy) - dy * (motion[k, VX] - vx))
+        if work.turning[k] > 0.0:
+            inertia += colliders.radius[p] * colliders.radius[p] / work.turning[k]
+            turn += colliders.radius[p] * motion[k, SURFACE] / work.turning[k]
+    spin = turn / inertia if inertia > 0.0 else 0.0
+    return Rigid(x, y, vx, vy, spin, 0.5 * mass * (vx * vx + vy * vy) + 0.5 * inertia * spin * spin)
 
 
 @inner_kernel
 def _take_small_steps(work: Work, first: int, last: int, begin: int, end: int, h: float) -> int:
     # All small steps of one island; their number.
     motion = work.motion
-    push = work.push
     count, softness = _plan(work, first, last, h)
     small = h / count
     scale = 1.0 / count
     _begin(work, first, last, scale)
     for step in range(count):
-        # The impulses of the last small step start this one; `pushed`: the velocities without them meanwhile.
+        # The impulses of the last small step start this one.
         for k in range(begin, end):
             for axis in range(2):
-                free = motion[k, VX + axis] + push[k, GAIN_X + axis] * scale
-                motion[k, VX + axis] = free + push[k, PUSHED_X + axis]
-                push[k, PUSHED_X + axis] = free
-        _iterate(work, first, last, small, small * step, softness, True, False)
+                motion[k, VX + axis] += work.gain[k, axis] * scale + motion[k, PUSHED_X + axis]
+                motion[k, PUSHED_X + axis] = 0.0
+            motion[k, SURFACE] += motion[k, PUSHED_SURFACE]
+            motion[k, PUSHED_SURFACE] = 0.0
+        _iterate(work, first, last, small, softness, True, False)
         for k in range(begin, end):
             motion[k, WX] += small * motion[k, VX]
             motion[k, WY] += small * motion[k, VY]
-        _iterate(work, first, last, small, small * (step + 1), 0.0, False, step == count - 1)
-        for k in range(begin, end):
-            push[k, PUSHED_X] = motion[k, VX] - push[k, PUSHED_X]
-            push[k, PUSHED_Y] = motion[k, VY] - push[k, PUSHED_Y]
+        _iterate(work, first, last, small, 0.0, False, step == count - 1)
     return count
 
 
 @inner_kernel
 def solve_free_contacts(
-    contacts: Contacts, islands: Islands, island_count: int, inverse_mass: Floats, radius: Floats, start: Floats,
-    velocity: Floats, h: float, work: Work,
+    contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: Floats, velocity: Floats,
+    spin: Floats, h: float, work: Work,
 ) -> None:  # fmt: skip
-    """Solve the sorted free contacts over a step of h [s]; work.ahead goes with velocity.
+    """Solve the sorted free contacts over a step of h [s]; work.ahead goes with velocity and spin.
 
     start [m/s] (n, 2): the velocities before anything acted in this step.
     """
@@ -361,11 +567,11 @@ def solve_free_contacts(
         first = islands.first[g]
         last = islands.first[g + 1]
         begin = end
-        end = _place_contacts(contacts, islands, first, last, inverse_mass, start, velocity, work, end)
-        _fill_constraints(contacts, islands, first, last, radius, start, work)
+        end = _place_contacts(contacts, islands, first, last, colliders, start, spin, work, end)
+        _fill_constraints(contacts, islands, first, last, colliders, work)
         allowed = _energy(work, begin, end, 1.0)
         count = _take_small_steps(work, first, last, begin, end, h)
-        _restrain(work, first, last, begin, end, allowed)
+        _restrain(work, begin, end, colliders, allowed)
         for i in range(first, last):
             c = work.contact[i]
             contacts.impulse[c, 0] = work.constraint[i, ALONG] * count
@@ -376,6 +582,7 @@ def solve_free_contacts(
             for axis in range(2):
                 velocity[p, axis] = work.motion[k, VX + axis]
                 work.ahead[p, axis] = work.motion[k, WX + axis] - h * work.motion[k, VX + axis]
+            spin[p] = spin_of(work.motion[k, SURFACE], spin[p], colliders.radius[p])
 
 
 def new_work(particles: int, contacts: int) -> Work:
@@ -384,6 +591,6 @@ def new_work(particles: int, contacts: int) -> Work:
     return Work(
         np.zeros((contacts, COLUMNS)), np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64),
         np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64), np.zeros(contacts + 1, np.int64),
-        np.zeros(places, np.int64), np.zeros(places), np.zeros((places, 4)), np.zeros((places, 4)),
+        np.zeros(places, np.int64), np.zeros(places), np.zeros(places), np.zeros((places, 8)), np.zeros((places, 2)),
         np.zeros(places, np.int64), np.zeros(particles, np.int64), np.zeros((particles, 2)),
     )  # fmt: skip

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.types import Contacts, Flags, weight_of
+from sandbox.physics.components import root_of, united
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.solvers.contact.union_find import root_of, united
 from sandbox.physics.state import Floats, Slots
 
 

@@ -6,14 +6,23 @@ terms, 1 / (J W J^T): W of a free particle is 1 / m, of a body that the direct s
 What is kept of the last step starts the next, so that what rests is at rest from the first sweep on.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.equation import implicit_update
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.world import Floats, Slots
+from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
+from sandbox.physics.joints.joint_sweep import (
+    Joints,
+    go_on_with_joints,
+    no_joints,
+    push_at,
+    start_joints,
+    sweep_joints,
+    swept_by,
+)
+from sandbox.physics.world import Floats, Slots, World
 
 # Cs / Cd of a contact that penetrates: the part of the penetration that a step removes. Higher shakes what rests, lower
 # leaves heaps soft.
@@ -31,7 +40,7 @@ class Delassus(NamedTuple):
     """Delassus delassus W of bodies: block and place in it of each particle (n,), -1: free, it answers by its own mass.
 
     Points of block k: point[start[k]:start[k + 1]]; its numbers [1/kg], two rows of a square for each point, from
-    base[k] on. columns: scratch of one block.
+    base[k] on. columns: scratch of one block. joints: those of the bodies and particles.
     """
 
     block: Slots
@@ -41,13 +50,15 @@ class Delassus(NamedTuple):
     base: Slots
     numbers: Floats
     columns: Floats
+    joints: Joints
 
 
 class ContactTerms(NamedTuple):
     """By contact: bias [m/s] that it adds to its velocity, and J W J^T [1/kg]: normal, coupling, tangent.
 
-    before, direction [N s] (k, 2): its impulse before a sweep, and where the sweeps so far have led. There may be room
-    for more contacts.
+    before, direction [N s] (k, 2): its impulse before a sweep, and where the sweeps so far have led; resisted [N s]:
+    that of its rolling resistance, at the smaller radius. There may be room for more contacts. By particle: surface
+    [m/s] (n,) = its spin times its radius, which sweeps change.
     """
 
     bias: Floats
@@ -56,20 +67,39 @@ class ContactTerms(NamedTuple):
     tangent: Floats
     before: Floats
     direction: Floats
+    resisted: Floats
+    surface: Floats
 
 
-def new_terms(count: int) -> ContactTerms:
-    """Room for so many contacts."""
-    return ContactTerms(*np.zeros((4, count)), *np.zeros((2, count, 2)))
+def new_terms(count: int, surface: Floats) -> ContactTerms:
+    """Room for so many contacts, of particles whose surfaces move so fast."""
+    numbers, pairs = np.zeros((5, count)), np.zeros((2, count, 2))
+    return ContactTerms._make([*numbers[:4], *pairs, numbers[4], surface])
 
 
-def no_blocks(particle_count: int) -> Delassus:
+def terms_of(world: World, contacts: Contacts) -> ContactTerms:
+    """Terms of a step's contacts, whose particles turn as the world's do now."""
+    return new_terms(len(contacts.particle), world.spin * world.radius)
+
+
+def store_spins(world: World, terms: ContactTerms) -> None:
+    """Let the world's particles turn as sweeps have left them."""
+    turned = np.flatnonzero(terms.surface != world.spin * world.radius)
+    world.spin[turned] = terms.surface[turned] / world.radius[turned]
+
+
+def no_blocks(particle_count: int, joints: Joints) -> Delassus:
     """Of particles that all answer by their own mass."""
     none = np.zeros(0, dtype=np.int64)
     numbers = np.zeros(0)
     return Delassus(
-        np.full(particle_count, -1, dtype=np.int64), none, np.zeros(1, np.int64), none, none, numbers, numbers
+        np.full(particle_count, -1, dtype=np.int64), none, np.zeros(1, np.int64), none, none, numbers, numbers, joints
     )
+
+
+def lent_masses(world: World) -> Any:
+    """The same of a world without its joints, for kernels."""
+    return bundle((no_blocks(world.particle_count, no_joints()),))
 
 
 @inner_kernel
@@ -91,8 +121,19 @@ def relative_velocity(contacts: Contacts, c: int, velocity: Floats, change: Floa
 
 
 @inner_kernel
+def _couple_velocity(contacts: Contacts, c: int, velocity: Floats, change: Floats) -> float:
+    # How fast the surface of an edge moves against its middle, as that turns.
+    a = contacts.end_a[c]
+    b = contacts.end_b[c]
+    ux = velocity[a, 0] + change[a, 0] - velocity[b, 0] - change[b, 0]
+    uy = velocity[a, 1] + change[a, 1] - velocity[b, 1] - change[b, 1]
+    return contacts.couple[c, 0] * ux + contacts.couple[c, 1] * uy
+
+
+@inner_kernel
 def _push_particle(p: int, jx: float, jy: float, change: Floats, inverse_mass: Floats, delassus: Delassus) -> None:
     # v += W J
+    push_at(delassus.joints, p, jx, jy)
     k = delassus.block[p]
     if k < 0:
         change[p, 0] += jx * inverse_mass[p]
@@ -111,9 +152,10 @@ def _push_particle(p: int, jx: float, jy: float, change: Floats, inverse_mass: F
 
 @inner_kernel
 def _apply(
-    contacts: Contacts, c: int, jn: float, jt: float, change: Floats, inverse_mass: Floats, delassus: Delassus
-) -> None:
-    # v += W J of the impulses along normal and tangent.
+    contacts: Contacts, c: int, jn: float, jt: float, surface: Floats, change: Floats, inverse_mass: Floats,
+    delassus: Delassus,
+) -> None:  # fmt: skip
+    # v += W J of the impulses along normal and tangent, which turns what rolls.
     nx = contacts.normal[c, 0]
     ny = contacts.normal[c, 1]
     jx = jn * nx - jt * ny
@@ -123,9 +165,50 @@ def _apply(
     if a >= 0:
         b = contacts.end_b[c]
         share = contacts.share[c] if b >= 0 else 0.0
-        _push_particle(a, -(1.0 - share) * jx, -(1.0 - share) * jy, change, inverse_mass, delassus)
+        cx = jt * contacts.couple[c, 0]
+        cy = jt * contacts.couple[c, 1]
+        _push_particle(a, cx - (1.0 - share) * jx, cy - (1.0 - share) * jy, change, inverse_mass, delassus)
         if b >= 0:
-            _push_particle(b, -share * jx, -share * jy, change, inverse_mass, delassus)
+            _push_particle(b, -share * jx - cx, -share * jy - cy, change, inverse_mass, delassus)
+    if jt != 0.0:
+        _turn(contacts, c, -jt * contacts.arm[c, 0], -jt * contacts.arm[c, 1], surface)
+
+
+@inner_kernel
+def _turn(contacts: Contacts, c: int, jp: float, jq: float, surface: Floats) -> None:
+    # s += 2 / m J, of what rolls.
+    if contacts.turning[c, 0] > 0.0:
+        surface[contacts.particle[c]] += jp * contacts.turning[c, 0]
+    if contacts.turning[c, 1] > 0.0:
+        surface[contacts.end_a[c]] += jq * contacts.turning[c, 1]
+
+
+@inner_kernel
+def _turns(contacts: Contacts, c: int, by: Floats, surface: Floats) -> tuple[float, float]:
+    # The speeds of both surfaces of a contact, times their arms or ratios; 0 of what does not roll.
+    p = 0.0
+    q = 0.0
+    if contacts.turning[c, 0] > 0.0:
+        p = by[c, 0] * surface[contacts.particle[c]]
+    if contacts.turning[c, 1] > 0.0:
+        q = by[c, 1] * surface[contacts.end_a[c]]
+    return p, q
+
+
+@inner_kernel
+def _resist_rolling(contacts: Contacts, c: int, terms: ContactTerms) -> None:
+    # A torque against the turn of two surfaces on each other: an impulse at the smaller radius, clamped by the push.
+    answer = 0.0
+    for end in range(2):
+        answer += contacts.ratio[c, end] * contacts.ratio[c, end] * contacts.turning[c, end]
+    if not answer > 0.0:
+        return
+    p, q = _turns(contacts, c, contacts.ratio, terms.surface)
+    most = contacts.rolling[c] * contacts.impulse[c, 0]
+    new = min(most, max(-most, terms.resisted[c] - (p - q) / answer))
+    j = new - terms.resisted[c]
+    terms.resisted[c] = new
+    _turn(contacts, c, j * contacts.ratio[c, 0], -j * contacts.ratio[c, 1], terms.surface)
 
 
 @inner_kernel
@@ -143,6 +226,43 @@ def _response(p: int, q: int, inverse_mass: Floats, delassus: Delassus) -> tuple
     at = delassus.base[k] + delassus.place[p] * 4 * points + 2 * delassus.place[q]
     below = at + 2 * points
     return delassus.numbers[at], delassus.numbers[at + 1], delassus.numbers[below], delassus.numbers[below + 1]
+
+
+@inner_kernel
+def _has_couple(contacts: Contacts, c: int) -> bool:
+    return contacts.couple[c, 0] != 0.0 or contacts.couple[c, 1] != 0.0
+
+
+@inner_kernel
+def couple_of(contacts: Contacts, c: int, end: int) -> tuple[float, float]:
+    """What an impulse of 1 across adds to that of an end of a contact, beside its share along the tangent."""
+    if end == 0:
+        return 0.0, 0.0
+    sign = 1.0 if end == 1 else -1.0
+    return sign * contacts.couple[c, 0], sign * contacts.couple[c, 1]
+
+
+@inner_kernel
+def _couple_responses(contacts: Contacts, c: int, inverse_mass: Floats, delassus: Delassus) -> tuple[float, float]:
+    # What the couple of an edge adds to J W J^T between normal and tangent, and along the tangent.
+    nx = contacts.normal[c, 0]
+    ny = contacts.normal[c, 1]
+    coupling = 0.0
+    tangent = 0.0
+    for end in range(3):
+        p, weight = weight_of(contacts, c, end)
+        px, py = couple_of(contacts, c, end)
+        for other in range(3):
+            q, share = weight_of(contacts, c, other)
+            qx, qy = couple_of(contacts, c, other)
+            xx, xy, yx, yy = _response(p, q, inverse_mass, delassus)
+            coupling += px * share * (xx * nx + xy * ny) + py * share * (yx * nx + yy * ny)
+            # Of the one the whole direction, of the other the couple; then the other way round, without that.
+            tx = px - weight * ny
+            ty = py + weight * nx
+            tangent += tx * (xx * qx + xy * qy) + ty * (yx * qx + yy * qy)
+            tangent += share * (px * (xy * nx - xx * ny) + py * (yy * nx - yx * ny))
+    return coupling, tangent
 
 
 @inner_kernel
@@ -165,6 +285,12 @@ def load_responses(contacts: Contacts, terms: ContactTerms, inverse_mass: Floats
                 normal += nx * ax + ny * ay
                 coupling += nx * ay - ny * ax
                 tangent += both * (nx * (yy * nx - yx * ny) - ny * (xy * nx - xx * ny))
+        if _has_couple(contacts, c):
+            more_coupling, more_tangent = _couple_responses(contacts, c, inverse_mass, delassus)
+            coupling += more_coupling
+            tangent += more_tangent
+        for end in range(2):
+            tangent += contacts.arm[c, end] * contacts.arm[c, end] * contacts.turning[c, end]
         terms.normal[c] = normal
         terms.coupling[c] = coupling
         terms.tangent[c] = tangent
@@ -183,11 +309,15 @@ def load_biases(contacts: Contacts, terms: ContactTerms, h: float) -> None:
 
 
 @inner_kernel
-def start_impulses(contacts: Contacts, change: Floats, inverse_mass: Floats, delassus: Delassus) -> None:
-    """Apply the impulses that contacts bring along."""
+def start_impulses(
+    contacts: Contacts, terms: ContactTerms, change: Floats, inverse_mass: Floats, delassus: Delassus
+) -> None:
+    """Apply the impulses that contacts bring along; that of rolling resistance begins with none."""
     for c in range(contacts.particle.shape[0]):
-        if contacts.impulse[c, 0] != 0.0 or contacts.impulse[c, 1] != 0.0:
-            _apply(contacts, c, contacts.impulse[c, 0], contacts.impulse[c, 1], change, inverse_mass, delassus)
+        terms.resisted[c] = 0.0
+        jn, jt = contacts.impulse[c, 0], contacts.impulse[c, 1]
+        if jn != 0.0 or jt != 0.0:
+            _apply(contacts, c, jn, jt, terms.surface, change, inverse_mass, delassus)
 
 
 @inner_kernel
@@ -195,7 +325,8 @@ def sweep(
     contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, delassus: Delassus
 ) -> float:
     """One sweep over all contacts; the largest change of a contact's velocity [m/s]."""
-    # J = max(0, J - (u + b + J / K) / (W + 1 / K)), 1 / K = W (1 - Cd) / Cd;  |J_t| <= friction J
+    # J = max(0, J - (u + b + J / K) / (W + 1 / K)), 1 / K = W (1 - Cd) / Cd;  |J_t| <= friction J, against the slip of
+    # the surfaces;  rolling resistance <= rolling J
     largest = 0.0
     for c in range(contacts.particle.shape[0]):
         normal = terms.normal[c]
@@ -212,13 +343,19 @@ def sweep(
         jt = 0.0
         if terms.tangent[c] > 0.0:
             slip = nx * uy - ny * ux + terms.coupling[c] * jn
+            turn_p, turn_q = _turns(contacts, c, contacts.arm, terms.surface)
+            slip -= turn_p + turn_q
+            if _has_couple(contacts, c):
+                slip += _couple_velocity(contacts, c, velocity, change)
             most = contacts.friction[c] * new
             held = contacts.impulse[c, 1]
             jt = min(most, max(-most, held - slip / terms.tangent[c])) - held
             contacts.impulse[c, 1] = held + jt
         if jn != 0.0 or jt != 0.0:
-            _apply(contacts, c, jn, jt, change, inverse_mass, delassus)
+            _apply(contacts, c, jn, jt, terms.surface, change, inverse_mass, delassus)
             largest = max(largest, max(abs(jn) * normal, abs(jt) * terms.tangent[c]))
+        if contacts.rolling[c] > 0.0 and (new > 0.0 or terms.resisted[c] != 0.0):
+            _resist_rolling(contacts, c, terms)
     return largest
 
 
@@ -227,22 +364,30 @@ def solve_contacts(
     contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, delassus: Delassus,
     sweeps: int, hasten: bool,
 ) -> None:  # fmt: skip
-    """Sweep until nothing changes, at most so many times; hasten: each goes on in the direction of those before it."""
+    """Sweep until nothing changes, at most so many times; hasten: each goes on in the direction of those before it.
+
+    Joints are swept before contacts.
+    """
     # Nonlinear conjugate gradients on the sweep as a fixed point (Silcowitz-Poulsen and others 2010).
-    start_impulses(contacts, change, inverse_mass, delassus)
+    joints = delassus.joints
+    start_joints(joints, change)
+    start_impulses(contacts, terms, change, inverse_mass, delassus)
     previous = 0.0
     for k in range(sweeps):
         for c in range(contacts.particle.shape[0]):
             terms.before[c, 0] = contacts.impulse[c, 0]
             terms.before[c, 1] = contacts.impulse[c, 1]
-        if sweep(contacts, terms, velocity, change, inverse_mass, delassus) < SETTLED or k == sweeps - 1:
+        largest = sweep_joints(joints, change)
+        largest = max(largest, sweep(contacts, terms, velocity, change, inverse_mass, delassus))
+        if largest < SETTLED or k == sweeps - 1:
             break
-        squared = 0.0
+        squared = swept_by(joints)
         for c in range(contacts.particle.shape[0]):
             jn = contacts.impulse[c, 0] - terms.before[c, 0]
             jt = contacts.impulse[c, 1] - terms.before[c, 1]
             squared += terms.normal[c] * jn * jn + terms.tangent[c] * jt * jt
         ratio = squared / previous if hasten and previous > 0.0 else 0.0
+        go_on_with_joints(joints, change, ratio if ratio < 1.0 else 0.0)
         _go_on(contacts, terms, change, inverse_mass, delassus, ratio if ratio < 1.0 else 0.0)
         previous = squared
 
@@ -265,7 +410,7 @@ def _go_on(
         if new_n != old_n or new_t != old_t:
             contacts.impulse[c, 0] = new_n
             contacts.impulse[c, 1] = new_t
-            _apply(contacts, c, new_n - old_n, new_t - old_t, change, inverse_mass, delassus)
+            _apply(contacts, c, new_n - old_n, new_t - old_t, terms.surface, change, inverse_mass, delassus)
 
 
 @inner_kernel
@@ -279,10 +424,11 @@ def add_change(velocity: Floats, change: Floats, inverse_mass: Floats) -> None:
 
 @kernel
 def sweep_masses(
-    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, delassus: Delassus,
+    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, lent_masses: Any,
     sweeps: int, h: float,
 ) -> None:  # fmt: skip
     """Solve contacts of particles that answer by their own mass, and bring the velocities to the end of the step."""
+    (delassus,) = contents(lent_masses)
     load_biases(contacts, terms, h)
     load_responses(contacts, terms, inverse_mass, delassus)
     solve_contacts(contacts, terms, velocity, change, inverse_mass, delassus, sweeps, True)

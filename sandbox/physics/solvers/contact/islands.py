@@ -1,4 +1,4 @@
-"""Contact islands: which bodies and free particles contacts touch, and which of them touch each other."""
+"""Contact islands: which bodies and free particles contacts touch or joints act on, and which of them hang together."""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -6,9 +6,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.components import root_of, united
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
+from sandbox.physics.joints.joint_sweep import Joints, new_joints, no_joints
+from sandbox.physics.joints.rows import JointRows
 from sandbox.physics.solvers.contact.gauss_seidel import ContactTerms, Delassus, new_terms
-from sandbox.physics.solvers.contact.union_find import root_of, united
 from sandbox.physics.solvers.direct.system import Flags, System
 from sandbox.physics.world import Floats, Slots
 
@@ -20,13 +22,14 @@ SPARE = 2
 
 
 class BodyIslands(NamedTuple):
-    """The bodies and the free particles that contacts touch, in this order the members of islands; and scratch.
+    """The bodies and free particles that contacts touch or joints act on, in this order the members of islands.
 
     There is room for all bodies and particles; counts (5,) says how many there are. body: their numbers; free: slots of
-    particles. By member: island, before, held, after, limit [J], fresh: its energy bank is begun in this step. By
+    particles. By member: island, before, held, after, limit [J], fresh: its energy bank is begun for all of it. By
     particle (n,): member, -1: none, row in the matrix, -1: none; given, change [m/s]: velocities without contacts, and
-    what those add. By touched body: misfit; due: to be solved again. By island: total, allowed [J], fails. By row:
-    unpushed [m/s] = velocities without contacts, pushed [m/s] = what contacts add. label, marked: scratch.
+    what those add. By touched body: misfit; due: to be solved again; driven: a joint acts on it. By body: number among
+    the touched. By island: total, allowed [J], fails. By row: unpushed [m/s] = velocities without contacts, pushed
+    [m/s] = what contacts and joints add. label, marked: scratch.
     """
 
     counts: Slots
@@ -42,6 +45,8 @@ class BodyIslands(NamedTuple):
     fresh: Flags
     misfit: Floats
     due: Flags
+    driven: Flags
+    number: Slots
     total: Floats
     allowed: Floats
     fails: Flags
@@ -86,13 +91,13 @@ class IslandRoom:
         if columns > len(delassus.columns):
             delassus = delassus._replace(columns=np.zeros(SPARE * columns))
         if len(contacts.particle) > len(terms.bias):
-            terms = new_terms(SPARE * len(contacts.particle))
+            terms = new_terms(SPARE * len(contacts.particle), terms.surface)
         self.touch = Touch(islands, delassus, terms)
         self.lent = bundle((self.touch,))
 
 
-def new_islands(system: System, particle_count: int) -> IslandRoom:
-    """Room for the islands of a system in a world of so many particles."""
+def new_islands(system: System, particle_count: int, rows: JointRows | None) -> IslandRoom:
+    """Room for the islands of a system in a world of so many particles; rows: those of its joints."""
     bodies, free_rows = len(system.bodies.lowest), len(system.matrix.diagonal)
     members = bodies + particle_count
     row = np.full(particle_count, -1, dtype=np.int64)
@@ -103,17 +108,20 @@ def new_islands(system: System, particle_count: int) -> IslandRoom:
         free=np.zeros(particle_count, dtype=np.int64), island=slots[0],
         member=np.full(particle_count, -1, dtype=np.int64), row=row, before=energies[0], held=energies[1],
         after=energies[2], limit=energies[3], fresh=np.zeros(members, dtype=np.bool_), misfit=np.zeros(bodies),
-        due=np.zeros(bodies, dtype=np.bool_), total=energies[4], allowed=energies[5],
+        due=np.zeros(bodies, dtype=np.bool_), driven=np.zeros(bodies, dtype=np.bool_),
+        number=np.zeros(bodies, dtype=np.int64), total=energies[4], allowed=energies[5],
         fails=np.zeros(members, dtype=np.bool_), unpushed=np.zeros((free_rows, 2)), pushed=np.zeros((free_rows, 2)),
         given=np.zeros((particle_count, 2)), change=np.zeros((particle_count, 2)), label=slots[1],
         marked=np.zeros(particle_count, dtype=np.bool_),
     )  # fmt: skip
     block, place = np.full((2, particle_count), -1, dtype=np.int64)
+    joints = no_joints() if rows is None else new_joints(rows, row, system.bodies.row_start, particle_count)
     delassus = Delassus(
         block, place, np.zeros(bodies + 1, dtype=np.int64),
         np.zeros(free_rows, dtype=np.int64), np.zeros(bodies + 1, dtype=np.int64), np.zeros(0), np.zeros(0),
+        joints,
     )  # fmt: skip
-    touch = Touch(islands, delassus, new_terms(0))
+    touch = Touch(islands, delassus, new_terms(0, np.zeros(particle_count)))
     return IslandRoom(touch, bundle((touch,)))
 
 
@@ -134,6 +142,45 @@ def _join_nodes(contacts: Contacts, block: Slots, inverse_mass: Floats, label: S
 
 
 @inner_kernel
+def _mark_driven(joints: Joints, islands: BodyIslands, touched: Flags) -> None:
+    # The bodies, and the particles of none, that joints act on.
+    for k in range(joints.rows.limit.shape[0]):
+        if not joints.rows.limit[k] > 0.0:
+            continue
+        for b in range(joints.body_first[k], joints.body_first[k + 1]):
+            touched[joints.body[b]] = True
+        for e in range(joints.rows.first[k], joints.rows.first[k + 1]):
+            p = joints.rows.particle[e]
+            if islands.row[p] < 0:
+                islands.marked[p] = True
+
+
+@inner_kernel
+def _take_in(body: int, count: int, points: int, islands: BodyIslands, delassus: Delassus) -> int:
+    # Number a body among the touched, whose points begin here; how many there are then.
+    islands.body[count] = body
+    islands.number[body] = count
+    delassus.start[count] = points
+    return count + 1
+
+
+@inner_kernel
+def _join_driven(joints: Joints, islands: BodyIslands, label: Slots) -> None:
+    # Label the nodes alike that one joint acts on.
+    particles = islands.member.shape[0]
+    rows = joints.rows
+    for k in range(rows.limit.shape[0]):
+        if not rows.limit[k] > 0.0:
+            continue
+        first = -1
+        for b in range(joints.body_first[k], joints.body_first[k + 1]):
+            first = united(label, first, root_of(label, particles + islands.number[joints.body[b]]))
+        for e in range(rows.first[k], rows.first[k + 1]):
+            if islands.row[rows.particle[e]] < 0:
+                first = united(label, first, root_of(label, rows.particle[e]))
+
+
+@inner_kernel
 def _find_members(contacts: Contacts, system: System, inverse_mass: Floats, touch: Touch) -> None:
     # The bodies that contacts touch, with their points by row, and the free particles by slot.
     islands, delassus, bodies, rows = touch.islands, touch.delassus, system.bodies, system.rows
@@ -144,6 +191,7 @@ def _find_members(contacts: Contacts, system: System, inverse_mass: Floats, touc
         delassus.place[p] = -1
     for body in range(bodies.touched.shape[0]):
         bodies.touched[body] = False
+    _mark_driven(delassus.joints, islands, bodies.touched)
     for c in range(contacts.particle.shape[0]):
         for end in range(3):
             p, _ = weight_of(contacts, c, end)
@@ -152,20 +200,23 @@ def _find_members(contacts: Contacts, system: System, inverse_mass: Floats, touc
     count = 0
     points = 0
     for body in range(bodies.touched.shape[0]):
+        driven = bodies.touched[body]
+        if driven:
+            count = _take_in(body, count, points, islands, delassus)
         for r in range(bodies.row_start[body], bodies.row_start[body + 1]):
             p = rows.particle[r]
             if not islands.marked[p]:
                 continue
             if not bodies.touched[body]:
                 bodies.touched[body] = True
-                islands.body[count] = body
-                delassus.start[count] = points
-                count += 1
+                count = _take_in(body, count, points, islands, delassus)
             delassus.block[p] = count - 1
             delassus.place[p] = points - delassus.start[count - 1]
             delassus.point[points] = p
             islands.member[p] = count - 1
             points += 1
+        if bodies.touched[body]:
+            islands.driven[count - 1] = driven
     delassus.start[count] = points
     islands.counts[BODIES] = count
     members = count
@@ -185,6 +236,7 @@ def _number_islands(contacts: Contacts, inverse_mass: Floats, touch: Touch) -> N
     bodies = islands.counts[BODIES]
     for node in range(particles + bodies):
         islands.label[node] = node
+    _join_driven(delassus.joints, islands, islands.label)
     _join_nodes(contacts, delassus.block, inverse_mass, islands.label, particles + bodies)
     count = 0
     for k in range(islands.counts[MEMBERS]):

@@ -3,15 +3,21 @@
 A constraint stands in f (spring_terms.py) as a spring does, with C for x: K (C' - C)^2 + K beta (C'^2 - (C' - C)^2);
 its part of the matrix is K g g^T. That of three corners is added to the matrix. More corners would all be joined with
 each other, so a wide constraint is taken in after the factorisation (factor.py).
+
+Under the area of every triangle lies a floor: a second spring of the same gradient, x = A - FLOOR A0, only pushing,
+J = max(0, -K (u' + b)), b = x / h above it and beta x / h below. It stands in the triangle's own blocks of the matrix
+where it is foreseen to push, and has the same strength whatever Cs and Cd are: the softest jelly lies on its floors.
 """
 
-from sandbox.physics.constraints import AREA, area_of, evaluate
+from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, area_of, evaluate
 from sandbox.physics.equation import capped, highest_coefficient, implicit_impulse, implicit_masses
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.solvers.direct.energy_norm import load_range
 from sandbox.physics.solvers.direct.system import Constraints, Inputs, Matrix, Span, State, System
 from sandbox.physics.world import HIGHEST_OF_RING, TRIANGLE, Floats
 
+# beta of the floor: the part of what is missing to it that a step wants back.
+FLOOR_BETA = 0.9
 # A bend misses what was predicted by so much of this [rad], where an area is held against its own size.
 WHOLE_BEND = 1.0
 
@@ -50,7 +56,7 @@ def _load_constants(k: int, constraints: Constraints, state: State, inputs: Inpu
         damping = state.constraint_damping[s]
         if constraints.first[k + 1] - constraints.first[k] > TRIANGLE:
             stiffness, damping = capped(stiffness, damping, HIGHEST_OF_RING)
-        load_range(k, constraints, stiffness, damping)
+        load_range(k, constraints, stiffness, damping, state.constraint_lowest_mode[s])
     for axis in range(2):
         constraints.rest[k, axis] = state.constraint_rest[s, axis]
     for c in range(constraints.first[k], constraints.first[k + 1]):
@@ -72,6 +78,9 @@ def load_constraints(
         for c in range(constraints.first[k], constraints.first[k + 1]):
             total += rows.inverse_mass[constraints.row[c]] * constraints.weight[c]
         mass = 1.0 / total if total > 0.0 else 0.0
+        constraints.floor[k] = 0.0
+        if system.goals.group[k] >= 0 and constraints.rest[k, 0] * constraints.rest[k, 1] > 0.0:
+            constraints.floor[k] = FLOOR_STRENGTH * mass * (FLOOR_RATE * h) * (FLOOR_RATE * h)
         stiff, restoring = implicit_masses(constraints.stiffness[k], constraints.damping[k], mass)
         constraints.stiff[k] = stiff
         constraints.restoring[k] = restoring
@@ -85,7 +94,9 @@ def load_constraints(
             if constraints.most[k] > constraints.least[k]:
                 ranged = True
         _look(k, constraints, rows.moved, rows.moved, 0.0)
-        error = _error(k, constraints, constraints.spare) / h
+        error = _error(k, constraints, constraints.spare)
+        moved += _floor_energy(k, constraints, error, h)
+        error /= h
         moved += 0.5 * constraints.norm[k] * error * error
         _look(k, constraints, rows.position, rows.position, 0.0)
         constraints.error[k] = _error(k, constraints, constraints.spare)
@@ -134,6 +145,39 @@ def linearise_constraints(span: Span, system: System, h: float, ahead: float, be
             constraints.stiff[k], constraints.restoring[k], growth, constraints.error[k], h
         )  # fmt: skip
         constraints.predicted[k] = constraints.error[k] + h * growth
+        constraints.along[k] = constraints.stiff[k]
+        push = _floor_push(k, constraints, growth, h)
+        if push > 0.0:
+            constraints.along[k] += constraints.floor[k] / FLOOR_BETA
+            constraints.impulse[k] += push if constraints.rest[k, 0] > 0.0 else -push
+
+
+@inlined_kernel
+def _above_floor(k: int, constraints: Constraints, error: float) -> float:
+    # A - FLOOR A0, turned positive as A0 is.
+    above = error + (1.0 - FLOOR) * constraints.rest[k, 0]
+    return above if constraints.rest[k, 0] > 0.0 else -above
+
+
+@inner_kernel
+def _floor_push(k: int, constraints: Constraints, growth: float, h: float) -> float:
+    # The impulse of the floor at dA/dt = growth; 0: none, or no triangle.
+    if not constraints.floor[k] > 0.0:
+        return 0.0
+    gap = _above_floor(k, constraints, constraints.error[k]) / h
+    if gap < 0.0:
+        gap *= FLOOR_BETA
+    rate = growth if constraints.rest[k, 0] > 0.0 else -growth
+    return max(0.0, -(rate + gap) * constraints.floor[k] / FLOOR_BETA)
+
+
+@inner_kernel
+def _floor_energy(k: int, constraints: Constraints, error: float, h: float) -> float:
+    # k min(0, x)^2 / 2
+    if not constraints.floor[k] > 0.0:
+        return 0.0
+    below = min(0.0, _above_floor(k, constraints, error)) / h
+    return 0.5 * constraints.floor[k] * below * below
 
 
 @inner_kernel
@@ -174,8 +218,8 @@ def assemble_constraints(span: Span, system: System, fronted: bool) -> None:
             r = constraints.row[c]
             gx = constraints.gradient[c, 0]
             gy = constraints.gradient[c, 1]
-            kx = constraints.stiff[k] * gx
-            ky = constraints.stiff[k] * gy
+            kx = constraints.along[k] * gx
+            ky = constraints.along[k] * gy
             if r < free_count:
                 at = matrix.fronts.diagonal[r] if fronted else r
                 _add_block(matrix, fronted, r, r, at, kx * gx, kx * gy, kx * gy, ky * gy)
@@ -219,7 +263,8 @@ def push_constraints(span: Span, system: System) -> None:
 def update_constraints(span: Span, system: System, h: float) -> tuple[float, float]:
     """Bring a body's constraints to `trial`, which D has been added to: their energy [J] after the step and misfit.
 
-    The misfit is the largest difference between C and what was predicted, as a share of the area, or [rad].
+    The misfit is the largest difference between C and what was predicted, as a share of the area, or [rad]; of a
+    triangle that is below its floor, which was not foreseen, the way to it.
     """
     # J = q - K g.D
     rows, constraints = system.rows, system.constraints
@@ -229,7 +274,7 @@ def update_constraints(span: Span, system: System, h: float) -> tuple[float, flo
     for k in range(span.first_constraint, span.last_constraint):
         u = gradient_dot(k, constraints, rows.change, free_count)
         constraints.predicted[k] += h * u
-        constraints.impulse[k] -= constraints.stiff[k] * u
+        constraints.impulse[k] -= constraints.along[k] * u
         _look(k, constraints, rows.position, rows.trial, h)
         error = _error(k, constraints, constraints.spare)
         extent = WHOLE_BEND
@@ -238,6 +283,10 @@ def update_constraints(span: Span, system: System, h: float) -> tuple[float, flo
         missed = abs(error - constraints.predicted[k])
         if missed > misfit * extent and extent > 0.0:
             misfit = missed / extent
+        if constraints.floor[k] > 0.0:
+            energy += _floor_energy(k, constraints, error, h)
+            if constraints.along[k] == constraints.stiff[k]:
+                misfit = max(misfit, -_above_floor(k, constraints, error) / extent)
         error /= h
         energy += 0.5 * constraints.norm[k] * error * error
     return energy, misfit
@@ -254,6 +303,9 @@ def constraint_objective(span: Span, system: System, h: float) -> float:
         total += 0.5 * (
             constraints.stiff[k] * growth * growth + constraints.restoring[k] * (after * after - growth * growth)
         )
+        push = _floor_push(k, constraints, growth, h)
+        if push > 0.0:
+            total += 0.5 * push * push * FLOOR_BETA / constraints.floor[k]
     return total
 
 
@@ -280,4 +332,16 @@ def constraint_potential(
         _look(k, constraints, position, velocity, time)
         error = _error(k, constraints, constraints.spare) / h
         total += 0.5 * norm[k] * error * error
+    return total
+
+
+@inner_kernel
+def floor_potential(span: Span, system: System, position: Floats, velocity: Floats, time: float, h: float) -> float:
+    """Energy of the floors under a body's triangles at position + time velocity [J]."""
+    constraints = system.constraints
+    total = 0.0
+    for k in range(span.first_constraint, span.last_constraint):
+        if constraints.floor[k] > 0.0:
+            _look(k, constraints, position, velocity, time)
+            total += _floor_energy(k, constraints, _error(k, constraints, constraints.spare), h)
     return total

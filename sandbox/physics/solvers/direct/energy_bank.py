@@ -3,7 +3,7 @@
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.families import potential, potential_excess, start_excess, start_potential
 from sandbox.physics.solvers.direct.motion import kinetic
-from sandbox.physics.solvers.direct.system import Span, System
+from sandbox.physics.solvers.direct.system import Span, State, System
 from sandbox.physics.world import Floats
 
 # A body's bank holds at most this share of its energy: where every spring has Cs <= Cd, and where one has not (its
@@ -12,6 +12,9 @@ BANK_SHARE = 0.05
 UNDERDAMPED_BANK_SHARE = 3.0
 # Relative error of an energy summed over a large body; less rejects steps for rounding alone.
 ENERGY_ROUNDING = 1e-12
+# What a body loses beyond what its bank may hold is kept for its parting from others (parting.py), at most so much a
+# mass [J/kg]: enough to be lifted by a metre. Less leaves heavy bodies in each other, more is never spent.
+LARGEST_RESERVE = 10.0
 # Halvings of the velocities before a body is stopped.
 LAST_HALVINGS = 60
 
@@ -33,6 +36,15 @@ def is_open(span: Span, system: System, bank: Floats) -> bool:
         if bank[system.rows.particle[r]] < 0.0:
             begun = False
     return begun
+
+
+@inner_kernel
+def is_new(span: Span, system: System, bank: Floats) -> bool:
+    """Whether a body's bank is begun for all of it: at its start, not where a hand has let go of a part."""
+    new = True
+    for r in range(span.first_row, span.last_row):
+        new = new and bank[system.rows.particle[r]] < 0.0
+    return new
 
 
 @inner_kernel
@@ -74,3 +86,18 @@ def bank_limit(body: int, span: Span, system: System, h: float) -> float:
     if bodies.ranged[body]:
         limit += potential_excess(span, system, rows.position, rows.trial, h, h)
     return limit
+
+
+@inner_kernel
+def reserve(body: int, span: Span, system: System, state: State, excess: float) -> float:
+    """Keep of an excess [J], which a body has lost, what its reserve for parting has room for; what is left of it."""
+    # Where some Cs is above its Cd, energy in this norm comes and goes, and is no loss.
+    lowest = system.bodies.lowest[body]
+    if not excess > 0.0 or system.bodies.underdamped[body] or state.collides[lowest] == 0:
+        return excess
+    mass = 0.0
+    for r in range(span.first_row, span.last_row):
+        mass += system.rows.mass[r]
+    kept = min(excess, max(0.0, LARGEST_RESERVE * mass - state.parting_reserve[lowest]))
+    state.parting_reserve[lowest] += kept
+    return excess - kept

@@ -11,6 +11,7 @@ from sandbox.physics.solvers.direct.constraint_terms import (
     constraint_objective,
     constraint_potential,
     constraint_slope,
+    floor_potential,
     linearise_constraints,
     load_constraints,
     push_constraints,
@@ -72,13 +73,10 @@ def load(
     free: nothing of it is pinned. See `load_springs`.
     """
     rows = system.rows
-    body_mass = 0.0
-    for r in range(span.first_row, span.last_row):
-        body_mass += rows.mass[r]
     # Gravity moves a body without anchors as a whole: started there, it falls without rounding.
     if free:
         copy(span, rows.target, rows.trial)
-    underdamped, ranged, moved = load_springs(span, system, state, inputs, body_mass, parts, h)
+    underdamped, ranged, moved = load_springs(span, system, state, inputs, parts, h)
     if span.last_constraint > span.first_constraint:
         more_underdamped, more_ranged, more_moved = load_constraints(span, system, state, inputs, parts, h)
         underdamped = underdamped or more_underdamped
@@ -176,12 +174,20 @@ def slope(span: Span, system: System) -> float:
 
 
 @inner_kernel
+def _constraint_energy(span: Span, system: System, position: Floats, velocity: Floats, time: float, h: float) -> float:
+    # With what is below its floor.
+    return constraint_potential(span, system, position, velocity, system.constraints.norm, time, h) + floor_potential(
+        span, system, position, velocity, time, h
+    )
+
+
+@inner_kernel
 def potential(span: Span, system: System, position: Floats, velocity: Floats, time: float, h: float) -> float:
     """Energy of one body's springs and constraints at position + time velocity [J]."""
-    springs, constraints = system.springs, system.constraints
-    return spring_potential(
-        span, system, position, velocity, springs.norm, springs.rest, time, h
-    ) + constraint_potential(span, system, position, velocity, constraints.norm, time, h)
+    springs = system.springs
+    return spring_potential(span, system, position, velocity, springs.norm, springs.rest, time, h) + _constraint_energy(
+        span, system, position, velocity, time, h
+    )
 
 
 @inner_kernel
@@ -196,10 +202,10 @@ def potential_excess(span: Span, system: System, position: Floats, velocity: Flo
 @inner_kernel
 def start_potential(span: Span, system: System, h: float) -> float:
     """Energy of one body's springs and constraints before forces, pins and drives have moved [J]."""
-    rows, springs, constraints = system.rows, system.springs, system.constraints
+    rows, springs = system.rows, system.springs
     return spring_potential(
         span, system, rows.position, rows.start, springs.norm, springs.start_rest, 0.0, h
-    ) + constraint_potential(span, system, rows.position, rows.start, constraints.norm, 0.0, h)
+    ) + _constraint_energy(span, system, rows.position, rows.start, 0.0, h)
 
 
 @inner_kernel

@@ -7,9 +7,10 @@ is stored, up to a limit, in the energy banks of bodies and particles; to push a
 
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.terrain_clamp import STOPS, stopped
+from sandbox.physics.collision.turning import SURFACE_WEIGHT
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.solvers.contact.gauss_seidel import CONTACT_SOFTNESS, FASTEST_PUSH, PENETRATION_SHARE, ContactTerms
+from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH, PENETRATION_SHARE, ContactTerms
 from sandbox.physics.solvers.contact.islands import BODIES, ISLANDS, MEMBERS, BodyIslands, Touch
 from sandbox.physics.solvers.direct.energy_bank import (
     BANK_SHARE,
@@ -18,16 +19,16 @@ from sandbox.physics.solvers.direct.energy_bank import (
     UNDERDAMPED_BANK_SHARE,
     bank_limit,
     body_energy,
+    reserve,
 )
 from sandbox.physics.solvers.direct.families import find_tension
-from sandbox.physics.solvers.direct.motion import copy, kinetic, scale
+from sandbox.physics.solvers.direct.joint_response import work_of_joints
+from sandbox.physics.solvers.direct.motion import copy, hold_triangles, scale
 from sandbox.physics.solvers.direct.system import Rows, Span, State, System, span_of
 from sandbox.physics.world import Floats
 
 # Halvings of what moves within bodies that fail the test, before all that moves is slowed down.
 INNER_HALVINGS = 3
-# k x^2 / 2 of a contact is this, times (x / h)^2 over its response: what its penetration x may be paid back.
-STORED = 0.5 * PENETRATION_SHARE / CONTACT_SOFTNESS
 
 
 @inner_kernel
@@ -78,11 +79,14 @@ def work_of_forces(span: Span, rows: Rows, underdamped: bool) -> float:
 
 
 @inner_kernel
-def measure_body(k: int, span: Span, system: System, islands: BodyIslands, held: float) -> None:
-    """Note the norm of one body after the step, whose springs then hold so much [J]."""
-    rows = system.rows
+def measure_body(k: int, span: Span, system: System, touch: Touch, energy: float) -> None:
+    """Note the norm of one body after the step, whose motion and springs then hold so much [J]."""
+    islands, rows = touch.islands, system.rows
     underdamped = system.bodies.underdamped[islands.body[k]]
-    islands.after[k] = kinetic(span, rows.mass, rows.trial) + held - work_of_forces(span, rows, underdamped)
+    islands.after[k] = energy - work_of_forces(span, rows, underdamped)
+    if islands.driven[k]:
+        work = work_of_joints(span, rows, touch.delassus.joints.push)
+        islands.after[k] -= work * (1.0 + UNDERDAMPED_BANK_SHARE if underdamped else 1.0)
 
 
 @inner_kernel
@@ -93,23 +97,24 @@ def open_free(islands: BodyIslands, state: State) -> None:
         p = islands.free[i]
         k = bodies + i
         ux, uy = islands.given[p, 0], islands.given[p, 1]
-        islands.before[k] = 0.5 * state.mass[p] * (ux * ux + uy * uy)
+        surface = state.spin[p] * state.radius[p]
+        islands.before[k] = 0.5 * state.mass[p] * (ux * ux + uy * uy + surface * surface / SURFACE_WEIGHT)
         islands.held[k] = max(0.0, state.energy_bank[p])
         islands.fresh[k] = state.energy_bank[p] < 0.0
 
 
 @inner_kernel
 def _stored(c: int, contacts: Contacts, terms: ContactTerms, h: float) -> float:
-    # What the penetration of a contact stores [J].
+    # What it costs to bring what penetrates to the velocity at which it is to part [J].
     if not (contacts.gap[c] < 0.0 and terms.normal[c] > 0.0):
         return 0.0
-    depth = min(-contacts.gap[c] / h, FASTEST_PUSH)
-    return STORED * depth * depth / terms.normal[c]
+    speed = min(-PENETRATION_SHARE * contacts.gap[c] / h, FASTEST_PUSH)
+    return 0.5 * speed * speed / terms.normal[c]
 
 
 @inner_kernel
 def credit_penetration(contacts: Contacts, touch: Touch, inverse_mass: Floats, h: float) -> None:
-    """Where a bank is begun, what penetrates then and there stores counts as energy of the start."""
+    """Where a bank is begun, what it costs to part what penetrates then and there counts as energy of the start."""
     islands = touch.islands
     for c in range(contacts.particle.shape[0]):
         for end in range(3):
@@ -120,8 +125,9 @@ def credit_penetration(contacts: Contacts, touch: Touch, inverse_mass: Floats, h
 
 
 @inner_kernel
-def check_energies(islands: BodyIslands, mass: Floats, start: Floats) -> bool:
+def check_energies(touch: Touch, mass: Floats, start: Floats) -> bool:
     """Check the energy of every island; whether any fails."""
+    islands, surface, push = touch.islands, touch.terms.surface, touch.delassus.joints.push
     bodies = islands.counts[BODIES]
     for island in range(islands.counts[ISLANDS]):
         islands.total[island] = 0.0
@@ -131,7 +137,11 @@ def check_energies(islands: BodyIslands, mass: Floats, start: Floats) -> bool:
         ux, uy = islands.given[p, 0], islands.given[p, 1]
         vx, vy = ux + islands.change[p, 0], uy + islands.change[p, 1]
         work = (ux - start[p, 0]) * islands.change[p, 0] + (uy - start[p, 1]) * islands.change[p, 1]
-        islands.after[bodies + i] = 0.5 * mass[p] * (vx * vx + vy * vy - work)
+        turning = surface[p] * surface[p] / SURFACE_WEIGHT
+        islands.after[bodies + i] = 0.5 * mass[p] * (vx * vx + vy * vy + turning - work)
+        if push.shape[0] > 0:
+            given = push[p, 0] * (start[p, 0] + vx) + push[p, 1] * (start[p, 1] + vy)
+            islands.after[bodies + i] -= 0.5 * given
     for k in range(islands.counts[MEMBERS]):
         islands.total[islands.island[k]] += islands.after[k]
         islands.allowed[islands.island[k]] += islands.before[k] * (1.0 + ENERGY_ROUNDING) + islands.held[k]
@@ -184,9 +194,9 @@ def _damp_within(span: Span, rows: Rows) -> None:
 
 
 @inner_kernel
-def _damp_bodies(islands: BodyIslands, system: System, state: State, halving: int, h: float) -> None:
+def _damp_bodies(touch: Touch, system: System, state: State, halving: int, h: float) -> None:
     # One halving of every body of an island that fails.
-    bodies, rows = system.bodies, system.rows
+    islands, bodies, rows = touch.islands, system.bodies, system.rows
     for k in range(islands.counts[BODIES]):
         if not islands.fails[islands.island[k]]:
             continue
@@ -194,28 +204,31 @@ def _damp_bodies(islands: BodyIslands, system: System, state: State, halving: in
         span = span_of(system, body)
         if halving == 0:
             islands.due[k] = True
-            copy(span, rows.trial, islands.unpushed)
+            # As it was found, not what terrain and triangles have left of it, which may lead nowhere.
+            for r in range(span.first_row, span.last_row):
+                islands.unpushed[r, 0] += islands.pushed[r, 0]
+                islands.unpushed[r, 1] += islands.pushed[r, 1]
         if halving < INNER_HALVINGS:
             if not bodies.anchored[body]:
                 _damp_within(span, rows)
         else:
-            if halving == INNER_HALVINGS:
-                copy(span, islands.unpushed, rows.trial)
-            scale(span, 0.5 if halving < LAST_HALVINGS else 0.0, rows.trial)
+            scale(span, 0.5 if halving < LAST_HALVINGS else 0.0, islands.unpushed)
+            copy(span, islands.unpushed, rows.trial)
         clamp_rows(span, rows, state, h)
-        held = body_energy(span, system, h)
-        islands.after[k] = held - work_of_forces(span, rows, bodies.underdamped[body])
+        hold_triangles(span, system, h)
+        measure_body(k, span, system, touch, body_energy(span, system, h))
 
 
 @inner_kernel
-def damp_islands(islands: BodyIslands, system: System, state: State, start: Floats, h: float) -> None:
+def damp_islands(touch: Touch, system: System, state: State, start: Floats, h: float) -> None:
     """Slow down what moves within the bodies of islands that fail, else all that moves, until they pass."""
     # All that moves slowly enough along what contacts and springs want loses energy, and at rest they pass.
+    islands, surface = touch.islands, touch.terms.surface
     bodies = islands.counts[BODIES]
     for k in range(bodies):
         islands.due[k] = False
     for halving in range(LAST_HALVINGS + 1):
-        _damp_bodies(islands, system, state, halving, h)
+        _damp_bodies(touch, system, state, halving, h)
         for i in range(islands.counts[MEMBERS] - bodies):
             if halving >= INNER_HALVINGS and islands.fails[islands.island[bodies + i]]:
                 p = islands.free[i]
@@ -223,7 +236,8 @@ def damp_islands(islands: BodyIslands, system: System, state: State, start: Floa
                 for axis in range(2):
                     v = islands.given[p, axis] + islands.change[p, axis]
                     islands.change[p, axis] = factor * v - islands.given[p, axis]
-        if not check_energies(islands, state.mass, start):
+                surface[p] *= factor
+        if not check_energies(touch, state.mass, start):
             break
     for k in range(bodies):
         if islands.due[k]:
@@ -264,3 +278,8 @@ def store_energies(contacts: Contacts, touch: Touch, system: System, state: Stat
             state.energy_bank[bodies.lowest[islands.body[k]]] = stored
         else:
             state.energy_bank[islands.free[k - islands.counts[BODIES]]] = stored
+    for k in range(islands.counts[BODIES]):
+        island = islands.island[k]
+        body = islands.body[k]
+        excess = islands.allowed[island] - islands.total[island]
+        islands.allowed[island] = islands.total[island] + reserve(body, span_of(system, body), system, state, excess)

@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.collision.inversion import group_triangles
+from sandbox.physics.collision.triangle_clamp import ClampedTriangles, new_triangles
 from sandbox.physics.components import label_bodies
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import bundle
+from sandbox.physics.joints.limited_springs import unlimited_active
 from sandbox.physics.solvers.direct.system import Bodies, Constraints, Goals, Matrix, Rows, Springs, System
 from sandbox.physics.solvers.linear.dissection import Dissection, dissect_bodies, make_fronts, spring_places
 from sandbox.physics.solvers.linear.fronts import Fronts
@@ -79,7 +81,7 @@ class _Chosen(NamedTuple):
 def make_layout(world: World) -> SystemLayout:
     """Order a world's free particles for elimination and lay out the matrix of its springs and constraints."""
     free = world.inverse_mass > 0.0
-    kind = np.where(world.spring_active, world.law, -1).astype(np.int64)
+    kind = np.where(unlimited_active(world), world.law, -1).astype(np.int64)
     a, b = world.particle_a.astype(np.int64), world.particle_b.astype(np.int64)
     chosen = np.flatnonzero((kind == LAW_NISSEN) & (free[a] | free[b]))
     parts = _choose_constraints(world, free)
@@ -106,17 +108,20 @@ def make_layout(world: World) -> SystemLayout:
     low = np.minimum(row_a, row_b)
     in_front = np.append(fronts.of_row, -1)[np.minimum(low, len(nodes))] >= 0
     grouped = np.lexsort((np.where(in_front, low, 0), spring_body))
-    matrix, place = _lay_out_matrix(len(nodes), columns, rank, fronts)
+    matrix, place = lay_out_matrix(len(nodes), columns, rank, fronts)
     constraints, constraint_body = _lay_out_constraints(parts, rank[index[parts.particle]], body_number, place)
     row_a, row_b, spring_body = row_a[grouped], row_b[grouped], spring_body[grouped]
     held = spring_body[np.maximum(row_a, row_b) >= len(nodes)], constraint_body[_anchored(constraints, len(nodes))]
+    rows = _lay_out_rows(np.concatenate([nodes[order], anchors]))
+    goals = _lay_out_goals(constraints, constraint_body, len(first_rows), world.corner_form[constraints.corner])
     system = System(
         _lay_out_bodies(first_rows, nodes[body_of_row[first_rows]], spring_body, constraint_body, held, len(nodes)),
-        _lay_out_rows(np.concatenate([nodes[order], anchors])),
+        rows,
         _lay_out_springs(chosen[grouped], row_a, row_b, place(row_a, row_b)),
         constraints,
         matrix,
-        _lay_out_goals(constraints, constraint_body, len(first_rows), world.corner_form[constraints.corner]),
+        goals,
+        _lay_out_triangles(rows, constraints, goals, world),
     )
     hooke = kind == LAW_HOOKE
     return SystemLayout(bool(hooke.any()), hooke, system, bundle((system,)))
@@ -136,13 +141,13 @@ def _eliminate(
     small = np.flatnonzero(is_small)
     index = np.cumsum(is_small) - 1
     kept = np.flatnonzero(is_small[link_a])
-    order, columns = _order_small(len(small), index[link_a[kept]], index[link_b[kept]])
+    order, columns = order_small(len(small), index[link_a[kept]], index[link_b[kept]])
     order = np.concatenate([small[order], *(np.flatnonzero(label == body)[large[body].order] for body in large)])
     by_body = np.argsort(label[order], kind="stable")
     return order[by_body], label, (small[columns[0]], small[columns[1]]), large
 
 
-def _order_small(count: int, link_a: Slots, link_b: Slots) -> tuple[Slots, tuple[Slots, Slots]]:
+def order_small(count: int, link_a: Slots, link_b: Slots) -> tuple[Slots, tuple[Slots, Slots]]:
     """Elimination order of the nodes of small bodies, and the blocks (column, row) of their factor."""
     keys = np.unique(np.concatenate([link_a * count + link_b, link_b * count + link_a]))
     near = keys % count if count else keys
@@ -161,7 +166,7 @@ def _order_small(count: int, link_a: Slots, link_b: Slots) -> tuple[Slots, tuple
     return order, (np.repeat(order, np.diff(column_start)), column[: column_start[-1]])
 
 
-def _lay_out_matrix(
+def lay_out_matrix(
     count: int, columns: tuple[Slots, Slots], rank: Slots, fronts: Fronts
 ) -> tuple[Matrix, Callable[[Slots, Slots], Slots]]:
     """The matrix, ready for numbers, and a function: the block that two rows share (-1: one is pinned)."""
@@ -322,3 +327,12 @@ def _lay_out_goals(constraints: Constraints, body: Slots, bodies: int, form: Flo
         turns=np.zeros(len(jellies.particle), dtype=np.int64),
         inverted=np.zeros(len(sample), dtype=np.bool_),
     )
+
+
+def _lay_out_triangles(rows: Rows, constraints: Constraints, goals: Goals, world: World) -> ClampedTriangles:
+    """The triangles of all jellies, over the rows; those of other constraints are in no group."""
+    narrow = np.minimum(constraints.first[:-1, None] + np.arange(3), max(0, len(constraints.row) - 1))
+    corner = constraints.row[narrow] if len(constraints.row) else narrow
+    motion = rows.position, rows.trial, rows.mass, rows.inverse_mass
+    collides = world.collides[rows.particle]
+    return new_triangles(corner, goals.group, constraints.rest, motion, collides, goals.inverted, world.terrain)

@@ -1,7 +1,8 @@
-"""Velocities of one body's rows: copied, scaled, their energy, and the spin that a free body keeps."""
+"""Velocities of one body's rows: copied, scaled, their energy, the spin that a free body keeps, and its triangles."""
 
+from sandbox.physics.collision.triangle_clamp import AS_IT_WAS, clamp_triangles
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.solvers.direct.system import Rows, Span
+from sandbox.physics.solvers.direct.system import Rows, Span, System
 from sandbox.physics.world import Floats
 
 
@@ -64,3 +65,13 @@ def hold_spin(span: Span, rows: Rows) -> None:
     for r in range(span.first_row, span.last_row):
         rows.trial[r, 0] -= turn * (rows.position[r, 1] - y)
         rows.trial[r, 1] += turn * (rows.position[r, 0] - x)
+
+
+@inner_kernel
+def hold_triangles(span: Span, system: System, h: float) -> int:
+    """Let `trial` turn over no triangle of a body in a step of h [s]; what that took: see clamp_triangles."""
+    if span.last_constraint == span.first_constraint:
+        return AS_IT_WAS
+    return clamp_triangles(
+        span.first_constraint, span.last_constraint, span.first_row, span.last_row, system.triangles, h
+    )  # fmt: skip

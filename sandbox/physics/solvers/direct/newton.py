@@ -6,7 +6,7 @@ Its matrix is positive definite at every iterate, since the geometric stiffness 
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.factor import solve_linear
 from sandbox.physics.solvers.direct.families import find_tension, linearise, objective, slope
-from sandbox.physics.solvers.direct.motion import copy, scale
+from sandbox.physics.solvers.direct.motion import copy, hold_triangles, scale
 from sandbox.physics.solvers.direct.system import Span, System
 
 # Newton rounds of the minimisation, sufficient decrease (Armijo), halvings of a round, and the relative decrease at
@@ -19,11 +19,12 @@ NEWTON_TOLERANCE = 1e-6
 
 @inner_kernel
 def _start(span: Span, system: System, h: float) -> float:
-    # From the best of the candidate, v* and all at rest; f there.
+    # From the best of the candidate, v* and all at rest, none of which turns over a triangle; f there.
     rows = system.rows
     copy(span, rows.trial, rows.best)
     lowest = objective(span, system, h)
     copy(span, rows.target, rows.trial)
+    hold_triangles(span, system, h)
     value = objective(span, system, h)
     if not lowest <= value:
         lowest = value
@@ -38,7 +39,7 @@ def _start(span: Span, system: System, h: float) -> float:
 
 @inner_kernel
 def minimise(span: Span, system: System, h: float) -> None:
-    """Bring a body's `trial` to the minimum of f, and its springs' tension to what it is there."""
+    """Bring a body's `trial` towards the minimum of f, no triangle turned over, and its springs' tension too."""
     # Newton's method on f with A = M + sum [K n' n'^T + h^2 max(0, t) / l' (I - n' n'^T)].
     rows = system.rows
     value = _start(span, system, h)
@@ -55,6 +56,7 @@ def minimise(span: Span, system: System, h: float) -> None:
             for r in range(span.first_row, span.last_row):
                 rows.trial[r, 0] = rows.best[r, 0] + length * rows.change[r, 0]
                 rows.trial[r, 1] = rows.best[r, 1] + length * rows.change[r, 1]
+            hold_triangles(span, system, h)
             reached = objective(span, system, h)
             if reached <= value + ARMIJO * length * descent:
                 value = reached

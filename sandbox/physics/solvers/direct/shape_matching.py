@@ -7,7 +7,7 @@ jelly as a whole, and let it lose its spin; what they add to the body's energy w
 
 import math
 
-from sandbox.physics.collision.inversion import wind
+from sandbox.physics.collision.inversion import is_out_of_shape, wind
 from sandbox.physics.equation import implicit_masses
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.system import Goals, Rows, Span, System
@@ -34,7 +34,7 @@ def find_inverted(body: int, span: Span, system: System) -> bool:
         if g < 0:
             continue
         wanted = constraints.rest[k, 0]
-        if wanted * constraints.rest[k, 1] > 0.0 and not (constraints.error[k] + wanted) * wanted > 0.0:
+        if is_out_of_shape(constraints.error[k] + wanted, wanted, constraints.rest[k, 1]):
             goals.inverted[g] = True
         first = constraints.first[k]
         wind(

@@ -1,16 +1,17 @@
 """Direct: the article's spring solved for a whole network at once, with a test that bounds the energy.
 
-spring_terms.py states what is solved. What contacts touch is solved island by island (island_solve.py), what nothing
-touches body by body (step_body.py): such a body is an island without contacts.
+spring_terms.py states what is solved. What contacts touch or joints act on is solved island by island
+(island_solve.py), all else body by body (step_body.py): such a body is an island without contacts.
 """
 
 from operator import attrgetter
 from typing import Any
 
-from sandbox.physics.collision.types import Contacts
+from sandbox.physics.collision.types import NO_CONTACTS, Contacts
 from sandbox.physics.equation import implicit_spring_constant
 from sandbox.physics.integrate import follow
 from sandbox.physics.jit import bundle, contents, kernel
+from sandbox.physics.joints.joint_set import joints_of
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.direct.families import load_rows
 from sandbox.physics.solvers.direct.layout import layout_of
@@ -40,7 +41,7 @@ def _solve_bodies(
             continue
         span = span_of(system, body)
         open_body(body, span, system, state, inputs, parts, h)
-        step_body(body, span, system, state.energy_bank, h)
+        step_body(body, span, system, state, h)
         for r in range(span.first_row, span.last_row):
             state.velocity[rows.particle[r], 0] = rows.trial[r, 0]
             state.velocity[rows.particle[r], 1] = rows.trial[r, 1]
@@ -65,11 +66,12 @@ def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
     if layout.has_hooke:
         apply_explicit(world, layout.hooke, substep.springs, substep.h)
     state = world.derived(_lent_state)
-    touched = contacts is not None and len(contacts.particle) > 0
+    joints = joints_of(world)
+    touched = (contacts is not None and len(contacts.particle) > 0) or (joints is not None and joints.on)
     inputs = (*substep.springs, *substep.constraints, *substep.before)
     parts = substep.substeps if world.settings.substeps == AUTO else 0
-    if contacts is not None and touched:
+    if touched:
         from sandbox.physics.solvers.direct.island_solve import solve_touched
 
-        solve_touched(contacts, world, layout, state, inputs, parts, substep.h)
+        solve_touched(NO_CONTACTS if contacts is None else contacts, world, layout, state, inputs, parts, substep.h)
     _solve_bodies(layout.lent, state, *inputs, touched, parts, substep.h)

@@ -36,7 +36,7 @@ ROUNDING_MISFIT = 1e-10
 
 @inner_kernel
 def load_springs(
-    span: Span, system: System, state: State, inputs: Inputs, body_mass: float, parts: int, h: float
+    span: Span, system: System, state: State, inputs: Inputs, parts: int, h: float
 ) -> tuple[bool, bool, float]:
     """Bring the springs of a body into their scratch; whether any has Cs > Cd, and any a norm that has a range.
 
@@ -52,8 +52,7 @@ def load_springs(
         s = springs.slot[k]
         a = springs.row_a[k]
         b = springs.row_b[k]
-        # A grab's spring pulls at the whole body, so that a heavy rope lifts as readily as a light one.
-        mass = body_mass if state.material[s] == -1 else reduced_mass(rows.inverse_mass[a], rows.inverse_mass[b])
+        mass = reduced_mass(rows.inverse_mass[a], rows.inverse_mass[b])
         stiffness = inputs.stiffness[s]
         damping = inputs.damping[s]
         if parts > 1:
@@ -65,7 +64,7 @@ def load_springs(
             underdamped = True
         springs.norm[k] = restoring
         if parts > 0:
-            load_range(k, springs, state.stiffness[s], state.damping[s])
+            load_range(k, springs, state.stiffness[s], state.damping[s], state.lowest_mode[s])
             springs.norm[k] = mass * springs.least[k] / (parts * parts)
             springs.norm_excess[k] = mass * (springs.most[k] - springs.least[k]) / (parts * parts)
             if springs.most[k] > springs.least[k]:
@@ -255,7 +254,7 @@ def update_springs(span: Span, system: System, h: float) -> tuple[float, float, 
         error /= h
         energy += 0.5 * springs.norm[k] * error * error
         extent = rest + springs.length[k]
-        # One of rest length 0, such as a grab's, has no strain to be spared.
+        # One of rest length 0 has no strain to be spared.
         if rest > 0.0 and extent > SHORTEST and missed > misfit * extent:
             misfit = missed / extent
     return energy, 2.0 * misfit, before > CANCELLATION * after and 2.0 * misfit < ROUNDING_MISFIT

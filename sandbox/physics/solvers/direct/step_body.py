@@ -5,6 +5,9 @@ velocity: that damps fast vibration and leaves slow turning alone. It is taken o
 what it had plus what its bank holds of earlier losses; else f itself is minimised.
 """
 
+import math
+
+from sandbox.physics.collision.triangle_clamp import AS_IT_WAS, JOINED
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.energy_bank import (
     ENERGY_ROUNDING,
@@ -12,14 +15,14 @@ from sandbox.physics.solvers.direct.energy_bank import (
     bank_limit,
     body_energy,
     open_bank,
+    reserve,
 )
 from sandbox.physics.solvers.direct.factor import refine, solve_linear
-from sandbox.physics.solvers.direct.families import find_tension, keep_tension, linearise, load, update
-from sandbox.physics.solvers.direct.motion import copy, hold_spin, kinetic, scale
+from sandbox.physics.solvers.direct.families import find_tension, keep_tension, linearise, load, potential, update
+from sandbox.physics.solvers.direct.motion import copy, hold_spin, hold_triangles, kinetic, scale
 from sandbox.physics.solvers.direct.newton import minimise
 from sandbox.physics.solvers.direct.shape_matching import find_inverted, match_shape, release_shape
 from sandbox.physics.solvers.direct.system import Inputs, Span, State, System
-from sandbox.physics.world import Floats
 
 # Directions are those at x + h AHEAD (v' - s). Lower explodes taut ropes, higher gains nothing.
 AHEAD = 0.75
@@ -67,6 +70,13 @@ def _take_candidate(span: Span, system: System, free: bool, h: float) -> tuple[f
             break
         refine(span, system)
     keep_tension(span, system)
+    taken = hold_triangles(span, system, h)
+    if taken != AS_IT_WAS:
+        held = potential(span, system, rows.position, rows.trial, h, h)
+        find_tension(span, system, h)
+    if taken == JOINED:
+        # So far from what is possible that it would stand still: f has to show the way.
+        return math.inf, misfit
     return kinetic(span, rows.mass, rows.trial) + held, misfit
 
 
@@ -101,33 +111,38 @@ def _solve_within(body: int, span: Span, system: System, allowed: float, h: floa
 
 
 @inner_kernel
-def step_body(body: int, span: Span, system: System, energy_bank: Floats, h: float) -> None:
+def step_body(body: int, span: Span, system: System, state: State, h: float) -> None:
     """Bring a body that was opened to the end of a step of h [s], in `trial`, and its bank."""
-    bodies = system.bodies
+    bodies, rows = system.bodies, system.rows
     before = bodies.before[body]
     held = bodies.held[body]
     allowed = before * (1.0 + ENERGY_ROUNDING) + held
     after = _solve_within(body, span, system, allowed, h)
     if not after <= allowed:
         minimise(span, system, h)
+        copy(span, rows.trial, rows.best)
         after = body_energy(span, system, h)
         if not after <= allowed:
             after = _damp(span, system, allowed, h)
     limit = bank_limit(body, span, system, h)
     saved = held + before - after
     # An inverted body keeps all that it lost for the way back to its form; one that grabs move, no more than others do.
-    if not (bodies.inverted[body] and not bodies.anchored[body]):
-        saved = min(saved, limit)
-    energy_bank[bodies.lowest[body]] = saved if saved > 0.0 else 0.0
+    if saved > limit and not (bodies.inverted[body] and not bodies.anchored[body]):
+        reserve(body, span, system, state, saved - limit)
+        saved = limit
+    state.energy_bank[bodies.lowest[body]] = saved if saved > 0.0 else 0.0
 
 
 @inner_kernel
 def _damp(span: Span, system: System, allowed: float, h: float) -> float:
-    # Halve the free velocities until the energy test holds; at rest it always does.
+    # Halve the free velocities, as they were found, until the energy test holds; at rest it always does.
     rows = system.rows
     after = 0.0
     for _halving in range(LAST_HALVINGS):
-        scale(span, 0.5, rows.trial)
+        # Not of what triangles have left: what was found leads downwards, once it is so short that none turns over.
+        scale(span, 0.5, rows.best)
+        copy(span, rows.best, rows.trial)
+        hold_triangles(span, system, h)
         after = body_energy(span, system, h)
         if after <= allowed:
             break

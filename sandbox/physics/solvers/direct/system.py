@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.collision.triangle_clamp import ClampedTriangles
 from sandbox.physics.jit import inlined_kernel
 from sandbox.physics.solvers.linear.fronts import Fronts
 from sandbox.physics.terrain import Terrain
@@ -19,7 +20,7 @@ Flags = NDArray[np.bool_]
 
 
 class State(NamedTuple):
-    """The arrays of a world that a step reads, and of which it writes four: see StateArrays; and the terrain.
+    """The arrays of a world that a step reads, and of which it writes five: see StateArrays; and the terrain.
 
     stiffness and damping are Cs and Cd of a whole tick.
     """
@@ -30,16 +31,20 @@ class State(NamedTuple):
     inverse_mass: Floats
     slow_velocity: Floats
     energy_bank: Floats
+    parting_reserve: Floats
+    radius: Floats
+    spin: Floats
     particle_active: Flags
     collides: Slots
     rest_length: Floats
     stiffness: Floats
     damping: Floats
-    material: NDArray[np.int32]
     tension: Floats
+    lowest_mode: Floats
     constraint_rest: Floats
     constraint_stiffness: Floats
     constraint_damping: Floats
+    constraint_lowest_mode: Floats
     corner_weight: Floats
     terrain: Terrain
 
@@ -113,7 +118,7 @@ class Springs(NamedTuple):
 
     rest, start_rest [m]: rest length, and at the start of the step; stiff = K [kg], restoring = K beta [kg],
     transverse [kg] = the geometric stiffness h T / l; norm and norm_excess [kg]: see energy_norm.py, as least, most and
-    the tick_stiffness and tick_damping that they are of; length, error, predicted [m]; normal; impulse, tangential,
+    the tick's Cs, Cd and lowest mode that they are of; length, error, predicted [m]; normal; impulse, tangential,
     tension [N s].
     """
 
@@ -130,6 +135,7 @@ class Springs(NamedTuple):
     norm_excess: Floats
     tick_stiffness: Floats
     tick_damping: Floats
+    tick_lowest_mode: Floats
     least: Floats
     most: Floats
     length: Floats
@@ -148,7 +154,8 @@ class Constraints(NamedTuple):
     corners (0, 1), (1, 2), (2, 0) lie, -1: one is pinned; wide (t,): number among the body's wide ones, -1: narrow.
     rest and weight are those of the step, copied; stiffness, damping too, as the solver caps them. response (w, n, 2)
     and scale (w,): z and 1 / (1 / K + g . z) of the wide ones. All else is scratch, as that of springs: error and
-    predicted of C; gradient, spare, place (q, 2).
+    predicted of C; gradient, spare, place (q, 2); floor [kg] = k h^2 of what holds a triangle from outside, 0: nothing,
+    along [kg] = K with that of the floor where it is foreseen to push.
     """
 
     slot: Slots
@@ -167,10 +174,13 @@ class Constraints(NamedTuple):
     damping: Floats
     stiff: Floats
     restoring: Floats
+    along: Floats
+    floor: Floats
     norm: Floats
     norm_excess: Floats
     tick_stiffness: Floats
     tick_damping: Floats
+    tick_lowest_mode: Floats
     least: Floats
     most: Floats
     error: Floats
@@ -218,7 +228,7 @@ class Goals(NamedTuple):
 
 
 class System(NamedTuple):
-    """All of it."""
+    """All of it. triangles: the narrow areas among the constraints, by their numbers, over the rows and `trial`."""
 
     bodies: Bodies
     rows: Rows
@@ -226,6 +236,7 @@ class System(NamedTuple):
     constraints: Constraints
     matrix: Matrix
     goals: Goals
+    triangles: ClampedTriangles
 
 
 class Span(NamedTuple):

@@ -1,0 +1,208 @@
+"""Backdrop: what does not move, stage, grid and ground, as a picture that is kept while the camera stands still."""
+
+import numpy as np
+import pygame
+from numpy.typing import NDArray
+
+from sandbox.app.draw.camera import Camera, grid_spacing
+from sandbox.app.draw.looks import ground_look
+from sandbox.app.draw.raster.bodies import GRAIN, BodyRows, Flush, Outlines, Skins
+from sandbox.app.draw.raster.painter import NO_GRAIN, BodyLayer, MarkList, Painter
+from sandbox.app.draw.raster.shadows import Thrown
+from sandbox.app.draw.textures import EARTH, TILE, TIMBER, Tiles, grains, skin_table
+from sandbox.app.draw.themes import Theme
+from sandbox.app.draw.things.borders import starts_of
+from sandbox.level.format.model import Level
+from sandbox.physics.terrain import Terrain
+
+Floats = NDArray[np.float64]
+
+# Distance of grid lines, at least [pixels at scale 1], and how much of them shows.
+GRID_STEP, GRID_SHARE = 64.0, 0.75
+# Corners farther away than this [pixels] are drawn there: kernels take no others.
+FARTHEST = 5e5
+# Terrain wider than this part of the view or of all terrain is soil, if nothing says otherwise.
+WIDE = 0.45
+# How ground is rounded, and the half width of its line [pixels at scale 1].
+SOIL_DEPTH, BEVEL, LINE_HALF = 26.0, 9.0, 0.9
+# Turf lies on what faces up, as far as this cosine; half width, length of its pattern, how far it sinks.
+TURF_FROM, TURF_HALF, TURF_PERIOD, TURF_SINK = 0.8, 12.0, 46.0, 2.0
+EDGE_HALF = 2.4
+_GRAINS = {"soil": EARTH, "rock": EARTH, "wood": TIMBER}
+
+
+class Backdrop:
+    """The still picture of one view."""
+
+    def __init__(self) -> None:
+        self._painter = Painter()
+        self._bare: tuple[object, NDArray[np.uint32], NDArray[np.uint32]] | None = None
+        self._key: tuple[object, ...] = ()
+        self._terrain: Terrain | None = None
+        self._layer: pygame.Surface | None = None
+        self._is_fine = False
+
+    def draw(
+        self, painter: Painter, camera: Camera, terrain: Terrain, level: Level | None, theme: Theme, tiles: Tiles,
+        scale: float,
+    ) -> None:  # fmt: skip
+        """Draw it; while the camera moves, the ground is flat."""
+        key = (camera.centre, camera.zoom, camera.viewport, scale, theme.name, painter.exact)
+        is_same = key == self._key and terrain is self._terrain and self._layer is not None
+        is_new = self._layer is None or terrain is not self._terrain or camera.viewport != self._key[2]
+        if not is_same or not self._is_fine:
+            self._key, self._terrain = key, terrain
+            self._is_fine = is_same or is_new
+            self._layer = self._made(painter, camera, terrain, level, theme, tiles, scale)
+        assert self._layer is not None
+        painter.surface.blit(self._layer, camera.viewport[:2])
+
+    def _made(
+        self, painter: Painter, camera: Camera, terrain: Terrain, level: Level | None, theme: Theme, tiles: Tiles,
+        scale: float,
+    ) -> pygame.Surface:  # fmt: skip
+        width, height = camera.viewport[2:]
+        layer = pygame.Surface((width, height), 0, 32)
+        own = Camera(camera.centre, camera.zoom, (0, 0, width, height))
+        pixels = pygame.surfarray.pixels2d(layer).T
+        bare, gridded = self._stage((width, height), theme)
+        pixels[:] = bare
+        columns, rows = _grid_lines(own, scale)
+        pixels[:, columns] = gridded[:, columns]
+        pixels[rows] = gridded[rows]
+        del pixels
+        self._painter.compiled = painter.exact
+        self._painter.begin(layer)
+        if len(terrain.edge_a):
+            self._draw_ground(own, terrain, level, theme, tiles, scale)
+        return layer
+
+    def _stage(self, size: tuple[int, int], theme: Theme) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+        """The stage (h, w) without and with its grid everywhere."""
+        if self._bare is None or self._bare[0] != (size, theme.name):
+            self._bare = ((size, theme.name), *_stage_pictures(size, theme))
+        return self._bare[1], self._bare[2]
+
+    def _draw_ground(
+        self, camera: Camera, terrain: Terrain, level: Level | None, theme: Theme, tiles: Tiles, scale: float
+    ) -> None:
+        vertex = np.clip(np.nan_to_num(camera.project(terrain.vertex)), -FARTHEST, FARTHEST)
+        ids = [piece.id for piece in level.terrain] if level is not None else []
+        lines, solids = MarkList(), []
+        extent = float(np.ptp(vertex[:, 0]))
+        for chain in np.unique(terrain.chain).tolist():
+            edges = np.flatnonzero(terrain.chain == chain)
+            corners = vertex[terrain.edge_a[edges]]
+            x, y = corners[:, 0], corners[:, 1]
+            # Pixels count downwards: what is solid inside runs clockwise there.
+            is_solid = terrain.solid[edges[0]] and np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) < 0.0
+            if not is_solid:
+                ends = np.concatenate([corners, vertex[terrain.edge_b[edges]]], axis=1)
+                metal = theme.metal[0]
+                lines.strokes(ends, (EDGE_HALF + 0.9) * scale, _packed(theme.metal[1]))
+                lines.strips(ends, EDGE_HALF * scale, TILE["steel"], 0.0, _packed(metal), 0.7)
+                continue
+            wide = np.ptp(x) > WIDE * max(extent, camera.viewport[2])
+            name = ids[chain] if chain < len(ids) else ""
+            kind = ground_look(level, name, bool(wide)) if level is not None else "soil" if wide else "metal"
+            solids.append((kind, np.ascontiguousarray(corners)))
+        if solids:
+            self._draw_solids(camera, solids, theme, tiles, scale)
+        self._painter.marks(lines, tiles.array)
+
+    def _draw_solids(
+        self, camera: Camera, solids: list[tuple[str, Floats]], theme: Theme, tiles: Tiles, scale: float
+    ) -> None:
+        small = [corners for kind, corners in solids if kind != "soil"]
+        if small and self._is_fine:
+            shapes = Outlines(np.concatenate(small), starts_of([len(corners) for corners in small]))
+            nothing = Thrown(np.zeros((0, 5)), np.zeros((0, 3)))
+            offset = (4.0 * scale, 8.0 * scale)
+            self._painter.shadows(nothing, shapes, offset, _packed(theme.shadow), 0.7 * theme.shadow_strength)
+        kinds = [kind for kind, _ in solids]
+        points = Outlines(np.concatenate([c for _, c in solids]), starts_of([len(c) for _, c in solids]))
+        count = len(solids)
+        look = np.zeros((count, 3), dtype=np.int64)
+        look[:, 0] = np.arange(count)
+        look[:, 1] = [_GRAINS.get(kind, NO_GRAIN) if self._is_fine else NO_GRAIN for kind in kinds]
+        look[:, 2] = [_line_of(kind, theme) for kind in kinds]
+        size = np.zeros((count, 3))
+        size[:, 0] = [(SOIL_DEPTH if kind in ("soil", "rock") else BEVEL) * scale for kind in kinds]
+        size[:, 1], size[:, 2] = LINE_HALF * scale, [0.5 if kind == "glass" else 0.9 for kind in kinds]
+        loops = np.stack([np.arange(count), np.arange(1, count + 1)], axis=1)
+        tables = np.stack([skin_table(f"ground {kind}", 0, theme) for kind in kinds])
+        x, y = camera.origin
+        shift = (round(y) % GRAIN, round(x) % GRAIN)
+        rolled = np.ascontiguousarray(np.roll(grains(), shift, axis=(1, 2)))
+        fill = tables[:, 40, 128].astype(np.int64) & 0xFFFFFF
+        self._painter.bodies(
+            BodyLayer(
+                points, BodyRows(loops, look, size, np.zeros((count, 2), dtype=np.int64)), Skins(tables, rolled),
+                Flush(np.zeros((0, 4)), np.zeros(2, dtype=np.int64)), fill,
+            )
+        )  # fmt: skip
+        turf = MarkList()
+        for kind, corners in solids:
+            if kind == "soil":
+                _lay_turf(turf, corners, theme, scale)
+        self._painter.marks(turf, tiles.array)
+
+
+def _lay_turf(marks: MarkList, corners: Floats, theme: Theme, scale: float) -> None:
+    """Turf on the sides of a solid shape, clockwise as seen, that face up."""
+    after = np.roll(corners, -1, axis=0)
+    along = after - corners
+    length = np.maximum(np.sqrt(np.sum(along * along, axis=1)), 1e-9)
+    metres = np.cumsum(length)
+    # With what is solid on the right as seen, what faces up runs to the left.
+    chosen = -along[:, 0] / length > TURF_FROM
+    ends = np.concatenate([corners, after], axis=1)[chosen] + TURF_SINK * scale * np.array([0.0, 1.0, 0.0, 1.0])
+    period = (np.column_stack([metres - length, metres]) / (TURF_PERIOD * scale))[chosen]
+    sod = tuple(round(0.45 * a + 0.55 * b) for a, b in zip(*theme.turf, strict=True))
+    marks.strokes(ends + scale * np.array([0.0, 1.0, 0.0, 1.0]), 3.2 * scale, _packed(sod))
+    marks.strips(ends, TURF_HALF * scale, TILE["turf"], period)
+
+
+def _line_of(kind: str, theme: Theme) -> int:
+    deep = {"soil": theme.soil[1], "rock": theme.rock[1], "wood": (0x6E, 0x4A, 0x28), "glass": (0x6F, 0xA8, 0xC8)}
+    red, green, blue = (int(0.65 * channel) for channel in deep.get(kind, theme.metal[1]))
+    return red << 16 | green << 8 | blue
+
+
+def _packed(colour: tuple[int, ...]) -> int:
+    return colour[0] << 16 | colour[1] << 8 | colour[2]
+
+
+def _grid_lines(camera: Camera, scale: float) -> tuple[list[int], list[int]]:
+    """Columns and rows of pixels that grid lines lie on."""
+    _, _, width, height = camera.viewport
+    spacing = grid_spacing(camera.zoom, GRID_STEP * scale)
+    (x0, y1), (x1, y0) = camera.to_world((0, 0)), camera.to_world((width, height))
+    found: list[list[int]] = []
+    for axis, low, high, most in ((0, x0, x1, width), (1, y0, y1, height)):
+        lines = range(int(np.ceil(low / spacing)), int(np.floor(high / spacing)) + 1)
+        places = [round(camera.to_pixels((index * spacing, index * spacing))[axis]) for index in lines]
+        found.append([place for place in places if 0 <= place < most])
+    return found[0], found[1]
+
+
+def _stage_pictures(size: tuple[int, int], theme: Theme) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+    width, height = size
+    y, x = np.mgrid[0:height, 0:width].astype(np.float32)
+    share = (y / max(height, 1))[..., None]
+    top, bottom = (np.array(colour, dtype=np.float32) for colour in theme.stage)
+    colour = top * (1 - share) + bottom * share
+    away = np.sqrt(((x - width / 2) / (0.62 * width)) ** 2 + ((y - 0.46 * height) / (0.72 * height)) ** 2)
+    # A lamp behind the stage; the grid fades with the distance from the middle, and all of it towards the corners.
+    colour += (np.clip(1 - 1.25 * away, 0, 1) ** 2)[..., None] * np.array(theme.lamp, dtype=np.float32)
+    fade = np.clip(1.15 - 1.05 * away, 0, 1)[..., None] * np.float32(GRID_SHARE)
+    gridded = colour + (np.array(theme.grid, dtype=np.float32) - colour) * fade
+    dark = (1 - theme.vignette * np.clip(away - 0.55, 0, 1.2) ** 1.6)[..., None]
+    # An ordered dither, or the gradient shows as bands.
+    bayer = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]], dtype=np.float32) / 16 - 0.47
+    dither = np.tile(bayer, (height // 4 + 1, width // 4 + 1))[:height, :width, None]
+    pictures = []
+    for each in (colour, gridded):
+        channels = np.clip(each * dark + dither + 0.5, 0, 255).astype(np.uint32)
+        pictures.append(0xFF000000 | channels[..., 0] << 16 | channels[..., 1] << 8 | channels[..., 2])
+    return pictures[0].astype(np.uint32), pictures[1].astype(np.uint32)

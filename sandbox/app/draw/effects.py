@@ -1,0 +1,125 @@
+"""Effects: sparks of what tears and dust of what hits. The eye's memory: made of snapshots, never part of a run."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.raster.painter import MarkList
+from sandbox.app.draw.themes import SPARK, SPARK_GLOW, Theme
+from sandbox.physics.query import shown_springs
+from sandbox.physics.snapshot import Snapshot
+
+Floats = NDArray[np.float64]
+
+# At most so many at a time; of one moment at most so many places.
+MOST_SPARKS, MOST_DUST, PLACES = 240, 80, 16
+SPARKS_A_TEAR = 9
+# Change of velocity [m/s] in a frame from which a contact raises dust.
+HARD = 2.2
+FALL = 9.8
+LIVES = {"spark": (0.25, 0.6), "dust": (0.35, 0.9)}
+# Longest time [s] that passes for them in a frame.
+LONGEST = 0.1
+TAIL = 0.028
+
+
+@dataclass
+class _Motes:
+    """Rows of place [m], velocity [m/s], age, life [s], size [m]."""
+
+    most: int
+    rows: Floats = field(default_factory=lambda: np.zeros((0, 7)))
+
+    def add(self, at: Floats, velocity: Floats, life: Floats, size: Floats) -> None:
+        new = np.column_stack([at, velocity, np.zeros(len(at)), life, size])
+        self.rows = np.concatenate([self.rows, new])[-self.most :]
+
+    def pass_time(self, seconds: float, fall: float, slow: float) -> None:
+        rows = self.rows
+        rows[:, 3] -= fall * seconds
+        rows[:, 2:4] *= max(0.0, 1.0 - slow * seconds)
+        rows[:, :2] += rows[:, 2:4] * seconds
+        rows[:, 4] += seconds
+        self.rows = rows[rows[:, 4] < rows[:, 5]]
+
+
+class Effects:
+    """What flies about on one screen."""
+
+    def __init__(self) -> None:
+        self._sparks, self._dust = _Motes(MOST_SPARKS), _Motes(MOST_DUST)
+        self._before: Snapshot | None = None
+        self._seconds = 0.0
+
+    def see(self, now: Snapshot, seconds: float, strikes: NDArray[np.bool_] | None) -> None:
+        """Take in a snapshot, shown at a time [s] of the run; strikes (m,): springs that spark when they tear."""
+        before, passed = self._before, seconds - self._seconds
+        self._before, self._seconds = now, seconds
+        if before is None or now.tick < before.tick or len(now.mass) != len(before.mass) or passed < 0.0:
+            self._sparks, self._dust = _Motes(MOST_SPARKS), _Motes(MOST_DUST)
+            return
+        self._sparks.pass_time(min(passed, LONGEST), FALL, 0.0)
+        self._dust.pass_time(min(passed, LONGEST), 0.0, 3.0)
+        if now.tick > before.tick:
+            # By the tick, so that a run looks alike each time.
+            rng = np.random.default_rng(now.tick)
+            self._see_tears(before, now, rng, strikes)
+            self._see_hits(before, now, rng)
+
+    def _see_tears(
+        self, before: Snapshot, now: Snapshot, rng: np.random.Generator, strikes: NDArray[np.bool_] | None
+    ) -> None:
+        if len(before.spring_active) != len(now.spring_active):
+            return
+        torn = np.flatnonzero(shown_springs(before) & ~now.spring_active)
+        if not len(torn):
+            return
+        torn = torn[:: max(1, len(torn) // PLACES)]
+        at = 0.5 * (before.position[before.particle_a[torn]] + before.position[before.particle_b[torn]])
+        sparking = np.ones(len(torn), dtype=np.bool_) if strikes is None else np.append(strikes, False)[
+            np.minimum(torn, len(strikes))
+        ]  # fmt: skip
+        where = np.repeat(at[sparking], SPARKS_A_TEAR, axis=0)
+        angle, speed = rng.uniform(0.0, 2.0 * np.pi, len(where)), rng.uniform(1.5, 7.0, len(where))
+        velocity = np.column_stack([speed * np.cos(angle), speed * np.sin(angle) + 1.5])
+        self._sparks.add(where, velocity, rng.uniform(*LIVES["spark"], len(where)), np.zeros(len(where)))
+        self._puff(at[~sparking], np.full(int(np.count_nonzero(~sparking)), 3), rng)
+
+    def _see_hits(self, before: Snapshot, now: Snapshot, rng: np.random.Generator) -> None:
+        touching = np.unique(now.contact_particle[now.contact_particle >= 0])
+        touching = touching[touching < len(before.mass)]
+        change = now.velocity[touching] - before.velocity[touching]
+        jump = np.sqrt(np.sum(change * change, axis=1))
+        hard = (jump > HARD) & np.isfinite(jump) & (now.inverse_mass[touching] > 0.0)
+        hit = touching[hard][:: max(1, int(np.count_nonzero(hard)) // PLACES)]
+        if len(hit):
+            force = np.minimum(np.sqrt(np.sum((now.velocity[hit] - before.velocity[hit]) ** 2, axis=1)), 8.0)
+            self._puff(now.position[hit], 1 + force.astype(np.int64) // 2, rng)
+
+    def _puff(self, at: Floats, count: NDArray[np.int64], rng: np.random.Generator) -> None:
+        where = np.repeat(at, count, axis=0)
+        total = len(where)
+        if total:
+            velocity = np.column_stack([rng.normal(0.0, 0.8, total), np.abs(rng.normal(0.3, 0.4, total))])
+            where = where + rng.normal(0.0, 0.08, (total, 2))
+            self._dust.add(where, velocity, rng.uniform(*LIVES["dust"], total), rng.uniform(0.06, 0.2, total))
+
+    def mark_dust(self, marks: MarkList, camera: Camera, theme: Theme, scale: float) -> None:
+        """Draw dust, behind everything."""
+        rows = self._dust.rows
+        if len(rows):
+            left = 1.0 - rows[:, 4] / rows[:, 5]
+            red, green, blue = theme.dust
+            size = np.clip(rows[:, 6] * camera.zoom * (1.6 + 1.8 * (1.0 - left)), 2.0, 48.0 * scale)
+            marks.discs(camera.project(rows[:, :2]), size, red << 16 | green << 8 | blue, 0.4 * left, glow=True)
+
+    def mark_sparks(self, marks: MarkList, camera: Camera, scale: float) -> None:
+        """Draw sparks, before everything."""
+        rows = self._sparks.rows
+        if len(rows):
+            left = 1.0 - rows[:, 4] / rows[:, 5]
+            at, tail = camera.project(rows[:, :2]), camera.project(rows[:, :2] - TAIL * rows[:, 2:4])
+            marks.discs(at, 9.0 * scale * left + 1.0, SPARK_GLOW, 0.55 * left, glow=True)
+            marks.strokes(np.concatenate([tail, at], axis=1), 1.2 * scale * left + 0.3, SPARK, left)

@@ -1,0 +1,211 @@
+"""Lit bodies: an outline is filled, and light falls on the slope of a skin that bulges inside it.
+
+Coverage of the outline, blurred at half the size, is how high the skin stands; its gradient says how it is lit. A table
+of how far inside and how lit gives the colour. All bodies of a layer are drawn in one call, each with its line.
+"""
+
+from typing import NamedTuple
+
+from sandbox.app.draw.raster.coverage import add_outline, blur, clear, find_box
+from sandbox.app.draw.raster.mark_kernels import paint_segment
+from sandbox.app.draw.raster.pixels import Floats, Packed, Singles, Slots, laid_over
+from sandbox.physics.jit import inner_kernel, kernel
+
+# Rows and columns of a table of colours: how far inside, how lit.
+INSIDE, LIT = 64, 256
+# Texels of a grain, a power of two.
+GRAIN = 256
+# Pixels of a cell of the flush, and how fully it covers at most, of 256.
+FLUSH_CELL = 8
+FLUSH_FULL = 190.0
+# Widest that a skin is rounded [pixels].
+WIDEST = 80.0
+
+
+class Outlines(NamedTuple):
+    """Closed outlines: point (k, 2) [pixels], start (c + 1,): where each begins."""
+
+    point: Floats
+    start: Slots
+
+
+class BodyRows(NamedTuple):
+    """One row a body.
+
+    loops (b, 2): first outline and one past the last. look (b, 3): table, grain or -1, colour of the line. size (b, 3):
+    rounding and half width of the line [pixels], its alpha. flush (b, 2): first splat and one past the last.
+    """
+
+    loops: Slots
+    look: Slots
+    size: Floats
+    flush: Slots
+
+
+class Flush(NamedTuple):
+    """Splats of strain: at (k, 4) = x, y, reach [pixels], amount -1..1; colours (2,) 0xRRGGBB squeezed, stretched."""
+
+    at: Floats
+    colours: Slots
+
+
+class Skins(NamedTuple):
+    """Tables (t, INSIDE, LIT) 0xAARRGGBB, grains (g, GRAIN, GRAIN), what is added to each channel."""
+
+    tables: Packed
+    grains: Slots
+
+
+class BodyScratch(NamedTuple):
+    """Cells for one body at a time, as many as the largest needs; box (4,)."""
+
+    cover: Singles
+    high: Singles
+    spare: Singles
+    sums: Singles
+    field: Singles
+    weight: Singles
+    box: Floats
+
+
+@inner_kernel
+def _raise_skin(scratch, width, height, wide, tall):  # type: ignore[no-untyped-def]
+    """Coverage from areas, and from it a quarter as many cells of the skin."""
+    cover, high = scratch.cover, scratch.high
+    stride = width + 2
+    for y in range(height):
+        total = 0.0
+        for k in range(y * stride, y * stride + width):
+            total += cover[k]
+            cover[k] = min(abs(total), 1.0)
+    for y in range(tall):
+        for x in range(wide):
+            k = 2 * y * stride + 2 * x
+            if 2 * x + 1 < width and 2 * y + 1 < height:
+                high[y * wide + x] = 0.25 * (cover[k] + cover[k + 1] + cover[k + stride] + cover[k + stride + 1])
+            else:
+                high[y * wide + x] = 0.0
+
+
+@inner_kernel
+def _splat(flush, first, last, scratch, wide, tall, x0, y0):  # type: ignore[no-untyped-def]
+    """The flush of one body in cells of FLUSH_CELL pixels, -FLUSH_FULL..FLUSH_FULL."""
+    field, weight = scratch.field, scratch.weight
+    for k in range(wide * tall):
+        field[k], weight[k] = 0.0, 0.25
+    for s in range(first, last):
+        x, y = (flush.at[s, 0] - x0) / FLUSH_CELL, (flush.at[s, 1] - y0) / FLUSH_CELL
+        reach = max(1.0, flush.at[s, 2] / FLUSH_CELL)
+        if not (-reach < x < wide + reach and -reach < y < tall + reach):
+            continue
+        for row in range(max(0, int(y - 2.0 * reach)), min(tall, int(y + 2.0 * reach) + 2)):
+            for column in range(max(0, int(x - 2.0 * reach)), min(wide, int(x + 2.0 * reach) + 2)):
+                dx, dy = column - x, row - y
+                out = (dx * dx + dy * dy) / (reach * reach)
+                if out < 4.0:
+                    fall = 1.0 - 0.25 * out
+                    field[row * wide + column] += fall * fall * flush.at[s, 3]
+                    weight[row * wide + column] += fall * fall
+    for k in range(wide * tall):
+        field[k] = min(max(field[k] / weight[k], -1.0), 1.0) * FLUSH_FULL
+
+
+@inner_kernel
+def _grainy(colour, amount):  # type: ignore[no-untyped-def]
+    red = min(max(((colour >> 16) & 255) + amount, 0), 255)
+    green = min(max(((colour >> 8) & 255) + amount, 0), 255)
+    blue = min(max((colour & 255) + amount, 0), 255)
+    return (colour & 0xFF000000) | (red << 16) | (green << 8) | blue
+
+
+@inner_kernel
+def _light_row(pixels, y, rows, b, skins, flush, scratch, place, clip):  # type: ignore[no-untyped-def]
+    """One row of pixels of a body. place: left, top, width, wide, tall, reach, wide and tall of the flush, 0."""
+    cover, high, field = scratch.cover, scratch.high, scratch.field
+    table, grain = rows.look[b, 0], rows.look[b, 1]
+    left, top, width, wide, tall, reach = place[0], place[1], place[2], place[3], place[4], place[5]
+    flush_wide, flush_tall, is_flushed = place[6], place[7], place[8] != 0
+    gain = 1.1 * reach * 256.0 / 3.0
+    across, down = 0.42 * gain, 0.9 * gain
+    row = y - top
+    half_y = 0.5 * row + 0.25
+    iy = min(max(int(half_y - 0.5), 0), tall - 2)
+    fy = min(max(half_y - 0.5 - iy, 0.0), 1.0)
+    begin, above, below = row * (width + 2), iy * wide, (iy + 1) * wide
+    jy = min(row // FLUSH_CELL, flush_tall - 2)
+    gy = row / FLUSH_CELL - jy
+    for x in range(max(clip[0], left), min(clip[2], left + width)):
+        column = x - left
+        share = cover[begin + column]
+        if share <= 0.004:
+            continue
+        ix = min(max((column - 1) >> 1, 0), wide - 2)
+        fx = 0.25 if column & 1 else 0.75
+        a, b1, c, d = high[above + ix], high[above + ix + 1], high[below + ix], high[below + ix + 1]
+        t0, t1 = a + (b1 - a) * fx, c + (d - c) * fx
+        lit = int(((b1 - a) + ((d - c) - (b1 - a)) * fy) * across + (t1 - t0) * down + 128.0)
+        inside = int((t0 + (t1 - t0) * fy - 0.45) * 120.0)
+        colour = int(skins.tables[table, min(max(inside, 0), INSIDE - 1), min(max(lit, 0), LIT - 1)])
+        if is_flushed:
+            jx = min(column // FLUSH_CELL, flush_wide - 2)
+            gx = column / FLUSH_CELL - jx
+            k = jy * flush_wide + jx
+            upper = field[k] + (field[k + 1] - field[k]) * gx
+            lower = field[k + flush_wide] + (field[k + flush_wide + 1] - field[k + flush_wide]) * gx
+            amount = int(upper + (lower - upper) * gy)
+            if abs(amount) > 2:
+                over = flush.colours[1] if amount > 0 else flush.colours[0]
+                colour = (laid_over(colour, over, abs(amount)) & 0xFFFFFF) | (colour & 0xFF000000)
+        if grain >= 0:
+            colour = _grainy(colour, skins.grains[grain, y & (GRAIN - 1), x & (GRAIN - 1)])
+        pixels[y, x] = laid_over(int(pixels[y, x]), colour, int(share * (colour >> 24) * 1.004))
+
+
+@inner_kernel
+def _paint_lines(pixels, outlines, rows, b, clip):  # type: ignore[no-untyped-def]
+    point = outlines.point
+    for loop in range(rows.loops[b, 0], rows.loops[b, 1]):
+        first, last = outlines.start[loop], outlines.start[loop + 1]
+        for i in range(first, last):
+            j = i + 1 if i + 1 < last else first
+            paint_segment(
+                pixels, point[i, 0], point[i, 1], point[j, 0], point[j, 1],
+                rows.size[b, 1], rows.look[b, 2], rows.size[b, 2], clip,
+            )  # fmt: skip
+
+
+@kernel
+def paint_bodies(pixels, outlines, rows, skins, flush, scratch, place, clip):  # type: ignore[no-untyped-def]
+    """Draw bodies into pixels (h, w), one after the other, inside clip (4,); place (9,): scratch of a row."""
+    for b in range(rows.loops.shape[0]):
+        first, last = rows.loops[b, 0], rows.loops[b, 1]
+        box = scratch.box
+        if not find_box(outlines.point, outlines.start[first], outlines.start[last], box):
+            continue
+        rounding = min(rows.size[b, 0], WIDEST)
+        # What lies outside the view by less than the skin is rounded counts for the light inside.
+        pad = int(rounding) + 4
+        left, top = max(int(box[0]) - 2, clip[0] - pad), max(int(box[1]) - 2, clip[1] - pad)
+        width = min(int(box[2]) + 3, clip[2] + pad) - left
+        height = min(int(box[3]) + 3, clip[3] + pad) - top
+        if width <= 2 or height <= 2:
+            continue
+        clear(scratch.cover, (width + 2) * height)
+        for loop in range(first, last):
+            add_outline(
+                scratch.cover, width, height, outlines.point,
+                outlines.start[loop], outlines.start[loop + 1], left * 1.0, top * 1.0, 1.0,
+            )  # fmt: skip
+        wide, tall = (width + 1) // 2 + 2, (height + 1) // 2 + 2
+        _raise_skin(scratch, width, height, wide, tall)
+        reach = max(1, int(rounding * 0.5))
+        blur(scratch.high, scratch.spare, scratch.sums, wide, tall, max(1, int(reach * 0.85)), 3)
+        place[0], place[1], place[2], place[3], place[4], place[5] = left, top, width, wide, tall, reach
+        place[6], place[7], place[8] = width // FLUSH_CELL + 3, height // FLUSH_CELL + 3, 0
+        if rows.flush[b, 0] < rows.flush[b, 1]:
+            place[8] = 1
+            _splat(flush, rows.flush[b, 0], rows.flush[b, 1], scratch, place[6], place[7], left * 1.0, top * 1.0)
+        for y in range(max(clip[1], top), min(clip[3], top + height)):
+            _light_row(pixels, y, rows, b, skins, flush, scratch, place, clip)
+        if rows.size[b, 2] > 0.0:
+            _paint_lines(pixels, outlines, rows, b, clip)

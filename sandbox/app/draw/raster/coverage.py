@@ -1,0 +1,113 @@
+"""Coverage of outlines: each edge adds its signed area to the cells it crosses; a row's running sum is coverage.
+
+After R. Levien's font-rs and S. Barrett's stb_truetype 2: exact at the edges, for any winding, with holes.
+"""
+
+import math
+
+from sandbox.app.draw.raster.pixels import FAR
+from sandbox.physics.jit import inner_kernel
+
+
+@inner_kernel
+def find_box(point, first, last, box):  # type: ignore[no-untyped-def]
+    """Write the box around points into box (4,); whether all of them can be drawn."""
+    left, top, right, bottom = FAR, FAR, -FAR, -FAR
+    for k in range(first, last):
+        x, y = point[k, 0], point[k, 1]
+        if not (abs(x) < FAR and abs(y) < FAR):
+            return False
+        left, right = min(left, x), max(right, x)
+        top, bottom = min(top, y), max(bottom, y)
+    box[0], box[1], box[2], box[3] = left, top, right, bottom
+    return first < last
+
+
+@inner_kernel
+def clear(cells, count):  # type: ignore[no-untyped-def]
+    """Set the first cells to 0."""
+    for k in range(count):
+        cells[k] = 0.0
+
+
+@inner_kernel
+def add_outline(cells, width, height, point, first, last, x0, y0, scale):  # type: ignore[no-untyped-def]
+    """Add a closed outline to cells of rows of width + 2; (x0, y0): where the cells begin, scale: cells a pixel."""
+    stride = width + 2
+    for i in range(first, last):
+        j = i + 1 if i + 1 < last else first
+        ax, ay = (point[i, 0] - x0) * scale, (point[i, 1] - y0) * scale
+        bx, by = (point[j, 0] - x0) * scale, (point[j, 1] - y0) * scale
+        if ay == by:
+            continue
+        way = 1.0
+        if ay > by:
+            ax, ay, bx, by = bx, by, ax, ay
+            way = -1.0
+        slope = (bx - ax) / (by - ay)
+        x = ax
+        if ay < 0.0:
+            x -= ay * slope
+            ay = 0.0
+        for row in range(int(ay), min(height, math.ceil(by))):
+            down = min(row + 1.0, by) - max(row * 1.0, ay)
+            next_x = x + slope * down
+            area = down * way
+            low, high = min(x, next_x), max(x, next_x)
+            x = next_x
+            low, high = min(max(low, 0.0), width * 1.0), min(max(high, 0.0), width * 1.0)
+            at = row * stride + int(low)
+            column, end = int(low), math.ceil(high)
+            if end <= column + 1:
+                middle = 0.5 * (low + high) - column
+                cells[at] += area - area * middle
+                cells[at + 1] += area * middle
+                continue
+            step = 1.0 / (high - low)
+            inside, beyond = low - column, high - end + 1.0
+            begin = 0.5 * step * (1.0 - inside) * (1.0 - inside)
+            finish = 0.5 * step * beyond * beyond
+            cells[at] += area * begin
+            last_cell = at + end - column
+            if end == column + 2:
+                cells[at + 1] += area * (1.0 - begin - finish)
+            else:
+                second = step * (1.5 - inside)
+                cells[at + 1] += area * (second - begin)
+                for k in range(at + 2, last_cell - 1):
+                    cells[k] += area * step
+                cells[last_cell - 1] += area * (1.0 - second - (end - column - 3) * step - finish)
+            cells[last_cell] += area * finish
+
+
+@inner_kernel
+def blur(cells, spare, sums, width, height, reach, passes):  # type: ignore[no-untyped-def]
+    """Blur cells (height, width) by boxes of 2 reach + 1, so many times; what lies outside counts as 0."""
+    share = 1.0 / (2 * reach + 1)
+    for _ in range(passes):
+        for y in range(height):
+            begin = y * width
+            total = 0.0
+            for x in range(min(reach, width)):
+                total += cells[begin + x]
+            for x in range(width):
+                if x + reach < width:
+                    total += cells[begin + x + reach]
+                spare[begin + x] = total * share
+                if x >= reach:
+                    total -= cells[begin + x - reach]
+        # Down the columns a whole row at a time, as memory lies.
+        for x in range(width):
+            sums[x] = 0.0
+        for y in range(min(reach, height)):
+            for x in range(width):
+                sums[x] += spare[y * width + x]
+        for y in range(height):
+            if y + reach < height:
+                for x in range(width):
+                    sums[x] += spare[(y + reach) * width + x]
+            for x in range(width):
+                cells[y * width + x] = sums[x] * share
+            if y >= reach:
+                for x in range(width):
+                    sums[x] -= spare[(y - reach) * width + x]

@@ -1,0 +1,287 @@
+"""Painter: draws layers on a surface by kernels, or plainly by pygame while these are not compiled."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import pygame
+from numpy.typing import ArrayLike, NDArray
+
+from sandbox.app.draw.raster.bodies import (
+    FLUSH_CELL,
+    GRAIN,
+    INSIDE,
+    LIT,
+    WIDEST,
+    BodyRows,
+    BodyScratch,
+    Flush,
+    Outlines,
+    Skins,
+    paint_bodies,
+)
+from sandbox.app.draw.raster.cells import SHEET, CellArrays, paint_cells
+from sandbox.app.draw.raster.mark_kernels import ACROSS, ALONG, DISC, GLOW, HAIR, STRIP, STROKE, MarkArrays, paint_marks
+from sandbox.app.draw.raster.outlines import Loops, trace_outlines
+from sandbox.app.draw.raster.pixels import FAR, Floats, Packed, Slots
+from sandbox.app.draw.raster.shadows import FACTOR, ShadowScratch, Thrown, paint_shadows
+from sandbox.physics import jit
+
+# A body whose outline has no line around it, and no grain.
+NO_LINE = 0.0
+NO_GRAIN = -1
+
+
+class MarkList:
+    """Collects marks of a layer, in the order in which they are drawn."""
+
+    def __init__(self) -> None:
+        self._rows: list[tuple[Floats, ...]] = []
+
+    def _add(
+        self, ends: Floats, half: ArrayLike, colour: ArrayLike, alpha: ArrayLike, kind: ArrayLike,
+        extra: ArrayLike = 0, along: ArrayLike = 0.0,
+    ) -> None:  # fmt: skip
+        count = len(ends)
+        if count:
+            columns = tuple(np.broadcast_to(value, count) for value in (half, colour, alpha, kind, extra))
+            self._rows.append((ends, *columns, np.broadcast_to(along, (count, 2))))
+
+    def strokes(self, ends: Floats, half: ArrayLike, colour: ArrayLike, alpha: ArrayLike = 1.0) -> None:
+        """Lines (m, 4) [pixels] of a half width (m,), 0xRRGGBB (m,), 0..1 (m,)."""
+        self._add(ends, half, colour, alpha, STROKE)
+
+    def hairs(self, ends: Floats, colour: ArrayLike) -> None:
+        """Lines (m, 4) [pixels] a pixel wide, with steps."""
+        self._add(ends, 0.5, colour, 1.0, HAIR)
+
+    def strips(
+        self, ends: Floats, half: ArrayLike, tile: ArrayLike, along: ArrayLike, tint: ArrayLike = 0, by: ArrayLike = 0.0
+    ) -> None:
+        """Lines with a tile (m,), periods of it at their ends (m, 2), and a colour (m,) laid over it by 0..1 (m,)."""
+        self._add(ends, half, tint, by, STRIP, tile, along)
+
+    def discs(
+        self, at: Floats, radius: ArrayLike, colour: ArrayLike, alpha: ArrayLike = 1.0, glow: bool = False
+    ) -> None:
+        """Discs at (m, 2) [pixels]; glow: they fade to nothing at their rim."""
+        self._add(np.concatenate([at, at], axis=1), radius, colour, alpha, GLOW if glow else DISC)
+
+    def balls(
+        self, at: Floats, radius: ArrayLike, turn: Floats, colour: ArrayLike, mark: ArrayLike, style: ArrayLike
+    ) -> None:
+        """Lit balls; turn (m, 2): cosine and sine, as seen; mark: the colour of what turns; style: a kind of mark."""
+        self._add(np.concatenate([at, turn], axis=1), radius, colour, 1.0, style, mark)
+
+    def mixed(self, ends: Floats, half: ArrayLike, colour: ArrayLike, alpha: ArrayLike, kind: ArrayLike) -> None:
+        """Strokes, discs and glows in any order."""
+        self._add(ends, half, colour, alpha, kind)
+
+    def arrays(self) -> MarkArrays | None:
+        """All of them, None where there are none."""
+        if not self._rows:
+            return None
+        ends, half, colour, alpha, kind, extra, along = (
+            np.concatenate(column) for column in zip(*self._rows, strict=True)
+        )
+        return MarkArrays(
+            np.ascontiguousarray(ends, dtype=np.float64), half.astype(np.float64), colour.astype(np.int64),
+            alpha.astype(np.float64), np.ascontiguousarray(along, dtype=np.float64), extra.astype(np.int64),
+            kind.astype(np.int64),
+        )  # fmt: skip
+
+
+@dataclass
+class BodyLayer:
+    """Bodies to draw: outlines (c + 1 starts), rows, skins and flush; fill (b,): colours where there is no light."""
+
+    outlines: Outlines
+    rows: BodyRows
+    skins: Skins
+    flush: Flush
+    fill: Slots
+
+
+@dataclass
+class _Scratch:
+    size: tuple[int, int]
+    bodies: BodyScratch
+    shadows: ShadowScratch
+    place: Slots
+
+
+@dataclass
+class Painter:
+    """Draws on one surface; compiled: whether kernels may be used, if they are compiled."""
+
+    compiled: bool = True
+    _scratch: _Scratch | None = field(default=None, repr=False)
+    surface: pygame.Surface = field(init=False, repr=False)
+    exact: bool = field(default=False, init=False)
+
+    def begin(self, surface: pygame.Surface) -> bool:
+        """Draw on a surface from now on, inside its clip; whether kernels do it."""
+        self.surface = surface
+        left, top, right, bottom = (*surface.get_clip().topleft, *surface.get_clip().bottomright)
+        self.clip = np.array([left, top, right, bottom], dtype=np.int64)
+        self.exact = self.compiled and jit.COMPILED and _has_plain_pixels(surface)
+        return self.exact
+
+    def pixels(self) -> Packed:
+        """The surface's pixels (h, w); while the array lives, the surface is locked."""
+        return pygame.surfarray.pixels2d(self.surface).T
+
+    def marks(self, layer: MarkList, tiles: Packed) -> None:
+        """Draw marks."""
+        arrays = layer.arrays()
+        if arrays is None:
+            return
+        if self.exact:
+            paint_marks(self.pixels(), arrays, tiles, self.clip)
+        else:
+            _plain_marks(self.surface, arrays, tiles)
+
+    def bodies(self, layer: BodyLayer) -> None:
+        """Draw lit bodies."""
+        if not len(layer.rows.loops):
+            return
+        if self.exact:
+            scratch = self._scratch_for()
+            paint_bodies(
+                self.pixels(), layer.outlines, layer.rows, layer.skins, layer.flush, scratch.bodies, scratch.place,
+                self.clip,
+            )  # fmt: skip
+        else:
+            _plain_bodies(self.surface, layer)
+
+    def cells(self, arrays: CellArrays, sheets: Slots) -> None:
+        """Draw textured triangles."""
+        if not len(arrays.sheet):
+            return
+        if self.exact:
+            paint_cells(self.pixels(), arrays, sheets, self.clip)
+            return
+        tones = sheets.reshape(len(sheets), -1)[:, 0].tolist()
+        seen = (np.abs(arrays.corner) < FAR).all(axis=1)
+        for corner, sheet in zip(arrays.corner[seen].tolist(), arrays.sheet[seen].tolist(), strict=True):
+            pygame.draw.polygon(self.surface, _rgb(tones[sheet]), (corner[:2], corner[2:4], corner[4:]))
+
+    def shadows(self, thrown: Thrown, shapes: Outlines, offset: Sequence[float], colour: int, strength: float) -> None:
+        """Throw shadows; there are none while kernels are not compiled."""
+        if self.exact and strength > 0.0:
+            paint_shadows(
+                self.pixels(), shapes, thrown, self._scratch_for().shadows, np.array(offset, dtype=np.float64), colour,
+                strength, self.clip,
+            )  # fmt: skip
+
+    def trace(self, at: Floats, loops: Loops, grow: Floats) -> Outlines:
+        """Outlines of loops of particles at (n, 2) [pixels], grown by (c,)."""
+        point = np.zeros((int(loops.point_start[-1]), 2))
+        if len(loops.rounds):
+            if self.exact:
+                spare = np.zeros((int(np.max(np.diff(loops.point_start))), 2))
+                trace_outlines(at, loops, grow, point, spare)
+                return Outlines(point, loops.point_start)
+            return Outlines(at[loops.slot], loops.start)
+        return Outlines(point, loops.point_start)
+
+    def _scratch_for(self) -> _Scratch:
+        size = self.surface.get_size()
+        if self._scratch is None or self._scratch.size != size:
+            pad = 2 * int(WIDEST) + 16
+            width, height = size[0] + pad, size[1] + pad
+            half = (width // 2 + 4) * (height // 2 + 4)
+            flush = (width // FLUSH_CELL + 5) * (height // FLUSH_CELL + 5)
+            quarter = (size[0] // FACTOR + 8) * (size[1] // FACTOR + 8)
+            self._scratch = _Scratch(
+                size,
+                BodyScratch(
+                    _cells((width + 2) * (height + 2)), _cells(half), _cells(half), _cells(width), _cells(flush),
+                    _cells(flush), np.zeros(4),
+                ),
+                ShadowScratch(_cells(quarter), _cells(quarter), _cells(quarter), _cells(size[0]), np.zeros(4)),
+                np.zeros(9, dtype=np.int64),
+            )  # fmt: skip
+        return self._scratch
+
+
+def _cells(count: int) -> NDArray[np.float32]:
+    return np.zeros(count, dtype=np.float32)
+
+
+def _has_plain_pixels(surface: pygame.Surface) -> bool:
+    is_whole = surface.get_pitch() == 4 * surface.get_width()
+    return is_whole and surface.get_bitsize() == 32 and surface.get_shifts()[:3] == (16, 8, 0)
+
+
+def _rgb(colour: int) -> tuple[int, int, int]:
+    return (colour >> 16) & 255, (colour >> 8) & 255, colour & 255
+
+
+def _plain_marks(surface: pygame.Surface, layer: MarkArrays, tiles: Packed) -> None:
+    # The middle of a tile stands for all of it.
+    tones = tiles[:, ACROSS // 2, ALONG // 2].astype(np.int64)
+    colour = np.where(layer.kind == STRIP, tones[np.where(layer.kind == STRIP, layer.extra, 0)], layer.colour)
+    seen = (np.abs(layer.ends) < FAR).all(axis=1) & (layer.half < FAR) & (layer.kind != GLOW)
+    rows = zip(
+        layer.ends[seen].tolist(),
+        layer.half[seen].tolist(),
+        colour[seen].tolist(),
+        layer.kind[seen].tolist(),
+        strict=True,
+    )
+    for (ax, ay, bx, by), half, tone, kind in rows:
+        if kind <= HAIR:
+            pygame.draw.aaline(surface, _rgb(tone), (ax, ay), (bx, by), max(1, round(2 * half)))
+        elif half < 1.0:
+            surface.fill(_rgb(tone), (round(ax), round(ay), 1, 1))
+        else:
+            pygame.draw.aacircle(surface, _rgb(tone), (ax, ay), round(half))
+
+
+def _plain_bodies(surface: pygame.Surface, layer: BodyLayer) -> None:
+    start = layer.outlines.start.tolist()
+    rows = zip(
+        layer.rows.loops.tolist(), layer.fill.tolist(), layer.rows.look[:, 2].tolist(), layer.rows.size[:, 2].tolist(),
+        strict=True,
+    )  # fmt: skip
+    for (first, last), fill, line, alpha in rows:
+        for loop in range(first, last):
+            points = layer.outlines.point[start[loop] : start[loop + 1]]
+            if len(points) < 3 or not (np.abs(points) < FAR).all():
+                continue
+            corners = points.tolist()
+            # An outline inside another is a hole: what is seen through it is lost, and only its rim is drawn.
+            if loop == first:
+                pygame.draw.polygon(surface, _rgb(fill), corners)
+            if alpha > 0.0:
+                pygame.draw.aalines(surface, _rgb(line), True, corners)
+
+
+def expect_painting() -> None:
+    """Compile the drawing kernels, or load them from the cache; while kernels are interpreted, note what they take."""
+    painter = Painter()
+    surface = pygame.Surface((8, 8), 0, 32)
+    painter.surface = surface
+    scratch = painter._scratch_for()
+    pixels, clip = np.zeros((8, 8), dtype=np.uint32), np.zeros(4, dtype=np.int64)
+    flat, pairs, numbers = np.zeros(0), np.zeros((0, 2)), np.zeros(0, dtype=np.int64)
+    many = np.zeros((0, 2), dtype=np.int64)
+    shapes = Outlines(pairs, np.zeros(1, dtype=np.int64))
+    layer = MarkArrays(np.zeros((0, 4)), flat, numbers, flat, pairs, numbers, numbers)
+    jit.expect(paint_marks, pixels, layer, np.zeros((1, ACROSS, ALONG), dtype=np.uint32), clip)
+    jit.expect(
+        paint_bodies, pixels, shapes,
+        BodyRows(many, np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3)), many),
+        Skins(
+            np.zeros((1, INSIDE, LIT), dtype=np.uint32),
+            np.zeros((1, GRAIN, GRAIN), dtype=np.int64),
+        ),
+        Flush(np.zeros((0, 4)), numbers), scratch.bodies, scratch.place, clip,
+    )  # fmt: skip
+    triangles = CellArrays(np.zeros((0, 6)), np.zeros((0, 6)), np.zeros((0, 3)), numbers)
+    jit.expect(paint_cells, pixels, triangles, np.zeros((1, SHEET, SHEET), dtype=np.int64), clip)
+    thrown = Thrown(np.zeros((0, 5)), np.zeros((0, 3)))
+    jit.expect(paint_shadows, pixels, shapes, thrown, scratch.shadows, np.zeros(2), 0, 0.5, clip)
+    loops = Loops(numbers, numbers, numbers, flat, numbers)
+    jit.expect(trace_outlines, pairs, loops, flat, pairs, pairs)

@@ -1,0 +1,75 @@
+"""Themes: colours of the stage, the ground, shadows and strain, dark and light."""
+
+from dataclasses import dataclass
+
+from sandbox.app.draw.colours import Colour, mixed
+
+
+@dataclass(frozen=True)
+class Theme:
+    """Colours of a theme; a pair is what lies above or near, and below or deep; strengths are 0..1."""
+
+    name: str
+    stage: tuple[Colour, Colour]
+    lamp: Colour
+    grid: Colour
+    vignette: float
+    shadow: Colour
+    shadow_strength: float
+    soil: tuple[Colour, Colour]
+    turf: tuple[Colour, Colour]
+    rock: tuple[Colour, Colour]
+    metal: tuple[Colour, Colour]
+    text: Colour
+    accent: Colour
+    card: Colour
+    line: Colour
+    tyre: Colour
+    dust: Colour
+    # Strain: squeezed, at rest, stretched.
+    strain: tuple[Colour, Colour, Colour]
+
+
+def _rgb(code: int) -> Colour:
+    return code >> 16, (code >> 8) & 255, code & 255
+
+
+def _pair(first: int, second: int) -> tuple[Colour, Colour]:
+    return _rgb(first), _rgb(second)
+
+
+DARK = Theme(
+    "dark", stage=_pair(0x202A3E, 0x10141D), lamp=(34, 40, 52), grid=_rgb(0x2C374C), vignette=0.42,
+    shadow=_rgb(0x04060A), shadow_strength=0.50, soil=_pair(0x463C42, 0x2A262E), turf=_pair(0x6CC58B, 0x2F7A5C),
+    rock=_pair(0x59627A, 0x2A2F3D), metal=_pair(0x7D8AA5, 0x39425A), text=_rgb(0xE8ECF4), accent=_rgb(0x5ED0B2),
+    card=_rgb(0x1A202C), line=_rgb(0x2E384A), tyre=_rgb(0x343842), dust=_rgb(0xCDBFA6),
+    strain=(_rgb(0x4D8DFF), _rgb(0xC9CFDA), _rgb(0xFFB03A)),
+)  # fmt: skip
+LIGHT = Theme(
+    "light", stage=_pair(0xCFE4F1, 0xFBF3E3), lamp=(14, 12, 6), grid=_rgb(0xB9CBD6), vignette=0.14,
+    shadow=_rgb(0x4A4030), shadow_strength=0.26, soil=_pair(0xB08459, 0xBF966A), turf=_pair(0x93CF63, 0x5C9C44),
+    rock=_pair(0xA3A9B5, 0x7F8794), metal=_pair(0xAEB8C8, 0x78859A), text=_rgb(0x27303F), accent=_rgb(0x12907A),
+    card=_rgb(0xFFFDF8), line=_rgb(0xDDD5C6), tyre=_rgb(0x42444C), dust=_rgb(0xE9DCC2),
+    strain=(_rgb(0x1F5FD6), _rgb(0x8A8F98), _rgb(0xD9730B)),
+)  # fmt: skip
+THEMES = {theme.name: theme for theme in (DARK, LIGHT)}
+
+# Stuffs that look alike in both.
+STEEL, BRASS, WOOD, STONE, BRICK = 0x96A3BA, 0xE2B04E, 0xC8935A, 0x9AA2B0, 0xC4624A
+CLOTH, CLOTH_STRIPE, GLASS = 0xD8574F, 0xF3E6CD, 0xBFE3F5
+PAINTS = {"bridge": 0xE2543E, "girder": 0xF6B83E, "mesh": 0x3C96C8}
+INK, CHEEK, EYE = 0x2A1030, 0xFF5A86, 0xFFFFFF
+SQUEEZED_FLUSH, STRETCHED_FLUSH = 0x4A3FD8, 0xFFF0B0
+SANDS = (0xF2C879, 0xE3AE58, 0xF7DA9A, 0xD99A4A)
+SPARK, SPARK_GLOW = 0xFFE9A8, 0xFF9A2E
+
+
+def outline_of(colour: int) -> int:
+    """The line around something of a colour: its own hue, darker."""
+    r, g, b = mixed(_rgb(colour), (40, 0, 60), 0.46)
+    return (r << 16) | (g << 8) | b
+
+
+def rgb_of(colour: int) -> Colour:
+    """A colour 0xRRGGBB as its channels."""
+    return _rgb(colour)

@@ -1,0 +1,75 @@
+"""Balls and pins: loose particles, lit, with a mark that turns; and what is held."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.app.draw.raster.mark_kernels import MARBLED, PLAIN, STRIPED, STUDDED
+from sandbox.app.draw.raster.painter import MarkList
+from sandbox.app.draw.themes import SANDS
+from sandbox.app.draw.things.cast import Ball, Cast
+from sandbox.app.draw.things.frame import Frame, Seen
+from sandbox.level.format.limits import BODY_RADIUS
+
+Slots = NDArray[np.int64]
+Floats = NDArray[np.float64]
+
+_STYLES = {"marble": MARBLED, "stripe": STRIPED, "steel": STUDDED, "sand": STRIPED, "bumper": PLAIN, "plain": PLAIN}
+STEEL_BALL, STUD, WHITE, SAND_MARK = 0x8D99B0, 0x39435A, 0xFFFFFF, 0xB97F3A
+# Smallest ball, and pins [pixels at scale 1].
+LEAST, PIN, PIN_RIM, PIN_GLEAM = 2.5, 4.9, 6.2, 1.5
+
+
+class Balls:
+    """Loose particles of a level, and those that joined the world while it ran, that are there."""
+
+    def __init__(self, cast: Cast, state: Seen, strangers: Slots) -> None:
+        there = [ball for ball in cast.balls if state.particle_active[ball.slot]]
+        # A small one that is held is a pin.
+        shown = [
+            ball for ball in there
+            if state.inverse_mass[ball.slot] > 0.0 or state.radius[ball.slot] > 2.0 * BODY_RADIUS
+        ]  # fmt: skip
+        shown += [Ball(slot, "marble", 0xF2557B) for slot in strangers.tolist()]
+        self.slots = np.array([ball.slot for ball in shown], dtype=np.int64)
+        self._style = np.array([_STYLES[ball.kind] for ball in shown], dtype=np.int64)
+        own = [_colour(k, ball) for k, ball in enumerate(shown)]
+        self._colour = np.array(own, dtype=np.int64)
+        marks = {"steel": STUD, "sand": SAND_MARK}
+        self._mark = np.array([marks.get(ball.kind, WHITE) for ball in shown], dtype=np.int64)
+        balls = set(self.slots.tolist())
+        bumpers = {ball.slot for ball in shown if ball.kind == "bumper"}
+        held = np.flatnonzero(state.particle_active & (state.inverse_mass == 0.0))
+        limit = cast.particles
+        self.pins = np.array([slot for slot in held.tolist() if slot not in balls and slot < limit], dtype=np.int64)
+        self._held = np.array([slot for slot in held.tolist() if slot in balls - bumpers], dtype=np.int64)
+
+    def radii(self, frame: Frame) -> Floats:
+        """Radii (n,) [pixels] of the balls."""
+        return np.maximum(frame.state.radius[self.slots] * frame.zoom, LEAST * min(frame.scale, 1.0))
+
+    def thrown(self, frame: Frame) -> Floats:
+        """Discs (k, 3) [pixels] that throw shadows."""
+        return np.column_stack([frame.at[self.slots], self.radii(frame)])
+
+    def mark(self, marks: MarkList, frame: Frame) -> None:
+        """Draw the balls."""
+        if len(self.slots):
+            angle = frame.angle[self.slots]
+            # Pixels count downwards.
+            turn = np.column_stack([np.cos(angle), -np.sin(angle)])
+            marks.balls(frame.at[self.slots], self.radii(frame), turn, self._colour, self._mark, self._style)
+
+    def mark_pins(self, marks: MarkList, frame: Frame) -> None:
+        """Draw what is held."""
+        red, green, blue = frame.theme.accent
+        for slots, size in ((self.pins, 1.0), (self._held, 0.55)):
+            at, k = frame.at[slots], frame.scale * size
+            marks.discs(at, PIN_RIM * k, 0x141924, 0.9)
+            marks.discs(at, PIN * k, red << 16 | green << 8 | blue)
+            marks.discs(at + np.array([-1.3, -1.5]) * k, PIN_GLEAM * k, WHITE, 0.85)
+
+
+def _colour(k: int, ball: Ball) -> int:
+    if ball.colour is not None:
+        return ball.colour
+    return SANDS[k % len(SANDS)] if ball.kind == "sand" else STEEL_BALL

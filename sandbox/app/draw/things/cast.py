@@ -1,0 +1,116 @@
+"""Cast: which slots of a world each body, ball and loose spring of a level has, and what it looks like; made once."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.app.draw.looks import GRAINS, Look, ball_look, body_looks, spring_look
+from sandbox.level.build.plan import Plan, kept_plan
+from sandbox.level.format.model import Level
+from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.body_def import BodyDef
+from sandbox.level.kinds.expansion import Expansion
+from sandbox.level.kinds.jelly import JellyDef
+
+Floats = NDArray[np.float64]
+Slots = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+METALS = ("steel", "paint", "brass", "chain", "cable", "piston")
+
+
+@dataclass(eq=False)
+class Actor:
+    """A body. slots (n,) of its particles; springs (m,) slots, pairs (m, 2) their ends by index, ends by slot."""
+
+    body: BodyDef
+    look: Look
+    made: Expansion[Any]
+    slots: Slots
+    springs: Slots
+    pairs: Slots
+
+    @property
+    def ends(self) -> Slots:
+        """Slots (m, 2) of the ends of its springs."""
+        return self.slots[self.pairs]
+
+    @property
+    def cell(self) -> float:
+        """A usual length [m] of its springs."""
+        return float(np.median(self.made.rest_length)) if len(self.pairs) else 1.0
+
+    def triangles(self) -> Slots:
+        """Triangles (t, 3) of particles by index, that a jelly is filled with, whether or not they keep their area."""
+        body = self.body
+        made = self.made
+        if isinstance(body, JellyDef) and not body.area:
+            made = type(self.made)(replaced(body, area=True))
+        found = made.polygons()
+        return found if found.shape[1] == 3 else np.zeros((0, 3), dtype=np.int64)
+
+
+@dataclass(eq=False)
+class Ball:
+    """A loose particle: its slot, what ball it is, its colour or None, the colour's number."""
+
+    slot: int
+    kind: str
+    colour: int | None
+
+
+@dataclass(eq=False)
+class Join:
+    """A loose spring: its slot, slots of its ends, its look."""
+
+    spring: int
+    ends: tuple[int, int]
+    look: Look
+
+
+@dataclass(eq=False)
+class Cast:
+    """Everything in a level that can be seen; particles and springs: how many slots are the level's own.
+
+    strikes (springs,): those that spark when they tear.
+    """
+
+    level: Level
+    actors: list[Actor]
+    balls: list[Ball]
+    joins: list[Join]
+    particles: int
+    springs: int
+    strikes: Mask
+
+
+def cast_of(level: Level, is_welded: bool = True) -> Cast:
+    """The cast of a level; is_welded: particles that are one share a slot, as in a world, not as in the editor."""
+    plan = kept_plan(level) or Plan(level)
+    count = plan.layout.particle_count
+    slots = np.arange(count, dtype=np.int64)
+    if is_welded:
+        stays = plan.first_of_weld == slots
+        slots = (np.cumsum(stays) - 1)[plan.first_of_weld]
+    actors, first, spring = [], 0, 0
+    for body, look, made in zip(level.bodies, body_looks(level), plan.bodies, strict=True):
+        size, pairs = made.form_count[0], made.pairs
+        own = np.arange(spring, spring + len(pairs), dtype=np.int64)
+        actors.append(Actor(body, look, made, slots[first : first + size], own, pairs))
+        first, spring = first + size, spring + len(pairs)
+    many = sum(not particle.pinned for particle in level.particles) > GRAINS
+    balls = []
+    for k, particle in enumerate(level.particles):
+        kind, colour = ball_look(level, particle, k, many)
+        balls.append(Ball(int(slots[first + k]), kind, colour))
+    ends = slots[plan.spring_ends]
+    joins = [
+        Join(spring + k, (int(ends[k, 0]), int(ends[k, 1])), spring_look(level, one))
+        for k, one in enumerate(level.springs)
+    ]
+    kinds = [(actor.look, len(actor.springs)) for actor in actors] + [(join.look, 1) for join in joins]
+    sparks = [look.line in METALS and look.skin in ("", "steel wheel") for look, _ in kinds]
+    strikes = np.repeat(np.array(sparks, dtype=np.bool_), [count for _, count in kinds])
+    return Cast(level, actors, balls, joins, int(slots.max(initial=-1)) + 1, spring + len(joins), strikes)

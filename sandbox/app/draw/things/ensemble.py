@@ -1,0 +1,197 @@
+"""Ensemble: what of a world is which thing, as its springs stand; made anew where one is torn or another is added."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.app.draw.looks import SOFT_SKINS, STRANDS
+from sandbox.app.draw.raster.bodies import Outlines
+from sandbox.app.draw.raster.painter import MarkList, Painter
+from sandbox.app.draw.raster.shadows import Thrown
+from sandbox.app.draw.themes import outline_of
+from sandbox.app.draw.things.balls import Balls
+from sandbox.app.draw.things.borders import hull_of, sides_of, traced
+from sandbox.app.draw.things.cast import Actor, Cast, Join
+from sandbox.app.draw.things.faces import Faces
+from sandbox.app.draw.things.frame import Frame, Seen
+from sandbox.app.draw.things.members import Members
+from sandbox.app.draw.things.sheets import Sheets
+from sandbox.app.draw.things.soft import Shape, Soft, shape_of
+from sandbox.app.draw.things.springs import Working
+from sandbox.app.draw.things.strands import Strands
+from sandbox.app.draw.things.wheels import DrawnWheel
+
+Mask = NDArray[np.bool_]
+Slots = NDArray[np.int64]
+Floats = NDArray[np.float64]
+
+WORKING = ("coil", "muscle", "piston")
+CLOTH = "cloth"
+CRATES = ("wood", "stone", "brick")
+WINDOW = 0xBFE6FF
+# How far a panel stands out beyond its bars, and a window back from its corners [pixels at scale 1].
+PANEL_OUT, WINDOW_IN = 4.0, -3.0
+CRATE_LINE = 1.6
+
+
+class Ensemble:
+    """All things of a world whose particles (n,) and springs (m,) are there."""
+
+    def __init__(self, cast: Cast, state: Seen, particles: Mask, springs: Mask) -> None:
+        self._state = state
+        self._triangles: dict[int, tuple[Slots, Slots]] = {}
+        self.members, self.strands, self.sheets = Members(), Strands(), Sheets()
+        self.wheels: list[DrawnWheel] = []
+        self._balloons: list[tuple[int, Actor]] = []
+        self._shapes: list[Shape] = []
+        self._faces: list[tuple[Actor, Slots]] = []
+        joins = [join for join in cast.joins if springs[join.spring]]
+        for actor in cast.actors:
+            there = springs[actor.springs]
+            joins += self._add(actor, there)
+        strangers = np.flatnonzero(springs[cast.springs :]) + cast.springs
+        ends = np.stack([state.particle_a, state.particle_b], axis=1).astype(np.int64)
+        self._add_joins(joins, ends)
+        self.members.add_strangers(ends[strangers], strangers, state.rest_length)
+        self.balls = Balls(cast, state, np.flatnonzero(particles[cast.particles :]) + cast.particles)
+        self.faces = Faces(self._faces)
+        self._hems = [Shape([loop], CLOTH, 0, -1, rounds=0, line=False) for loop in self.sheets.outlines()]
+        self.soft = Soft(self._shapes + self._hems)
+        self._tied = np.bincount(ends[springs].reshape(-1), minlength=len(particles))
+
+    def _radius(self, actor: Actor) -> float:
+        return float(np.median(self._state.radius[actor.slots]))
+
+    def _add(self, actor: Actor, there: Mask) -> list[Join]:
+        """Make a thing of a body whose springs are there (m,); its springs that are drawn one by one are given back."""
+        look, kind = actor.look, actor.body.type
+        if look.skin != "lattice":
+            if kind == "jelly":
+                return self._add_filled(actor, there)
+            if kind == "ring" and there.all() and len(there) == len(actor.slots):
+                self._balloons += [(len(self._shapes), actor)] if look.skin == "balloon" else []
+                self._shapes.append(shape_of(actor, [actor.slots], there, self._radius(actor)))
+                return []
+            if kind == "wheel" and look.skin and DrawnWheel.is_whole(actor, there):
+                self.wheels.append(DrawnWheel(actor, there, self._radius(actor)))
+                self._shapes.append(self.wheels[-1].shape)
+                return []
+            if look.panel is not None:
+                hull = hull_of(actor.made.form, actor.pairs[there])
+                if len(hull):
+                    self._add_panel(actor, hull)
+                    return []
+        return self._add_lines(actor, there)
+
+    def _add_panel(self, actor: Actor, hull: Slots) -> None:
+        look = actor.look
+        assert look.panel is not None
+        self._shapes.append(Shape([actor.slots[hull]], "rubber", look.panel, 0, extra=PANEL_OUT, keep=0.2))
+        window = [k for k in look.window if k < len(actor.slots)]
+        if len(window) > 2:
+            loop = actor.slots[np.array(window)]
+            self._shapes.append(Shape([loop], "window", WINDOW, 0, extra=WINDOW_IN, keep=0.2))
+
+    def _add_lines(self, actor: Actor, there: Mask) -> list[Join]:
+        look = actor.look
+        if look.line in STRANDS:
+            self.strands.add(look, actor.ends[there], actor.springs[there], actor.made.rest_length[there])
+        elif look.line in WORKING:
+            rows = zip(actor.springs[there].tolist(), actor.ends[there].tolist(), strict=True)
+            return [Join(spring, (a, b), look) for spring, (a, b) in rows]
+        else:
+            self.members.add_actor(actor, there)
+        return []
+
+    def _add_filled(self, actor: Actor, there: Mask) -> list[Join]:
+        triangles = actor.triangles()
+        sides = sides_of(triangles, actor.pairs)
+        # A triangle is there while the springs along all its sides are.
+        left = triangles[((sides >= 0) & np.append(there, False)[sides]).all(axis=1)]
+        filled = np.zeros(len(actor.slots), dtype=np.bool_)
+        filled[left] = True
+        if len(left):
+            loops = [actor.slots[loop] for loop in traced(left)]
+            if actor.look.skin != CLOTH:
+                held = there & filled[actor.pairs].all(axis=1)
+                self._shapes.append(shape_of(actor, loops, held, self._radius(actor)))
+            if actor.look.skin == CLOTH or actor.look.skin in CRATES:
+                self.sheets.add(actor, left, loops, there)
+            if actor.look.face and actor.look.skin in SOFT_SKINS:
+                self._faces.append((actor, max(loops, key=len)))
+        bare = there & ~filled[actor.pairs].all(axis=1)
+        return self._add_lines(actor, bare) if bare.any() else []
+
+    def _add_joins(self, joins: list[Join], ends: Slots) -> None:
+        self.working = Working([join for join in joins if join.look.line in WORKING])
+        rest = self._state.rest_length
+        groups: dict[object, list[Join]] = {}
+        for join in joins:
+            groups.setdefault(join.look, []).append(join)
+        for own in groups.values():
+            look, springs = own[0].look, np.array([join.spring for join in own], dtype=np.int64)
+            pairs = np.array([join.ends for join in own], dtype=np.int64)
+            if look.line in STRANDS:
+                self.strands.add(look, pairs, springs, rest[springs])
+            elif look.line not in (*WORKING, "hidden"):
+                self.members.add_joins(look, pairs, springs, rest[springs])
+
+    # What is drawn of them, layer by layer.
+
+    def thrown(self, frame: Frame) -> tuple[Thrown, Outlines]:
+        """What throws shadows, once outlines are traced."""
+        lines = np.concatenate([part.thrown(frame) for part in (self.members, self.strands, self.working)])
+        return Thrown(np.ascontiguousarray(lines), np.ascontiguousarray(self.balls.thrown(frame))), self.soft.outlines
+
+    def draw(self, painter: Painter, frame: Frame, is_lattice: bool) -> None:
+        """Draw everything but balls and pins, from the back to the front; outlines are traced."""
+        back = MarkList()
+        self.working.mark(back, frame)
+        self.strands.mark(back, frame)
+        self.members.mark(back, frame)
+        for wheel in self.wheels:
+            wheel.mark_lugs(back, frame)
+        painter.marks(back, frame.tiles.array)
+        self._draw_layer(painter, frame, 0, is_lattice)
+        if self.sheets:
+            painter.cells(self.sheets.arrays(frame), self.sheets.pictures)
+        middle = MarkList()
+        self.sheets.mark_hems(middle, frame)
+        self._mark_crates(middle, frame)
+        for wheel in self.wheels:
+            wheel.mark(middle, frame)
+        painter.marks(middle, frame.tiles.array)
+        self._draw_layer(painter, frame, 1, is_lattice)
+        front = MarkList()
+        if not is_lattice:
+            self._mark_balloons(front, frame)
+            self.faces.mark(front, frame)
+        self.balls.mark(front, frame)
+        painter.marks(front, frame.tiles.array)
+
+    def _draw_layer(self, painter: Painter, frame: Frame, number: int, is_lattice: bool) -> None:
+        layer = self.soft.layer(number, frame, is_lattice)
+        if layer is not None:
+            painter.bodies(layer)
+
+    def _mark_crates(self, marks: MarkList, frame: Frame) -> None:
+        for k, shape in enumerate(self.soft.shapes):
+            if shape.skin in CRATES:
+                marks.strokes(self.soft.lines_of(k), CRATE_LINE * frame.scale, outline_of(shape.colour))
+
+    def _mark_balloons(self, marks: MarkList, frame: Frame) -> None:
+        """Gleams that stay where the light is, and a knot where something is tied."""
+        for k, actor in self._balloons:
+            points = self.soft.lines_of(k)[:, :2]
+            centre, radius = points.mean(axis=0), 0.5 * self.soft.size_of(k)
+            if not np.isfinite(radius) or radius > 1e5:
+                continue
+            gleams = centre + radius * np.array([[-0.34, -0.42], [-0.42, -0.44], [-0.20, -0.56], [0.34, 0.5]])
+            sizes = radius * np.array([0.46, 0.17, 0.09, 0.4])
+            marks.discs(gleams, sizes, 0xFFFFFF, np.array([0.45, 0.85, 0.8, 0.16]), glow=True)
+            for slot in actor.slots[self._tied[actor.slots] > 2].tolist():
+                out = frame.at[slot] - centre
+                out = out / max(float(np.hypot(*out)), 1e-9)
+                side = np.array([-out[1], out[0]])
+                tips = [frame.at[slot] + radius * (0.15 * out + by * side) for by in (-0.07, 0.0, 0.07)]
+                ends = np.array([[*frame.at[slot], *tip] for tip in tips])
+                marks.strokes(ends, max(1.2, 0.03 * radius), outline_of(actor.look.colour))

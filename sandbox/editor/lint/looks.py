@@ -1,0 +1,38 @@
+"""Looks that nobody knows: they count as automatic."""
+
+from collections.abc import Iterator
+
+from sandbox.editor.items import Item
+from sandbox.editor.lint.finding import Finding, Rule, called
+from sandbox.level.faults.level_error import shown, suggestion
+from sandbox.level.format.look import BALLS, GROUNDS, LINES, SKINS
+from sandbox.level.format.model import Level
+
+_KNOWN = {"skin": SKINS, "line": LINES, "ball": BALLS}
+
+
+def unknown_looks(level: Level) -> Rule:
+    """Names of skins, lines, balls and grounds that are none."""
+    subjects: list[tuple[str, Item | None, object]] = [
+        (f'the material "{name}"', None, material.look) for name, material in level.materials.items()
+    ]
+    subjects += [(called(item), item, body.look) for body in level.bodies for item in [Item("body", body.id)]]
+    balls = [(called(item), item, ball.look) for ball in level.particles for item in [Item("particle", ball.id)]]
+    for subject, item, look in [*subjects, *balls]:
+        for field, name in _unknown(look):
+            text = f"{subject} has the {field} {shown(name)}, which is none" + suggestion(name, _KNOWN[field])
+            yield Finding("warning", text, frozenset() if item is None else frozenset([item]), None)
+    yield None
+    for piece, ground in (level.look.ground if level.look is not None else {}).items():
+        if ground not in GROUNDS:
+            yield Finding("warning", f'"{piece}" is of {shown(ground)}, which is no ground', frozenset(), None)
+        elif piece not in {each.id for each in level.terrain}:
+            yield Finding("hint", f'the look of "{piece}" is of no terrain: none has that name', frozenset(), None)
+    yield None
+
+
+def _unknown(look: object) -> Iterator[tuple[str, str]]:
+    for field, known in _KNOWN.items():
+        name = getattr(look, field, None)
+        if name is not None and name not in known:
+            yield field, name

@@ -1,0 +1,159 @@
+"""The axle tool: one drag puts a wheel on a body, with a motor and keys where they are wanted."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from sandbox.editor.document import Document, EditError, checked, select
+from sandbox.editor.edits.placing import add_spring
+from sandbox.editor.kinds.wheel import RimDrawing, RimOptions
+from sandbox.editor.panel.typed import significant
+from sandbox.editor.scene import Scene, make_scene
+from sandbox.editor.tools.drawing_bodies import known_material, length
+from sandbox.editor.tools.drawing_options import OptionInfo, flag_option, option
+from sandbox.editor.tools.drawing_tool import staged
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
+from sandbox.editor.tools.snap import Snap
+from sandbox.level.build.axles import mount_of
+from sandbox.level.format.actuator_defs import MotorDef
+from sandbox.level.format.limits import TORQUE_LIMIT, TURN_LIMIT
+from sandbox.level.format.model import Level
+from sandbox.level.format.quantities import Point, replaced
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.wheel import WheelDef
+
+# A wheel beside a body hangs on this many of its particles, none farther from the axle than so many radii.
+STRUTS, STRUT_REACH = 3, 3.0
+STRUT_MATERIAL = "steel"
+# Two struts hold an axle where the sine of the angle between them is this large; smaller: it gives way across them.
+APART = 0.35
+# A motor has this share of the torque that lifts the whole vehicle straight up at its rim. One wheel alone climbs from
+# corner to corner of 16 with 0.2 of it, and 10 degrees with another 0.17.
+SHARE = 0.75
+WEIGHT = 9.81  # [N/kg]
+FORWARD, BACKWARD = "d", "a"
+# Digits of a torque; a person reads it.
+DIGITS = 3
+
+
+@dataclass(frozen=True)
+class AxleOptions(RimOptions):
+    """A wheel on an axle; torque None: what the weight of the vehicle asks for."""
+
+    motor: bool = flag_option(True, "motor", "A motor turns it.")
+    keys: bool = flag_option(True, "keys D, A", "D drives to the right and A back; otherwise it runs from the start.")
+    speed: float = option(
+        8.0, OptionInfo("number", "speed", "Turning rate; it drives to the right.", "rad/s", 0.0, TURN_LIMIT)
+    )
+    torque: float | None = option(
+        None,
+        OptionInfo(
+            "number", "torque", "Largest torque; empty = what the vehicle's weight asks for.", "N m", 0.0, TORQUE_LIMIT,
+            optional=True,
+        ),
+    )  # fmt: skip
+    touches: bool = flag_option(False, "touches body", "The wheel touches what it is mounted on, or passes through it.")
+
+
+class AxleDrawing(RimDrawing[AxleOptions]):
+    """A wheel whose hub is one with the particle that it is drawn on, or hangs on the nearest of a body beside it."""
+
+    defaults = AxleOptions()
+    start_hint = "Press on a body, where the axle goes, and drag to the rim; or click both"
+
+    def __init__(self, options: AxleOptions | None = None, reach: float = 0.0) -> None:
+        super().__init__(options, reach)
+        self._scene: Scene | None = None
+
+    def ghost(self, document: Document) -> Document | None:
+        """The wheel and its struts, with stand-ins of the particles that they end at."""
+        points = self._so_far()
+        self._ghost_fault = ""
+        if not self._sound(points):
+            return None
+        try:
+            stage, stood = staged(document, [*points, *self._struts(document, points)])
+            return self._mounted(stage, stood[:2], stood[2:])
+        except EditError as error:
+            self._ghost_fault = str(error)
+            return None
+
+    def placed(self, document: Document, points: list[Snap]) -> Document:
+        """The document with the wheel on its axle. Raises EditError."""
+        return self._mounted(document, points, self._struts(document, points))
+
+    def fields(self, points: list[Snap]) -> dict[str, Any]:
+        """A wheel's own fields."""
+        return {**super().fields(points), "touches_mount": self.options.touches}
+
+    def joins(self, index: int) -> bool:
+        """The axle; the rim rolls."""
+        return index == 0
+
+    def _mounted(self, document: Document, points: list[Snap], struts: list[Snap]) -> Document:
+        """The document with the wheel, the springs that it hangs on, and its motor."""
+        document = super().placed(document, points)
+        wheel, chosen = document.level.bodies[-1], document.selection
+        for strut in struts:
+            assert strut.name is not None
+            document = add_spring(document, f"{wheel.id}.hub", strut.name, known_material(document, STRUT_MATERIAL))
+        if self.options.motor:
+            motor = self._motor(document.level, length(points))
+            level = replaced(document.level, bodies=(*document.level.bodies[:-1], replaced(wheel, motor=motor)))
+            document = replace(document, level=checked(level))
+        return select(document, chosen)
+
+    def _motor(self, level: Level, radius: float) -> MotorDef:
+        options = self.options
+        vehicle = {len(level.bodies) - 1, *mount_of(level, len(level.bodies) - 1)}
+        mass = sum(float(np.sum(expansion(body).mass)) for index, body in enumerate(level.bodies) if index in vehicle)
+        mass += sum(part.mass for index, part in enumerate(level.particles, len(level.bodies)) if index in vehicle)
+        torque = options.torque
+        if torque is None:
+            torque = min(significant(SHARE * WEIGHT * mass * radius, DIGITS), TORQUE_LIMIT)
+        keys = {"key": FORWARD, "reverse_key": BACKWARD} if options.keys else {}
+        # To the right is clockwise.
+        return MotorDef(speed=-options.speed + 0.0, torque=torque, **keys)
+
+    def _struts(self, document: Document, points: list[Snap]) -> list[Snap]:
+        """Particles of the nearest body that an axle beside them hangs on. Raises EditError where there are too few."""
+        axle = points[0]
+        if axle.name is not None:
+            return []
+        if self._scene is None or self._scene.level is not document.level:
+            self._scene = make_scene(document.level, self._scene)
+        scene, bodies = self._scene, document.level.bodies
+        apart = scene.position - np.array(axle.point)
+        distance = np.sqrt(apart[:, 0] * apart[:, 0] + apart[:, 1] * apart[:, 1])
+        is_wheel = np.array([isinstance(body, WheelDef) for body in bodies], dtype=np.bool_)
+        near = (distance > 0.0) & (distance <= STRUT_REACH * length(points)) & (scene.particle_item < len(bodies))
+        slots = np.flatnonzero(near)
+        slots = slots[~is_wheel[scene.particle_item[slots]]]
+        slots = slots[np.argsort(distance[slots], kind="stable")]
+        if not len(slots):
+            raise EditError("begin on a body: there is none near the axle")
+        slots = slots[scene.particle_item[slots] == scene.particle_item[slots[0]]]
+        way = apart[slots] / distance[slots, None]
+        across = np.abs(way[:, 0] * way[0, 1] - way[:, 1] * way[0, 0])
+        second = np.flatnonzero(across >= APART)
+        if not len(second):
+            raise EditError("begin nearer to the body: nothing of it would hold the axle across")
+        chosen = list(dict.fromkeys([0, int(second[0]), *range(len(slots))]))[:STRUTS]
+        return [Snap(_place(scene, slot), "particle", scene.names(slot)) for slot in slots[chosen].tolist()]
+
+
+def _place(scene: Scene, slot: int) -> Point:
+    x, y = scene.position[slot].tolist()
+    return x, y
+
+
+def _draw_axle(pen: IconPen) -> None:
+    pen.line((3, 6), (21, 6), width=2.4)
+    pen.line((12, 6), (12, 15), width=2.0)
+    pen.disc(12, 15, 7, 2.2)
+    pen.disc(12, 15, 2.4)
+
+
+AXLE = EditorTool("axle", "Shift+Q", "Axle: a wheel on a body, with a motor", _draw_axle, AxleDrawing)

@@ -1,0 +1,37 @@
+"""Axles: what wheels are mounted on, which they pass through where they say so."""
+
+from collections import defaultdict
+
+from sandbox.level.format.model import Level
+from sandbox.level.kinds.wheel import WheelDef
+
+
+def free_wheels(level: Level) -> list[tuple[int, frozenset[int]]]:
+    """Wheels that touch nothing of their mount, with that mount, by index."""
+    wheels = (index for index, body in enumerate(level.bodies) if isinstance(body, WheelDef) and not body.touches_mount)
+    found = [(wheel, mount_of(level, wheel)) for wheel in wheels]
+    return [(wheel, mount) for wheel, mount in found if mount]
+
+
+def mount_of(level: Level, wheel: int) -> frozenset[int]:
+    """What a wheel is mounted on, by index: bodies, and after them loose particles.
+
+    It is what welds and loose springs join to the hub, and whatever they join to that; the wheel is no part of it.
+    """
+    axle = level.bodies[wheel].id
+    ids = [*(body.id for body in level.bodies), *(particle.id for particle in level.particles)]
+    number = {name: index for index, name in enumerate(ids)}
+    beside: dict[int, set[int]] = defaultdict(set)
+    for first, second in (*level.welds, *((spring.a, spring.b) for spring in level.springs)):
+        ends = [reference.partition(".")[::2] for reference in (first, second)]
+        # A rim that is tied to something is not mounted on it.
+        if all(part in ("hub", "0") for owner, part in ends if owner == axle):
+            a, b = (number[owner] for owner, _ in ends)
+            beside[a].add(b)
+            beside[b].add(a)
+    mount, waiting = {wheel}, [wheel]
+    while waiting:
+        new = beside[waiting.pop()] - mount
+        mount |= new
+        waiting += new
+    return frozenset(mount - {wheel})

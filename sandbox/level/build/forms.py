@@ -1,0 +1,32 @@
+"""Bodies of a level whose firmness can be set, made known to its world, with the firmness that the level asks."""
+
+import numpy as np
+
+from sandbox.level.build.plan import Plan
+from sandbox.level.format.model import HookeMaterial, Level, Material
+from sandbox.physics.firmness import Reach, set_firmness
+from sandbox.physics.forms import FirmBody
+from sandbox.physics.world import TRIANGLE, World
+
+
+def add_forms(
+    world: World, level: Level, plan: Plan, materials: dict[str, Material], first_constraint: list[int]
+) -> None:
+    """Give the world the forms of those bodies that enough holds to be stiff without pins, and set their firmness.
+
+    first_constraint: where the constraints of each body begin, and where the last end.
+    """
+    first_spring = 0
+    for number, (body, made) in enumerate(zip(level.bodies, plan.bodies, strict=True)):
+        springs = first_spring + np.arange(len(made.pairs))
+        first_spring += len(made.pairs)
+        constraints = np.arange(first_constraint[number], first_constraint[number + 1])
+        narrow = constraints[world.constraint_corners[constraints] == TRIANGLE]
+        if isinstance(materials[body.material], HookeMaterial):
+            continue
+        if body.firmness is None and not made.may_be_stiff:
+            continue
+        world.forms.append(FirmBody(body.id, made.stiff_form, springs, narrow))
+        if body.firmness is not None:
+            reach = Reach.of(made.stiff_form, level.settings.gravity, level.settings.tick_rate)
+            set_firmness(world, len(world.forms) - 1, *reach.coefficients(body.firmness.asked))

@@ -1,0 +1,79 @@
+"""How things look: names of stuffs and colours, and what a level, a body, a material or a particle says of itself.
+
+None of it reaches the physics: neither worlds, nor hashes, nor the checks of recordings know it.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from sandbox.level.format.quantities import Description, Index, Line
+
+# What surfaces and lines are made of, and balls and terrain. A name that is not listed falls back to automatic.
+SKINS = ("jelly", "rubber", "balloon", "wood", "stone", "brick", "cloth", "plain", "lattice")
+LINES = (
+    "steel", "paint", "brass", "rope", "cable", "chain", "deck", "wood", "rubber", "thread", "silk", "coil", "bone",
+    "muscle", "hidden",
+)  # fmt: skip
+BALLS = ("marble", "stripe", "steel", "sand", "bumper", "plain")
+GROUNDS = ("soil", "rock", "metal", "wood", "glass")
+# Toys' colours, given out in this order: neighbours differ in lightness too.
+PALETTE = {
+    "raspberry": 0xF2557B, "lemon": 0xFFD24A, "sky": 0x4DB3FF, "tangerine": 0xFF9142, "grape": 0x9B7BFF,
+    "lime": 0x8EDB6B, "bubblegum": 0xFF9BD2, "lagoon": 0x2FC4B2,
+}  # fmt: skip
+
+COLOUR_PATTERN = rf"^({'|'.join(PALETTE)}|#[0-9A-Fa-f]{{6}})$"
+ColourName = Annotated[str, Field(pattern=COLOUR_PATTERN)]
+
+
+def colour_of(name: str) -> int:
+    """A colour of the format as 0xRRGGBB."""
+    return PALETTE[name] if name in PALETTE else int(name[1:], 16)
+
+
+class LevelLook(Description):
+    """How a level looks."""
+
+    theme: Literal["dark", "light"] | None = Field(
+        default=None, description="Theme that it is meant for; null = the person's."
+    )
+    ground: dict[Line, Line] = Field(
+        default={},
+        max_length=1_000,
+        description=f"What pieces of terrain are made of, by their ids: {', '.join(GROUNDS)}.",
+    )
+    faces: bool | None = Field(
+        default=None, description="Whether jellies have faces; null = where a level has at most 16 bodies."
+    )
+
+
+class BodyLook(Description):
+    """How a body looks, or all that is made of a material."""
+
+    skin: Line | None = Field(
+        default=None, description=f"What it is filled with: {', '.join(SKINS)}; null = automatic."
+    )
+    line: Line | None = Field(
+        default=None, description=f"What its springs are drawn as: {', '.join(LINES)}; null = automatic."
+    )
+    colour: ColourName | None = Field(
+        default=None, description='Colour: a name of the palette, or "#RRGGBB"; null = automatic.'
+    )
+    face: bool | None = Field(default=None, description="Whether it has a face; null = automatic.")
+    width: float = Field(default=1.0, ge=0.1, le=10.0, description="Width of its lines, as a multiple of the usual.")
+    panel: ColourName | None = Field(
+        default=None, description="Colour of a panel that covers all inside its outline; null = none."
+    )
+    window: tuple[Index, ...] = Field(
+        default=(), max_length=64, description="Particles around a window in the panel, by index."
+    )
+
+
+class ParticleLook(Description):
+    """How a loose particle looks."""
+
+    ball: Line | None = Field(default=None, description=f"What ball it is: {', '.join(BALLS)}; null = automatic.")
+    colour: ColourName | None = Field(
+        default=None, description='Colour: a name of the palette, or "#RRGGBB"; null = automatic.'
+    )

@@ -1,0 +1,365 @@
+"""Overlaps: which bodies have come to lie in each other, or in themselves, deeper than contacts can undo.
+
+Contacts push a particle out where it is nearest, and so hold a body that has gone through another just there. Seen are
+edges that cross, found in the grid of the broad phase, and shapes of which one lies in the other. What is pressed
+together crosses nowhere, so nothing more is looked at where nothing overlaps.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sandbox.physics.collision.broad_phase import Boxes, Grid, bucket_of, cell_number, overlap
+from sandbox.physics.collision.narrow_phase import closest, may_collide, winds
+from sandbox.physics.collision.outline import Outline
+from sandbox.physics.collision.types import Colliders, Flags
+from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.state import Floats, Slots
+
+# Outlines of solid bodies that overlap deeper than this many radii of a particle part; from there on contacts do it.
+# Less takes contacts from what is only pressed together, more leaves what has been pushed through.
+DEEP = 1.0
+# By this share of a radius two outlines are taken apart before they are compared, so that ones that lie exactly on each
+# other cross.
+APART_X, APART_Y = 1e-3, 0.6e-3
+# Places in `counts`: crossings, pairs, and those of them that part.
+CROSSINGS, OVERLAPS, PARTED = range(3)
+
+
+class Overlaps(NamedTuple):
+    """The overlaps of a step: crossings of edges, and the pairs of shapes that overlap; there is room for more.
+
+    Of crossings: edge (k, 2), that of the lower shape first; share (k, 2) along them; following = the next one of the
+    same pair, -1: none. Of pairs: shape (q, 2), the lower first; first = of its crossings, -1: none; parts: whether
+    they do; next_pair = of the same lower shape. first_pair = by shape.
+    """
+
+    edge: Slots
+    share: Floats
+    following: Slots
+    shape: Slots
+    first: Slots
+    parts: Flags
+    next_pair: Slots
+    first_pair: Slots
+    counts: Slots
+
+
+def new_overlaps(shapes: int, crossings: int, pairs: int) -> Overlaps:
+    """Overlaps to be filled in, with room for so many."""
+    return Overlaps(
+        np.zeros((crossings, 2), np.int64), np.zeros((crossings, 2)), np.zeros(crossings, np.int64),
+        np.zeros((pairs, 2), np.int64), np.zeros(pairs, np.int64), np.zeros(pairs, np.bool_),
+        np.zeros(pairs, np.int64), np.zeros(shapes, np.int64), np.zeros(3, np.int64),
+    )  # fmt: skip
+
+
+@inlined_kernel
+def _side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
+    # Signed area of the triangle a, b, p, doubled: above 0 where p is on the left of a b.
+    return (bx - ax) * (py - ay) - (by - ay) * (px - ax)
+
+
+@inner_kernel
+def _cross(e: int, f: int, apart: float, colliders: Colliders) -> tuple[float, float]:
+    # Where edge e crosses edge f, which is looked at a little apart: the shares along both; -1: nowhere.
+    position = colliders.position
+    a = colliders.edge_a[e]
+    b = colliders.edge_b[e]
+    c = colliders.edge_a[f]
+    d = colliders.edge_b[f]
+    ax = position[a, 0]
+    ay = position[a, 1]
+    bx = position[b, 0]
+    by = position[b, 1]
+    cx = position[c, 0] + APART_X * apart
+    cy = position[c, 1] + APART_Y * apart
+    dx = position[d, 0] + APART_X * apart
+    dy = position[d, 1] + APART_Y * apart
+    if max(ax, bx) < min(cx, dx) or max(cx, dx) < min(ax, bx):
+        return -1.0, -1.0
+    if max(ay, by) < min(cy, dy) or max(cy, dy) < min(ay, by):
+        return -1.0, -1.0
+    of_c = _side(ax, ay, bx, by, cx, cy)
+    of_d = _side(ax, ay, bx, by, dx, dy)
+    of_a = _side(cx, cy, dx, dy, ax, ay)
+    of_b = _side(cx, cy, dx, dy, bx, by)
+    if (of_c > 0.0) == (of_d > 0.0) or (of_a > 0.0) == (of_b > 0.0):
+        return -1.0, -1.0
+    return of_a / (of_a - of_b), of_c / (of_c - of_d)
+
+
+@inner_kernel
+def _note_crossing(e: int, f: int, colliders: Colliders, outline: Outline, found: Overlaps, count: int) -> int:
+    # Note where edge e, of the lower shape, crosses edge f, if it may not; the number of crossings then.
+    a = colliders.edge_a[e]
+    c = colliders.edge_a[f]
+    s = colliders.shape[a]
+    t = colliders.shape[c]
+    solid_s = outline.solid_of[s] >= 0
+    solid_t = outline.solid_of[t] >= 0
+    if not (solid_s or solid_t) or (solid_s and colliders.side[e] == 0) or (solid_t and colliders.side[f] == 0):
+        return count
+    if not may_collide(a, c, colliders):
+        return count
+    apart = 0.0
+    if s != t:
+        apart = colliders.radius[c]
+    elif a == c or a == colliders.edge_b[f] or colliders.edge_b[e] == c or colliders.edge_b[e] == colliders.edge_b[f]:
+        return count
+    along_e, along_f = _cross(e, f, apart, colliders)
+    if along_e < 0.0:
+        return count
+    if count < found.edge.shape[0]:
+        found.edge[count, 0] = e
+        found.edge[count, 1] = f
+        found.share[count, 0] = along_e
+        found.share[count, 1] = along_f
+    return count + 1
+
+
+@inlined_kernel
+def _compare(
+    e: int, f: int, particles: int, boxes: Boxes, colliders: Colliders, outline: Outline, found: Overlaps, count: int
+) -> int:
+    if overlap(boxes.box, particles + e, particles + f):
+        if colliders.shape[colliders.edge_a[e]] <= colliders.shape[colliders.edge_a[f]]:
+            count = _note_crossing(e, f, colliders, outline, found, count)
+        else:
+            count = _note_crossing(f, e, colliders, outline, found, count)
+    return count
+
+
+@inner_kernel
+def find_crossings(
+    boxes: Boxes, grid: Grid, larges: int, colliders: Colliders, outline: Outline, found: Overlaps
+) -> int:
+    """Where outlines cross others or themselves; the number of crossings, counted on where there is no room."""
+    count = 0
+    # As of the last step some may not touch.
+    colliders.parted_count[0] = 0
+    cells = grid.cells
+    particles = boxes.filter.shape[0]
+    buckets = grid.start.shape[0] - 1
+    # Lines alone cross as they like.
+    for e in range(outline.dynamic[0] if outline.dynamic[1] > 0 else 0):
+        k = particles + e
+        if not boxes.is_target[k]:
+            continue
+        left = cells[k, 0]
+        bottom = cells[k, 1]
+        if cells[k, 2] < left:
+            for f in range(e):
+                if boxes.is_target[particles + f]:
+                    count = _compare(e, f, particles, boxes, colliders, outline, found, count)
+            continue
+        for at in range(larges):
+            f = grid.large[at] - particles
+            if 0 <= f < e:
+                count = _compare(e, f, particles, boxes, colliders, outline, found, count)
+        for column in range(left, cells[k, 2] + 1):
+            for row in range(bottom, cells[k, 3] + 1):
+                bucket = bucket_of(column, row, buckets)
+                here = cell_number(column, row)
+                seen = (0 if column == left else 1) + (0 if row == bottom else 2)
+                for at in range(grid.start[bucket], grid.start[bucket + 1]):
+                    entry = grid.object[at]
+                    f = (entry >> 2) - particles
+                    if f >= e:
+                        break
+                    if f >= 0 and entry & seen == seen and grid.cell[at] == here:
+                        count = _compare(e, f, particles, boxes, colliders, outline, found, count)
+    found.counts[CROSSINGS] = count
+    return count
+
+
+@inner_kernel
+def _pair_of(s: int, t: int, found: Overlaps) -> int:
+    # The place of the pair of two shapes, the lower first, made where there is none: then it is in `counts` already.
+    at = found.first_pair[s]
+    while at >= 0:
+        if found.shape[at, 1] == t:
+            return at
+        at = found.next_pair[at]
+    at = found.counts[OVERLAPS]
+    found.counts[OVERLAPS] = at + 1
+    if at < found.shape.shape[0]:
+        found.shape[at, 0] = s
+        found.shape[at, 1] = t
+        found.first[at] = -1
+        found.next_pair[at] = found.first_pair[s]
+        found.first_pair[s] = at
+    return at
+
+
+@inner_kernel
+def _lies_in(k: int, within: int, bounds: Floats) -> bool:
+    return (
+        bounds[within, 0] <= bounds[k, 0]
+        and bounds[within, 1] <= bounds[k, 1]
+        and bounds[within, 2] >= bounds[k, 2]
+        and bounds[within, 3] >= bounds[k, 3]
+    )
+
+
+@inner_kernel
+def _pair_enclosed(colliders: Colliders, outline: Outline, bounds: Floats, found: Overlaps) -> None:
+    # Solid bodies that lie in others, and cross them nowhere: one corner tells.
+    solids = outline.dynamic[1]
+    for inner in range(solids):
+        first = outline.solid[inner, 0]
+        v = colliders.edge_a[first]
+        for outer in range(solids):
+            if inner == outer or not _lies_in(inner, outer, bounds):
+                continue
+            begin = outline.solid[outer, 0]
+            end = outline.solid[outer, 1]
+            w = colliders.edge_a[begin]
+            if not may_collide(v, w, colliders):
+                continue
+            if winds(colliders.position[v, 0], colliders.position[v, 1], begin, end, colliders) > 0:
+                s = colliders.shape[v]
+                t = colliders.shape[w]
+                _pair_of(min(s, t), max(s, t), found)
+
+
+@inner_kernel
+def _is_crossed_deep(pair: int, colliders: Colliders, found: Overlaps) -> bool:
+    # Whether the least way of one of the four ends of a crossing to the other edge is long.
+    c = found.first[pair]
+    while c >= 0:
+        least = 1e300
+        for side in range(2):
+            e = found.edge[c, side]
+            f = found.edge[c, 1 - side]
+            for end in range(2):
+                p = colliders.edge_a[e] if end == 0 else colliders.edge_b[e]
+                _, distance, _, _ = closest(p, colliders.edge_a[f], colliders.edge_b[f], colliders.position)
+                least = min(least, distance)
+        if least > DEEP * colliders.radius[colliders.edge_a[found.edge[c, 0]]]:
+            return True
+        c = found.following[c]
+    return False
+
+
+@inner_kernel
+def _is_in(x: float, y: float, k: int, outline: Outline, bounds: Floats, colliders: Colliders) -> bool:
+    # Whether a place is inside solid body k.
+    if not (bounds[k, 0] <= x <= bounds[k, 2] and bounds[k, 1] <= y <= bounds[k, 3]):
+        return False
+    return winds(x, y, outline.solid[k, 0], outline.solid[k, 1], colliders) > 0
+
+
+@inner_kernel
+def _is_deep_at(
+    x: float, y: float, deep: float, k: int, outline: Outline, bounds: Floats, colliders: Colliders
+) -> bool:
+    # Whether a place is deeper than that inside solid body k.
+    if not _is_in(x, y, k, outline, bounds, colliders):
+        return False
+    for e in range(outline.solid[k, 0], outline.solid[k, 1]):
+        if colliders.side[e] != 0:
+            a = colliders.edge_a[e]
+            b = colliders.edge_b[e]
+            ax = colliders.position[a, 0]
+            ay = colliders.position[a, 1]
+            dx = colliders.position[b, 0] - ax
+            dy = colliders.position[b, 1] - ay
+            squared = dx * dx + dy * dy
+            share = 0.0
+            if squared > 0.0:
+                share = min(1.0, max(0.0, ((x - ax) * dx + (y - ay) * dy) / squared))
+            qx = x - ax - share * dx
+            qy = y - ay - share * dy
+            if not qx * qx + qy * qy > deep * deep:
+                return False
+    return True
+
+
+@inner_kernel
+def _is_inside_deep(s: int, t: int, outline: Outline, bounds: Floats, colliders: Colliders) -> bool:
+    # Whether a particle of shape s, or the middle of all of them, is deep inside the solid body of shape t.
+    k = outline.solid_of[t]
+    x = 0.0
+    y = 0.0
+    first = outline.member_start[s]
+    last = outline.member_start[s + 1]
+    for i in range(first, last):
+        p = outline.member[i]
+        px = colliders.position[p, 0]
+        py = colliders.position[p, 1]
+        x += px
+        y += py
+        if _is_deep_at(px, py, DEEP * colliders.radius[p], k, outline, bounds, colliders):
+            return True
+    x /= last - first
+    y /= last - first
+    deep = DEEP * colliders.radius[outline.member[first]]
+    # Of two rings that lie on each other no particle is inside.
+    return _is_deep_at(x, y, deep, outline.solid_of[s], outline, bounds, colliders) and _is_deep_at(
+        x, y, deep, k, outline, bounds, colliders
+    )
+
+
+@inner_kernel
+def give_way(pair: int, colliders: Colliders, outline: Outline, bounds: Floats, found: Overlaps, flags: Flags) -> None:
+    """Flag the particles that part: all of solid bodies; of a line what is inside, and the ends of what crosses."""
+    for side in range(2):
+        s = found.shape[pair, side]
+        other = outline.solid_of[found.shape[pair, 1 - side]]
+        for i in range(outline.member_start[s], outline.member_start[s + 1]):
+            p = outline.member[i]
+            if outline.solid_of[s] >= 0 or _is_in(
+                colliders.position[p, 0], colliders.position[p, 1], other, outline, bounds, colliders
+            ):
+                flags[p] = True
+        if outline.solid_of[s] < 0:
+            c = found.first[pair]
+            while c >= 0:
+                flags[colliders.edge_a[found.edge[c, side]]] = True
+                flags[colliders.edge_b[found.edge[c, side]]] = True
+                c = found.following[c]
+
+
+@inner_kernel
+def pair_overlaps(colliders: Colliders, outline: Outline, bounds: Floats, found: Overlaps) -> int:
+    """Sort the crossings by pairs of shapes, and decide which part; the number of pairs, counted on without room.
+
+    Contacts between those that part are left out of the step: see `may_collide`.
+    """
+    found.counts[OVERLAPS] = 0
+    if outline.dynamic[1] == 0:
+        return 0
+    for p in range(colliders.parting.shape[0]):
+        colliders.parting[p] = False
+    for s in range(found.first_pair.shape[0]):
+        found.first_pair[s] = -1
+    for c in range(found.counts[CROSSINGS]):
+        at = _pair_of(
+            colliders.shape[colliders.edge_a[found.edge[c, 0]]], colliders.shape[colliders.edge_a[found.edge[c, 1]]],
+            found,
+        )  # fmt: skip
+        if at < found.shape.shape[0]:
+            found.following[c] = found.first[at]
+            found.first[at] = c
+    _pair_enclosed(colliders, outline, bounds, found)
+    pairs = found.counts[OVERLAPS]
+    if pairs > found.shape.shape[0] or pairs > colliders.parted.shape[0]:
+        return pairs
+    for at in range(pairs):
+        s = found.shape[at, 0]
+        t = found.shape[at, 1]
+        both = outline.solid_of[s] >= 0 and outline.solid_of[t] >= 0
+        found.parts[at] = not both or _is_crossed_deep(at, colliders, found)
+        if not found.parts[at] and s != t:
+            found.parts[at] = _is_inside_deep(s, t, outline, bounds, colliders) or _is_inside_deep(
+                t, s, outline, bounds, colliders
+            )
+    # Only now, as nobody may be left out while others are looked at.
+    for at in range(pairs):
+        if found.parts[at]:
+            colliders.parted[colliders.parted_count[0], 0] = found.shape[at, 0]
+            colliders.parted[colliders.parted_count[0], 1] = found.shape[at, 1]
+            colliders.parted_count[0] += 1
+            give_way(at, colliders, outline, bounds, found, colliders.parting)
+    return pairs

@@ -1,0 +1,411 @@
+"""The triangle clamp, last of all in a step: whatever the solver has left, no triangle of an area turns over in it.
+
+A jelly of which no triangle is turned over at the start of a step has none at the end, at any Cs and Cd, in every
+solver. What would turn over moves more as one: its rigid motion is left of it, which keeps momentum and angular
+momentum and has the least kinetic energy of all motions that do. Only what terrain or a pin holds stops instead. Let go
+are jellies that are inverted already (inversion.py), until they have found back, and triangles of a pin that is moved.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from sandbox.physics.collision.filter import TERRAIN_GROUP
+from sandbox.physics.collision.inversion import Inversions, Triangles, find_inverted, new_inversions, triangles_of
+from sandbox.physics.collision.terrain_clamp import STOPS, stopped
+from sandbox.physics.collision.types import Flags
+from sandbox.physics.components import root_of, united
+from sandbox.physics.jit import bundle, contents, inlined_kernel, inner_kernel, kernel
+from sandbox.physics.state import Floats, Slots
+from sandbox.physics.terrain import Terrain
+from sandbox.physics.world import TRIANGLE, World
+
+# A step leaves a triangle at least this share of the area wanted, or of the area that it has, if that is less. Higher
+# stiffens what is merely squeezed, lower lets triangles be pressed flat in fewer steps.
+LEAST_AREA = 0.05
+LEAST_SHARE = 0.5
+# Below this share of the area wanted a triangle keeps what it has, but for rounding: halved in each step under a load,
+# its area would be rounding within a second, and then its sign is luck.
+FLATTEST = 0.01
+FLAT_SHARE = 1.0 - 1e-6
+# Sweeps over all triangles in a round, and rounds with terrain between them; each sweep asks for this much less. What
+# still falls below LAST_SHARE of what was asked for is joined.
+SWEEPS = 20
+ROUNDS = 3
+RELAXED = 0.01
+LAST_SHARE = 0.0625
+# Halvings of a triangle's own motion before there is none.
+HALVINGS = 10
+# What a clamp did: nothing, slow triangles down in themselves, join some so that they move as one.
+AS_IT_WAS, SLOWED, JOINED = range(3)
+# Columns of `sums`: mass [kg], centre [m], velocity [m/s], moment of inertia [kg m^2] and spin [kg m^2/s] of what moves
+# as one; how many particles it has.
+MASS, X, Y, U, V, INERTIA, SPIN, COUNT = range(8)
+
+
+class ClampedTriangles(NamedTuple):
+    """Triangles of areas and the rows that they join, particles of a world or rows of a system.
+
+    corner (t, 3): rows; group (t,): the jelly, -1: no triangle; rest (t, 2) [m^2]: area wanted and of the form. By row
+    (n,): position [m], velocity [m/s], which is clamped, mass [kg], inverse_mass [1/kg], collides: of corners, 0 of all
+    others. By jelly: inverted = let go. Scratch: label = what a row moves as one with, held: what cannot move, sums.
+    """
+
+    corner: Slots
+    group: Slots
+    rest: Floats
+    position: Floats
+    velocity: Floats
+    mass: Floats
+    inverse_mass: Floats
+    collides: Slots
+    inverted: Flags
+    label: Slots
+    held: Flags
+    sums: Floats
+    terrain: Terrain
+
+
+@inlined_kernel
+def _area_now(k: int, triangles: ClampedTriangles) -> float:
+    # The area at the start of the step, turned positive as the one wanted is.
+    x = triangles.position
+    a = triangles.corner[k, 0]
+    b = triangles.corner[k, 1]
+    c = triangles.corner[k, 2]
+    area = 0.5 * ((x[b, 0] - x[a, 0]) * (x[c, 1] - x[a, 1]) - (x[b, 1] - x[a, 1]) * (x[c, 0] - x[a, 0]))
+    return area if triangles.rest[k, 0] > 0.0 else -area
+
+
+@inlined_kernel
+def _area_left(k: int, triangles: ClampedTriangles, h: float) -> float:
+    # The area at x + h v, likewise.
+    x = triangles.position
+    v = triangles.velocity
+    a = triangles.corner[k, 0]
+    b = triangles.corner[k, 1]
+    c = triangles.corner[k, 2]
+    bx = x[b, 0] - x[a, 0] + h * (v[b, 0] - v[a, 0])
+    by = x[b, 1] - x[a, 1] + h * (v[b, 1] - v[a, 1])
+    cx = x[c, 0] - x[a, 0] + h * (v[c, 0] - v[a, 0])
+    cy = x[c, 1] - x[a, 1] + h * (v[c, 1] - v[a, 1])
+    area = 0.5 * (bx * cy - by * cx)
+    return area if triangles.rest[k, 0] > 0.0 else -area
+
+
+@inner_kernel
+def _least_area(k: int, triangles: ClampedTriangles, share: float) -> float:
+    # What the area is to be at the end of the step, or that share of it; 0: it may be anything.
+    now = _area_now(k, triangles)
+    wanted = abs(triangles.rest[k, 0])
+    if not (now > 0.0 and triangles.rest[k, 0] * triangles.rest[k, 1] > 0.0):
+        return 0.0
+    for i in range(3):
+        p = triangles.corner[k, i]
+        if triangles.inverse_mass[p] == 0.0 and (triangles.velocity[p, 0] != 0.0 or triangles.velocity[p, 1] != 0.0):
+            return 0.0
+    if now < FLATTEST * wanted:
+        return FLAT_SHARE * now
+    return share * min(LEAST_AREA * wanted, LEAST_SHARE * now)
+
+
+@inner_kernel
+def _missing(k: int, triangles: ClampedTriangles, share: float, h: float) -> float:
+    # The area that a triangle is to be left, where it will not be; 0: it will, or has been let go.
+    if triangles.group[k] < 0 or triangles.inverted[triangles.group[k]]:
+        return 0.0
+    least = _least_area(k, triangles, share)
+    return least if least > 0.0 and _area_left(k, triangles, h) < least else 0.0
+
+
+@inner_kernel
+def _any_missing(first: int, last: int, triangles: ClampedTriangles, share: float, h: float) -> bool:
+    found = False
+    for k in range(first, last):
+        if _missing(k, triangles, share, h) > 0.0:
+            found = True
+            break
+    return found
+
+
+@inner_kernel
+def _rigid_motion(k: int, triangles: ClampedTriangles) -> tuple[float, float, float, float, float]:
+    # Centre, velocity and turn [rad/s] of a triangle as a whole; with a pin it turns about that, with two not.
+    position, velocity, mass = triangles.position, triangles.velocity, triangles.mass
+    total = x = y = u = v = 0.0
+    pins = 0
+    for i in range(3):
+        p = triangles.corner[k, i]
+        m = mass[p]
+        if triangles.inverse_mass[p] == 0.0:
+            pins += 1
+            if pins > 1:
+                return x, y, 0.0, 0.0, 0.0
+            total = x = y = u = v = 0.0
+        elif pins == 1:
+            continue
+        total += m
+        x += m * position[p, 0]
+        y += m * position[p, 1]
+        u += m * velocity[p, 0]
+        v += m * velocity[p, 1]
+    x /= total
+    y /= total
+    u /= total
+    v /= total
+    inertia = spin = 0.0
+    for i in range(3):
+        p = triangles.corner[k, i]
+        if triangles.inverse_mass[p] > 0.0:
+            dx = position[p, 0] - x
+            dy = position[p, 1] - y
+            inertia += mass[p] * (dx * dx + dy * dy)
+            spin += mass[p] * (dx * (velocity[p, 1] - v) - dy * (velocity[p, 0] - u))
+    return x, y, u, v, spin / inertia if inertia > 0.0 else 0.0
+
+
+@inner_kernel
+def _draw_together(k: int, triangles: ClampedTriangles, least: float, h: float) -> None:
+    # v = rigid + s (v - rigid) at each corner, s halved until the area is large enough; with s = 0 it is, as a rigid
+    # motion makes the area (1 + (turn h)^2) times as large.
+    position, velocity = triangles.position, triangles.velocity
+    x, y, u, v, turn = _rigid_motion(k, triangles)
+    for halving in range(HALVINGS + 1):
+        share = 0.5 if halving < HALVINGS else 0.0
+        for i in range(3):
+            p = triangles.corner[k, i]
+            if triangles.inverse_mass[p] > 0.0:
+                along = u - turn * (position[p, 1] - y)
+                up = v + turn * (position[p, 0] - x)
+                velocity[p, 0] = along + share * (velocity[p, 0] - along)
+                velocity[p, 1] = up + share * (velocity[p, 1] - up)
+        if _area_left(k, triangles, h) >= least:
+            break
+
+
+@inner_kernel
+def _sweep(first: int, last: int, triangles: ClampedTriangles, begun: int, h: float) -> bool:
+    # Sweeps over triangles, of which `begun` were made before, until none is too small; whether any was.
+    found = False
+    for sweep in range(begun, begun + SWEEPS):
+        again = False
+        for k in range(first, last):
+            least = _missing(k, triangles, 1.0 - RELAXED * sweep, h)
+            if least > 0.0:
+                _draw_together(k, triangles, least, h)
+                again = True
+        if not again:
+            break
+        found = True
+    return found
+
+
+@inner_kernel
+def _stop_at_terrain(low: int, high: int, triangles: ClampedTriangles, h: float) -> None:
+    # What would cross terrain now goes as far as it may.
+    position, velocity, terrain = triangles.position, triangles.velocity, triangles.terrain
+    for r in range(low, high):
+        if triangles.inverse_mass[r] > 0.0 and triangles.collides[r] & TERRAIN_GROUP:
+            wx = h * velocity[r, 0]
+            wy = h * velocity[r, 1]
+            stops, x, y = stopped(position[r, 0], position[r, 1], wx, wy, terrain)
+            if stops > STOPS:
+                velocity[r, 0] = 0.0
+                velocity[r, 1] = 0.0
+            elif stops > 0:
+                velocity[r, 0] += (x - wx) / h
+                velocity[r, 1] += (y - wy) / h
+
+
+@inner_kernel
+def _label_alone(first: int, last: int, low: int, high: int, triangles: ClampedTriangles) -> None:
+    # Nothing moves as one with anything else.
+    for r in range(low, high):
+        triangles.label[r] = r
+        triangles.held[r] = triangles.inverse_mass[r] == 0.0
+    for k in range(first, last):
+        for i in range(3):
+            if triangles.group[k] >= 0:
+                p = triangles.corner[k, i]
+                triangles.label[p] = p
+                triangles.held[p] = triangles.inverse_mass[p] == 0.0
+
+
+@inner_kernel
+def _unite(k: int, triangles: ClampedTriangles) -> bool:
+    # Let the corners of a triangle move as one; whether they did not.
+    label, held = triangles.label, triangles.held
+    found = False
+    joined = root_of(label, triangles.corner[k, 0])
+    for i in range(1, 3):
+        other = root_of(label, triangles.corner[k, i])
+        if other != joined:
+            either = held[joined] or held[other]
+            joined = united(label, joined, other)
+            held[joined] = either
+            found = True
+    return found
+
+
+@inner_kernel
+def _join(first: int, last: int, triangles: ClampedTriangles, h: float) -> bool:
+    # Let the corners of what is still too small move as one; whether any is.
+    found = False
+    for k in range(first, last):
+        if _missing(k, triangles, LAST_SHARE, h) > 0.0 and _unite(k, triangles):
+            found = True
+    return found
+
+
+@inner_kernel
+def _move_as_one(low: int, high: int, triangles: ClampedTriangles) -> None:
+    # Bring what is joined to its rigid motion, and what is held to rest.
+    position, velocity, mass, sums = triangles.position, triangles.velocity, triangles.mass, triangles.sums
+    for r in range(low, high):
+        for column in range(sums.shape[1]):
+            sums[r, column] = 0.0
+    for r in range(low, high):
+        g = root_of(triangles.label, r)
+        m = mass[r]
+        sums[g, MASS] += m
+        sums[g, X] += m * position[r, 0]
+        sums[g, Y] += m * position[r, 1]
+        sums[g, U] += m * velocity[r, 0]
+        sums[g, V] += m * velocity[r, 1]
+        sums[g, COUNT] += 1.0
+    for r in range(low, high):
+        g = root_of(triangles.label, r)
+        dx = position[r, 0] - sums[g, X] / sums[g, MASS]
+        dy = position[r, 1] - sums[g, Y] / sums[g, MASS]
+        du = velocity[r, 0] - sums[g, U] / sums[g, MASS]
+        dv = velocity[r, 1] - sums[g, V] / sums[g, MASS]
+        sums[g, INERTIA] += mass[r] * (dx * dx + dy * dy)
+        sums[g, SPIN] += mass[r] * (dx * dv - dy * du)
+    for r in range(low, high):
+        g = root_of(triangles.label, r)
+        if triangles.inverse_mass[r] == 0.0 or sums[g, COUNT] == 1.0:
+            continue
+        turn = sums[g, SPIN] / sums[g, INERTIA] if sums[g, INERTIA] > 0.0 else 0.0
+        if triangles.held[g]:
+            velocity[r, 0] = 0.0
+            velocity[r, 1] = 0.0
+        else:
+            velocity[r, 0] = sums[g, U] / sums[g, MASS] - turn * (position[r, 1] - sums[g, Y] / sums[g, MASS])
+            velocity[r, 1] = sums[g, V] / sums[g, MASS] + turn * (position[r, 0] - sums[g, X] / sums[g, MASS])
+
+
+@inner_kernel
+def _hold_at_terrain(low: int, high: int, triangles: ClampedTriangles, h: float) -> bool:
+    # Let what is joined be held where a particle of it would cross terrain; whether any is. What is alone was stopped
+    # there before.
+    position, velocity, terrain = triangles.position, triangles.velocity, triangles.terrain
+    found = False
+    for r in range(low, high):
+        g = root_of(triangles.label, r)
+        if triangles.held[g] or triangles.sums[g, COUNT] == 1.0:
+            continue
+        if triangles.collides[r] & TERRAIN_GROUP:
+            stops, _, _ = stopped(position[r, 0], position[r, 1], h * velocity[r, 0], h * velocity[r, 1], terrain)
+            if stops > 0:
+                triangles.held[g] = True
+                found = True
+    return found
+
+
+@inner_kernel
+def _hold_areas(
+    first: int, last: int, low: int, high: int, triangles: ClampedTriangles, h: float
+) -> int:  # fmt: skip
+    _sweep(first, last, triangles, 0, h)
+    _stop_at_terrain(low, high, triangles, h)
+    for round_ in range(1, ROUNDS):
+        if not _sweep(first, last, triangles, SWEEPS * round_, h):
+            return SLOWED
+        _stop_at_terrain(low, high, triangles, h)
+    # Each time round more is joined or held, so this ends; what moves as one, or not at all, neither turns a triangle
+    # over nor crosses terrain.
+    _label_alone(first, last, low, high, triangles)
+    done = SLOWED
+    while _join(first, last, triangles, h):
+        done = JOINED
+        _move_as_one(low, high, triangles)
+        while _hold_at_terrain(low, high, triangles, h):
+            _move_as_one(low, high, triangles)
+    return done
+
+
+@inner_kernel
+def clamp_triangles(first: int, last: int, low: int, high: int, triangles: ClampedTriangles, h: float) -> int:
+    """Let no triangle of first..last turn over in the coming h [s]: AS_IT_WAS, SLOWED or JOINED.
+
+    low, high: the rows that triangles join lie there, but for pinned ones. Where anything is changed, none of them
+    crosses terrain.
+    """
+    if not _any_missing(first, last, triangles, 1.0, h):
+        return AS_IT_WAS
+    return _hold_areas(first, last, low, high, triangles, h)
+
+
+@inner_kernel
+def _let_go(triangles: ClampedTriangles, of_world: Triangles, found: Inversions, marked: Flags, matches: bool) -> None:
+    # Which jellies are inverted; where nothing matches their shape, what is merely wound twice stays as it is.
+    find_inverted(triangles.position, triangles.rest, of_world, found, marked)
+    if not matches:
+        for g in range(found.is_inverted.shape[0]):
+            found.is_inverted[g] = False
+        for t in range(of_world.constraint.shape[0]):
+            k = of_world.constraint[t]
+            if triangles.rest[k, 0] * triangles.rest[k, 1] > 0.0 and not _area_now(k, triangles) > 0.0:
+                found.is_inverted[triangles.group[k]] = True
+
+
+@kernel
+def _clamp_world(items: Any, matches: bool, h: float) -> None:
+    triangles, of_world, found, marked = contents(items)
+    count = triangles.group.shape[0]
+    for g in range(triangles.inverted.shape[0]):
+        triangles.inverted[g] = False
+    # A solver that has done this itself may have gone as far as to the last share.
+    if _any_missing(0, count, triangles, LAST_SHARE if matches else 1.0, h):
+        _let_go(triangles, of_world, found, marked, matches)
+        clamp_triangles(0, count, 0, triangles.position.shape[0], triangles, h)
+
+
+def has_triangles(world: World) -> bool:
+    """Whether a world has triangles of areas, which are not to turn over."""
+    return world.derived(_make_items) is not None
+
+
+def clamp_world(world: World, matches: bool, h: float) -> None:
+    """Let the velocities of a world that has triangles turn none over in the coming h [s]; terrain's clamp was before.
+
+    matches: whether the solver draws inverted jellies to their form, and has held triangles already.
+    """
+    _clamp_world(world.derived(_make_items), matches, h)
+
+
+def new_triangles(
+    corner: Slots, group: Slots, rest: Floats, motion: tuple[Floats, Floats, Floats, Floats], collides: Slots,
+    inverted: Flags, terrain: Terrain,
+) -> ClampedTriangles:  # fmt: skip
+    """Triangles with their scratch. motion: position, velocity, mass and inverse mass by row; collides: of all rows."""
+    count = len(collides)
+    used = np.isin(np.arange(count), corner[group >= 0])
+    return ClampedTriangles(
+        corner, group, rest, *motion, np.where(used, collides, 0), inverted, np.zeros(count, np.int64),
+        np.zeros(count, np.bool_), np.zeros((count, COUNT + 1)), terrain,
+    )  # fmt: skip
+
+
+def _make_items(world: World) -> Any:
+    triangles = triangles_of(world)
+    if not len(triangles.constraint):
+        return None
+    corner = np.zeros((world.constraint_count, TRIANGLE), dtype=np.int64)
+    group = np.full(world.constraint_count, -1, dtype=np.int64)
+    corner[triangles.constraint], group[triangles.constraint] = triangles.corners, triangles.jellies.group
+    motion, found = (world.position, world.velocity, world.mass, world.inverse_mass), new_inversions(triangles)
+    clamped = new_triangles(
+        corner, group, world.constraint_rest, motion, world.collides, found.is_inverted, world.terrain
+    )  # fmt: skip
+    return bundle((clamped, triangles, found, np.zeros(world.particle_count, np.bool_)))

@@ -1,0 +1,228 @@
+"""Hands (mouse joints): each two rows that draw a point of a body to the hand's cursor, with a force that is bounded.
+
+    F = -K (u' - w),  |F| <= a M h        w = v_c + n min(x / APPROACH, sqrt(a x), FASTEST_HAND),  |w| <= FASTEST_HAND
+
+u' = velocity of the point after the step; x, n = distance and direction from there to the cursor, which moves at v_c;
+a = strength of the hand, M = mass of what can move of the body, K = M h / YIELDING: the article's spring of length 0
+(equation.py), of Cs 0.37 and Cd 0.67 at 60 Hz. It comes in no faster than half of its force can brake it, so that it
+does not overshoot.
+
+The point is a particle; or, of a body that would tear there, the place of that particle in a frame that goes along with
+many (an interpolation constraint): their mean, turned to fit as shape matching does it (Mueller and others 2005). Each
+bears a share s of the force by its mass and by how near to the point it is, and of the torque that makes it up:
+
+    u = sum s v + omega x r,    omega = sum s d x v / I,    I = sum s |d|^2,    F_i = s_i (F + (r x F) perp(d_i) / I)
+
+d = place about the mean, r = the point's, perp(d) = (-d_y, d_x).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from sandbox.physics.components import label_bodies
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.joints.rows import JointRows, shortened
+from sandbox.physics.world import GRAB_COUNT, GRAB_MATERIAL, Floats, Slots, World
+
+# No hand wants what it holds to be faster than this [m/s]. Higher lets a mouse shoot one body through others.
+FASTEST_HAND = 30.0
+# Near the cursor a hand wants what it holds to be there in this time [s]; more lags behind.
+APPROACH = 0.03
+# In about this time [s] a hand brings a body that is free to the speed that it wants. With a quarter of APPROACH
+# nothing swings past the cursor by more than a few hundredths of its way; less is harder on what tears.
+YIELDING = 1.0 / 120.0
+# Below this moment of inertia for the mass of one [m^2] what is gripped lies in a point and cannot turn.
+LEAST_SPREAD = 1e-150
+
+
+class Grips(NamedTuple):
+    """The hands that hold something that can move, g of them, and the particles that they grip, k in all.
+
+    hand (g,): numbers; cursor, spring (g,): slots; mass (g,): M [kg]; arm [m] (g, 2): the point that is held, about the
+    mean, in the form that the body was created in. Of hand i: particle[start[i]:start[i + 1]], with share s of each
+    (k,), and its place about the mean in that form, [m] (k, 2).
+    """
+
+    hand: Slots
+    cursor: Slots
+    spring: Slots
+    mass: Floats
+    arm: Floats
+    start: Slots
+    particle: Slots
+    share: Floats
+    form: Floats
+
+
+def bodies_of(world: World) -> Slots:
+    """A label for each particle (n,): what springs and constraints join by free particles has the same."""
+    return world.derived(_label_bodies)
+
+
+def _label_bodies(world: World) -> Slots:
+    free = world.inverse_mass > 0.0
+    joins = world.spring_active & (world.material != GRAB_MATERIAL)
+    joins &= free[world.particle_a] & free[world.particle_b]
+    owner = np.repeat(np.arange(world.constraint_count), world.constraint_corners)
+    corner = np.flatnonzero(world.constraint_active[owner] & free[world.corner_particle])
+    goes_on = owner[corner[:-1]] == owner[corner[1:]]
+    link_a, link_b = (
+        np.concatenate([of_springs[joins], world.corner_particle[corners[goes_on]]]).astype(np.int64)
+        for of_springs, corners in ((world.particle_a, corner[:-1]), (world.particle_b, corner[1:]))
+    )
+    label = np.arange(world.particle_count)
+    label_bodies(link_a, link_b, label)
+    return label
+
+
+def grips_of(world: World) -> Grips:
+    """The grips of a world's hands, made anew where topology has changed."""
+    return world.derived(_make_grips)
+
+
+def _make_grips(world: World) -> Grips:
+    hands, masses, arms, particles, shares, forms = [], [], [], [], [], []
+    for hand in range(GRAB_COUNT):
+        if not world.is_held(hand):
+            continue
+        held = world.particle_b[world.grab_spring + hand]
+        label = bodies_of(world)
+        # Of a body that is torn the hand keeps the part that it has its point in.
+        body = np.flatnonzero((label == label[held]) & (world.inverse_mass > 0.0))
+        chosen, weight = _gripped(world, body, int(held), float(world.hand_radius[hand]))
+        if len(chosen):
+            # Sums that do not depend on the order in which they are made.
+            share = weight / math.fsum(weight.tolist())
+            middle = [math.fsum((share * world.origin[chosen, axis]).tolist()) for axis in range(2)]
+            hands.append(hand)
+            masses.append(math.fsum(world.mass[body].tolist()))
+            arms.append(world.origin[held] - middle)
+            particles.append(chosen)
+            shares.append(share)
+            forms.append(world.origin[chosen] - middle)
+    number = np.array(hands, dtype=np.int64)
+    return Grips(
+        number,
+        world.grab_particle + number,
+        world.grab_spring + number,
+        np.array(masses),
+        np.reshape(np.array(arms), (-1, 2)),
+        np.append(0, np.cumsum([len(chosen) for chosen in particles])).astype(np.int64),
+        np.concatenate([number[:0], *particles]),
+        np.concatenate([np.zeros(0), *shares]),
+        np.concatenate([np.zeros((0, 2)), *forms]),
+    )
+
+
+def _gripped(world: World, body: Slots, held: int, radius: float) -> tuple[Slots, Floats]:
+    """The free particles of a body that a hand grips which holds one of them, and the weight of each."""
+    if not radius > 0.0:
+        chosen = body[body == held]
+        return chosen, world.mass[chosen]
+    # What else is joined to the body, a rope or a weight, is not gripped with it.
+    chosen = body[world.owner[body] == world.owner[held]]
+    away = world.origin[chosen] - world.origin[held]
+    near = 1.0 - np.sqrt(away[:, 0] * away[:, 0] + away[:, 1] * away[:, 1]) / radius
+    return chosen[near > 0.0], (near * world.mass[chosen])[near > 0.0]
+
+
+class HandRows(NamedTuple):
+    """The rows of hands as kernels fill them in: row (g,) = the first of each one's two.
+
+    point [m] (g, 2): where each holds its body, in the last substep. Particles (n,) and hands: see StateArrays.
+    """
+
+    row: Slots
+    grips: Grips
+    point: Floats
+    position: Floats
+    velocity: Floats
+    strength: Floats
+    force: Floats
+
+
+@inner_kernel
+def _load_gradients(rows: JointRows, hands: HandRows, i: int) -> None:
+    # The two rows of a hand, u along x and along y; where its point is.
+    grips, position = hands.grips, hands.position
+    first, last = grips.start[i], grips.start[i + 1]
+    x = 0.0
+    y = 0.0
+    for k in range(first, last):
+        p = grips.particle[k]
+        x += grips.share[k] * position[p, 0]
+        y += grips.share[k] * position[p, 1]
+    along = 0.0
+    across = 0.0
+    spread = 0.0
+    for k in range(first, last):
+        dx = position[grips.particle[k], 0] - x
+        dy = position[grips.particle[k], 1] - y
+        along += grips.share[k] * (grips.form[k, 0] * dx + grips.form[k, 1] * dy)
+        across += grips.share[k] * (grips.form[k, 0] * dy - grips.form[k, 1] * dx)
+        spread += grips.share[k] * (dx * dx + dy * dy)
+    size = math.sqrt(along * along + across * across)
+    cosine = along / size if size > 0.0 else 1.0
+    sine = across / size if size > 0.0 else 0.0
+    rx = cosine * grips.arm[i, 0] - sine * grips.arm[i, 1]
+    ry = sine * grips.arm[i, 0] + cosine * grips.arm[i, 1]
+    hands.point[i, 0] = x + rx
+    hands.point[i, 1] = y + ry
+    along_x, along_y = rows.first[hands.row[i]], rows.first[hands.row[i] + 1]
+    turns = 1.0 / spread if spread > LEAST_SPREAD else 0.0
+    for k in range(first, last):
+        s = grips.share[k]
+        dx = (position[grips.particle[k], 0] - x) * turns
+        dy = (position[grips.particle[k], 1] - y) * turns
+        e = k - first
+        rows.gradient[along_x + e, 0] = s * (1.0 + ry * dy)
+        rows.gradient[along_x + e, 1] = -s * ry * dx
+        rows.gradient[along_y + e, 0] = -s * rx * dy
+        rows.gradient[along_y + e, 1] = s * (1.0 + rx * dx)
+
+
+@inner_kernel
+def _wanted(hands: HandRows, i: int, h: float) -> tuple[float, float]:
+    # w
+    cursor = hands.grips.cursor[i]
+    wx = hands.velocity[cursor, 0]
+    wy = hands.velocity[cursor, 1]
+    dx = hands.position[cursor, 0] - hands.point[i, 0]
+    dy = hands.position[cursor, 1] - hands.point[i, 1]
+    away = math.sqrt(dx * dx + dy * dy)
+    if away > 0.0:
+        speed = min(away / max(APPROACH, h), math.sqrt(hands.strength[hands.grips.hand[i]] * away))
+        share = min(speed, FASTEST_HAND) / away
+        wx += share * dx
+        wy += share * dy
+    share = shortened(wx, wy, FASTEST_HAND)
+    return wx * share, wy * share
+
+
+@inner_kernel
+def load_hands(rows: JointRows, hands: HandRows, h: float) -> None:
+    """Fill in the rows of hands for a substep of h [s]."""
+    grips = hands.grips
+    for i in range(grips.hand.shape[0]):
+        _load_gradients(rows, hands, i)
+        hand, k = grips.hand[i], hands.row[i]
+        rows.target[k], rows.target[k + 1] = _wanted(hands, i, h)
+        limit = hands.strength[hand] * grips.mass[i] * h
+        jx = hands.force[hand, 0] * h
+        jy = hands.force[hand, 1] * h
+        share = shortened(jx, jy, limit)
+        rows.impulse[k] = jx * share
+        rows.impulse[k + 1] = jy * share
+        for row in range(k, k + 2):
+            rows.softness[row] = YIELDING / (grips.mass[i] * h)
+            rows.limit[row] = limit
+
+
+@inner_kernel
+def keep_hands(rows: JointRows, hands: HandRows, h: float) -> None:
+    """Keep the forces of hands for the next substep."""
+    for i in range(hands.grips.hand.shape[0]):
+        for axis in range(2):
+            hands.force[hands.grips.hand[i], axis] = rows.impulse[hands.row[i] + axis] / h

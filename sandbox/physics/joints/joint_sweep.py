@@ -1,0 +1,314 @@
+"""Joints in the sweeps: their impulses are found together with those of contacts, each clamped.
+
+A joint takes in many particles of a body, so it is swept through what each of its bodies answers to a unit of it,
+Z = A^-1 g, kept by row: an impulse at one particle changes u by Z there, that of another joint by g . Z.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from sandbox.physics.equation import implicit_update
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.joints.rows import (
+    FIRST_OF_TWO,
+    SECOND_OF_TWO,
+    JointRows,
+    clamped,
+    new_rows,
+    row_velocity,
+    shortened,
+)
+from sandbox.physics.state import Floats, Slots
+
+
+class Joints(NamedTuple):
+    """The rows of joints, and how bodies answer to them.
+
+    Bodies of row k: body[body_first[k]:body_first[k + 1]]; the answers (velocities by a unit impulse) of the particles
+    of body b begin at body_answer[b], row by row of the matrix. Answers of row k: answer_first[k]..answer_first[k + 1],
+    those of its particles that are in no body last, in the order of its entries. answer_particle (a,), answer (a, 2).
+    The same by particle: at[at_first[p]:at_first[p + 1]] are answers, at_row theirs.
+
+    Scratch of a step: response (k, k) = g . Z; velocity (k,) = u; before and direction (k,) as those of contacts; push
+    (n, 2) [N s]: what the joints together give each particle.
+    """
+
+    rows: JointRows
+    body_first: Slots
+    body: Slots
+    body_answer: Slots
+    answer_first: Slots
+    answer_particle: Slots
+    answer: Floats
+    at_first: Slots
+    at: Slots
+    at_row: Slots
+    response: Floats
+    velocity: Floats
+    before: Floats
+    direction: Floats
+    push: Floats
+
+
+_SLOTS = ("body_first", "body", "body_answer", "answer_first", "answer_particle", "at_first", "at", "at_row")
+
+
+def new_joints(rows: JointRows, row_of: Slots, row_start: Slots, particle_count: int) -> Joints:
+    """Room for joints; row_of (n,): the row of each particle in the matrix, -1: in none; row_start: of each body."""
+    count = len(rows.limit)
+    bodies: list[Slots] = []
+    body_answers: list[Slots] = []
+    answers: list[Slots] = []
+    particle_of = np.zeros(row_start[-1], dtype=np.int64)
+    inside = np.flatnonzero(row_of >= 0)
+    particle_of[row_of[inside]] = inside
+    begun = 0
+    for k in range(count):
+        taken = rows.particle[rows.first[k] : rows.first[k + 1]]
+        places = row_of[taken]
+        touched = np.unique(np.searchsorted(row_start, places[places >= 0], side="right") - 1)
+        spans = [particle_of[row_start[body] : row_start[body + 1]] for body in touched]
+        spans.append(taken[places < 0])
+        bodies.append(touched)
+        body_answers.append(begun + np.cumsum([0, *map(len, spans[:-1])], dtype=np.int64)[:-1])
+        answers.append(np.concatenate(spans))
+        begun += len(answers[-1])
+    answer_particle = np.concatenate([*answers, np.zeros(0, dtype=np.int64)])
+    at = np.argsort(answer_particle, kind="stable")
+    return joints_by_mass(rows)._replace(
+        body_first=np.cumsum([0, *map(len, bodies)], dtype=np.int64),
+        body=np.concatenate([*bodies, np.zeros(0, dtype=np.int64)]),
+        body_answer=np.concatenate([*body_answers, np.zeros(0, dtype=np.int64)]),
+        answer_first=np.cumsum([0, *map(len, answers)], dtype=np.int64),
+        answer_particle=answer_particle,
+        answer=np.zeros((begun, 2)),
+        at_first=np.searchsorted(answer_particle[at], np.arange(particle_count + 1)),
+        at=at,
+        at_row=np.repeat(np.arange(count), list(map(len, answers)))[at],
+        push=np.zeros((particle_count if count else 0, 2)),
+    )
+
+
+def joints_by_mass(rows: JointRows) -> Joints:
+    """Joints whose particles answer by their own mass alone."""
+    count = len(rows.limit)
+    slots: dict[str, Any] = {name: np.zeros(0, dtype=np.int64) for name in _SLOTS}
+    numbers: dict[str, Any] = {name: np.zeros(count) for name in ("velocity", "before", "direction")}
+    response = np.zeros((count, count))
+    return Joints(rows, **slots, answer=np.zeros((0, 2)), response=response, **numbers, push=np.zeros((0, 2)))
+
+
+def no_joints() -> Joints:
+    """Of a world without joints, or for a solver that takes them in elsewhere."""
+    return joints_by_mass(new_rows([], []))
+
+
+@inner_kernel
+def push_at(joints: Joints, p: int, jx: float, jy: float) -> None:
+    """What an impulse at a particle does to the velocities of rows."""
+    if joints.at.shape[0] == 0:
+        return
+    for i in range(joints.at_first[p], joints.at_first[p + 1]):
+        a = joints.at[i]
+        joints.velocity[joints.at_row[i]] += joints.answer[a, 0] * jx + joints.answer[a, 1] * jy
+
+
+@inner_kernel
+def _push(joints: Joints, k: int, impulse: float, change: Floats) -> None:
+    # What a row's impulse does to particles and to the velocities of all rows.
+    for a in range(joints.answer_first[k], joints.answer_first[k + 1]):
+        p = joints.answer_particle[a]
+        change[p, 0] += joints.answer[a, 0] * impulse
+        change[p, 1] += joints.answer[a, 1] * impulse
+    for j in range(joints.velocity.shape[0]):
+        joints.velocity[j] += joints.response[j, k] * impulse
+
+
+@inner_kernel
+def couple_joints(joints: Joints) -> None:
+    """response = g . Z, from the answers."""
+    rows = joints.rows
+    for k in range(rows.limit.shape[0]):
+        for j in range(rows.limit.shape[0]):
+            joints.response[k, j] = 0.0
+        if not rows.limit[k] > 0.0:
+            continue
+        for e in range(rows.first[k], rows.first[k + 1]):
+            p = rows.particle[e]
+            for i in range(joints.at_first[p], joints.at_first[p + 1]):
+                a = joints.at[i]
+                joints.response[k, joints.at_row[i]] += (
+                    rows.gradient[e, 0] * joints.answer[a, 0] + rows.gradient[e, 1] * joints.answer[a, 1]
+                )
+
+
+@inner_kernel
+def couple_masses(joints: Joints, inverse_mass: Floats) -> None:
+    """The same where every particle answers by its own mass: of each row, and of two with each other."""
+    rows = joints.rows
+    for k in range(rows.limit.shape[0]):
+        other = k + 1 if rows.pair[k] == FIRST_OF_TWO else k
+        own = 0.0
+        both = 0.0
+        for e in range(rows.first[k], rows.first[k + 1]):
+            w = inverse_mass[rows.particle[e]]
+            # Two rows that are clamped together take in the same particles in the same order.
+            f = rows.first[other] + e - rows.first[k]
+            own += w * (rows.gradient[e, 0] * rows.gradient[e, 0] + rows.gradient[e, 1] * rows.gradient[e, 1])
+            both += w * (rows.gradient[e, 0] * rows.gradient[f, 0] + rows.gradient[e, 1] * rows.gradient[f, 1])
+        joints.response[k, k] = own
+        if other != k:
+            joints.response[k, other] = both
+            joints.response[other, k] = both
+
+
+@inner_kernel
+def _of_two(joints: Joints, k: int, u: float, v: float) -> tuple[float, float]:
+    # Impulses of two rows that are clamped together, from their velocities: (W + 1/K) dP = -(u - target + P/K).
+    rows = joints.rows
+    first, second = rows.impulse[k], rows.impulse[k + 1]
+    a = joints.response[k, k] + rows.softness[k]
+    b = joints.response[k, k + 1]
+    c = joints.response[k + 1, k]
+    d = joints.response[k + 1, k + 1] + rows.softness[k + 1]
+    determinant = a * d - b * c
+    if not determinant > 0.0:
+        return first, second
+    r = -(u - rows.target[k] + rows.softness[k] * first)
+    s = -(v - rows.target[k + 1] + rows.softness[k + 1] * second)
+    first += (d * r - b * s) / determinant
+    second += (a * s - c * r) / determinant
+    share = shortened(first, second, rows.limit[k])
+    return first * share, second * share
+
+
+@inner_kernel
+def _alone(joints: Joints, k: int, u: float) -> float:
+    rows = joints.rows
+    new = implicit_update(rows.impulse[k], u - rows.target[k], joints.response[k, k], rows.softness[k])
+    return clamped(new, rows.limit[k])
+
+
+@inner_kernel
+def start_joints(joints: Joints, change: Floats) -> None:
+    """Apply the impulses that joints bring along."""
+    rows = joints.rows
+    for k in range(rows.limit.shape[0]):
+        joints.direction[k] = 0.0
+        if rows.impulse[k] != 0.0:
+            _push(joints, k, rows.impulse[k], change)
+
+
+@inner_kernel
+def sweep_joints(joints: Joints, change: Floats) -> float:
+    """One sweep over all joints, in order; the largest change of a row's velocity [m/s, where g has no unit]."""
+    rows = joints.rows
+    largest = 0.0
+    for k in range(rows.limit.shape[0]):
+        joints.before[k] = rows.impulse[k]
+    for k in range(rows.limit.shape[0]):
+        if rows.pair[k] == SECOND_OF_TWO or not (rows.limit[k] > 0.0 and joints.response[k, k] > 0.0):
+            continue
+        if rows.pair[k] == FIRST_OF_TWO:
+            first, second = _of_two(joints, k, joints.velocity[k], joints.velocity[k + 1])
+            largest = max(largest, _set(joints, k + 1, second, change))
+        else:
+            first = _alone(joints, k, joints.velocity[k])
+        largest = max(largest, _set(joints, k, first, change))
+    return largest
+
+
+@inner_kernel
+def _set(joints: Joints, k: int, impulse: float, change: Floats) -> float:
+    # Give a row another impulse; by how much its own velocity changes.
+    more = impulse - joints.rows.impulse[k]
+    if more == 0.0:
+        return 0.0
+    joints.rows.impulse[k] = impulse
+    _push(joints, k, more, change)
+    return abs(more) * joints.response[k, k]
+
+
+@inner_kernel
+def swept_by(joints: Joints) -> float:
+    """The square of what the last sweep has changed, in the metric of the responses."""
+    squared = 0.0
+    for k in range(joints.rows.limit.shape[0]):
+        more = joints.rows.impulse[k] - joints.before[k]
+        squared += joints.response[k, k] * more * more
+    return squared
+
+
+@inner_kernel
+def go_on_with_joints(joints: Joints, change: Floats, ratio: float) -> None:
+    """P += ratio p, clamped;  p = ratio p + what the sweep has changed: as contacts do."""
+    rows = joints.rows
+    for k in range(rows.limit.shape[0]):
+        more = ratio * joints.direction[k]
+        joints.direction[k] = more + (rows.impulse[k] - joints.before[k])
+        joints.before[k] = rows.impulse[k] + more
+    for k in range(rows.limit.shape[0]):
+        if rows.pair[k] == SECOND_OF_TWO:
+            continue
+        if rows.pair[k] == FIRST_OF_TWO:
+            share = shortened(joints.before[k], joints.before[k + 1], rows.limit[k])
+            _set(joints, k, joints.before[k] * share, change)
+            _set(joints, k + 1, joints.before[k + 1] * share, change)
+        else:
+            _set(joints, k, clamped(joints.before[k], rows.limit[k]), change)
+
+
+@inner_kernel
+def gather_push(joints: Joints) -> None:
+    """What the joints together give each particle, into `push`."""
+    rows = joints.rows
+    for p in range(joints.push.shape[0]):
+        joints.push[p, 0] = 0.0
+        joints.push[p, 1] = 0.0
+    for k in range(rows.limit.shape[0]):
+        for e in range(rows.first[k], rows.first[k + 1]):
+            p = rows.particle[e]
+            joints.push[p, 0] += rows.gradient[e, 0] * rows.impulse[k]
+            joints.push[p, 1] += rows.gradient[e, 1] * rows.impulse[k]
+
+
+@inner_kernel
+def _give(rows: JointRows, k: int, impulse: float, change: Floats, inverse_mass: Floats) -> None:
+    for e in range(rows.first[k], rows.first[k + 1]):
+        p = rows.particle[e]
+        change[p, 0] += rows.gradient[e, 0] * impulse * inverse_mass[p]
+        change[p, 1] += rows.gradient[e, 1] * impulse * inverse_mass[p]
+
+
+@inner_kernel
+def start_masses(joints: Joints, change: Floats, inverse_mass: Floats) -> None:
+    """Apply the impulses that joints bring along, to particles that answer by their own mass."""
+    couple_masses(joints, inverse_mass)
+    for k in range(joints.rows.limit.shape[0]):
+        if joints.rows.impulse[k] != 0.0:
+            _give(joints.rows, k, joints.rows.impulse[k], change, inverse_mass)
+
+
+@inner_kernel
+def iterate_joint(joints: Joints, k: int, velocity: Floats, change: Floats, inverse_mass: Floats) -> None:
+    """Bring a joint, or two that are clamped together, to its target; particles answer by their own mass."""
+    rows = joints.rows
+    if rows.pair[k] == SECOND_OF_TWO or not (rows.limit[k] > 0.0 and joints.response[k, k] > 0.0):
+        return
+    u = row_velocity(rows, k, velocity, change)
+    if rows.pair[k] == FIRST_OF_TWO:
+        first, second = _of_two(joints, k, u, row_velocity(rows, k + 1, velocity, change))
+        _give(rows, k + 1, second - rows.impulse[k + 1], change, inverse_mass)
+        rows.impulse[k + 1] = second
+    else:
+        first = _alone(joints, k, u)
+    _give(rows, k, first - rows.impulse[k], change, inverse_mass)
+    rows.impulse[k] = first
+
+
+@inner_kernel
+def iterate_joints(joints: Joints, velocity: Floats, change: Floats, inverse_mass: Floats) -> None:
+    """One iteration over all joints of particles that answer by their own mass; clamped is the sum of its impulses."""
+    for k in range(joints.rows.limit.shape[0]):
+        iterate_joint(joints, k, velocity, change, inverse_mass)

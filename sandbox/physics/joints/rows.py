@@ -1,0 +1,85 @@
+"""Joint rows: velocities that an impulse of bounded size brings to a target, motors and what holds by hand.
+
+A row is u = sum g . v over some particles, and its impulse P gives each of them g P. It obeys the equation in its
+implicit form, K made as large as it likes, and the impulse is clamped:
+
+    P = -K (u' - target),   1/K = softness,   |P| <= limit
+
+so what a joint can carry is its limit alone, and it gives no more than it needs. Solvers find P with all else that acts
+on the particles: the direct one among its contacts, the iterative one among its springs.
+
+Another kind of joint makes its rows in `joint_set.py` and fills in their numbers at the start of every substep.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.state import Floats, Slots
+
+# Of a row: alone; the first of two whose impulses together are clamped by their length; the second of them.
+ALONE, FIRST_OF_TWO, SECOND_OF_TWO = 0, 1, -1
+
+
+class JointRows(NamedTuple):
+    """The rows of a world's joints; entries of row k: particle and gradient [first[k]:first[k + 1]].
+
+    What topology decides: first (k+1,), particle (e,): free ones, each at most once in a row; pair (k,): ALONE or one
+    of two that follow each other. Of a substep: gradient (e, 2); target; softness = 1/K; limit of the impulse, 0: the
+    row is off; two that are clamped together have the same. impulse: that of the last substep, then of this one.
+    """
+
+    first: Slots
+    particle: Slots
+    pair: Slots
+    gradient: Floats
+    target: Floats
+    softness: Floats
+    limit: Floats
+    impulse: Floats
+
+
+def new_rows(particles: list[Slots], pair: list[int]) -> JointRows:
+    """Rows over lists of particles, whose numbers are to be filled in."""
+    first = np.cumsum([0, *map(len, particles)], dtype=np.int64)
+    every = np.concatenate([*particles, np.zeros(0, dtype=np.int64)])
+    numbers = np.zeros((4, len(pair)))
+    return JointRows(first, every, np.array(pair, dtype=np.int64), np.zeros((len(every), 2)), *numbers)
+
+
+@inner_kernel
+def any_on(rows: JointRows) -> bool:
+    """Whether any row is on."""
+    found = False
+    for k in range(rows.limit.shape[0]):
+        found = found or rows.limit[k] > 0.0
+    return found
+
+
+@inner_kernel
+def row_velocity(rows: JointRows, k: int, velocity: Floats, change: Floats) -> float:
+    """u = sum g . v of a row, from velocity + change (n, 2)."""
+    u = 0.0
+    for e in range(rows.first[k], rows.first[k + 1]):
+        p = rows.particle[e]
+        u += rows.gradient[e, 0] * (velocity[p, 0] + change[p, 0])
+        u += rows.gradient[e, 1] * (velocity[p, 1] + change[p, 1])
+    return u
+
+
+@inner_kernel
+def clamped(impulse: float, limit: float) -> float:
+    """An impulse of at most this size, either way."""
+    return min(max(impulse, -limit), limit)
+
+
+@inner_kernel
+def shortened(first: float, second: float, limit: float) -> float:
+    """By what two impulses at right angles are multiplied so that they are no longer than the limit."""
+    # Compared as squares: most are short, and no root is taken of them.
+    square = first * first + second * second
+    if square > limit * limit:
+        return limit / math.sqrt(square)
+    return 1.0

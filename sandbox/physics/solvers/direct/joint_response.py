@@ -1,0 +1,135 @@
+"""Joints of bodies that are solved directly: how bodies answer to them, what they do to a body's spin and energy."""
+
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.joints.joint_sweep import Joints, couple_joints
+from sandbox.physics.solvers.contact.islands import Touch
+from sandbox.physics.solvers.direct.factor import respond
+from sandbox.physics.solvers.direct.system import Rows, Span, System
+from sandbox.physics.world import Floats, Slots
+
+
+@inner_kernel
+def open_joints(touch: Touch, inverse_mass: Floats) -> None:
+    """The answers of particles that are in no body, which are their own mass's."""
+    joints, rows = touch.delassus.joints, touch.delassus.joints.rows
+    for k in range(rows.limit.shape[0]):
+        a = joints.answer_first[k + 1]
+        for e in range(rows.first[k + 1] - 1, rows.first[k] - 1, -1):
+            p = rows.particle[e]
+            if touch.islands.row[p] < 0:
+                a -= 1
+                joints.answer[a, 0] = rows.gradient[e, 0] * inverse_mass[p]
+                joints.answer[a, 1] = rows.gradient[e, 1] * inverse_mass[p]
+
+
+@inner_kernel
+def load_answers(body: int, span: Span, system: System, joints: Joints, row: Slots, vector: Floats) -> None:
+    """Z = A^-1 g of a body that has been factored, for every joint that acts on it; row (n,): of each particle."""
+    rows = joints.rows
+    for k in range(rows.limit.shape[0]):
+        if not rows.limit[k] > 0.0:
+            continue
+        for b in range(joints.body_first[k], joints.body_first[k + 1]):
+            if joints.body[b] != body:
+                continue
+            for r in range(span.first_row, span.last_row):
+                vector[r, 0] = 0.0
+                vector[r, 1] = 0.0
+            for e in range(rows.first[k], rows.first[k + 1]):
+                r = row[rows.particle[e]]
+                if span.first_row <= r < span.last_row:
+                    vector[r, 0] = rows.gradient[e, 0]
+                    vector[r, 1] = rows.gradient[e, 1]
+            respond(span, system, vector)
+            for r in range(span.first_row, span.last_row):
+                a = joints.body_answer[b] + r - span.first_row
+                joints.answer[a, 0] = vector[r, 0]
+                joints.answer[a, 1] = vector[r, 1]
+
+
+@inner_kernel
+def prepare_joints(touch: Touch) -> None:
+    """Responses of joints, and their velocities without them and without contacts."""
+    islands, joints, rows = touch.islands, touch.delassus.joints, touch.delassus.joints.rows
+    couple_joints(joints)
+    for k in range(rows.limit.shape[0]):
+        u = 0.0
+        for e in range(rows.first[k], rows.first[k + 1]):
+            p = rows.particle[e]
+            r = islands.row[p]
+            if r >= 0:
+                u += rows.gradient[e, 0] * islands.unpushed[r, 0] + rows.gradient[e, 1] * islands.unpushed[r, 1]
+            else:
+                u += rows.gradient[e, 0] * islands.given[p, 0] + rows.gradient[e, 1] * islands.given[p, 1]
+        joints.velocity[k] = u
+
+
+@inner_kernel
+def island_of_joint(k: int, touch: Touch) -> int:
+    """The island that a joint acts in."""
+    islands, joints = touch.islands, touch.delassus.joints
+    if joints.body_first[k] < joints.body_first[k + 1]:
+        return islands.island[islands.number[joints.body[joints.body_first[k]]]]
+    return islands.island[islands.member[joints.rows.particle[joints.rows.first[k]]]]
+
+
+@inner_kernel
+def fails_driven(touch: Touch) -> bool:
+    """Whether an island fails the energy test in which a joint acts."""
+    limit = touch.delassus.joints.rows.limit
+    found = False
+    for k in range(limit.shape[0]):
+        found = found or (limit[k] > 0.0 and touch.islands.fails[island_of_joint(k, touch)])
+    return found
+
+
+@inner_kernel
+def release_joints(touch: Touch) -> None:
+    """Let joints of islands that fail begin with no impulse."""
+    rows = touch.delassus.joints.rows
+    for k in range(rows.limit.shape[0]):
+        if rows.limit[k] > 0.0 and touch.islands.fails[island_of_joint(k, touch)]:
+            rows.impulse[k] = 0.0
+
+
+@inner_kernel
+def work_of_joints(span: Span, rows: Rows, push: Floats) -> float:
+    """The work of joints on one body [J]: that of their impulses at the mean of the velocities before and after."""
+    # At v' alone, what just begins to move would fail the test by a hair and stick.
+    total = 0.0
+    for r in range(span.first_row, span.last_row):
+        p = rows.particle[r]
+        total += push[p, 0] * (rows.start[r, 0] + rows.trial[r, 0])
+        total += push[p, 1] * (rows.start[r, 1] + rows.trial[r, 1])
+    return 0.5 * total
+
+
+@inner_kernel
+def keep_spin(span: Span, rows: Rows, push: Floats) -> None:
+    """Give `trial` of a free body the angular momentum that forces and joints have left it, as a turn of the whole.
+
+    Directions taken ahead turn a body, and motors' impulses are large: they would win or lose a hundredth of its spin.
+    """
+    # v' += turn x r,  turn = (sum r x (m v* + push) - sum r x m v') / I, about the centre of mass
+    mass = x = y = 0.0
+    for r in range(span.first_row, span.last_row):
+        mass += rows.mass[r]
+        x += rows.mass[r] * rows.position[r, 0]
+        y += rows.mass[r] * rows.position[r, 1]
+    x /= mass
+    y /= mass
+    inertia = missing = 0.0
+    for r in range(span.first_row, span.last_row):
+        p = rows.particle[r]
+        m = rows.mass[r]
+        dx = rows.position[r, 0] - x
+        dy = rows.position[r, 1] - y
+        inertia += m * (dx * dx + dy * dy)
+        missing += dx * (m * (rows.target[r, 1] - rows.trial[r, 1]) + push[p, 1])
+        missing -= dy * (m * (rows.target[r, 0] - rows.trial[r, 0]) + push[p, 0])
+    if not inertia > 0.0:
+        return
+    turn = missing / inertia
+    for r in range(span.first_row, span.last_row):
+        rows.trial[r, 0] -= turn * (rows.position[r, 1] - y)
+        rows.trial[r, 1] += turn * (rows.position[r, 0] - x)

@@ -1,0 +1,227 @@
+"""The slowest wobble of a form: one number, which says how its springs, areas and bends act together.
+
+    S = sum over springs of m_r n n^T + sum over areas and bends of m g g^T, at rest;   S u = a M u
+
+A form that is stiff without pins has three motions as a whole, of a = 0; the next eigenvalue is its lowest mode. It has
+no unit: neither size, nor mass, nor Cs, Cd and h are in it.
+"""
+
+import hashlib
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.physics.constraints import AREA, BEND
+from sandbox.physics.energy import measure_constraints, reduced_masses
+from sandbox.physics.forms import StiffForm
+from sandbox.physics.jit import kernel
+from sandbox.physics.solvers.direct.layout import lay_out_matrix, order_small
+from sandbox.physics.solvers.linear.dissection import make_fronts
+from sandbox.physics.solvers.linear.sparse_ldl import back_substitute, factorise
+from sandbox.physics.world import Floats, Slots, World
+
+# S + SHIFT M is factored, as S itself has no inverse. A higher one slows the iteration down in slender forms, whose
+# lowest modes are as small; a lower one loses digits.
+SHIFT = 1e-7
+# Iterations end where the eigenvalue changes by less than this share, at the latest after ROUNDS. Modes that lie a
+# per cent apart change it by a millionth while the wrong one goes.
+CONVERGED = 1e-9
+ROUNDS = 200
+# A form whose lowest mode is below this is not stiff: it moves without any spring being stretched, to first order.
+NOT_STIFF = 1e-9
+# Forms whose eigenvalue is kept; those of a level, edited one by one, need no more.
+KEPT = 256
+
+_kept: dict[bytes, float] = {}
+
+
+class Blocks(NamedTuple):
+    """The matrix S + SHIFT M by columns, see `Matrix`."""
+
+    column_start: Slots
+    row: Slots
+    target_start: Slots
+    target: NDArray[np.int32]
+    where: Slots
+    diagonal: Floats
+    lower: Floats
+    scaled: Floats
+
+
+class HeldCorners(NamedTuple):
+    """Springs, areas and bends alike: first (k+1,) = where corners begin, mass (k,); node (q,), gradient (q, 2)."""
+
+    first: Slots
+    node: Slots
+    gradient: Floats
+    mass: Floats
+
+
+@kernel
+def _iterate_inversely(  # type: ignore[no-untyped-def]
+    blocks, rows, mass, rigid, vector, change, rounds, converged
+):
+    # x -> (S + SHIFT M)^-1 M x without its motions as a whole; the Rayleigh quotient x S x / x M x of the last x.
+    count = mass.shape[0]
+    factorise(
+        0, count, blocks.column_start, blocks.row, blocks.target_start, blocks.target, blocks.where, blocks.diagonal,
+        blocks.lower, blocks.scaled,
+    )  # fmt: skip
+    quotient = 0.0
+    for _ in range(rounds):
+        for k in range(rigid.shape[0]):
+            along = 0.0
+            whole = 0.0
+            for i in range(count):
+                along += mass[i] * (rigid[k, i, 0] * vector[i, 0] + rigid[k, i, 1] * vector[i, 1])
+                whole += mass[i] * (rigid[k, i, 0] * rigid[k, i, 0] + rigid[k, i, 1] * rigid[k, i, 1])
+            share = along / whole if whole > 0.0 else 0.0
+            for i in range(count):
+                vector[i, 0] -= share * rigid[k, i, 0]
+                vector[i, 1] -= share * rigid[k, i, 1]
+        square = 0.0
+        for i in range(count):
+            square += mass[i] * (vector[i, 0] * vector[i, 0] + vector[i, 1] * vector[i, 1])
+        if not square > 0.0:
+            return 0.0
+        size = 1.0 / math.sqrt(square)
+        for i in range(count):
+            vector[i, 0] *= size
+            vector[i, 1] *= size
+            change[i, 0] = mass[i] * vector[i, 0]
+            change[i, 1] = mass[i] * vector[i, 1]
+        before = quotient
+        quotient = 0.0
+        for k in range(rows.mass.shape[0]):
+            rate = 0.0
+            for c in range(rows.first[k], rows.first[k + 1]):
+                i = rows.node[c]
+                rate += rows.gradient[c, 0] * vector[i, 0] + rows.gradient[c, 1] * vector[i, 1]
+            quotient += rows.mass[k] * rate * rate
+        if abs(quotient - before) <= converged * quotient:
+            break
+        back_substitute(
+            0, count, blocks.column_start, blocks.row, blocks.diagonal, blocks.lower, change
+        )  # fmt: skip
+        for i in range(count):
+            vector[i, 0] = change[i, 0]
+            vector[i, 1] = change[i, 1]
+    return quotient
+
+
+def find_lowest_mode(form: StiffForm) -> float:
+    """The lowest mode of a form; 0 where it is not stiff without pins.
+
+    By inverse iteration, in + - * / and square roots of a fixed order: part of what makes a run repeatable.
+    """
+    digest = hashlib.blake2b(digest_size=16)
+    for array in (form.points, form.mass, form.pairs, form.areas, form.bends):
+        digest.update(f"{array.shape}".encode() + np.ascontiguousarray(array).tobytes())
+    key = digest.digest()
+    if key not in _kept:
+        while len(_kept) >= KEPT:
+            del _kept[next(iter(_kept))]
+        _kept[key] = _find(form)
+    return _kept[key]
+
+
+def warm_up() -> None:
+    """Compile what finding a lowest mode takes, or load it from the cache."""
+    none = np.zeros((0, 3), dtype=np.int64)
+    _find(StiffForm(np.eye(2), np.ones(2), np.array([[0, 1]]), none, none))
+
+
+def _find(form: StiffForm) -> float:
+    points, mass, count = form.points, form.mass, len(form.points)
+    world = World()
+    world.add_particles([str(k) for k in range(count)], points, mass=mass)
+    rows = _rows(world, form.pairs, form.areas, form.bends)
+    # Each pair of corners of a row, once: the one and the other, first by the corners' places in their row.
+    sizes = np.diff(rows.first)
+    one, other, owner = [], [], []
+    for size in np.unique(sizes).tolist():
+        chosen = np.flatnonzero(sizes == size)
+        for i in range(size):
+            for j in range(i + 1):
+                one.append(rows.first[chosen] + i)
+                other.append(rows.first[chosen] + j)
+                owner.append(chosen)
+    joined = _CornerPairs(*(np.concatenate([np.zeros(0, np.int64), *part]) for part in (one, other, owner)))
+    apart = np.flatnonzero(rows.node[joined.one] != rows.node[joined.other])
+    order, columns = order_small(count, rows.node[joined.one[apart]], rows.node[joined.other[apart]])
+    rank = np.empty(count, dtype=np.int64)
+    rank[order] = np.arange(count)
+    matrix, place = lay_out_matrix(count, columns, rank, make_fronts(count, []))
+    blocks = Blocks(*(getattr(matrix, name) for name in Blocks._fields))
+    _assemble(blocks, rows, joined, mass, rank, place)
+    vector, rigid = _start(points[order], mass[order])
+    rows = rows._replace(node=rank[rows.node])
+    found = _iterate_inversely(
+        blocks, rows, mass[order], rigid, vector, np.zeros((count, 2)), ROUNDS, CONVERGED
+    )  # fmt: skip
+    return found if found >= NOT_STIFF else 0.0
+
+
+class _CornerPairs(NamedTuple):
+    """Pairs of corners of one row: their places among all corners, and the row."""
+
+    one: Slots
+    other: Slots
+    owner: Slots
+
+
+def _rows(world: World, pairs: Slots, areas: Slots, bends: Slots) -> HeldCorners:
+    """What holds the particles of a world, at their places."""
+    world.add_springs([str(k) for k in range(len(pairs))], pairs[:, 0], pairs[:, 1])
+    for kind, corners in ((AREA, areas), (BEND, bends)):
+        if len(corners):
+            world.add_constraints(kind, corners)
+    apart = world.position[pairs[:, 1]] - world.position[pairs[:, 0]]
+    length = np.sqrt(apart[:, 0] * apart[:, 0] + apart[:, 1] * apart[:, 1])
+    # A spring of no length holds nothing.
+    normal = np.divide(apart, length[:, None], out=np.zeros_like(apart), where=length[:, None] > 0.0)
+    _, of_constraints, slope = measure_constraints(world)
+    sizes = np.concatenate([np.full(len(pairs), 2), world.constraint_corners.astype(np.int64)])
+    return HeldCorners(
+        np.append(0, np.cumsum(sizes)),
+        np.concatenate([pairs.reshape(-1), world.corner_particle]).astype(np.int64),
+        np.concatenate([np.stack([-normal, normal], axis=1).reshape(-1, 2), slope]),
+        np.concatenate([reduced_masses(world), of_constraints]),
+    )
+
+
+def _assemble(blocks: Blocks, rows: HeldCorners, joined: _CornerPairs, mass: Floats, rank: Slots, place) -> None:  # type: ignore[no-untyped-def]
+    """Write S + SHIFT M into the blocks; place: the block that two rows share."""
+    a, b = rank[rows.node[joined.one]], rank[rows.node[joined.other]]
+    # The row of the block is the later of the two.
+    later, earlier = np.where(a >= b, joined.one, joined.other), np.where(a >= b, joined.other, joined.one)
+    g, weighted = rows.gradient[later], rows.mass[joined.owner, None] * rows.gradient[earlier]
+    xx, xy, yx, yy = (
+        g[:, 0] * weighted[:, 0],
+        g[:, 0] * weighted[:, 1],
+        g[:, 1] * weighted[:, 0],
+        g[:, 1] * weighted[:, 1],
+    )
+    own = np.flatnonzero(a == b)
+    blocks.diagonal[rank] = SHIFT * mass[:, None] * np.array([1.0, 0.0, 1.0])
+    np.add.at(blocks.diagonal, a[own], np.stack([xx, xy, yy], axis=1)[own])
+    shared = np.flatnonzero(a != b)
+    np.add.at(blocks.lower, place(a[shared], b[shared]), np.stack([xx, xy, yx, yy], axis=1)[shared])
+
+
+def _start(points: Floats, mass: Floats) -> tuple[Floats, Floats]:
+    """A vector (n, 2) that no mode is orthogonal to, and the motions of the whole (3, n, 2)."""
+    total, sum_x, sum_y = (np.cumsum(values)[-1] for values in (mass, mass * points[:, 0], mass * points[:, 1]))
+    x, y = points[:, 0] - sum_x / total, points[:, 1] - sum_y / total
+    largest = max(float(np.abs(x).max()), float(np.abs(y).max()))
+    if largest > 0.0:
+        x, y = x / largest, y / largest
+    zero, one = np.zeros_like(x), np.ones_like(x)
+    rigid = np.stack([np.stack(motion, axis=1) for motion in ((one, zero), (zero, one), (-y, x))])
+    # Fields of every symmetry that bodies have, and something of everything else.
+    uneven = (np.arange(len(x)) * 7 % 13 - 6) / 60.0
+    across = x + 0.3 * y + x * x + 0.8 * x * y + 0.6 * y * y + uneven
+    up = 0.5 * x - 0.7 * y + 0.9 * x * x + 0.7 * x * y + 0.5 * y * y - uneven[::-1]
+    return np.stack([across, up], axis=1), np.ascontiguousarray(rigid)

@@ -1,0 +1,43 @@
+"""Bodies are made softer or firmer as a whole while they move."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from pydantic import Field
+
+from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
+from sandbox.physics.firmness import OutOfReach, Reach, set_firmness
+from sandbox.physics.forms import Firmness
+from sandbox.physics.world import World
+from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.named import FormSlot
+
+
+@dataclass(frozen=True)
+class SetFirmness(Command):
+    """Set how soft a body is as a whole, whatever its grid, size and mass: by its sag, or by hz and ratio.
+
+    For bodies whose form is stiff without pins. sag: part of its height by which it sags where it stands, 0 = rigid;
+    hz, ratio: frequency [Hz] and damping ratio of its slowest wobble, ratio null = 0.15 or the least possible.
+    """
+
+    type = "set_firmness"
+    body: FormSlot
+    sag: Annotated[float, Field(ge=0.0, le=SAG_LIMIT)] | None = None
+    hz: Annotated[float, Field(ge=FREQUENCY_RANGE[0], le=FREQUENCY_RANGE[1])] | None = None
+    ratio: Annotated[float, Field(ge=0.0, le=RATIO_LIMIT)] | None = None
+
+    def carry_out(self, world: World) -> None:
+        if self.body >= len(world.forms):
+            raise CommandError(f"there is no body {self.body} whose form may be stiff")
+        if (self.sag is None) == (self.hz is None) or (self.hz is None and self.ratio is not None):
+            raise CommandError("say sag, or hz with or without ratio")
+        body = world.forms[self.body]
+        reach = Reach.of(body.shape, world.settings.gravity, world.settings.tick_rate)
+        if reach.lowest_mode == 0.0:
+            raise CommandError(f"the form of {body.name} is not stiff without pins: it has no firmness")
+        try:
+            coefficients = reach.coefficients(Firmness(self.sag, self.hz, self.ratio))
+        except OutOfReach as error:
+            raise CommandError(f"{body.name}: {error}") from None
+        set_firmness(world, self.body, *coefficients)

@@ -1,0 +1,1 @@
+"""Violent and long figures, run by hand; samples of them are in the tests."""

@@ -1,0 +1,107 @@
+"""The panel's rows of firmness: words, sag, frequency and ratio of one body or of all."""
+
+import pytest
+
+from sandbox.editor.items import Item
+from sandbox.level.format.parse import parse_level
+from sandbox.level.kinds.body_def import FirmnessDef
+from sandbox.session.commands import SetCoefficients, SetFirmness
+from tests.support.wobbles import firm_level
+
+BOX = {"shape": {"box": [1, 1]}, "position": [0, 1], "spacing": 0.25}
+
+
+@pytest.fixture
+def jelly(open_app):
+    """The app on a jelly box of 1 m that sags by a tenth."""
+    return open_app(parse_level(firm_level({"sag": 0.1}, floor=True, **BOX), "jelly"))
+
+
+def texts(driver):
+    return [field.text for field in driver.panel.firmness.fields]
+
+
+def test_the_rows_show_the_firmness_of_the_level_in_words_and_numbers(jelly):
+    assert texts(jelly) == ["10", "2.32", "0.15"]
+    assert jelly.panel.firmness.words.chosen == "soft"
+
+
+def test_a_word_makes_the_body_so_and_is_undone(jelly):
+    jelly.click_widget(jelly.panel.firmness.words.buttons["firm"])
+    jelly.frames(2)
+    assert texts(jelly)[0] == "2" and jelly.panel.firmness.words.chosen == "firm"
+    jelly.playback.session.undo()
+    jelly.frames(20)
+    assert texts(jelly) == ["10", "2.32", "0.15"]
+    jelly.click_widget(jelly.panel.firmness.words.buttons["rigid"])
+    jelly.frames(2)
+    assert texts(jelly)[0] == "0" and jelly.panel.firmness.words.chosen == "rigid"
+
+
+def test_typed_numbers_are_taken_and_those_out_of_reach_become_the_nearest(jelly):
+    rows = jelly.panel.firmness
+    jelly.fill(rows.fields[0], "25 %")
+    jelly.frames(2)
+    assert texts(jelly)[0] == "25" and rows.words.chosen == "jelly"
+    jelly.fill(rows.fields[1], "3")
+    jelly.frames(2)
+    assert texts(jelly)[1:] == ["3", "0.156"]
+    jelly.fill(rows.fields[2], "0.1")
+    jelly.frames(2)
+    assert texts(jelly)[1:] == ["3", "0.156"]
+    assert "body: 3 Hz at ratio 0.1 is out of reach; it has the nearest now, 3 Hz at ratio 0.156." in jelly.notices
+    jelly.fill(rows.fields[0], "90")
+    jelly.frames(2)
+    assert any(text.startswith("Sag: 90 is outside 0 to 40") for text in jelly.notices)
+
+
+def test_cs_and_cd_end_the_firmness_and_the_rows_read_what_they_amount_to(jelly):
+    panel = jelly.panel
+    jelly.fill(panel.stiffness_field, "0.9")
+    jelly.frames(2)
+    assert not jelly.world.lowest_mode.any()
+    assert texts(jelly)[0] not in ("10", "mixed")
+    kinds = [type(entry.command) for entry in jelly.playback.session._log]
+    assert kinds == [SetCoefficients]
+    jelly.click_widget(panel.firmness.words.buttons["soft"])
+    jelly.frames(2)
+    assert [type(entry.command) for entry in jelly.playback.session._log] == [SetCoefficients, SetFirmness]
+    assert texts(jelly) == ["10", "2.32", "0.15"]
+
+
+def test_all_bodies_are_set_in_one_gesture_and_one_alone_where_it_is_chosen(open_app):
+    import json
+
+    data = json.loads(firm_level({"sag": 0.1}, floor=True, **BOX))
+    data["bodies"].append({**data["bodies"][0], "id": "other", "position": [3, 1], "firmness": {"sag": 0.02}})
+    data["bodies"].append({"type": "rope", "id": "rope", "start": [5, 3], "end": [7, 3], "segments": 4})
+    driver = open_app(parse_level(json.dumps(data).encode(), "two"))
+    rows = driver.panel.firmness
+    assert rows.bodies == ["body", "other"] and texts(driver) == ["mixed"] * 3
+    driver.click_widget(rows.words.buttons["hard"])
+    driver.frames(2)
+    assert texts(driver)[0] == "0.3"
+    entries = driver.playback.session._log
+    assert len(entries) == 2 and len({entry.gesture for entry in entries}) == 1
+    rows.choose_body("other")
+    driver.click_widget(rows.words.buttons["jelly"])
+    driver.frames(2)
+    assert (
+        texts(driver)[0] == "25"
+        and driver.world.stiffness[0] != driver.world.stiffness[rows.playback.session.world.forms[1].springs[0]]
+    )
+
+
+def test_a_level_of_ropes_has_no_such_rows(driver):
+    assert driver.panel.firmness.bodies == []
+
+
+def test_the_editor_s_panel_takes_the_nearest_and_says_so(edit):
+    driver = edit(parse_level(firm_level({"hz": 3.0, "ratio": 0.3}, floor=True, **BOX), "jelly"))
+    driver.editor.select(frozenset([Item("body", "body")]))
+    driver.frames(2)
+    form = driver.editor.side.page.form
+    driver.fill(form.fields["firmness.hz"][0], "10")
+    driver.frames(2)
+    assert driver.editor.document.level.bodies[0].firmness == FirmnessDef(hz=10.0, ratio=0.479)
+    assert any("it has the nearest now, 10 Hz at ratio 0.479" in notice for notice in driver.notices)

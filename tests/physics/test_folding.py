@@ -1,0 +1,141 @@
+"""No triangle of a jelly turns over, whatever is done to it; what holds it costs nobody energy or momentum."""
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sandbox.physics.collision.inversion import triangles_of
+from sandbox.physics.constraints import AREA
+from sandbox.physics.energy import total_energy
+from sandbox.physics.jit import COMPILED
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.step import step
+from tests.bench import jelly_abuse
+from tests.support import folding
+from tests.support.physics_scenes import network, run, scaled
+
+CASES = list(itertools.product(folding.DEEDS, folding.SHAPES, folding.COEFFICIENTS, (1, 4)))
+
+
+@pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_no_triangle_of_a_jelly_is_turned_over_whatever_is_done_to_it(solver):
+    chosen = np.random.default_rng(len(solver)).choice(len(CASES), size=5, replace=False)
+    for case in np.sort(chosen).tolist():
+        deed, shape, coefficients, substeps = CASES[case]
+        found = folding.play(deed, shape, coefficients, solver=solver, substeps=substeps, seconds=1.0, seed=case)
+        assert found.least_area > 0.0, CASES[case]
+        if solver == "direct" and coefficients[0] <= coefficients[1] and deed != "stirred":
+            assert found.most_energy <= 1.0 + 1e-9, CASES[case]
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("speed", [3.0, 60.0])
+def test_a_jelly_in_free_flight_keeps_its_momentum_while_its_triangles_are_held(solver, speed):
+    world = jelly_abuse.jelly(5, 4, stiffness=0.02, damping=0.05, solver=solver)
+    free = world.particle_active & (world.inverse_mass > 0.0)
+    world.velocity[free] = np.random.default_rng(4).uniform(-speed, speed, (int(free.sum()), 2))
+    world.slow_velocity[:] = world.velocity
+
+    def momenta():
+        push, place = world.mass[free, None] * world.velocity[free], world.position[free]
+        return np.array([*push.sum(axis=0), np.sum(place[:, 0] * push[:, 1] - place[:, 1] * push[:, 0])])
+
+    before, scale = momenta(), float(np.sum(world.mass[free]) * speed)
+    for _ in range(scaled(20, 8)):
+        step(world)
+        assert folding.areas(world).min() > 0.0
+        # Directions taken ahead make the direct solver keep linear momentum alone.
+        kept = 2 if solver == "direct" else 3
+        assert np.abs(momenta() - before)[:kept].max() < 1e-10 * scale
+
+
+def test_without_areas_nothing_is_held():
+    # A square of springs alone, thrown together so that it would turn inside out in one step.
+    worlds = [network([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]) for _ in range(2)]
+    for world in worlds:
+        world.set_coefficients(0.0, 0.0, None)
+        world.velocity[1:3, 0] = -200.0
+    worlds[1].add_constraints(AREA, [[0, 1, 2], [0, 2, 3]], stiffness=0.0, damping=0.0)
+    for world in worlds:
+        step(world)
+    assert worlds[0].position[1, 0] < -1.0
+    assert folding.areas(worlds[1]).min() > 0.0
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("pins", [(0,), (0, 1)])
+def test_a_corner_that_is_thrown_over_its_pinned_side_stops_before_it(solver, pins):
+    world = network([(0, 0), (1, 0), (0.4, 1)], [], pinned=pins, solver=solver)
+    world.add_constraints(AREA, [[0, 1, 2]], stiffness=0.001, damping=0.002)
+    for _ in range(scaled(300, 30)):
+        world.velocity[2] = (0.0, -90.0)
+        step(world)
+        assert folding.areas(world)[0] > 0.0
+    assert np.array_equal(world.position[list(pins)], world.origin[list(pins)])
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_triangle_that_is_listed_clockwise_keeps_its_side_too(solver):
+    world = network([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)], solver=solver, stiffness=0.01, damping=0.02)
+    world.add_constraints(AREA, [[0, 2, 1]], stiffness=0.01, damping=0.02)
+    assert world.constraint_rest[0, 0] < 0.0
+    world.velocity[2] = (0.0, -100.0)
+    for _ in range(scaled(120, 20)):
+        step(world)
+        assert folding.areas(world)[0] > 0.0
+
+
+def test_what_a_moved_pin_folds_is_let_go_and_comes_back():
+    world = jelly_abuse.jelly(6, 5)
+    a, b, c = corners = triangles_of(world).corners[0].tolist()
+    for corner in corners:
+        world.pin(corner)
+    way = 0.5 * (world.position[b] + world.position[c]) - world.position[a]
+    for _ in range(20):
+        world.velocity[a] = 2.0 * way * world.settings.tick_rate / 20
+        step(world)
+    assert folding.areas(world).min() < 0.0
+    world.velocity[a] = 0.0
+    for corner in corners:
+        world.unpin(corner)
+    run(world, scaled(300, 60))
+    assert folding.areas(world).min() > 0.9
+
+
+def test_a_jelly_on_its_floors_has_their_energy_and_gets_no_more_out_of_them():
+    world = jelly_abuse.jelly(6, 5, stiffness=0.001, damping=0.01)
+    body = world.particle_active
+    world.position[body] *= (1.0, 0.1)
+    explicit = total_energy(world)
+    world.settings = replace(world.settings, solver="iterative")
+    assert explicit > 50.0 * total_energy(world)
+    world.settings = replace(world.settings, solver="direct")
+    highest = 0.0
+    for _ in range(scaled(120, 20)):
+        step(world)
+        highest = max(highest, total_energy(world))
+        assert folding.areas(world).min() > 0.0
+    assert highest <= explicit * (1.0 + 1e-9)
+    assert folding.areas(world).min() > 0.2
+
+
+@pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
+def test_a_soft_jelly_that_is_dropped_lies_on_its_floors_like_dough():
+    found = folding.play("dropped", "box", (0.02, 0.1), solver="direct", substeps=1, seconds=3.0, seed=0)
+    assert 0.2 < found.last_area < 0.3
+
+
+@pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
+def test_a_jelly_comes_back_from_under_a_weight_that_is_taken_off():
+    world = folding.make("squeezed", "box", (0.5, 0.9), solver="direct")
+    run(world, 180)
+    assert folding.areas(world, "j").min() < 0.25
+    heavy = [world.particle_slot(name) for name in world.particle_names if name.startswith("w.")]
+    world.velocity[heavy] = (0.0, 30.0)
+    world.position[heavy] += (0.0, 30.0)
+    world.energy_bank[:] = -1.0
+    run(world, 150)
+    assert folding.areas(world, "j").min() > 0.85

@@ -1,0 +1,72 @@
+"""Bodies that have come to overlap come apart by themselves and keep their form."""
+
+import numpy as np
+import pytest
+
+from sandbox.physics.energy import kinetic_energy, total_energy
+from sandbox.physics.step import step
+from tests.support.contact_scenes import FLOOR, add_jelly, world
+from tests.support.overlaps import overlaps
+from tests.support.physics_scenes import scaled
+
+
+def deepest(w):
+    """The deepest overlap of two bodies [radii]."""
+    return max(overlaps(w).depth.values(), default=0.0)
+
+
+def strain(w, body):
+    """How far a jelly's places are from its form, moved and turned to fit [m]."""
+    form, place = (at[body] - at[body].mean(axis=0) for at in (w.origin, w.position))
+    u, _, v = np.linalg.svd(form.T @ place)
+    turn = u @ np.diag([1.0, np.sign(np.linalg.det(u @ v))]) @ v
+    return float(np.abs(form @ turn - place).max())
+
+
+@pytest.mark.parametrize("way", [(0.45, 0.1), (0.05, 0.02), (0.0, 0.0), (0.6, 0.6)])
+@pytest.mark.parametrize(("stiffness", "damping"), [(0.9, 0.99), (0.1, 0.5)])
+def test_two_boxes_in_each_other_come_free_in_two_seconds_and_gain_at_most_what_parts_them(way, stiffness, damping):
+    w = world(gravity=(0.0, 0.0))
+    size = scaled(1, 0) * 0.5 + 0.4
+    one, other = (
+        add_jelly(w, place, size=(size, size), stiffness=stiffness, damping=damping) for place in ((0.0, 0.0), way)
+    )
+    reduced = float(w.mass[one].sum()) / 2.0
+    for _ in range(120):
+        step(w)
+        assert total_energy(w) <= 0.5 * reduced * 1.0**2 * (1.0 + 1e-9)
+    assert deepest(w) == 0.0
+    assert max(strain(w, one), strain(w, other)) < 0.01 * size
+
+
+def test_boxes_in_each_other_on_a_floor_come_free():
+    w = world(FLOOR)
+    one, other = add_jelly(w, (0.0, 0.45)), add_jelly(w, (0.4, 0.55))
+    start = total_energy(w)
+    for _ in range(scaled(180, 3)):
+        step(w)
+        assert total_energy(w) <= start + 0.25 * float(w.mass[one].sum()) * 1.01
+    if scaled(1, 0):
+        assert deepest(w) == 0.0
+        assert abs(float(w.position[one].mean() - w.position[other].mean())) > 0.1
+        assert kinetic_energy(w) < 1.0
+
+
+def test_a_small_body_inside_of_a_large_one_comes_out():
+    w = world(gravity=(0.0, 0.0))
+    add_jelly(w, (0.0, 0.0), size=(0.9, 0.9))
+    add_jelly(w, (0.12, 0.03), size=(0.2, 0.2))
+    for _ in range(scaled(90, 40)):
+        step(w)
+    assert deepest(w) == 0.0
+
+
+def test_what_is_only_pressed_together_keeps_its_contacts():
+    w = world(FLOOR)
+    for k in range(3):
+        add_jelly(w, (0.0, 0.5 + 0.95 * k), size=(0.9, 0.9))
+    for _ in range(scaled(240, 3)):
+        step(w)
+    if scaled(1, 0):
+        assert w.position[:, 1].max() > 2.6
+        assert kinetic_energy(w) < 1e-3

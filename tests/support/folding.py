@@ -1,0 +1,111 @@
+"""Jellies that are dropped, squeezed, thrown and stirred, and how near their triangles come to turning over."""
+
+import json
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from sandbox.level.build.build_world import build_world
+from sandbox.level.format.model import Level
+from sandbox.physics.collision.inversion import triangles_of
+from sandbox.physics.energy import total_energy
+from sandbox.physics.step import step
+from sandbox.physics.world import Floats, World
+
+DEEDS = ("dropped", "squeezed", "thrown", "stirred")
+SHAPES: dict[str, Any] = {
+    "box": {"box": [1, 1]},
+    "disc": {"circle": 0.5},
+    "L": {"polygon": [[-0.5, -0.5], [0.5, -0.5], [0.5, 0], [0, 0], [0, 0.5], [-0.5, 0.5]]},
+    "U": {
+        "polygon": [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [0.25, 0.5], [0.25, -0.2], [-0.25, -0.2], [-0.25, 0.5],
+                    [-0.5, 0.5]]
+    },
+}  # fmt: skip
+# Cs and Cd, of a tick.
+COEFFICIENTS = ((0.001, 0.01), (0.02, 0.1), (0.1, 0.5), (0.5, 0.9), (0.9, 0.99), (0.99, 0.99))
+HILLS = [[-300, 0], [0, 0], [3, 1], [5, 0], [8, 2], [9, 0], [12, 4], [300, 4]]
+# How often heavier what lies on a squeezed jelly is, and how many particles each has.
+HEAVIER = 100.0
+
+
+class Found(NamedTuple):
+    """Least area of any triangle at the end of any tick, and at the end, as a share of that wanted.
+
+    most_energy: the highest total, as a multiple of that at the start.
+    """
+
+    least_area: float
+    last_area: float
+    most_energy: float
+
+
+def level(deed: str, shape: str, coefficients: tuple[float, float], **settings: Any) -> Level:
+    """A jelly `j`, and what is needed for a deed."""
+    place = {"dropped": (0.0, 5.6), "thrown": (-2.0, 1.5)}.get(deed, (0.0, 0.6))
+    soft = {
+        "type": "jelly", "id": "j", "shape": SHAPES[shape], "position": place, "spacing": 0.125, "material": "m",
+        "particle_radius": 0.05, "velocity": (50.0, 0.0) if deed == "thrown" else (0.0, 0.0),
+    }  # fmt: skip
+    bodies = [soft]
+    if deed == "squeezed":
+        bodies.append(
+            {
+                "type": "jelly", "id": "w", "shape": {"box": [1.5, 1]}, "position": (0.0, 3.0), "spacing": 0.25,
+                "material": "hard", "particle_mass": HEAVIER * 81 / 35,
+            }
+        )  # fmt: skip
+    ground = HILLS if deed == "thrown" else [[-300, 0], [300, 0]]
+    given = {
+        "format": "spring-sandbox/level", "version": 1, "name": deed, "settings": settings, "bodies": bodies,
+        "contacts": {"friction": 0.5}, "terrain": [{"id": "ground", "polyline": ground}],
+        "materials": {
+            "m": dict(zip(("stiffness", "damping"), coefficients, strict=True)),
+            "hard": {"stiffness": 0.9, "damping": 0.999},
+        },
+    }  # fmt: skip
+    return Level.model_validate_json(json.dumps(given))
+
+
+def make(deed: str, shape: str, coefficients: tuple[float, float], **settings: Any) -> World:
+    """The world of `level`."""
+    return build_world(level(deed, shape, coefficients, **settings))
+
+
+def areas(world: World, body: str = "") -> Floats:
+    """Areas of all triangles of a world, or of a body, as shares of those wanted."""
+    triangles = triangles_of(world)
+    place = world.position[triangles.corners]
+    a, b = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
+    area = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / world.constraint_rest[triangles.constraint, 0]
+    names = np.array(world.particle_names)
+    return area[np.char.startswith(names[triangles.corners[:, 0]], f"{body}." if body else "")]
+
+
+def stir(world: World, generator: np.random.Generator, speed: float) -> None:
+    """Take hold of a particle of the jelly, or go on; let go now and then. Hands move at up to so many m/s."""
+    if not world.is_held(0):
+        slot = int(generator.integers(0, int(np.sum(world.particle_active))))
+        world.hold(0, slot, tuple(world.position[slot]))
+    elif generator.random() < 0.02:
+        world.release(0)
+    else:
+        cursor = world.position[world.grab_particle]
+        way = generator.uniform(-1.0, 1.0, 2) * speed / world.settings.tick_rate
+        world.move_grab(0, (float(cursor[0] + way[0]), float(abs(cursor[1] + way[1]))))
+
+
+def play(
+    deed: str, shape: str, coefficients: tuple[float, float], *, seconds: float, seed: int, **settings: Any
+) -> Found:
+    """Do it for so long, and look at every triangle at the end of every tick."""
+    world, generator = make(deed, shape, coefficients, **settings), np.random.default_rng(seed)
+    speed = float(generator.choice([5.0, 20.0, 80.0]))
+    start = total_energy(world)
+    least, most = 1.0, start
+    for _ in range(round(seconds * world.settings.tick_rate)):
+        if deed == "stirred":
+            stir(world, generator, speed)
+        step(world)
+        least, most = min(least, float(areas(world).min())), max(most, total_energy(world))
+    return Found(least, float(areas(world).min()), most / start)
