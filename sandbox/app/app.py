@@ -8,11 +8,11 @@ from pathlib import Path
 import pygame
 
 from sandbox.app.display import SCALE_RANGE, Display
-from sandbox.app.draw.colours import BACKGROUND, WARNING
+from sandbox.app.draw.colours import BACKGROUND, WARNING, show_theme
 from sandbox.app.edit.documents import DocumentActions
 from sandbox.app.edit.tour import Guide
 from sandbox.app.files import FileActions
-from sandbox.app.gallery import Gallery
+from sandbox.app.gallery.gallery import Gallery
 from sandbox.app.help import show_help
 from sandbox.app.idle import IdleCollector
 from sandbox.app.input import Input
@@ -24,7 +24,10 @@ from sandbox.app.preparing import Preparation
 from sandbox.app.profile import Profile
 from sandbox.app.progress import RunProgress
 from sandbox.app.screen import Screen
-from sandbox.app.shortcuts import Mode
+from sandbox.app.settings.chosen import Chosen
+from sandbox.app.settings.settings_page import SettingsPage
+from sandbox.app.settings.system_theme import theme_of
+from sandbox.app.shortcuts import Mode, use_keys
 from sandbox.app.start_request import StartRequest
 from sandbox.app.widgets.dialogs import show_lines
 from sandbox.app.widgets.ui import Ui
@@ -33,14 +36,19 @@ from sandbox.app.widgets.ui import Ui
 FIGURES_EVERY = 0.5
 # A run that waits for kernels no longer than this [s] says nothing of it.
 WAIT_UNSEEN = 0.3
+# Settings that all widgets are laid out anew for.
+LAID_OUT = ("theme", "scale", "keys")
 
 
 class App:
     """The app in its window; `frame` is one turn of the loop; `screen` is what the window shows under its pages."""
 
-    def __init__(self, display: Display, profile: Profile | None = None) -> None:
+    def __init__(self, display: Display, profile: Profile | None = None, chosen: Chosen | None = None) -> None:
         self.display = display
-        self.scale = display.scale
+        self.chosen = chosen or Chosen()
+        self.chosen.changed = self._obey
+        self.chosen.automatic["scale"] = display.scale
+        self._take_up()
         self.profile = profile or Profile()
         self._collector = IdleCollector()
         self._notices: deque[Notice] = deque(maxlen=NOTICES)
@@ -149,11 +157,11 @@ class App:
         """Show how far a run is that has to be played again, for an undo or a recording, where that takes long."""
         playback.session.progress = self._progress.show
 
-    def open_gallery(self, section: str = "levels") -> None:
-        """Choose a level or a recording."""
+    def open_gallery(self, section: str = "levels", query: str = "") -> None:
+        """Choose a level or a recording; query: what is searched."""
         self.close_gallery()
         self._describe("")
-        self.gallery = Gallery(self.ui, self, section, self.close_gallery)
+        self.gallery = Gallery(self.ui, self, section, self.close_gallery, query)
 
     def close_gallery(self) -> None:
         """Back to the screen, where there is one."""
@@ -168,6 +176,7 @@ class App:
             "fullscreen": self.display.toggle_fullscreen,
             "larger": lambda: self._rescale(1.125),
             "smaller": lambda: self._rescale(1 / 1.125),
+            "settings": self._open_settings,
             "help": lambda: show_help(self.ui, self.mode, self.guide.begin),
             "tour": self.guide.begin,
             "quit": self.quit,
@@ -201,8 +210,25 @@ class App:
         self._collector.close()
 
     def _rescale(self, factor: float) -> None:
-        self.scale = min(max(self.scale * factor, SCALE_RANGE[0]), SCALE_RANGE[1])
-        self.rebuild()
+        self.chosen.choose("scale", min(max(self.scale * factor, SCALE_RANGE[0]), SCALE_RANGE[1]))
+
+    # What the person has chosen.
+
+    def _take_up(self) -> None:
+        """Obey what is chosen."""
+        self.scale = self.chosen["scale"] or self.chosen.automatic["scale"]
+        show_theme(theme_of(self.chosen["theme"]))
+        for keys in use_keys(self.chosen.keys):
+            self.chosen.faults.append(f"preferences.json: keys: there is no key {keys!r:.40}.")
+
+    def _obey(self, name: str) -> None:
+        """Follow a change of what is chosen."""
+        self._take_up()
+        if name in LAID_OUT:
+            self.rebuild()
+
+    def _open_settings(self) -> None:
+        SettingsPage(self.ui, self.chosen)
 
     # The loop.
 
@@ -225,7 +251,7 @@ class App:
             self.status.update(frame_time)
             self.documents.update()
             if self.gallery is not None:
-                self.gallery.update(self.preparation.is_ready)
+                self.gallery.update(self.preparation.is_ready, frame_time)
             self.guide.update(frame_time)
             self.ui.update(frame_time)
         self._draw()
@@ -265,6 +291,8 @@ class App:
                     parts.append(("preparing the physics", WARNING))
                 self.status.draw(surface, parts, self.ui.units[0], left, legend)
             self.ui.draw(surface)
+            if self.gallery is not None:
+                self.gallery.draw(surface)
             self.guide.draw(surface)
             if (self.screen is None or self.ui.has_sheet) and not self.ui.shows_page:
                 self.status.draw_notices(surface, 16.0)

@@ -4,10 +4,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
+import pygame
+
 from sandbox.app.display import Display
 from sandbox.app.edit.editing import Editing
 from sandbox.app.play.playback import Playback
 from sandbox.app.screen import Screen
+from sandbox.app.settings.chosen import Chosen
 from sandbox.app.shortcuts import Mode
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.model import Level
@@ -108,7 +111,7 @@ class Files(Protocol):
 class Page(Protocol):
     """A page over the screen that takes keys and the wheel."""
 
-    def press_key(self, key: int) -> bool:
+    def press_key(self, event: pygame.event.Event) -> bool:
         """React to a key; whether it has a meaning here."""
         ...
 
@@ -138,6 +141,11 @@ class Application(Protocol):
     @property
     def ready(self) -> bool:
         """Whether the physics is prepared."""
+        ...
+
+    @property
+    def chosen(self) -> Chosen:
+        """What the person has chosen about the app."""
         ...
 
     @property
@@ -206,7 +214,7 @@ class Application(Protocol):
         """Offer the tour of the editor to who has not seen it."""
         ...
 
-    def open_gallery(self, section: str = ...) -> None:
+    def open_gallery(self, section: str = ..., query: str = ...) -> None:
         """Choose a level or a recording."""
         ...
 

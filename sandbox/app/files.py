@@ -7,8 +7,9 @@ from sandbox.app.application import Application
 from sandbox.app.play.playback import Playback
 from sandbox.app.recordings import SUFFIX, chosen_path, free_path, plain_name, recordings_folder
 from sandbox.app.widgets.dialogs import ask
+from sandbox.editor.storage.recent import remember_played
 from sandbox.level.faults.level_error import LevelError, one_line
-from sandbox.level.format.files import load_level, read_level
+from sandbox.level.format.files import load_level, read_level, shipped_folder
 from sandbox.level.format.writing import refusal_of
 from sandbox.session.replay.reader import begins_as_replay, read_replay
 from sandbox.session.replay.recording import ReplayError
@@ -43,6 +44,7 @@ class FileActions:
             self._refuse(path, error.faults)
             return False
         self.app.start(playback, None if shipped else Path(path))
+        remember_played(path)
         return True
 
     def open_replay(self, path: str | Path) -> bool:
@@ -83,6 +85,7 @@ class FileActions:
             self.app.documents.edit_level(load_level(typed))
         else:
             self.app.start(Playback(load_level(typed)))
+            remember_played(shipped_folder("levels") / f"{typed}.json")
 
     def _refuse(self, path: str | Path, faults: list[str]) -> None:
         self.app.show_faults(f"{one_line(Path(path).name)} cannot be opened", [one_line(fault) for fault in faults])

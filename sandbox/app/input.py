@@ -96,9 +96,9 @@ class Input:
 
     def _key(self, event: pygame.event.Event) -> None:
         app = self.app
-        if app.ui.typing and not _works_while_typing(event):
+        if app.gallery is not None and app.gallery.press_key(event):
             return
-        if app.gallery is not None and app.gallery.press_key(event.key):
+        if app.ui.typing and not _works_while_typing(event):
             return
         if app.screen is not None and not app.ui.has_sheet and app.screen.press_key(event.key, event.mod):
             return

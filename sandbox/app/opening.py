@@ -14,7 +14,7 @@ from pathlib import Path
 import pygame
 
 from sandbox.app.display import Display
-from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, MUTED, TEXT, mixed
+from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, MUTED, TEXT, Colour, mixed
 from sandbox.app.loop import FRAME_RATE
 from sandbox.app.profile import Profile
 from sandbox.app.start_request import StartRequest
@@ -55,7 +55,7 @@ class _StartPicture:
         self._title = self._written("NotoSans-Bold.ttf", TITLE_SIZE, "Spring Sandbox", TEXT)
         self._line = self._written("NotoSans-Regular.ttf", LINE_SIZE, "Starting", MUTED)
 
-    def _written(self, font: str, size: int, text: str, colour: tuple[int, int, int]) -> pygame.Surface:
+    def _written(self, font: str, size: int, text: str, colour: Colour) -> pygame.Surface:
         return _font(font, round(size * self._scale)).render(text, True, colour)
 
     def draw(self, surface: pygame.Surface, seconds: float) -> None:

@@ -14,6 +14,7 @@ from typing import cast
 import platformdirs
 import pygame
 
+from sandbox.app.draw.colours import THEME_NAMES, ThemeName
 from sandbox.app.draw.picture import crop_of, draw_picture, run_ahead
 from sandbox.level.format.files import read_level, shipped_folder, shipped_levels
 from sandbox.level.format.model import Level
@@ -27,11 +28,13 @@ SECONDS = 0.8
 # Levels of more particles than this are drawn as they are built: the gallery stays quick.
 PARTICLES = 3000
 # Rises when the same level is drawn otherwise.
-VERSION = 2
+VERSION = 3
 # Pictures that are kept, those used last.
 KEPT = 300
 # Pictures in the size of cards that are held in memory: all of a page, and its neighbours'.
 HELD = 96
+# How pictures are written: a fifth of the bytes of a PNG file.
+SUFFIX = ".jpg"
 
 
 def picture_key(content: bytes) -> str:
@@ -41,19 +44,20 @@ def picture_key(content: bytes) -> str:
     return hashlib.blake2b(text, digest_size=8, person=f"{VERSION} {SIZE[0]}x{SIZE[1]}".encode()).hexdigest()
 
 
-def shipped_picture(level: Path, key: str) -> Path:
-    """Where the picture of a shipped level lies."""
-    return shipped_folder("assets") / "pictures" / f"{level.stem}-{key}.png"
+def shipped_picture(level: Path, key: str, theme: ThemeName) -> Path:
+    """Where the picture of a shipped level in a theme lies."""
+    return shipped_folder("assets") / "pictures" / f"{level.stem}-{theme}-{key}{SUFFIX}"
 
 
-def kept_picture(key: str) -> Path:
-    """Where the picture of any other level is kept."""
-    return Path(platformdirs.user_cache_dir("spring-sandbox", appauthor=False)) / "pictures" / f"{key}.png"
+def kept_picture(key: str, theme: ThemeName) -> Path:
+    """Where the picture of any other level in a theme is kept."""
+    folder = Path(platformdirs.user_cache_dir("spring-sandbox", appauthor=False)) / "pictures"
+    return folder / f"{key}-{theme}{SUFFIX}"
 
 
-def find_picture(level: Path, key: str, size: tuple[int, int]) -> pygame.Surface | None:
-    """The picture of a level file in a size [pixels], where there is one."""
-    for path in (shipped_picture(level, key), kept_picture(key)):
+def find_picture(level: Path, key: str, size: tuple[int, int], theme: ThemeName) -> pygame.Surface | None:
+    """The picture of a level file in a size [pixels] and a theme, where there is one."""
+    for path in (shipped_picture(level, key, theme), kept_picture(key, theme)):
         with contextlib.suppress(OSError, pygame.error):
             return _read(path, size)
     return None
@@ -66,16 +70,20 @@ def _read(path: Path, size: tuple[int, int]) -> pygame.Surface:
         return pygame.transform.smoothscale(pygame.image.load(file, path.name).convert(32), size)
 
 
-def draw_in_slices(level: Level, seconds: float = SECONDS) -> Generator[bool, None, pygame.Surface]:
-    """Draw a level after so many seconds, a slice of the work at a time; the picture is what it gives in the end."""
+def draw_in_slices(level: Level, theme: ThemeName, seconds: float = SECONDS) -> Generator[bool, None, pygame.Surface]:
+    """Draw a level after so many seconds, a slice of the work at a time; the picture is what it gives in the end.
+
+    theme: what it is drawn in, where the level itself asks for none.
+    """
     snapshot = yield from run_ahead(level, round(seconds * level.settings.tick_rate), PARTICLES)
     yield True
-    return draw_picture(level, snapshot, SIZE, crop_of(level, snapshot), LINE_SCALE)
+    asked = None if level.look is None else level.look.theme
+    return draw_picture(level, snapshot, SIZE, crop_of(level, snapshot), LINE_SCALE, asked or theme)
 
 
-def draw_at_once(level: Level) -> pygame.Surface:
+def draw_at_once(level: Level, theme: ThemeName = "dark") -> pygame.Surface:
     """Draw a level as the gallery shows it."""
-    slices = draw_in_slices(level)
+    slices = draw_in_slices(level, theme)
     while True:
         try:
             next(slices)
@@ -86,7 +94,7 @@ def draw_at_once(level: Level) -> pygame.Surface:
 def keep_picture(picture: pygame.Surface, path: Path) -> None:
     """Write a picture, whole or not at all. Raises OSError."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_suffix(f".{os.getpid()}.png")
+    unfinished = path.with_suffix(f".{os.getpid()}{SUFFIX}")
     try:
         pygame.image.save(picture, str(unfinished))
         os.replace(unfinished, path)
@@ -100,17 +108,21 @@ def keep_picture(picture: pygame.Surface, path: Path) -> None:
 def forget_old_pictures(folder: Path) -> None:
     """Remove all but the newest pictures of a folder."""
     with contextlib.suppress(OSError):
-        files = sorted(folder.glob("*.png"), key=lambda path: path.stat().st_mtime, reverse=True)
+        files = sorted(folder.glob("*.*"), key=lambda path: path.stat().st_mtime, reverse=True)
         for file in files[KEPT:]:
             file.unlink(missing_ok=True)
 
 
-def stale_pictures() -> tuple[dict[str, Path], list[Path]]:
-    """Shipped levels without a picture of their present content, each with its place, and pictures of nothing."""
-    wanted = {level.stem: shipped_picture(level, picture_key(level.read_bytes())) for level in shipped_levels()}
-    there = set((shipped_folder("assets") / "pictures").glob("*.png"))
-    missing = {name: path for name, path in wanted.items() if path not in there}
-    return missing, sorted(there - set(wanted.values()))
+def stale_pictures() -> tuple[dict[Path, tuple[Path, ThemeName]], list[Path]]:
+    """Pictures of shipped levels that are missing, each with its level and theme; and pictures of nothing."""
+    wanted: dict[Path, tuple[Path, ThemeName]] = {
+        shipped_picture(level, picture_key(level.read_bytes()), name): (level, name)
+        for level in shipped_levels()
+        for name in THEME_NAMES
+    }
+    there = set((shipped_folder("assets") / "pictures").glob("*.*"))
+    missing = {path: of for path, of in wanted.items() if path not in there}
+    return missing, sorted(there - set(wanted))
 
 
 def draw_shipped_pictures() -> None:
@@ -118,10 +130,9 @@ def draw_shipped_pictures() -> None:
     missing, unused = stale_pictures()
     for path in unused:
         path.unlink()
-    for level in shipped_levels():
-        if level.stem in missing:
-            keep_picture(draw_at_once(read_level(level)), missing[level.stem])
-            print(missing[level.stem].name)
+    for path, (level, theme) in missing.items():
+        keep_picture(draw_at_once(read_level(level), theme), path)
+        print(path.name)
 
 
 if __name__ == "__main__":

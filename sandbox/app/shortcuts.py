@@ -1,6 +1,7 @@
-"""Shortcuts: the one table of what can be done and with which keys; feeds the dispatcher and the help page."""
+"""Shortcuts: the one table of what can be done and with which keys; feeds the dispatcher, help and settings."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Literal
 
@@ -23,6 +24,11 @@ class Shortcut:
     label: str
     group: str
     mode: Mode | None = None
+
+    @property
+    def name(self) -> str:
+        """What it is called where a person's own keys are kept: actions of two modes may have one name."""
+        return f"{self.mode or 'any'}.{self.action}"
 
 
 def _tools(group: str) -> tuple[Shortcut, ...]:
@@ -112,7 +118,9 @@ SHORTCUTS = (
     Shortcut("record", ("Ctrl+R",), "Start or stop recording", "Files", "play"),
     Shortcut("save", ("Ctrl+S",), "Save the run so far as a replay", "Files", "play"),
     Shortcut("recordings", ("Ctrl+L",), "Saved replays", "Files", "play"),
+    Shortcut("settings", ("Ctrl+,",), "Settings: theme, sizes, keys", "Files"),
     Shortcut("help", ("F1",), "This page", "Files"),
+    Shortcut("hint", ("F2",), "What the level says of itself, again", "Files", "play"),
     Shortcut("tour", ("Shift+F1",), "The tour: a first level in six steps", "Files"),
     Shortcut("quit", ("Ctrl+Q",), "Quit", "Files"),
     Shortcut("", ("Arrows",), "Move the keyboard cursor; Shift: faster", "Keyboard", "play"),
@@ -126,8 +134,9 @@ SHORTCUTS = (
 
 _NAMES = {
     "Escape": pygame.K_ESCAPE, "Space": pygame.K_SPACE, "Enter": pygame.K_RETURN, "Home": pygame.K_HOME,
-    "F1": pygame.K_F1, "F10": pygame.K_F10, "F11": pygame.K_F11, ".": pygame.K_PERIOD, "+": pygame.K_PLUS,
-    "-": pygame.K_MINUS, "=": pygame.K_EQUALS, "Delete": pygame.K_DELETE, "Backspace": pygame.K_BACKSPACE,
+    **{f"F{number}": pygame.K_F1 + number - 1 for number in range(1, 13)},
+    ".": pygame.K_PERIOD, "+": pygame.K_PLUS, "-": pygame.K_MINUS, "=": pygame.K_EQUALS,
+    "Delete": pygame.K_DELETE, "Backspace": pygame.K_BACKSPACE,
     "PageUp": pygame.K_PAGEUP, "PageDown": pygame.K_PAGEDOWN, "Tab": pygame.K_TAB,
 }  # fmt: skip
 _TWINS = {
@@ -136,9 +145,62 @@ _TWINS = {
 }  # fmt: skip
 
 
+# Keys that mean the same with Shift or without: on some keyboards they are typed with it.
+_WITHOUT_SHIFT = (pygame.K_PLUS, pygame.K_EQUALS, pygame.K_MINUS, pygame.K_RETURN)
+# Keys that no action can have: they go from widget to widget, or move the cursor.
+_FIXED = (pygame.K_TAB, pygame.K_LEFT, pygame.K_RIGHT, pygame.K_UP, pygame.K_DOWN)
+
+# Keys of a person's own, by the names of entries.
+_own: dict[str, tuple[str, ...]] = {}
+
+
+def use_keys(own: Mapping[str, tuple[str, ...]]) -> list[str]:
+    """Let entries have a person's own keys, by their names; gives those keys that there are not."""
+    unknown = [text for keys in own.values() for text in keys if not _is_known(text)]
+    _own.clear()
+    _own.update({name: tuple(text for text in keys if _is_known(text)) for name, keys in own.items()})
+    _table.cache_clear()
+    return unknown
+
+
 def shortcuts(mode: Mode) -> tuple[Shortcut, ...]:
-    """The entries of the table that hold in a mode."""
-    return tuple(entry for entry in SHORTCUTS if entry.mode in (None, mode))
+    """The entries of the table that hold in a mode, with the keys that they have now."""
+    entries = (entry for entry in SHORTCUTS if entry.mode in (None, mode))
+    return tuple(replace(entry, keys=_own[entry.name]) if entry.name in _own else entry for entry in entries)
+
+
+def with_keys(
+    own: Mapping[str, tuple[str, ...]], entry: Shortcut, keys: tuple[str, ...]
+) -> tuple[dict[str, tuple[str, ...]], list[Shortcut]]:
+    """A person's own keys once an entry has others, and the entries that these are taken from, as they are then."""
+    taken = {_combination(text) for text in keys}
+    modes: tuple[Mode, ...] = ("play", "edit") if entry.mode is None else (entry.mode,)
+    others = {other.name: other for mode in modes for other in shortcuts(mode) if other.action}
+    result, losers = {**own, entry.name: keys}, []
+    for name, other in others.items():
+        left = tuple(text for text in other.keys if _combination(text) not in taken)
+        if name != entry.name and left != other.keys:
+            result[name] = left
+            losers.append(replace(other, keys=left))
+    return result, losers
+
+
+def spoken(keys: tuple[str, ...]) -> str:
+    """Keys as a part of a sentence."""
+    return " or ".join(keys) or "no key"
+
+
+def combination_of(key: int, modifiers: int) -> str | None:
+    """What a key press is called in the table; None for one that no action can have."""
+    key = _TWINS.get(key, key)
+    name = next((name for name, code in _NAMES.items() if code == key), None)
+    if name is None and 32 < key < 0x3000 and chr(key).isprintable():
+        name = chr(key).upper()
+    if name is None or key in _FIXED or modifiers & pygame.KMOD_ALT:
+        return None
+    shift = bool(modifiers & pygame.KMOD_SHIFT) and key not in _WITHOUT_SHIFT
+    ctrl = bool(modifiers & (pygame.KMOD_CTRL | pygame.KMOD_META))
+    return ("Ctrl+" if ctrl else "") + ("Shift+" if shift else "") + name
 
 
 def _combination(text: str) -> tuple[int, bool, bool]:
@@ -146,6 +208,14 @@ def _combination(text: str) -> tuple[int, bool, bool]:
     ctrl, rest = text.startswith("Ctrl+"), text.removeprefix("Ctrl+")
     shift, name = rest.startswith("Shift+"), rest.removeprefix("Shift+")
     return _NAMES.get(name) or ord(name.lower()), ctrl, shift
+
+
+def _is_known(text: str) -> bool:
+    try:
+        _combination(text)
+    except TypeError:  # no single letter
+        return False
+    return True
 
 
 @cache
@@ -160,7 +230,7 @@ def action_of(key: int, modifiers: int, mode: Mode = "play") -> str | None:
     ctrl = bool(modifiers & (pygame.KMOD_CTRL | pygame.KMOD_META))
     shift = bool(modifiers & pygame.KMOD_SHIFT)
     key = _TWINS.get(key, key)
-    if key in (pygame.K_PLUS, pygame.K_EQUALS, pygame.K_MINUS, pygame.K_RETURN):
+    if key in _WITHOUT_SHIFT:
         shift = False
     return _table(mode).get((key, ctrl, shift))
 
@@ -168,4 +238,4 @@ def action_of(key: int, modifiers: int, mode: Mode = "play") -> str | None:
 def tip_of(action: str, mode: Mode) -> str:
     """What an action does and its first keys, for tooltips."""
     entry = next(entry for entry in shortcuts(mode) if entry.action == action)
-    return f"{entry.label}  [{entry.keys[0]}]"
+    return f"{entry.label}  [{entry.keys[0]}]" if entry.keys else entry.label

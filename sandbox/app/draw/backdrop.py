@@ -5,6 +5,7 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Camera, grid_spacing
+from sandbox.app.draw.colours import Colour
 from sandbox.app.draw.looks import ground_look
 from sandbox.app.draw.raster.bodies import GRAIN, BodyRows, Flush, Outlines, Skins
 from sandbox.app.draw.raster.painter import NO_GRAIN, BodyLayer, MarkList, Painter
@@ -169,7 +170,7 @@ def _line_of(kind: str, theme: Theme) -> int:
     return red << 16 | green << 8 | blue
 
 
-def _packed(colour: tuple[int, ...]) -> int:
+def _packed(colour: Colour) -> int:
     return colour[0] << 16 | colour[1] << 8 | colour[2]
 
 

@@ -1,39 +1,82 @@
-"""Colours and sizes of everything that is drawn over the world; the widgets' are in assets/theme.json."""
+"""Colours of all that is drawn over the world, in the theme that is shown; those of widgets: assets/theme.json."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from itertools import cycle
+from typing import Literal, overload
 
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 
-Colour = tuple[int, int, int]
+ThemeName = Literal["dark", "light"]
+THEME_NAMES: tuple[ThemeName, ...] = ("dark", "light")
+# Red, green and blue, 0..255.
+Colour = Sequence[int]
 
-BACKGROUND: Colour = (17, 20, 26)
-GRID: Colour = (24, 28, 36)
-GRID_FINE: Colour = (20, 24, 30)
-GRID_AXIS: Colour = (38, 44, 56)
-SURFACE: Colour = (24, 28, 36)
-LINE: Colour = (42, 49, 62)
-TEXT: Colour = (226, 231, 239)
-MUTED: Colour = (139, 149, 166)
-DISABLED: Colour = (70, 78, 92)
-ACCENT: Colour = (94, 208, 178)
-WARNING: Colour = (255, 180, 84)
-DANGER: Colour = (255, 107, 107)
-PARTICLE: Colour = (226, 231, 239)
-PINNED: Colour = (94, 208, 178)
-WELD: Colour = (240, 214, 104)
-DRIVE: Colour = (255, 118, 186)
-TERRAIN: Colour = (150, 138, 118)
-TERRAIN_FILL: Colour = (44, 42, 42)
+
+class Tone(Sequence[int]):
+    """A colour that is another one in each theme: whatever is drawn with it next has that of the theme shown then."""
+
+    def __init__(self, dark: Colour, light: Colour) -> None:
+        self._colours: dict[ThemeName, Colour] = {"dark": dark, "light": light}
+
+    def __len__(self) -> int:
+        return 3
+
+    @overload
+    def __getitem__(self, index: int) -> int: ...
+    @overload
+    def __getitem__(self, index: slice) -> Colour: ...
+    def __getitem__(self, index: int | slice) -> int | Colour:
+        return self._colours[_shown[0]][index]
+
+
+_shown: list[ThemeName] = ["dark"]
+
+
+def show_theme(name: ThemeName) -> None:
+    """Draw in the colours of a theme from now on; what is painted already stays until it is painted anew."""
+    _shown[0] = name
+
+
+def shown_theme() -> ThemeName:
+    """The theme that is shown."""
+    return _shown[0]
+
+
+BACKGROUND = Tone((17, 20, 26), (247, 243, 233))
+GRID = Tone((24, 28, 36), (236, 230, 217))
+GRID_FINE = Tone((20, 24, 30), (242, 237, 226))
+GRID_AXIS = Tone((38, 44, 56), (219, 210, 193))
+SURFACE = Tone((24, 28, 36), (255, 253, 248))
+FIELD = Tone((18, 22, 28), (255, 255, 255))
+MENU = Tone((29, 34, 43), (255, 253, 248))
+CHOSEN = Tone((31, 74, 69), (205, 236, 226))
+NOTICE = Tone((33, 39, 49), (255, 253, 248))
+LINE = Tone((42, 49, 62), (221, 213, 198))
+TEXT = Tone((226, 231, 239), (39, 48, 63))
+MUTED = Tone((139, 149, 166), (94, 104, 119))
+DISABLED = Tone((70, 78, 92), (178, 182, 188))
+ACCENT = Tone((94, 208, 178), (14, 124, 105))
+WARNING = Tone((255, 180, 84), (158, 88, 0))
+DANGER = Tone((255, 107, 107), (196, 43, 43))
+HOVERED = Tone((180, 190, 205), (96, 108, 126))
+DECADE = Tone((72, 82, 100), (176, 168, 152))
+PARTICLE = Tone((226, 231, 239), (58, 68, 84))
+PINNED = Tone((94, 208, 178), (14, 124, 105))
+WELD = Tone((240, 214, 104), (168, 128, 0))
+DRIVE = Tone((255, 118, 186), (196, 32, 118))
+TERRAIN = Tone((150, 138, 118), (134, 106, 70))
+TERRAIN_FILL = Tone((44, 42, 42), (226, 212, 188))
 
 # Springs by material while a level is edited; the material `default` is grey, then they repeat.
 MATERIAL_COLOURS: tuple[Colour, ...] = (
-    (122, 162, 247), (255, 170, 96), (122, 208, 130), (232, 131, 183), (240, 214, 104), (96, 205, 224), (190, 150, 255),
-    (255, 128, 116), (176, 196, 116), (128, 178, 178),
+    Tone((122, 162, 247), (50, 96, 200)), Tone((255, 170, 96), (192, 98, 10)), Tone((122, 208, 130), (34, 132, 48)),
+    Tone((232, 131, 183), (182, 48, 118)), Tone((240, 214, 104), (148, 116, 0)), Tone((96, 205, 224), (0, 124, 148)),
+    Tone((190, 150, 255), (116, 70, 196)), Tone((255, 128, 116), (196, 58, 44)), Tone((176, 196, 116), (100, 120, 24)),
+    Tone((128, 178, 178), (60, 116, 116)),
 )  # fmt: skip
 
 # Springs of the material that needs no definition.
-RELAXED: Colour = (150, 161, 180)
+RELAXED = Tone((150, 161, 180), (112, 122, 140))
 
 
 def material_colours(names: Iterable[str]) -> dict[str, Colour]:
@@ -47,7 +90,7 @@ def packed(colour: Colour) -> int:
     return (colour[0] << 16) | (colour[1] << 8) | colour[2]
 
 
-def mixed(first: Colour, second: Colour, share: float) -> Colour:
+def mixed(first: Colour, second: Colour, share: float) -> tuple[int, int, int]:
     """The colour that has `share` (0..1) of the second in it."""
     r, g, b = (round(a + (z - a) * share) for a, z in zip(first, second, strict=True))
     return r, g, b

@@ -15,7 +15,7 @@ from sandbox.app.draw.lines import Canvas
 from sandbox.app.draw.raster.painter import MarkList, Painter
 from sandbox.app.draw.strain_colours import strain_place, strain_tones
 from sandbox.app.draw.textures import Tiles
-from sandbox.app.draw.themes import DARK, THEMES, Theme
+from sandbox.app.draw.themes import THEMES, Theme, theme_now
 from sandbox.app.draw.things.cast import Cast, cast_of
 from sandbox.app.draw.things.ensemble import Ensemble
 from sandbox.app.draw.things.frame import Frame, strain_of
@@ -65,9 +65,7 @@ class Renderer:
         self.lattice = False
         self.non_finite = 0
         self.level = level
-        self.theme: Theme = DARK
-        if level is not None and level.look is not None and level.look.theme is not None:
-            self.theme = THEMES[level.look.theme]
+        self.follow_theme()
         self.effects = Effects()
         self._painter = Painter()
         self._backdrop = Backdrop()
@@ -75,6 +73,11 @@ class Renderer:
         self._ensemble: Ensemble | None = None
         self._key: tuple[NDArray[np.bool_], ...] = ()
         self._tiles: tuple[str, Tiles] | None = None
+
+    def follow_theme(self) -> None:
+        """Draw in the level's theme, or else in the one that is shown now."""
+        said = None if self.level is None or self.level.look is None else self.level.look.theme
+        self.theme: Theme = theme_now() if said is None else THEMES[said]
 
     def draw(
         self,

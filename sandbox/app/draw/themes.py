@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from sandbox.app.draw.colours import Colour, mixed
+from sandbox.app.draw.colours import Colour, mixed, shown_theme
 
 
 @dataclass(frozen=True)
@@ -53,6 +53,12 @@ LIGHT = Theme(
     strain=(_rgb(0x1F5FD6), _rgb(0x8A8F98), _rgb(0xD9730B)),
 )  # fmt: skip
 THEMES = {theme.name: theme for theme in (DARK, LIGHT)}
+
+
+def theme_now() -> Theme:
+    """The theme that is shown, where a level asks for no other."""
+    return THEMES[shown_theme()]
+
 
 # Stuffs that look alike in both.
 STEEL, BRASS, WOOD, STONE, BRICK = 0x96A3BA, 0xE2B04E, 0xC8935A, 0x9AA2B0, 0xC4624A

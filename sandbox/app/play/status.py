@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import pygame
 
-from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, SURFACE, TEXT, WARNING, Colour
+from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, NOTICE, SURFACE, TEXT, WARNING, Colour
 from sandbox.app.draw.strain_colours import FULL_STRAIN, SLIGHT_STRAIN, strain_tones
-from sandbox.app.draw.themes import DARK
+from sandbox.app.draw.themes import theme_now
 from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.joints.readings import MotorReading
@@ -22,7 +22,6 @@ NOTICES = 4
 LEGEND_WIDTH = 96.0
 # Motors that are named one by one; of more the line says how many are at their limit.
 NAMED_MOTORS = 2
-NOTICE_COLOUR: Colour = (33, 39, 49)
 
 
 @dataclass
@@ -99,7 +98,7 @@ class StatusLine:
         if self._legend is None:
             place = np.linspace(-1.0, 1.0, width)
             full = np.log1p(FULL_STRAIN / SLIGHT_STRAIN)
-            colours = strain_tones(np.sign(place) * np.expm1(np.abs(place) * full) * SLIGHT_STRAIN, DARK.strain)
+            colours = strain_tones(np.sign(place) * np.expm1(np.abs(place) * full) * SLIGHT_STRAIN, theme_now().strain)
             self._legend = pygame.Surface((width, ui.px(6)), 0, 32)
             pixels = pygame.surfarray.pixels2d(self._legend)
             pixels[:] = colours[:, None]
@@ -120,7 +119,7 @@ class StatusLine:
             width = max(line.get_width() for line in lines) + ui.px(30)
             y -= height
             card = pygame.Surface((width, height), pygame.SRCALPHA)
-            pygame.draw.rect(card, (*NOTICE_COLOUR, 240), card.get_rect(), border_radius=ui.px(8))
+            pygame.draw.rect(card, (*NOTICE, 240), card.get_rect(), border_radius=ui.px(8))
             pygame.draw.rect(card, LINE, card.get_rect(), 1, border_radius=ui.px(8))
             pygame.draw.rect(card, ACCENT, (ui.px(8), ui.px(9), ui.px(3), height - ui.px(18)), border_radius=ui.px(2))
             line_y = ui.px(8)
@@ -143,7 +142,7 @@ class StatusLine:
 def _card(surface: pygame.Surface, ui: Ui, text: str, inset: float) -> pygame.Rect:
     card = pygame.Rect(0, 0, ui.px(380), ui.px(96))
     card.center = (surface.get_width() // 2, surface.get_height() // 2)
-    pygame.draw.rect(surface, NOTICE_COLOUR, card, border_radius=ui.px(12))
+    pygame.draw.rect(surface, NOTICE, card, border_radius=ui.px(12))
     pygame.draw.rect(surface, LINE, card, 1, border_radius=ui.px(12))
     surface.blit(ui.font(15, True).render(text, True, TEXT), (card.left + ui.px(inset), card.top + ui.px(24)))
     return card

@@ -1,5 +1,7 @@
 """Icons, drawn by program: sharp at every scale."""
 
+import math
+
 import pygame
 
 from sandbox.app.draw.colours import Colour
@@ -97,7 +99,21 @@ def _keep(pen: IconPen) -> None:
     pen.line((6.5, 3.5), (17.5, 3.5), (17.5, 20.5), (12, 15.5), (6.5, 20.5), (6.5, 3.5))
 
 
+def _settings(pen: IconPen) -> None:
+    pen.disc(12, 12, 6.2, 2.2)
+    pen.disc(12, 12, 1.6)
+    for turn in range(8):
+        x, y = math.cos(turn * math.pi / 4), math.sin(turn * math.pi / 4)
+        pen.line((12 + 7 * x, 12 + 7 * y), (12 + 9.4 * x, 12 + 9.4 * y), width=3.0)
+
+
+def _more(pen: IconPen) -> None:
+    for y in (5.5, 12, 18.5):
+        pen.disc(12, y, 1.9)
+
+
 ICONS: dict[str, Icon] = {
+    "settings": _settings, "more": _more,
     "drag": _drag, "pin": draw_pin, "cut": _cut, "play": _play, "pause": _pause, "step": _step, "reset": _reset,
     "undo": _undo, "redo": _redo, "record": _record, "stop": _stop, "levels": _levels, "fit": _fit,
     "panel": _panel, "save": _save, "edit": _edit, "keep": _keep, "spring": draw_spring,

@@ -12,7 +12,12 @@ ENTER_KEYS = (pygame.K_RETURN, pygame.K_KP_ENTER)
 
 
 class Painted(UIElement):
-    """A widget that paints itself; subclasses give `paint`, and what mouse and keys do."""
+    """A widget that paints itself; subclasses give `paint`, and what mouse and keys do.
+
+    takes_all_keys: whether Tab and Escape too go to `press_key` while it is focused.
+    """
+
+    takes_all_keys = False
 
     def __init__(self, ui: WindowLayout, rect: pygame.Rect, container: Any = None) -> None:
         super().__init__(
@@ -102,9 +107,11 @@ class TextBlock(Painted):
         container: Any = None,
         size: float = 11.0,
         colour: Colour = MUTED,
+        *,
+        is_bold: bool = False,
     ) -> None:
         super().__init__(ui, rect, container)
-        self.text, self.text_size, self.colour = text, size, colour
+        self.text, self.text_size, self.colour, self.is_bold = text, size, colour, is_bold
         self.repaint()
 
     def show_text(self, text: str) -> None:
@@ -116,7 +123,7 @@ class TextBlock(Painted):
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """As many lines as fit."""
         surface = pygame.Surface(size, pygame.SRCALPHA)
-        font = self.ui.font(self.text_size)
+        font = self.ui.font(self.text_size, self.is_bold)
         height = round(font.get_linesize() * 0.95)
         y = 0
         for paragraph in self.text.split("\n"):

@@ -6,7 +6,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.draw.colours import ACCENT, LINE, MUTED, TEXT, WARNING, mixed
+from sandbox.app.draw.colours import ACCENT, DECADE, LINE, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
 from sandbox.app.widgets.painted import Painted
 from sandbox.app.widgets.ui import Ui
 
@@ -17,8 +17,6 @@ KEY_STEP, FINE_KEY_STEP = 0.02, 0.004
 # Painted this many times larger and scaled down: smooth edges.
 OVERSAMPLING = 3
 MARGIN = 9.0
-# Colour of the decades on the scale.
-DECADE = (72, 82, 100)
 
 
 def fraction_of(value: float) -> float:
@@ -115,7 +113,7 @@ class LogSlider(Painted):
         length = width - 2 * margin
         thick = 4 * scale
 
-        def bar(start: float, end: float, colour: tuple[int, int, int]) -> None:
+        def bar(start: float, end: float, colour: Colour) -> None:
             place = pygame.Rect(margin + start * length, middle - thick / 2, max((end - start) * length, 1), thick)
             pygame.draw.rect(surface, colour, place, border_radius=round(thick / 2))
 
@@ -140,7 +138,7 @@ class LogSlider(Painted):
         knob = (margin + here * length, middle)
         pygame.draw.circle(surface, TEXT if self.enabled else MUTED, knob, 7 * scale)
         inside = WARNING if limited and here > limit else accent
-        pygame.draw.circle(surface, (24, 28, 36) if self.mixed else inside, knob, 4 * scale)
+        pygame.draw.circle(surface, SURFACE if self.mixed else inside, knob, 4 * scale)
         return pygame.transform.smoothscale(surface, size)
 
     def _paint_mark(self, surface: pygame.Surface, x: float, middle: float, scale: float) -> None:

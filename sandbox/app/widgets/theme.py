@@ -10,6 +10,7 @@ import pygame_gui
 from pygame_gui.core import gui_font_pygame
 from pygame_gui.core.ui_appearance_theme import UIAppearanceTheme
 
+from sandbox.app.draw.colours import shown_theme
 from sandbox.level.format.files import shipped_folder
 
 # Theme entries that are pixels at scale 1.
@@ -55,9 +56,17 @@ def plain_font(size: int, bold: bool) -> pygame.font.Font:
     return _FONTS[size, bold]
 
 
+def _read(name: str) -> dict[str, Any]:
+    theme: dict[str, Any] = json.loads((shipped_folder("assets") / name).read_text(encoding="utf-8"))
+    return theme
+
+
 def scaled_theme(scale: float) -> dict[str, Any]:
-    """The theme of assets/theme.json with its sizes in pixels."""
-    theme: dict[str, Any] = json.loads((shipped_folder("assets") / "theme.json").read_text(encoding="utf-8"))
+    """The theme of assets/theme.json with its sizes in pixels; the light one has other colours beside."""
+    theme = _read("theme.json")
+    if shown_theme() == "light":
+        for name, block in _read("theme-light.json").items():
+            theme.setdefault(name, {}).setdefault("colours", {}).update(block["colours"])
     for block in theme.values():
         for name, entries in block.items():
             for key, value in entries.items():

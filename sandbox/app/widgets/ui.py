@@ -118,10 +118,13 @@ class Ui(WindowLayout):
         return Choice(buttons)
 
     def field(
-        self, rect: pygame.Rect, text: str, commit: Callable[[str], bool], container: Any = None, limit: int = 200
-    ) -> Field:
-        """A line to type into."""
-        entry = UITextEntryLine(rect, self.manager, container=container, initial_text=text)
+        self, rect: pygame.Rect, text: str, commit: Callable[[str], bool], container: Any = None, limit: int = 200,
+        *, hint: str = "",
+    ) -> Field:  # fmt: skip
+        """A line to type into; hint: what it says while it is empty."""
+        entry = UITextEntryLine(
+            rect, self.manager, container=container, initial_text=text, placeholder_text=hint or None
+        )
         entry.set_text_length_limit(limit)
         self._fields[entry] = Field(entry, commit, text)
         self._add_focusable(entry)
@@ -181,6 +184,11 @@ class Ui(WindowLayout):
     def has_sheet(self) -> bool:
         """Whether a modal page is open."""
         return bool(self._sheets)
+
+    @property
+    def top_sheet(self) -> UIPanel | None:
+        """The topmost modal page."""
+        return self._sheets[-1].panel if self._sheets else None
 
     @property
     def has_question(self) -> bool:
@@ -294,6 +302,8 @@ class Ui(WindowLayout):
 
     def _press_key(self, event: pygame.event.Event) -> bool:
         typed_into = next((field for field in self._fields.values() if field.entry.is_focused), None)
+        if isinstance(self._focus, Painted) and self._focus.takes_all_keys:
+            return self._focus.press_key(event)
         if event.key == pygame.K_TAB and not event.mod & (pygame.KMOD_CTRL | pygame.KMOD_ALT):
             self._move_focus(-1 if event.mod & pygame.KMOD_SHIFT else 1)
             return True
@@ -349,6 +359,18 @@ class Ui(WindowLayout):
         ring = self._sheets[-1].widgets if self._sheets else self._page
         return [widget for widget in ring if widget.alive() and widget.visible and getattr(widget, "is_enabled", True)]
 
+    @property
+    def focus_place(self) -> int | None:
+        """Which widget of the topmost page has the keyboard, counted as Tab does."""
+        ring = self._ring()
+        return ring.index(self._focus) if self._focus in ring else None
+
+    def focus_at(self, place: int | None) -> None:
+        """Give the keyboard to a widget of the topmost page by its place, where there is one."""
+        ring = self._ring()
+        if place is not None and place < len(ring):
+            self._set_focus(ring[place])
+
     def focus_on(self, widget: UIElement) -> None:
         """Give a widget the keyboard."""
         self._set_focus(widget)
@@ -374,7 +396,14 @@ class Ui(WindowLayout):
         self.manager.draw_ui(surface)
         if self._focus is not None and self._focus.alive():
             around = self._focus.rect.inflate(self.px(5), self.px(5))
+            # What is scrolled out of its area has no ring either.
+            clip = surface.get_rect()
+            holder: Any = self._focus.ui_container
+            while holder is not None and holder is not self.root:
+                clip, holder = clip.clip(holder.rect.inflate(self.px(5), self.px(5))), holder.ui_container
+            surface.set_clip(clip)
             pygame.draw.rect(surface, ACCENT, around, max(1, self.px(2)), self.px(8))
+            surface.set_clip(None)
 
 
 _NO_MARGINS = {"left": 0, "right": 0, "top": 0, "bottom": 0}

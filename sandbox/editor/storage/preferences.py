@@ -1,35 +1,82 @@
-"""Preferences: small facts that the program remembers about a person from start to start."""
+"""Preferences: what a person has chosen, and small facts that the program remembers, from start to start."""
 
 import contextlib
 import json
+import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+
+from filelock import FileLock, Timeout
 
 from sandbox.editor.storage.level_file import data_folder
 from sandbox.level.format.writing import write_file
 
+# Version of the file; a later one may hold names that are not known here, which are kept.
+VERSION = 1
+# Longest wait [s] for another window that writes the file at this moment.
+_PATIENCE = 0.5
+
 
 def preference(name: str, folder: Path | None = None) -> Any:
     """What is remembered under a name; None where nothing is. folder: of the person's data."""
-    return _read(_file(folder)).get(name)
+    return preferences(folder).get(name)
+
+
+def preferences(folder: Path | None = None) -> dict[str, Any]:
+    """All that is remembered, by its names."""
+    try:
+        return _read(preferences_file(folder))
+    except (OSError, ValueError):
+        return {}
 
 
 def set_preference(name: str, value: Any, folder: Path | None = None) -> None:
-    """Remember a JSON value under a name; where that cannot be written, nothing happens."""
-    file = _file(folder)
+    """Remember a JSON value under a name, None = forget it; where that cannot be written, nothing happens."""
+    set_preferences({name: value}, folder)
+
+
+def set_preferences(values: Mapping[str, Any], folder: Path | None = None) -> None:
+    """Remember JSON values by their names, None = forget one; where that cannot be written, nothing happens."""
+    file = preferences_file(folder)
     # None of it is worth a line to the person: it is asked or offered once more, no work depends on it.
-    with contextlib.suppress(OSError):
+    with contextlib.suppress(OSError, Timeout):
         file.parent.mkdir(parents=True, exist_ok=True)
-        write_file(file, json.dumps({**_read(file), name: value}).encode())
+        with FileLock(file.with_suffix(".lock"), thread_local=False).acquire(timeout=_PATIENCE):
+            set_aside_broken(folder)
+            kept = {"version": VERSION, **preferences(folder), **values}
+            kept = {name: value for name, value in kept.items() if value is not None}
+            write_file(file, json.dumps(kept, indent=2).encode())
 
 
-def _file(folder: Path | None) -> Path:
+def set_aside_broken(folder: Path | None = None) -> Path | None:
+    """Give a file that cannot be read as preferences another name, which is returned; None where nothing is broken."""
+    file = preferences_file(folder)
+    try:
+        _read(file)
+    except OSError:
+        return None
+    except ValueError:
+        aside = file.with_name("preferences.broken.json")
+        with contextlib.suppress(OSError):
+            os.replace(file, aside)
+            return aside
+    return None
+
+
+def preferences_file(folder: Path | None = None) -> Path:
+    """Where preferences are kept."""
     return (data_folder() if folder is None else folder) / "preferences.json"
 
 
 def _read(file: Path) -> dict[str, Any]:
+    """What a file holds, nothing where there is none. Raises OSError, and ValueError for what are no preferences."""
     try:
         read = json.loads(file.read_bytes())
-    except (OSError, ValueError, RecursionError):
+    except FileNotFoundError:
         return {}
-    return read if isinstance(read, dict) else {}
+    except RecursionError as error:
+        raise ValueError("too deep") from error
+    if not isinstance(read, dict):
+        raise ValueError("no object")
+    return read

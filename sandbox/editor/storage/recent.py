@@ -1,4 +1,4 @@
-"""Recent levels: the files that were opened or saved last, for every window of the person."""
+"""Recent levels: the files that were opened or saved last, and those played last, for every window of the person."""
 
 import contextlib
 import json
@@ -18,12 +18,26 @@ _PATIENCE = 0.5
 
 def recent_levels(folder: Path | None = None) -> list[Path]:
     """Level files that were used last and are still there, newest first. folder: of the person's data."""
-    return [path for path in _listed(_file(folder)) if os.path.isfile(path)]
+    return _there("recent.json", folder)
+
+
+def played_levels(folder: Path | None = None) -> list[Path]:
+    """Level files, shipped ones too, that were played last and are still there, newest first."""
+    return _there("played.json", folder)
 
 
 def remember(path: str | os.PathLike[str], folder: Path | None = None) -> None:
     """Put a level's file first among the recent ones; where that cannot be written, nothing happens."""
-    file = _file(folder)
+    _put_first("recent.json", path, folder)
+
+
+def remember_played(path: str | os.PathLike[str], folder: Path | None = None) -> None:
+    """Put a level's file first among those played; where that cannot be written, nothing happens."""
+    _put_first("played.json", path, folder)
+
+
+def _put_first(name: str, path: str | os.PathLike[str], folder: Path | None) -> None:
+    file = _file(name, folder)
     newest = Path(os.path.abspath(path))
     # The list is a convenience: no fault of it is worth a line to the person.
     with contextlib.suppress(OSError, Timeout):
@@ -33,8 +47,12 @@ def remember(path: str | os.PathLike[str], folder: Path | None = None) -> None:
             write_file(file, json.dumps([os.fspath(other) for other in paths[:RECENT_COUNT]]).encode())
 
 
-def _file(folder: Path | None) -> Path:
-    return (data_folder() if folder is None else folder) / "recent.json"
+def _there(name: str, folder: Path | None) -> list[Path]:
+    return [path for path in _listed(_file(name, folder)) if os.path.isfile(path)]
+
+
+def _file(name: str, folder: Path | None) -> Path:
+    return (data_folder() if folder is None else folder) / name
 
 
 def _listed(file: Path) -> list[Path]:

@@ -16,6 +16,7 @@ from sandbox.app.draw.colours import (
     GRID,
     GRID_AXIS,
     GRID_FINE,
+    HOVERED,
     PARTICLE,
     PINNED,
     WELD,
@@ -54,7 +55,6 @@ CHUNK = 2_000
 SLICE = 0.006
 # Particles that would be smaller than this [pixels] are left out of the plain picture.
 SMALLEST_PLAIN = 1.0
-HOVERED: Colour = (180, 190, 205)
 
 Mask = NDArray[np.bool_]
 

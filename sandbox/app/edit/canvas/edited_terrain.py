@@ -38,7 +38,8 @@ def paint_ground(canvas: Canvas, camera: Camera, ground: Ground, scale: float) -
     if not len(edges):
         return
     pixels = camera.project(scene.corner)
-    line, fill = ground.tint or TERRAIN, TERRAIN_FILL
+    line: Colour = ground.tint or TERRAIN
+    fill: Colour = TERRAIN_FILL
     if ground.tint is not None:
         fill = mixed(fill, ground.tint, TINT_SHARE)
     if ground.ghost:

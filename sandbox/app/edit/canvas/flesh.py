@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.raster.painter import Painter
 from sandbox.app.draw.textures import Tiles
-from sandbox.app.draw.themes import DARK
+from sandbox.app.draw.themes import Theme, theme_now
 from sandbox.app.draw.things.cast import Cast, cast_of
 from sandbox.app.draw.things.ensemble import Ensemble
 from sandbox.app.draw.things.frame import Frame
@@ -45,7 +45,7 @@ class Flesh:
 
     def __init__(self) -> None:
         self._painter = Painter()
-        self._tiles: Tiles | None = None
+        self._tiles: tuple[Theme, Tiles] | None = None
         self._cast: tuple[Scene, Cast] | None = None
 
     def paint(
@@ -57,11 +57,11 @@ class Flesh:
             return False
         if self._cast is None or self._cast[0] is not scene:
             self._cast = (scene, cast_of(scene.level, is_welded=False))
-        if self._tiles is None:
-            self._tiles = Tiles(DARK)
+        if self._tiles is None or self._tiles[0] is not theme_now():
+            self._tiles = theme_now(), Tiles(theme_now())
         state = _state_of(scene, particles, springs)
         upright, still = np.zeros(len(scene.position)), np.zeros(len(scene.particle_a))
-        frame = Frame(state, camera.project(scene.position), upright, still, camera.zoom, scale, DARK, self._tiles)
+        frame = Frame(state, camera.project(scene.position), upright, still, camera.zoom, scale, *self._tiles)
         picture = layer.copy()
         picture.set_clip(layer.get_clip())
         self._painter.compiled = compiled

@@ -5,8 +5,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.draw.colours import ACCENT, LINE, MUTED, TEXT, mixed
-from sandbox.app.edit.side.rows import FIELD_BACKGROUND
+from sandbox.app.draw.colours import ACCENT, FIELD, LINE, MUTED, TEXT, mixed
 from sandbox.app.widgets.painted import Lit, Pressable, wrapped
 from sandbox.app.widgets.ui import Ui
 
@@ -43,14 +42,14 @@ class CheckBox(Pressable):
         surface = pygame.Surface(size, pygame.SRCALPHA)
         side = ui.px(16)
         box = pygame.Rect(0, (size[1] - side) // 2, side, side)
-        pygame.draw.rect(surface, ACCENT if self.state else FIELD_BACKGROUND, box, border_radius=ui.px(4))
+        pygame.draw.rect(surface, ACCENT if self.state else FIELD, box, border_radius=ui.px(4))
         pygame.draw.rect(surface, ACCENT if self.state else LINE, box, 1, border_radius=ui.px(4))
         x, y, part = box.centerx, box.centery, side / 4
         if self.mixed:
             pygame.draw.line(surface, MUTED, (x - part, y), (x + part, y), ui.px(2))
         elif self.state:
             points = [(x - part, y), (x - part / 4, y + part * 0.8), (x + part * 1.1, y - part * 0.8)]
-            pygame.draw.lines(surface, FIELD_BACKGROUND, False, points, ui.px(2))
+            pygame.draw.lines(surface, FIELD, False, points, ui.px(2))
         text = ui.font(12.5).render(self.label, True, TEXT)
         surface.blit(text, (side + ui.px(7), (size[1] - text.get_height()) // 2))
         return surface
@@ -96,7 +95,7 @@ class KeyBox(Pressable):
         """A key's cap, or what to do."""
         ui, surface = self.ui, pygame.Surface(size, pygame.SRCALPHA)
         place = surface.get_rect()
-        pygame.draw.rect(surface, FIELD_BACKGROUND, place, border_radius=ui.px(6))
+        pygame.draw.rect(surface, FIELD, place, border_radius=ui.px(6))
         pygame.draw.rect(surface, ACCENT if self.listening else LINE, place, 1, border_radius=ui.px(6))
         has_key = self.key is not None and len(self.key) == 1 and not self.listening
         words = "press a letter or digit" if self.listening else self.key or NO_KEY
@@ -104,7 +103,7 @@ class KeyBox(Pressable):
         at = picture.get_rect(midleft=(ui.px(9), size[1] // 2))
         if has_key:
             cap = pygame.Rect(ui.px(5), ui.px(4), max(at.width + ui.px(12), size[1] - ui.px(8)), size[1] - ui.px(8))
-            pygame.draw.rect(surface, mixed(FIELD_BACKGROUND, TEXT, 0.16), cap, border_radius=ui.px(4))
+            pygame.draw.rect(surface, mixed(FIELD, TEXT, 0.16), cap, border_radius=ui.px(4))
             at = picture.get_rect(center=cap.center)
         surface.blit(picture, at)
         return surface

@@ -83,9 +83,7 @@ class Form:
             self._show_value(each)
 
     def refresh(self) -> None:
-        """Keep what has the keyboard in sight, and bring fields that were typed into to the values that they gave."""
-        if self.area is not None:
-            self.area.follow_focus()
+        """Bring fields that were typed into to the values that they gave."""
         if self._is_stale:
             self._is_stale = False
             for each in list(self.properties.values()):

@@ -149,7 +149,6 @@ class MaterialsPage:
     def refresh(self) -> None:
         """Show the materials as they are now."""
         self._take_slide()
-        self.area.follow_focus()
         level = self._screen.document.level
         fresh = (level.materials, level.bodies, level.springs, level.settings.tick_rate, self.chosen)
         if all(new is old for new, old in zip(fresh, self._shown, strict=False)) and self._shown:

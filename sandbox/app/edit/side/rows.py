@@ -7,7 +7,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.draw.colours import ACCENT, LINE, MUTED, TEXT, Colour, mixed
+from sandbox.app.draw.colours import ACCENT, CHOSEN, FIELD, LINE, MENU, MUTED, TEXT, Colour, mixed
 from sandbox.app.edit.side.scroll import WHEEL_STEP
 from sandbox.app.widgets.painted import ENTER_KEYS, Lit, Painted, Pressable, wrapped
 from sandbox.app.widgets.ui import Ui
@@ -19,9 +19,6 @@ INSET = 10.0
 SWATCH = 11.0
 TEXT_SIZE = 12.5
 MENU_ROWS = 12
-FIELD_BACKGROUND: Colour = (18, 22, 28)
-MENU_BACKGROUND: Colour = (29, 34, 43)
-CHOSEN: Colour = (31, 74, 69)
 
 
 @dataclass(frozen=True)
@@ -50,7 +47,7 @@ class RowList(Painted):
         empty: str = "",
         at_once: bool = True,
         most_lines: int = 1,
-        background: Colour = FIELD_BACKGROUND,
+        background: Colour = FIELD,
     ) -> None:
         super().__init__(ui, rect, container)
         self.rows: Sequence[Row] = ()
@@ -227,7 +224,7 @@ class Picker(Lit, Pressable):
         ui = self.ui
         surface = pygame.Surface(size, pygame.SRCALPHA)
         place = surface.get_rect()
-        back = mixed(FIELD_BACKGROUND, TEXT, 0.06) if self.hovered else FIELD_BACKGROUND
+        back = mixed(FIELD, TEXT, 0.06) if self.hovered else FIELD
         pygame.draw.rect(surface, back, place, border_radius=ui.px(6))
         pygame.draw.rect(surface, LINE, place, 1, border_radius=ui.px(6))
         left = ui.px(8)
@@ -276,7 +273,7 @@ def open_menu(
     else:
         place = pygame.Rect(below.left, below.bottom, below.width, min(height, down))
     _Beside(ui, pygame.Rect((0, 0), ui.size), close, sheet)
-    menu = RowList(ui, place, choose, sheet, at_once=False, background=MENU_BACKGROUND)
+    menu = RowList(ui, place, choose, sheet, at_once=False, background=MENU)
     menu.show_rows(rows, chosen, reveal=True)
     ui.focus_on(menu)
     return menu

@@ -104,12 +104,19 @@ def scrolled_by(key: int, offset: float, step: float, page: float, height: float
 
 
 class _View(UIContainer):
-    """The visible part; the wheel over it scrolls."""
+    """The visible part; the wheel over it scrolls, and it follows the keyboard."""
 
-    def __init__(self, ui: Ui, rect: pygame.Rect, wheel: Callable[[float], None], container: Any) -> None:
+    def __init__(
+        self, ui: Ui, rect: pygame.Rect, wheel: Callable[[float], None], follow: Callable[[], None], container: Any
+    ) -> None:
         super().__init__(rect, ui.manager, container=container)
-        self._wheel = wheel
+        self._wheel, self._follow = wheel, follow
         self._ui = ui
+
+    def update(self, time_delta: float) -> None:
+        """Follow the keyboard."""
+        super().update(time_delta)
+        self._follow()
 
     def process_event(self, event: pygame.event.Event) -> bool:
         """Scroll by the wheel."""
@@ -125,13 +132,14 @@ class ScrollArea:
     def __init__(self, ui: Ui, place: pygame.Rect, container: Any = None) -> None:
         self._ui = ui
         wide = ui.px(BAR_WIDTH)
-        self.view = _View(ui, pygame.Rect(place.topleft, (place.width - wide, place.height)), self._wheel, container)
+        self._revealed: UIElement | None = None
+        self.view = _View(ui, pygame.Rect(place.topleft, (place.width - wide, place.height)), self.turn,
+                          self.follow_focus, container)  # fmt: skip
         self.content = UIContainer(pygame.Rect((0, 0), self.view.rect.size), ui.manager, container=self.view)
         bar_place = pygame.Rect(place.right - wide, place.top, wide, place.height)
         self.bar = ScrollBar(ui, bar_place, self.scroll_to, container)
         self.offset = 0.0
         self._height = place.height
-        self._revealed: UIElement | None = None
 
     def set_height(self, height: int) -> None:
         """Say how high the content is [pixels]."""
@@ -146,7 +154,8 @@ class ScrollArea:
             self.content.set_relative_position((0, -round(self.offset)))
         self.bar.show_place(self.offset, self._height, self.view.rect.height)
 
-    def _wheel(self, notches: float) -> None:
+    def turn(self, notches: float) -> None:
+        """Move by notches of the wheel."""
         self.scroll_to(self.offset - notches * self._ui.px(WHEEL_STEP))
 
     def follow_focus(self) -> None:

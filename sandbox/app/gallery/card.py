@@ -1,0 +1,170 @@
+"""Card: one thing that the gallery opens: a picture, a name, what to do with it; all of its text when pointed at."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pygame
+
+from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT, Colour
+from sandbox.app.widgets.painted import Lit, Pressable, wrapped
+from sandbox.app.widgets.ui import Ui
+
+# Sizes in layout units.
+PICTURE_RATIO = 9 / 16
+TEXT_HEIGHT = 70.0
+CORNER = 10.0
+PADDING = 13.0
+NAME_SIZE, LINE_SIZE = 14.0, 11.5
+NAME_HEIGHT, LINE_HEIGHT = 23.0, 16.0
+# Lines below the name while nobody points at it, and at most.
+SHORT_LINES, MOST_LINES = 2, 14
+
+
+class Card(Lit, Pressable):
+    """One thing to open; line: what to do with it, text: all that is said of it, tags: what else it is found by.
+
+    is_small: a row with the picture at its left and the name beside it. badge: a word over the picture.
+    """
+
+    ui: Ui
+
+    def __init__(
+        self, ui: Ui, rect: pygame.Rect, name: str, text: str, action: Callable[[], object], container: Any,
+        *, is_small: bool = False,
+    ) -> None:  # fmt: skip
+        super().__init__(ui, rect, container)
+        self.name, self.text, self.action, self.is_small = name, text, action, is_small
+        self.line = self.badge = ""
+        self.tags: tuple[str, ...] = ()
+        self.picture: pygame.Surface | None = None
+        self.has_picture = True
+        self.broken = False
+        self._is_open = False
+        ui.add(self)
+
+    @property
+    def picture_size(self) -> tuple[int, int]:
+        """Size of the place for a picture [pixels]."""
+        width, height = self.rect.size
+        if self.is_small:
+            return round((height - 2) / PICTURE_RATIO), height - 2
+        return width - 2, height - self.ui.px(TEXT_HEIGHT) - 1
+
+    def show_picture(self, picture: pygame.Surface) -> None:
+        """Show a picture of the size that there is for it."""
+        self.picture = picture
+        self.repaint()
+
+    def show_texts(self, name: str, text: str, tags: tuple[str, ...]) -> None:
+        """Show another name and text."""
+        self.name, self.text, self.tags = name, text, tags
+        self.repaint()
+
+    def show_fault(self, fault: str) -> None:
+        """Show why the file cannot be opened."""
+        self.line, self.text, self.broken = "", fault, True
+        self.repaint()
+
+    @property
+    def is_pointed_at(self) -> bool:
+        """Whether the mouse is over it, or the keyboard works on it."""
+        return bool(self.hovered) or self.ui.focus is self
+
+    def update(self, time_delta: float) -> None:
+        """Open and close as the keyboard comes and goes."""
+        super().update(time_delta)
+        if self._is_open != self.is_pointed_at:
+            self.repaint()
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface:
+        """The card as it is now."""
+        self._is_open = self.is_pointed_at
+        return self._painted(size, self._lines(size[0], self.is_small or not self.has_picture))
+
+    def paint_open(self) -> pygame.Surface:
+        """The card with all of its text, as high as that is."""
+        width, height = self.rect.size
+        lines = self._all_lines(width)
+        needed = self.picture_size[1] + self.ui.px(NAME_HEIGHT + 20) + len(lines) * self.ui.px(LINE_HEIGHT)
+        return self._painted((width, max(height, needed)), lines)
+
+    def _painted(self, size: tuple[int, int], lines: list[tuple[str, Colour]]) -> pygame.Surface:
+        ui, corner = self.ui, self.ui.px(CORNER)
+        card = pygame.Surface(size, pygame.SRCALPHA)
+        pygame.draw.rect(card, SURFACE, card.get_rect(), border_radius=corner)
+        if self.is_small:
+            self._paint_row(card)
+        else:
+            self._paint_whole(card, lines)
+        rim, width = (ACCENT, 2.0) if self._is_open else (LINE, 1.2)
+        pygame.draw.rect(card, rim, card.get_rect(), max(1, ui.px(width)), border_radius=corner)
+        # The picture has the corners of the card.
+        mask = pygame.Surface(size, pygame.SRCALPHA)
+        pygame.draw.rect(mask, (255, 255, 255), mask.get_rect(), border_radius=corner)
+        card.blit(mask, (0, 0), special_flags=pygame.BLEND_RGBA_MIN)
+        return card
+
+    def _paint_row(self, card: pygame.Surface) -> None:
+        ui, (width, height) = self.ui, self.picture_size
+        self._paint_picture(card, pygame.Rect(1, 1, width, height))
+        font, left = ui.font(13, True), width + ui.px(PADDING)
+        lines = wrapped(self.name, font, card.get_width() - left - ui.px(8), 2)
+        y = (card.get_height() - len(lines) * font.get_linesize()) // 2
+        for line in lines:
+            card.blit(font.render(line, True, TEXT), (left, y))
+            y += font.get_linesize()
+
+    def _paint_whole(self, card: pygame.Surface, lines: list[tuple[str, Colour]]) -> None:
+        ui, width, top = self.ui, card.get_width(), 0
+        if self.has_picture:
+            picture = pygame.Rect(1, 1, *self.picture_size)
+            self._paint_picture(card, picture)
+            top = picture.bottom
+            if self.badge:
+                self._paint_badge(card)
+            pygame.draw.line(card, LINE, (1, top), (width - 2, top))
+        y, left = top + ui.px(8), ui.px(PADDING)
+        bold, plain = ui.font(NAME_SIZE, True), ui.font(LINE_SIZE)
+        card.blit(bold.render(wrapped(self.name, bold, width - 2 * left, 1)[0], True, TEXT), (left, y))
+        y += ui.px(NAME_HEIGHT)
+        for text, colour in lines:
+            card.blit(plain.render(text, True, colour), (left, y))
+            y += ui.px(LINE_HEIGHT)
+
+    def _lines(self, width: int, is_row: bool) -> list[tuple[str, Colour]]:
+        """What stands below the name, and in which colour."""
+        inside = width - 2 * self.ui.px(PADDING)
+        colour = DANGER if self.broken else MUTED
+        lines = wrapped(self.line or self.text, self.ui.font(LINE_SIZE), inside, 1 if is_row else SHORT_LINES)
+        return [(line, colour) for line in lines]
+
+    def _all_lines(self, width: int) -> list[tuple[str, Colour]]:
+        """What stands below the name once there is room for all of it."""
+        inside, font = width - 2 * self.ui.px(PADDING), self.ui.font(LINE_SIZE)
+        texts = ((self.line, TEXT), (self.text, DANGER if self.broken else MUTED), (", ".join(self.tags), ACCENT))
+        return [(line, colour) for text, colour in texts if text for line in wrapped(text, font, inside, MOST_LINES)]
+
+    def _paint_picture(self, card: pygame.Surface, place: pygame.Rect) -> None:
+        pygame.draw.rect(card, BACKGROUND, place)
+        if self.picture is not None:
+            card.blit(self.picture, self.picture.get_rect(center=place.center))
+
+    def _paint_badge(self, card: pygame.Surface) -> None:
+        ui = self.ui
+        text = ui.font(12, True).render(self.badge, True, BACKGROUND)
+        place = text.get_rect(topleft=(ui.px(20), ui.px(13))).inflate(ui.px(18), ui.px(8))
+        pygame.draw.rect(card, ACCENT, place, border_radius=place.height // 2)
+        card.blit(text, text.get_rect(center=place.center))
+
+    def press(self) -> None:
+        """Open it."""
+        self.action()
+
+
+def draw_shadow(surface: pygame.Surface, place: pygame.Rect, ui: Ui) -> None:
+    """A soft shadow behind what lies over the others."""
+    for step in range(6, 0, -1):
+        around = place.move(0, ui.px(4)).inflate(ui.px(3 * step), ui.px(3 * step))
+        shade = pygame.Surface(around.size, pygame.SRCALPHA)
+        pygame.draw.rect(shade, (0, 0, 0, 16), shade.get_rect(), border_radius=ui.px(CORNER + 1.5 * step))
+        surface.blit(shade, around)

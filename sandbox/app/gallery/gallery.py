@@ -1,0 +1,379 @@
+"""Gallery: levels as cards with pictures, by sections, found by what is typed; and saved recordings as a list."""
+
+import json
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+
+import pygame
+
+from sandbox.app.application import Application
+from sandbox.app.draw.colours import TEXT, shown_theme
+from sandbox.app.edit.side.scroll import ScrollArea
+from sandbox.app.gallery.card import PICTURE_RATIO, TEXT_HEIGHT, Card, draw_shadow
+from sandbox.app.gallery.header import Header
+from sandbox.app.gallery.preview import Preview
+from sandbox.app.gallery.sections import FIRST, LIGHT_LEVELS, in_sections, is_found
+from sandbox.app.picture_cache import (
+    SECONDS,
+    draw_in_slices,
+    find_picture,
+    forget_old_pictures,
+    keep_picture,
+    kept_picture,
+    picture_key,
+)
+from sandbox.app.recordings import saved_recordings
+from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.ui import Ui
+from sandbox.editor.storage.recent import played_levels, recent_levels
+from sandbox.level.faults.level_error import LevelError, one_line
+from sandbox.level.format.files import parse_level, read_bytes, shipped_folder, shipped_levels
+from sandbox.physics.jit import COMPILED
+
+# Sizes in layout units.
+CARD_WIDTH, SMALL_WIDTH = 218.0, 218.0
+SMALL_HEIGHT = 54.0
+GAP = 16.0
+MARGIN = 36.0
+HEADING = 40.0
+SECTION_GAP = 4.0
+ROW_HEIGHT, ROW_WIDTH = 56.0, 760.0
+# Wall time [s] of a frame that cards are filled in.
+FILL_BUDGET = 0.02
+TITLES = {"levels": "Levels", "mine": "My levels", "recordings": "Replays"}
+NO_LEVELS = "No levels of yours yet. Draw one in the editor (New, or E in any level) and save it with Ctrl+S."
+NO_REPLAYS = "No replays yet. Record a run with Ctrl+R, or save what you did with Ctrl+S."
+STEPS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
+
+
+@dataclass
+class Group:
+    """Cards under a heading; columns: how many stand side by side; height: of a card [layout units]."""
+
+    title: str
+    line: str
+    columns: int
+    width: float
+    height: float
+    cards: list[Card] = field(default_factory=list)
+    labels: list[TextBlock] = field(default_factory=list)
+    # A row that repeats what is in other groups; it goes while something is searched.
+    is_shortcut: bool = False
+    top: int = 0
+
+
+class Gallery:
+    """The page of levels or recordings."""
+
+    def __init__(self, ui: Ui, app: Application, section: str, close: Callable[[], None], query: str = "") -> None:
+        self._ui, self._app, self._close = ui, app, close
+        self.groups: list[Group] = []
+        self.section = section
+        # What is still to be found out or drawn for cards: each goes on by a slice, False where it has to wait.
+        self._unfilled: deque[Iterator[bool]] = deque()
+        self._has_kernels: Callable[[bool], bool] = lambda contacts: False
+        self._paths: dict[Card, Path] = {}
+        self._preview: tuple[Card, Preview, pygame.Surface | None] | None = None
+        self.title = TITLES[section]
+        self.query = ""
+        self.sheet = ui.open_sheet(
+            self._escape, "@cover", again=lambda _: app.open_gallery(section, self.header.search.entry.get_text())
+        )
+        self._width = ui.units[0] - 2 * MARGIN
+        self._build_groups_of = {"levels": self._add_shipped, "mine": self._add_own, "recordings": self._add_recordings}
+        self.header = Header(ui, app, section, self.sheet, query)
+        self.header.search.enter = lambda _: self._open_first()
+        top = self.header.height
+        place = ui.rect(MARGIN - 6, top, ui.units[0] - 2 * MARGIN + 22, ui.units[1] - top)
+        self.area = ScrollArea(ui, place, self.sheet)
+        self._nothing = TextBlock(ui, ui.rect(6, 12, self._width, 60), "", self.area.content, 13.0)
+        self._build_groups_of[section]()
+        titles = [group.title for group in self.groups if group.cards and not group.is_shortcut]
+        self.header.show_sections(titles, self._show_section)
+        self._arrange()
+
+    @property
+    def cards(self) -> list[Card]:
+        """All cards but those of rows that repeat others, in their order."""
+        return [card for group in self.groups if not group.is_shortcut for card in group.cards]
+
+    def close(self) -> None:
+        """Take the page away."""
+        self._ui.close_sheet(self.sheet)
+
+    def _escape(self) -> None:
+        if self.query:
+            self.header.search.entry.set_text("")
+        elif self._app.screen is not None:
+            self._close()
+
+    # What there is.
+
+    def _group(self, title: str, line: str = "", *, is_shortcut: bool = False) -> Group:
+        """A group of cards, as many side by side as fit."""
+        least = SMALL_WIDTH if is_shortcut else CARD_WIDTH
+        columns = max(1, int((self._width + GAP) // (least + GAP)))
+        width = (self._width - GAP * (columns - 1)) / columns
+        height = SMALL_HEIGHT if is_shortcut else width * PICTURE_RATIO + TEXT_HEIGHT
+        group = Group(title, line, columns, width, height, is_shortcut=is_shortcut)
+        self.groups.append(group)
+        return group
+
+    def _add_shipped(self) -> None:
+        played = played_levels()
+        shortcuts = self._group("Played lately", is_shortcut=True)
+        if not self._app.ready:
+            shortcuts.title, shortcuts.line = "Ready at once", "The physics of the others is still being prepared."
+            light = [shipped_folder("levels") / f"{name}.json" for name in LIGHT_LEVELS]
+            played = [path for path in light if path.is_file()]
+        for path in played[: shortcuts.columns]:
+            self._add_level(shortcuts, path)
+        for section, paths in in_sections(shipped_levels()):
+            group = self._group(section.title, section.line)
+            for path in paths:
+                self._add_level(group, path, section.levels.get(path.stem, ""))
+                if path.stem == FIRST and not played_levels():
+                    group.cards[-1].badge = "Start here"
+        own = self._group("My levels")
+        for path in recent_levels():
+            self._add_level(own, path)
+
+    def _add_own(self) -> None:
+        group = self._group("")
+        for path in recent_levels():
+            self._add_level(group, path)
+
+    def _add_level(self, group: Group, path: Path, line: str = "") -> None:
+        is_shipped = path.parent == shipped_folder("levels")
+        action = partial(self._app.files.open_level, path, is_shipped)
+        card = self._add_card(group, one_line(path.stem), "", action)
+        card.line = line
+        try:
+            content = read_bytes(path)
+        except LevelError as error:
+            card.show_fault(error.faults[0])
+            return
+        if is_shipped:
+            # What was shipped needs no check before it is shown.
+            data = json.loads(content)
+            card.show_texts(data["name"], data.get("description", ""), tuple(data.get("tags", ())))
+        self._paths[card] = path
+        self._unfilled.append(self._fill(card, path, content, is_shipped))
+
+    def _add_card(self, group: Group, name: str, text: str, action: Callable[[], object]) -> Card:
+        place = self._ui.rect(6, 0, group.width, group.height)
+        card = Card(self._ui, place, name, text, action, self.area.content, is_small=group.is_shortcut)
+        card.repaint()
+        group.cards.append(card)
+        return card
+
+    def _fill(self, card: Card, path: Path, content: bytes, is_shipped: bool) -> Iterator[bool]:
+        key, size, theme = picture_key(content), card.picture_size, shown_theme()
+        picture = find_picture(path, key, size, theme)
+        if picture is not None:
+            card.show_picture(picture)
+            yield True
+            if is_shipped:
+                return
+        try:
+            level = parse_level(content, str(path))
+        except LevelError as error:
+            card.show_fault(error.faults[0])
+            return
+        if not is_shipped:
+            # Levels of one's own are often still without a name.
+            card.show_texts(level.name, f"{one_line(path.name)}  {level.description}".strip(), level.tags)
+        if picture is not None:
+            return
+        while not self._has_kernels(level.has_contacts):
+            yield False
+        picture = yield from draw_in_slices(level, theme, SECONDS if COMPILED else 0.0)
+        card.show_picture(pygame.transform.smoothscale(picture, size))
+        if COMPILED:
+            with suppress(OSError):
+                keep_picture(picture, kept_picture(key, theme))
+                forget_old_pictures(kept_picture(key, theme).parent)
+
+    def _add_recordings(self) -> None:
+        width = min(self._width, ROW_WIDTH)
+        group = Group("", "", 1, width, ROW_HEIGHT)
+        self.groups.append(group)
+        for path in saved_recordings():
+            stat = path.stat()
+            when = time.strftime("%d %B %Y, %H:%M", time.localtime(stat.st_mtime))
+            text = f"{when}, {stat.st_size / 1024:,.0f} KiB"
+            card = self._add_card(group, one_line(path.name), text, partial(self._app.files.open_replay, path))
+            card.has_picture = False
+            card.repaint()
+
+    # Where it stands.
+
+    def _arrange(self) -> None:
+        """Lay out the groups with what is found of them."""
+        ui, y = self._ui, 0.0
+        for group in self.groups:
+            shown = [card for card in group.cards if self._fits(group, card)]
+            for card in group.cards:
+                (card.show if card in shown else card.hide)()
+            self._head(group, y, bool(shown))
+            group.top = ui.px(y)
+            if not shown:
+                continue
+            y += HEADING if group.title else GAP / 2
+            for index, card in enumerate(shown):
+                x = 6 + index % group.columns * (group.width + GAP)
+                below = y + index // group.columns * (group.height + GAP)
+                card.set_relative_position(ui.rect(x, below, 0, 0).topleft)
+            y += -(-len(shown) // group.columns) * (group.height + GAP) + SECTION_GAP
+        self._nothing.show_text("" if y else self._words_for_nothing())
+        self.area.set_height(ui.px(max(y, 80.0) + MARGIN / 2))
+
+    def _words_for_nothing(self) -> str:
+        if self.query:
+            return f"Nothing here has “{self.query}” in its name, its tags or its text. Escape shows everything again."
+        return NO_REPLAYS if self.section == "recordings" else NO_LEVELS
+
+    def _fits(self, group: Group, card: Card) -> bool:
+        if not self.query:
+            return True
+        return not group.is_shortcut and is_found(self.query, card.name, card.line, card.text, group.title, *card.tags)
+
+    def _head(self, group: Group, y: float, is_shown: bool) -> None:
+        """Move a group's heading, or hide it."""
+        ui = self._ui
+        if group.title and not group.labels:
+            wide = ui.font(15, True).size(group.title)[0] / ui.scale + 14
+            place = ui.rect(6, y, wide, 24)
+            group.labels.append(TextBlock(ui, place, group.title, self.area.content, 15.0, TEXT, is_bold=True))
+            if group.line:
+                place = ui.rect(6 + wide, y, max(self._width - wide, 1), 20)
+                group.labels.append(TextBlock(ui, place, group.line, self.area.content, 12.0))
+        for index, label in enumerate(group.labels):
+            (label.show if is_shown else label.hide)()
+            label.set_relative_position((label.relative_rect.left, ui.px(y + 8 + 3 * index)))
+
+    def _show_section(self, title: str) -> None:
+        """Scroll to a section."""
+        group = next(group for group in self.groups if group.title == title)
+        self.area.scroll_to(group.top)
+
+    # A frame.
+
+    def update(self, has_kernels: Callable[[bool], bool], frame_time: float) -> None:
+        """Go on filling cards for a while, those whose kernels are there (see Preparation); show what has the focus."""
+        self._has_kernels = has_kernels
+        end, waiting = time.perf_counter() + FILL_BUDGET, 0
+        while waiting < len(self._unfilled):
+            went_on = next(self._unfilled[0], None)
+            if went_on is None:
+                self._unfilled.popleft()
+            elif not went_on:
+                self._unfilled.rotate(-1)
+                waiting += 1
+            if time.perf_counter() > end:
+                break
+        self._search(self.header.search.entry.get_text())
+        self._mark_section()
+        self._play(frame_time)
+
+    def _mark_section(self) -> None:
+        """Mark the section that is read: the last one that has reached the top, at the end the last of all."""
+        line = self.area.offset + self._ui.px(HEADING)
+        groups = [group for group in self.groups if group.cards and not group.is_shortcut]
+        reached = [group.title for group in groups if group.top <= line] or [group.title for group in groups[:1]]
+        self.header.mark(reached[-1] if reached and not self.query else "")
+
+    def _search(self, query: str) -> None:
+        if query.strip() == self.query:
+            return
+        self.query = query.strip()
+        self._arrange()
+        self.area.scroll_to(0.0)
+
+    def _play(self, frame_time: float) -> None:
+        """Let the level play that is pointed at."""
+        pointed = [card for card in self._shown() if card.is_pointed_at]
+        card = next((card for card in pointed if card.hovered), pointed[0] if pointed else None)
+        if self._preview is not None and self._preview[0] is not card:
+            before, _, still = self._preview
+            self._preview = None
+            if still is not None:
+                before.show_picture(still)
+        if card is None or card not in self._paths or card.is_small or self._app.chosen["motion"] == "less":
+            return
+        if self._preview is None:
+            self._preview = card, Preview(self._paths[card], card.picture_size, self._has_kernels), card.picture
+        preview = self._preview[1]
+        if preview.update(frame_time) and preview.picture is not None:
+            card.show_picture(preview.picture)
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """Draw the whole card that is pointed at, over its neighbours."""
+        if self._ui.top_sheet is not self.sheet:
+            return
+        for card in self._shown():
+            if card.is_pointed_at and not card.is_small and card.has_picture:
+                picture = card.paint_open()
+                view = self.area.view.rect.inflate(0, -2)
+                place = picture.get_rect(midtop=card.rect.midtop).clamp(view)
+                draw_shadow(surface, place, self._ui)
+                surface.blit(picture, place)
+                return
+
+    # Keys.
+
+    def _shown(self) -> list[Card]:
+        return [card for group in self.groups for card in group.cards if card.visible]
+
+    def _open_first(self) -> None:
+        found = self._shown()
+        if self.query and found:
+            found[0].press()
+
+    def press_key(self, event: pygame.event.Event) -> bool:
+        """Go from card to card with the arrow keys; a letter begins a search."""
+        if self._ui.top_sheet is not self.sheet:
+            return False
+        search = self.header.search.entry
+        if event.key in STEPS and not (self._ui.typing and event.key != pygame.K_DOWN):
+            self._go(*STEPS[event.key])
+            return True
+        is_plain = not event.mod & (pygame.KMOD_CTRL | pygame.KMOD_META | pygame.KMOD_ALT)
+        if not self._ui.typing and is_plain and event.unicode.isprintable() and event.unicode.strip():
+            # The letter itself comes as text after its key.
+            self._ui.focus_on(search)
+            search.select_range = [0, 0]
+            search.edit_position = len(search.get_text())
+            return True
+        return False
+
+    def _go(self, dx: int, dy: int) -> None:
+        shown, focus = self._shown(), self._ui.focus
+        if not shown:
+            return
+        target: Card | None = shown[0]
+        if isinstance(focus, Card) and focus in shown:
+            target = _beside(shown, focus, dx, dy)
+        if target is not None:
+            self._ui.focus_on(target)
+            self.area.follow_focus()
+
+    def scroll(self, notches: float) -> None:
+        """Move the cards by notches of the wheel."""
+        self.area.turn(notches)
+
+
+def _beside(cards: Sequence[Card], card: Card, dx: int, dy: int) -> Card | None:
+    """The card at the side of another: the next in a row, or the nearest of the row above or below."""
+    if dx:
+        index = cards.index(card) + dx
+        return cards[index] if 0 <= index < len(cards) else None
+    ahead = [each for each in cards if (each.rect.top - card.rect.top) * dy > 0]
+    return min(
+        ahead, key=lambda each: (abs(each.rect.top - card.rect.top), abs(each.rect.left - card.rect.left)), default=None
+    )

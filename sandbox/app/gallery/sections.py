@@ -1,0 +1,80 @@
+"""Sections: in what order the gallery shows the shipped levels, under which headings, and what to do with each."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading, a line beside it, and the stems of level files, each with what to do with the level in a few words."""
+
+    title: str
+    line: str
+    levels: dict[str, str]
+
+
+SECTIONS = (
+    Section("Toys", "Pick one and grab anything.", {
+        "jelly_pile": "Squish, stack, throw",
+        "truck_bridge": "Will it hold? Set Cs of iron to 1",
+        "balloons": "Cut the rope and fly",
+        "wrecking_crane": "Drag the ball back and let go",
+        "rope_bridge_wheel": "Watch it roll across",
+        "pinball": "A and D flip",
+        "hourglass": "Turn gravity over",
+        "suspension_car": "D drives, A drives back",
+        "catapult": "Hold D and let fly",
+        "curtain": "Tug a corner, unpin a hook",
+    }),
+    Section("Soft things", "Jellies, cloth and creatures.", {
+        "jelly_cube": "Lower Cs, and it softens",
+        "trampoline": "Pull the bed down and let go",
+        "walker": "Hold it back, or lift it over",
+        "beating_heart": "Pull at one, or cut its cord",
+        "jelly_wheel": "Spin it by its rim",
+        "quad_mesh": "Tear it with the cutting tool",
+        "rope_bridge_jelly": "One of each kind to pull at",
+    }),
+    Section("Machines", "Motors, wheels and balls.", {
+        "tumble_drum": "Hold D or A to turn it",
+        "ferris_wheel": "D and A turn it either way",
+        "marble_mill": "Drag marbles back up",
+        "dominoes": "Stand them up again",
+        "newtons_cradle": "Lift two, and two leave",
+        "clock_spring": "Wind it by its rim",
+    }),
+    Section("Bridges and ropes", "Pull, cut, and see who takes the load.", {
+        "rope": "Crack it like a whip",
+        "suspension_bridge": "Cut a hanger",
+        "breaking_bridge": "Hold the weight back",
+        "spider_web": "Pull at the fly",
+    }),
+    Section("Proofs for engineers", "What the equations promise, and how to try it.", {
+        "girder": "Drag its free end; then choose Iterative",
+        "mast": "Drag its head; then lower Cs",
+        "truss_bridge": "Cut a chord under the load",
+        "wrecking_ball": "Try 5 and 20 iterations",
+        "side_by_side": "Press R and compare Cs and Cd",
+        "hooke_comparison": "See the classic spring explode",
+    }),
+)  # fmt: skip
+# Where levels go that no section names.
+OTHERS = Section("More", "", {})
+# What a first visit is to begin with.
+FIRST = "jelly_pile"
+# Levels that can be played while the physics is still being prepared.
+LIGHT_LEVELS = ("rope", "ferris_wheel", "suspension_bridge", "breaking_bridge", "wrecking_ball", "truss_bridge")
+
+
+def in_sections(paths: Iterable[Path]) -> list[tuple[Section, list[Path]]]:
+    """Shipped level files by the sections that name them, in their order; those that none names come last."""
+    left = {path.stem: path for path in paths}
+    result = [(section, [left.pop(name) for name in section.levels if name in left]) for section in SECTIONS]
+    return [(section, found) for section, found in [*result, (OTHERS, list(left.values()))] if found]
+
+
+def is_found(query: str, *texts: str) -> bool:
+    """Whether every word of a query stands in one of the texts, wherever in it and however written."""
+    low = [text.casefold() for text in texts]
+    return all(any(word in text for text in low) for word in query.casefold().split())

@@ -1,0 +1,123 @@
+"""Settings: the one table of what a person can choose about the app; what they chose is kept from start to start.
+
+To add one: a line in SETTINGS; whoever obeys it reads `Chosen`.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from sandbox.editor.storage.preferences import preferences, set_preferences
+
+# A value and the words for it.
+Option = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """A setting that takes one of several values; the first is what holds at first."""
+
+    name: str
+    label: str
+    group: str
+    options: tuple[Option, ...]
+    tip: str = ""
+
+    @property
+    def default(self) -> str:
+        """What holds until something else is chosen."""
+        return self.options[0][0]
+
+    def fault_of(self, value: Any) -> str | None:
+        """Why a value cannot be taken."""
+        names = [name for name, _ in self.options]
+        return None if value in names else "use one of " + ", ".join(names)
+
+
+@dataclass(frozen=True)
+class Amount:
+    """A setting that is a number from low to high, None = automatic; a step is `by`; shown in per cent."""
+
+    name: str
+    label: str
+    group: str
+    low: float
+    high: float
+    by: float
+    default: float | None = None
+    tip: str = ""
+
+    def fault_of(self, value: Any) -> str | None:
+        """Why a value cannot be taken."""
+        if value is None and self.default is None:
+            return None
+        if isinstance(value, int | float) and not isinstance(value, bool) and self.low <= value <= self.high:
+            return None
+        return f"use a number from {self.low:g} to {self.high:g}"
+
+
+Setting = OneOf | Amount
+
+# Sizes of the widgets that can be chosen, in pixels for a layout unit.
+SCALES = (0.5, 4.0)
+
+SETTINGS: tuple[Setting, ...] = (
+    OneOf("theme", "Theme", "Look", (("dark", "Dark"), ("light", "Light"), ("system", "As the system")),
+          "A level may have a stage of its own"),
+    Amount("scale", "Size of widgets", "Look", *SCALES, 0.125, tip="Ctrl++ and Ctrl+- as well"),
+    OneOf("effects", "Shadows and effects", "Look", (("auto", "Automatic"), ("on", "On"), ("off", "Off")),
+          "Automatic: left out while frames come late"),
+    OneOf("motion", "Motion", "Look", (("full", "Full"), ("less", "Reduced")),
+          "Reduced: pictures of the gallery stand still, no dust and no sparks"),
+    OneOf("hints", "Hints", "Help", (("show", "Show"), ("hide", "Hide")),
+          "What a level says of itself when it begins; F2 shows it again"),
+)  # fmt: skip
+
+
+class Chosen:
+    """What a person has chosen, by the names of SETTINGS; changed(name) is called after each change.
+
+    given: values that hold for this start alone, whatever is remembered. automatic: what an amount comes to while it is
+    left open. faults: lines about what could not be read.
+    """
+
+    def __init__(self, changed: Callable[[str], object] = lambda name: None, **given: Any) -> None:
+        self.changed = changed
+        self.automatic: dict[str, float] = {}
+        self.faults: list[str] = []
+        read = preferences()
+        self._values = {setting.name: self._taken(setting, read) for setting in SETTINGS}
+        self._values |= {name: value for name, value in given.items() if value is not None}
+        self.keys = self._taken_keys(read.get("keys", {}))
+
+    def __getitem__(self, name: str) -> Any:
+        return self._values[name]
+
+    def choose(self, name: str, value: Any) -> None:
+        """Choose a value from now on, and at later starts; None = what holds at first."""
+        setting = next(setting for setting in SETTINGS if setting.name == name)
+        self._values[name] = setting.default if value is None else value
+        set_preferences({name: value})
+        self.changed(name)
+
+    def choose_keys(self, keys: Mapping[str, tuple[str, ...]]) -> None:
+        """Give actions other keys, by the names of the table of shortcuts, from now on and at later starts."""
+        self.keys = dict(keys)
+        set_preferences({"keys": {name: list(each) for name, each in keys.items()} or None})
+        self.changed("keys")
+
+    def _taken(self, setting: Setting, read: Mapping[str, Any]) -> Any:
+        value = read.get(setting.name, setting.default)
+        fault = setting.fault_of(value)
+        if fault is None:
+            return value
+        self.faults.append(f"preferences.json: {setting.name}: {value!r:.40} cannot be used; {fault}.")
+        return setting.default
+
+    def _taken_keys(self, read: Any) -> dict[str, tuple[str, ...]]:
+        if isinstance(read, dict) and all(
+            isinstance(keys, list) and all(isinstance(key, str) for key in keys) for keys in read.values()
+        ):
+            return {name: tuple(keys) for name, keys in read.items()}
+        self.faults.append("preferences.json: keys: not a list of keys for each action; the usual ones hold.")
+        return {}

@@ -1,0 +1,182 @@
+"""SettingsPage: what can be chosen, a row each, and the keys of everything that keys do."""
+
+from functools import partial
+
+from sandbox.app.draw.colours import TEXT
+from sandbox.app.edit.side.scroll import ScrollArea
+from sandbox.app.settings.chosen import SETTINGS, Amount, Chosen, OneOf
+from sandbox.app.settings.key_row import KeyRow
+from sandbox.app.shortcuts import Mode, Shortcut, shortcuts, spoken, with_keys
+from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.ui import Ui
+
+# Sizes in layout units.
+WIDTH, HEIGHT = 720.0, 600.0
+MARGIN = 24.0
+TOP, BOTTOM = 104.0, 66.0
+ROW, KEY_ROW, HEADING = 50.0, 30.0, 36.0
+LABEL_SHARE = 0.42
+# A narrower page has the label of a row above its buttons.
+ROOM_BESIDE = 520.0
+BUTTON = 34.0
+PAGES = (("general", "General", ""), ("play", "Keys in play", ""), ("edit", "Keys in editor", ""))
+KEYS_NOTE = "Press a row, then the new keys. Delete takes keys away, Escape leaves them as they are."
+
+
+class SettingsPage:
+    """A modal page; page: one of PAGES. It is made anew after what changes how all widgets look."""
+
+    def __init__(
+        self,
+        ui: Ui,
+        chosen: Chosen,
+        page: str = "general",
+        note: str = "",
+        offset: float = 0.0,
+        focus: int | None = None,
+    ) -> None:
+        self._ui, self._chosen, self._page = ui, chosen, page
+        self._y = 0.0
+        width, height = ui.units
+        box_width, box_height = min(WIDTH, width - 16), min(HEIGHT, height - 16)
+        self._width = box_width - 2 * MARGIN - 12
+        self._sheet = ui.open_sheet(self.close, is_page=True, again=self._again)
+        place = ui.rect((width - box_width) / 2, (height - box_height) / 2, box_width, box_height)
+        box = ui.panel(place, self._sheet, "@dialog")
+        ui.label(ui.rect(MARGIN, 16, 220, 28), "Settings", box, "@title")
+        tabs = ui.choice(ui.rect(MARGIN, 56, min(420, self._width), 32), PAGES, self._turn, box)
+        tabs.show(page)
+        area = ui.rect(MARGIN, TOP, self._width + 12, box_height - TOP - BOTTOM)
+        self.area = ScrollArea(ui, area, box)
+        place = ui.rect(MARGIN, box_height - BOTTOM + 12, self._width - 236, BOTTOM - 18)
+        self._note = TextBlock(ui, place, note or (KEYS_NOTE if page != "general" else ""), box, 12.0)
+        bottom = box_height - MARGIN - 26
+        ui.button(ui.rect(box_width - MARGIN - 226, bottom, 116, BUTTON), "Usual values", self._reset, box)
+        done = ui.button(
+            ui.rect(box_width - MARGIN - 100, bottom, 100, BUTTON), "Close", self.close, box, style="@primary"
+        )
+        if page == "general":
+            self._add_settings()
+        else:
+            self._add_keys("edit" if page == "edit" else "play")
+        self.area.set_height(ui.px(self._y))
+        self.area.scroll_to(offset)
+        ui.focus_on(done)
+        ui.focus_at(focus)
+
+    def close(self) -> None:
+        """Take the page away."""
+        self._ui.close_sheet(self._sheet)
+
+    def _again(self, ui: Ui) -> None:
+        SettingsPage(ui, self._chosen, self._page, self._note.text, self.area.offset, self._ui.focus_place)
+
+    def _turn(self, page: str) -> None:
+        if page != self._page:
+            self.close()
+            SettingsPage(self._ui, self._chosen, page)
+
+    def _reset(self) -> None:
+        """Go back to the usual values of what this page shows."""
+        if self._page == "general":
+            for setting in SETTINGS:
+                self._chosen.choose(setting.name, None)
+            self._show_anew("The usual values hold again.")
+            return
+        names = {entry.name for entry in _changeable(self._page)}
+        self._chosen.choose_keys({name: keys for name, keys in self._chosen.keys.items() if name not in names})
+        self._show_anew("The usual keys hold again.")
+
+    def _show_anew(self, note: str) -> None:
+        # What was chosen may have laid all widgets out anew, and this page with them.
+        if self._sheet.alive():
+            focus = self._ui.focus_place
+            self.close()
+            SettingsPage(self._ui, self._chosen, self._page, note, self.area.offset, focus)
+
+    # Rows.
+
+    def _heading(self, text: str) -> None:
+        place = self._ui.rect(0, self._y + 12, self._width, 20)
+        TextBlock(self._ui, place, text.upper(), self.area.content, 11.0, is_bold=True)
+        self._y += HEADING
+
+    def _add_settings(self) -> None:
+        group = ""
+        for setting in SETTINGS:
+            if setting.group != group:
+                group = setting.group
+                self._heading(group)
+            if isinstance(setting, OneOf):
+                self._add_choice(setting)
+            else:
+                self._add_amount(setting)
+
+    def _row(self, label: str, tip: str) -> tuple[float, float]:
+        """The label of a row and what is said of it; left edge and width of the place for its buttons."""
+        ui, content = self._ui, self.area.content
+        is_beside = self._width >= ROOM_BESIDE
+        wide = self._width * LABEL_SHARE - 12 if is_beside else self._width
+        TextBlock(ui, ui.rect(0, self._y, wide, 20), label, content, 13.0, TEXT)
+        TextBlock(ui, ui.rect(0, self._y + 19, wide, 30), tip, content, 11.0)
+        if is_beside:
+            return self._width * LABEL_SHARE, self._width * (1 - LABEL_SHARE) - 4
+        self._y += 40
+        return 0.0, self._width - 4
+
+    def _add_choice(self, setting: OneOf) -> None:
+        left, width = self._row(setting.label, setting.tip)
+        options = [(value, words, "") for value, words in setting.options]
+        choose = partial(self._choose, setting.name)
+        row = self._ui.choice(self._ui.rect(left, self._y + 2, width, BUTTON), options, choose, self.area.content)
+        row.show(self._chosen[setting.name])
+        self._y += ROW
+
+    def _choose(self, name: str, value: object) -> None:
+        self._chosen.choose(name, value)
+        self._show_anew("")
+
+    def _add_amount(self, setting: Amount) -> None:
+        ui, content = self._ui, self.area.content
+        left, width = self._row(setting.label, setting.tip)
+        value = self._chosen[setting.name]
+        shown = self._chosen.automatic[setting.name] if value is None else value
+        y, x = self._y + 2, left
+        for text, by in (("−", -setting.by), ("+", setting.by)):
+            target = min(max(round((shown + by) / setting.by) * setting.by, setting.low), setting.high)
+            ui.button(ui.rect(x, y, BUTTON, BUTTON), text, partial(self._choose, setting.name, target), content)
+            if by < 0:
+                ui.label(ui.rect(x + BUTTON, y, 66, BUTTON), f"{100 * shown:.0f} %", content, "@middle")
+            x += BUTTON + 66
+        if setting.default is None:
+            place = ui.rect(x - 56, y, min(118.0, width - x + left + 56), BUTTON)
+            button = ui.button(place, "Automatic", partial(self._choose, setting.name, None), content, style="@segment")
+            if value is None:
+                button.select()
+        self._y += ROW
+
+    # Keys.
+
+    def _add_keys(self, mode: Mode) -> None:
+        group = ""
+        for entry in sorted(_changeable(mode), key=lambda entry: entry.group):
+            if entry.group != group:
+                group = entry.group
+                self._heading(group)
+            place = self._ui.rect(2, self._y, self._width - 6, KEY_ROW - 3)
+            KeyRow(self._ui, place, entry, partial(self._take, entry), self.area.content)
+            self._y += KEY_ROW
+
+    def _take(self, entry: Shortcut, keys: tuple[str, ...]) -> None:
+        """Give an action other keys, and say from what they were taken."""
+        changed, losers = with_keys(self._chosen.keys, entry, keys)
+        self._chosen.choose_keys(changed)
+        note = f"{entry.label}: {spoken(keys)}."
+        for loser in losers:
+            note += f" “{loser.label}” had that key" + (" and has none now." if not loser.keys else ".")
+        self._show_anew(note)
+
+
+def _changeable(mode: str) -> list[Shortcut]:
+    """What can have other keys in a mode."""
+    return [entry for entry in shortcuts("edit" if mode == "edit" else "play") if entry.action]
