@@ -66,6 +66,8 @@ class App:
         self._counted = [0.0, 0, 0, 0.0]
         self._seconds = 0.0
         self._build_ui()
+        for fault in self.chosen.faults:
+            self.say(fault)
         self.preparation = Preparation(self._switched)
         # How long the run on the screen has been waiting for kernels [s].
         self._waited = 0.0
@@ -138,7 +140,8 @@ class App:
     def start(self, playback: Playback, source: Path | None = None) -> None:
         """Show another run from its beginning; source: the file of its level."""
         self.show_screen(PlayScreen(self, playback, source))
-        self._describe("" if playback.replay else playback.level.description)
+        shown = playback.replay is None and self.chosen["hints"] == "show"
+        self._describe(playback.level.description if shown else "")
 
     def start_document(self, playback: Playback) -> PlayScreen:
         """Show a run of the level that the editor has open."""
@@ -152,6 +155,11 @@ class App:
         self._description = description
         if description:
             self.say(description)
+
+    def _show_hint(self) -> None:
+        """Say once more what the level of the run is about."""
+        if self.play is not None:
+            self._describe(self.play.playback.level.description or "This level says nothing of itself.")
 
     def follow(self, playback: Playback) -> None:
         """Show how far a run is that has to be played again, for an undo or a recording, where that takes long."""
@@ -177,6 +185,7 @@ class App:
             "larger": lambda: self._rescale(1.125),
             "smaller": lambda: self._rescale(1 / 1.125),
             "settings": self._open_settings,
+            "hint": self._show_hint,
             "help": lambda: show_help(self.ui, self.mode, self.guide.begin),
             "tour": self.guide.begin,
             "quit": self.quit,

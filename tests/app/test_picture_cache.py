@@ -5,7 +5,9 @@ import os
 import pygame
 import pytest
 
-from sandbox.app import gallery, picture_cache
+from sandbox.app import picture_cache
+from sandbox.app.draw.colours import THEME_NAMES
+from sandbox.app.gallery import gallery
 from sandbox.app.picture_cache import kept_picture, picture_key, shipped_picture, stale_pictures
 from sandbox.editor.storage.recent import remember
 from sandbox.level.format.canonical import level_text
@@ -18,9 +20,9 @@ def drawn(monkeypatch):
     """The names of the levels that are drawn from now on."""
     names, draw = [], gallery.draw_in_slices
 
-    def note(level, seconds):
+    def note(level, theme, seconds):
         names.append(level.name)
-        return draw(level, 0.0)
+        return draw(level, theme, 0.0)
 
     monkeypatch.setattr(gallery, "draw_in_slices", note)
     return names
@@ -35,14 +37,15 @@ def own_level(folder, name="Mine", **changes):
 
 def test_every_shipped_picture_is_of_its_level_as_it_is_now():
     missing, unused = stale_pictures()
-    assert (sorted(missing), [path.name for path in unused]) == ([], []), "`make pictures` draws them"
+    assert ([path.name for path in missing], [path.name for path in unused]) == ([], []), "`make pictures` draws them"
 
 
 def test_a_changed_level_has_no_shipped_picture_but_line_ends_change_nothing():
     path = shipped_levels()[0]
     content = path.read_bytes()
-    assert shipped_picture(path, picture_key(content)).is_file()
-    assert not shipped_picture(path, picture_key(content + b" ")).is_file()
+    for theme in THEME_NAMES:
+        assert shipped_picture(path, picture_key(content), theme).is_file()
+        assert not shipped_picture(path, picture_key(content + b" "), theme).is_file()
     assert picture_key(content.replace(b"\n", b"\r\n")) == picture_key(content)
 
 
@@ -76,7 +79,7 @@ def test_a_level_of_ones_own_is_drawn_once_and_again_after_a_change(open_app, dr
 
 
 def test_a_damaged_picture_is_drawn_anew(open_app, drawn, tmp_path):
-    kept = kept_picture(picture_key(own_level(tmp_path).read_bytes()))
+    kept = kept_picture(picture_key(own_level(tmp_path).read_bytes()), "dark")
     kept.parent.mkdir(parents=True)
     kept.write_bytes(b"\x89PNG\r\n\x1a\n, and no more")
     driver = open_app(small_level())
@@ -99,7 +102,7 @@ def test_where_pictures_cannot_be_kept_they_are_shown_all_the_same(open_app, dra
 
 
 def test_keys_are_answered_while_a_picture_takes_long(open_app, monkeypatch, tmp_path):
-    def endless(level, seconds):
+    def endless(level, theme, seconds):
         while True:
             yield True
 
@@ -117,8 +120,8 @@ def test_keys_are_answered_while_a_picture_takes_long(open_app, monkeypatch, tmp
 def test_old_pictures_are_removed_and_those_used_last_stay(tmp_path, monkeypatch):
     monkeypatch.setattr(picture_cache, "KEPT", 2)
     for age, name in enumerate(("old", "older", "oldest")):
-        (tmp_path / f"{name}.png").touch()
+        (tmp_path / f"{name}.jpg").touch()
 
-        os.utime(tmp_path / f"{name}.png", (10_000 - age, 10_000 - age))
+        os.utime(tmp_path / f"{name}.jpg", (10_000 - age, 10_000 - age))
     picture_cache.forget_old_pictures(tmp_path)
     assert sorted(path.stem for path in tmp_path.iterdir()) == ["old", "older"]

@@ -56,13 +56,15 @@ class Renderer:
     """Draws on a surface; scale: pixels per layout unit; level: what it shows, None = springs and discs alone.
 
     lattice: whether springs are shown by their strain, in front of the things that they are. non_finite: particles the
-    last drawing had to leave out. compiled: whether kernels may be used.
+    last drawing had to leave out. compiled: whether kernels may be used. has_shadows, has_effects: whether shadows, and
+    dust and sparks, are drawn.
     """
 
     def __init__(self, scale: float = 1.0, level: Level | None = None) -> None:
         self.scale = scale
         self.compiled = True
         self.lattice = False
+        self.has_shadows = self.has_effects = True
         self.non_finite = 0
         self.level = level
         self.follow_theme()
@@ -129,10 +131,11 @@ class Renderer:
         painter = self._painter
         ensemble = self._ensemble_of(level, frame, particles, springs)
         ensemble.soft.trace(painter, frame)
-        thrown, shapes = ensemble.thrown(frame)
-        offset = (SHADOW[0] * self.scale, SHADOW[1] * self.scale)
-        painter.shadows(thrown, shapes, offset, packed(self.theme.shadow), self.theme.shadow_strength)
-        if not self.lattice:
+        if self.has_shadows:
+            thrown, shapes = ensemble.thrown(frame)
+            offset = (SHADOW[0] * self.scale, SHADOW[1] * self.scale)
+            painter.shadows(thrown, shapes, offset, packed(self.theme.shadow), self.theme.shadow_strength)
+        if not self.lattice and self.has_effects:
             dust = MarkList()
             self.effects.mark_dust(dust, camera, self.theme, self.scale)
             painter.marks(dust, frame.tiles.array)
@@ -174,7 +177,7 @@ class Renderer:
     def _draw_held(self, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
         """Pins, sparks, and a line from what is held to the cursor, of another colour where it pulls its most."""
         layer = MarkList()
-        if not self.lattice:
+        if not self.lattice and self.has_effects:
             self.effects.mark_sparks(layer, camera, self.scale)
         if self._ensemble is not None:
             self._ensemble.balls.mark_pins(layer, frame)

@@ -12,6 +12,7 @@ from pathlib import Path
 import pygame
 
 from sandbox.app.application import Application
+from sandbox.app.compiling import is_prepared
 from sandbox.app.draw.colours import TEXT, shown_theme
 from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.gallery.card import PICTURE_RATIO, TEXT_HEIGHT, Card, draw_shadow
@@ -33,7 +34,7 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.recent import played_levels, recent_levels
 from sandbox.level.faults.level_error import LevelError, one_line
 from sandbox.level.format.files import parse_level, read_bytes, shipped_folder, shipped_levels
-from sandbox.physics.jit import COMPILED
+from sandbox.physics import jit
 
 # Sizes in layout units.
 CARD_WIDTH, SMALL_WIDTH = 218.0, 218.0
@@ -127,8 +128,8 @@ class Gallery:
     def _add_shipped(self) -> None:
         played = played_levels()
         shortcuts = self._group("Played lately", is_shortcut=True)
-        if not self._app.ready:
-            shortcuts.title, shortcuts.line = "Ready at once", "The physics of the others is still being prepared."
+        if not jit.COMPILED and not is_prepared():
+            shortcuts.title, shortcuts.line = "Ready at once", "The first start prepares the physics of the others."
             light = [shipped_folder("levels") / f"{name}.json" for name in LIGHT_LEVELS]
             played = [path for path in light if path.is_file()]
         for path in played[: shortcuts.columns]:
@@ -139,7 +140,7 @@ class Gallery:
                 self._add_level(group, path, section.levels.get(path.stem, ""))
                 if path.stem == FIRST and not played_levels():
                     group.cards[-1].badge = "Start here"
-        own = self._group("My levels")
+        own = self._group("Your own")
         for path in recent_levels():
             self._add_level(own, path)
 
@@ -192,9 +193,9 @@ class Gallery:
             return
         while not self._has_kernels(level.has_contacts):
             yield False
-        picture = yield from draw_in_slices(level, theme, SECONDS if COMPILED else 0.0)
+        picture = yield from draw_in_slices(level, theme, SECONDS if jit.COMPILED else 0.0)
         card.show_picture(pygame.transform.smoothscale(picture, size))
-        if COMPILED:
+        if jit.COMPILED:
             with suppress(OSError):
                 keep_picture(picture, kept_picture(key, theme))
                 forget_old_pictures(kept_picture(key, theme).parent)

@@ -52,10 +52,10 @@ SECTIONS = (
     }),
     Section("Proofs for engineers", "What the equations promise, and how to try it.", {
         "girder": "Drag its free end; then choose Iterative",
-        "mast": "Drag its head; then lower Cs",
+        "mast": "Drag its head; then choose Iterative",
         "truss_bridge": "Cut a chord under the load",
         "wrecking_ball": "Try 5 and 20 iterations",
-        "side_by_side": "Press R and compare Cs and Cd",
+        "side_by_side": "R, then . for single ticks",
         "hooke_comparison": "See the classic spring explode",
     }),
 )  # fmt: skip

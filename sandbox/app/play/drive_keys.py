@@ -6,19 +6,40 @@ from sandbox.app.play.playback import Playback
 from sandbox.level.build.actuators import driving_keys
 from sandbox.session.commands import SetDrive
 
+ARROWS = {"left": pygame.K_LEFT, "right": pygame.K_RIGHT, "up": pygame.K_UP, "down": pygame.K_DOWN}
+
+
+def code_of(key: str) -> int:
+    """The key of a keyboard that a level names."""
+    return ARROWS.get(key) or ord(key)
+
 
 class DriveKeys:
     """Drives parts of one run while their keys are held; a press and its release are one gesture."""
 
     def __init__(self, playback: Playback) -> None:
         self.playback = playback
-        self._keys = {ord(key): parts for key, parts in driving_keys(playback.level).items()}
+        driving = driving_keys(playback.level)
+        self._keys = {code_of(key): parts for key, parts in driving.items()}
+        self._names = {code_of(key): key for key in driving}
         # The gesture of each key that is held, in the order of pressing.
         self._held: dict[int, int] = {}
+
+    @property
+    def has_arrows(self) -> bool:
+        """Whether arrow keys drive something."""
+        return any(code in self._keys for code in ARROWS.values())
+
+    def shown(self) -> list[tuple[str, bool]]:
+        """The keys that drive something, by name, each with whether it is held."""
+        return [(name, code in self._held) for code, name in sorted(self._names.items())]
 
     def press(self, key: int, modifiers: int) -> bool:
         """Drive what the key drives; whether it drives anything."""
         if key not in self._keys or modifiers & (pygame.KMOD_CTRL | pygame.KMOD_META | pygame.KMOD_ALT):
+            return False
+        if modifiers & pygame.KMOD_SHIFT and key in ARROWS.values():
+            # With Shift they move the marked particle, as they do elsewhere.
             return False
         if key not in self._held:
             self._held[key] = self.playback.session.new_gesture()

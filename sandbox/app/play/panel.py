@@ -7,6 +7,7 @@ import numpy as np
 import pygame
 
 from sandbox.app.draw.colours import WARNING
+from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.play.firmness_rows import ALL_BODIES, FirmnessRows
 from sandbox.app.play.playback import Playback
 from sandbox.app.widgets.fields import Field, typed_number
@@ -33,6 +34,8 @@ ENTRY_WIDTH = 82.0
 HAND_LABEL = 46.0
 # Height that everything takes; in a lower window rows and gaps shrink by the same part.
 FULL_HEIGHT = 670.0
+# Rows shrink to no less than this part of their height: text would be cut.
+TIGHTEST = 0.94
 # What is added where there are bodies whose firmness can be set.
 FIRMNESS_HEIGHT = 121.0
 # Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
@@ -59,12 +62,16 @@ class Panel:
         self._y = 0.0
         self.firmness = FirmnessRows(playback, say)
         full = FULL_HEIGHT + (FIRMNESS_HEIGHT if self.firmness.bodies else 0.0)
-        self._tight = min(1.0, height / full)
-        self.back = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
+        self._tight = min(1.0, max(height / full, TIGHTEST))
+        background = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
+        # What does not fit is scrolled to.
+        self.area = ScrollArea(ui, ui.rect(0, 0, PANEL_WIDTH, height), background)
+        self.back = self.area.content
         self._build_springs()
         if self.firmness.bodies:
             self._build_firmness()
         self._build_world()
+        self.area.set_height(ui.px(full * self._tight))
         self.refresh()
 
     # Building.

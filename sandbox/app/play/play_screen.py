@@ -1,5 +1,6 @@
 """PlayScreen: a run on the screen, with the bar of its tools at the top and the panel at the right."""
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,8 +13,12 @@ from sandbox.app.edit.bake_choice import ask_to_keep
 from sandbox.app.loop import SPEEDS
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.hand_labels import draw_labels
+from sandbox.app.play.key_caps import draw_key_caps
+from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
+from sandbox.app.play.out_of_view import OutOfView
 from sandbox.app.play.panel import PANEL_WIDTH, Panel
 from sandbox.app.play.playback import Playback
+from sandbox.app.play.quality import Quality
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
 from sandbox.app.play.stuck import NOTICE, StuckBodies
@@ -31,6 +36,10 @@ from sandbox.tools.drag import STRENGTHS
 
 # Where the button is that frees what is stuck, below the bar, and its size [layout units].
 FREE_PLACE, FREE_SIZE = (16.0, 12.0), (110.0, 34.0)
+# Narrower windows begin without the panel [layout units].
+ROOM_FOR_PANEL = 800.0
+# The button that begins again, below the bar in the middle [layout units].
+AGAIN_TOP, AGAIN_SIZE = 16.0, (150.0, 40.0)
 # Under what the strength of the hand is remembered.
 HAND = "hand"
 
@@ -47,7 +56,9 @@ class PlayScreen:
         self._app = app
         self._ui = app.ui
         self.source, self.of_document = source, of_document
-        self.show_panel = True
+        # Whether the person wants the panel; None: it is shown where there is room.
+        self._wants_panel: bool | None = None
+        self.show_panel = app.ui.units[0] >= ROOM_FOR_PANEL
         self.panel: Panel | None = None
         self.stage = Stage(playback, self.viewport, app.scale)
         kept = preference(HAND)
@@ -55,6 +66,8 @@ class PlayScreen:
             self.stage.drag.strength = kept
         self._keys = DriveKeys(playback)
         self.stuck = StuckBodies()
+        self.out_of_view = OutOfView()
+        self.quality = Quality()
         self.actions = self._actions()
         app.follow(playback)
 
@@ -84,11 +97,17 @@ class PlayScreen:
     def build(self, ui: Ui) -> None:
         """Lay the bar and the panel out anew."""
         self._ui = ui
+        self.show_panel = ui.units[0] >= ROOM_FOR_PANEL if self._wants_panel is None else self._wants_panel
         self.toolbar = Toolbar(ui, self._app.act, self.of_document)
         self.stage.place(self.viewport, ui.scale)
         place = ui.rect(FREE_PLACE[0], BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
         self.free = ui.button(place, "Free it", self._free, tip=tip_of("free", "play"))
         self.free.hide()
+        left = (self.viewport[0] + self.viewport[2] / 2) / ui.scale - AGAIN_SIZE[0] / 2
+        place = ui.rect(left, BAR_HEIGHT + AGAIN_TOP, *AGAIN_SIZE)
+        self.again = ui.button(place, "Again", self._reset, style="@primary", tip=tip_of("reset", "play"))
+        self.again.hide()
+        self.stage.renderer.follow_theme()
         before, self.panel = self.panel, None
         if self.show_panel:
             height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
@@ -171,12 +190,13 @@ class PlayScreen:
         self.leave()
         self.stage.replace_playback(self.playback.reset())
         self.stuck = StuckBodies()
+        self.out_of_view = OutOfView()
         self._app.follow(self.playback)
         if self.panel is not None:
             self.panel.playback = self.playback
 
     def _toggle_panel(self) -> None:
-        self.show_panel = not self.show_panel
+        self._wants_panel = not self.show_panel
         self._app.rebuild()
 
     def leave(self) -> None:
@@ -209,7 +229,9 @@ class PlayScreen:
             self._keys.release(key)
 
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
-        """Move the keyboard cursor."""
+        """Move the keyboard cursor; where the level has arrow keys of its own, Shift is what tells them apart."""
+        if self._keys.has_arrows:
+            modifiers &= ~pygame.KMOD_SHIFT
         self.stage.move_cursor(dx, dy, modifiers)
 
     # A frame.
@@ -219,6 +241,7 @@ class PlayScreen:
         self.stage.update(frame_time if ready and not self._ui.has_sheet else 0.0, pointer, profile)
         self.stage.renderer.compiled = ready
         self._show_stuck()
+        self._show_again()
         for message in self.playback.messages:
             self._app.say(message)
         self.playback.messages.clear()
@@ -247,11 +270,25 @@ class PlayScreen:
         if bool(found) != bool(self.free.visible):
             (self.free.show if found else self.free.hide)()
 
+    def _show_again(self) -> None:
+        was_over = self.out_of_view.is_over
+        self.out_of_view.update(self.playback.session.world, self.stage.first_box)
+        is_over = self.out_of_view.is_over
+        if is_over and not was_over:
+            self._app.say(LEFT_VIEW)
+        if is_over != bool(self.again.visible):
+            (self.again.show if is_over else self.again.hide)()
+
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
-        """Draw the world, and what hands pull with."""
+        """Draw the world, what hands pull with, and the keys that the level has."""
+        began, renderer, chosen = time.perf_counter(), self.stage.renderer, self._app.chosen
+        renderer.has_shadows = self.quality.shadows(chosen["effects"])
+        renderer.has_effects = self.quality.effects(chosen["effects"], chosen["motion"])
         self.stage.draw(surface, profile)
+        self.quality.note(time.perf_counter() - began)
         surface.set_clip(self.viewport)
         self.stuck.draw(surface, self._ui, self.camera, self.playback.current)
+        draw_key_caps(surface, self._ui, self._keys.shown(), self.viewport)
         draw_labels(surface, self._ui, self.camera, self.playback.current, self.stage.pulls())
         surface.set_clip(None)
 

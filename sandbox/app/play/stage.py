@@ -36,8 +36,8 @@ class Stage:
         self.pressed_by_key = False
         self._hovered: int | None = None
         self._make_tools("normal")
-        self._first_box = view_of(playback.level, playback.current)
-        self._fit(self._first_box)
+        self.first_box = view_of(playback.level, playback.current)
+        self._fit(self.first_box)
 
     def _make_tools(self, strength: str) -> None:
         new_gesture = self.playback.session.new_gesture
@@ -75,7 +75,7 @@ class Stage:
         if self._is_fitted and self._box == box:
             box = bounds(snapshot.position[shown_particles(snapshot)])
         if not self.camera.can_show(box):
-            box = self._first_box
+            box = self.first_box
             self.playback.messages.append("Some particles are too far away to be shown. Ctrl+Z or R brings them back.")
         self._fit(box)
 

@@ -1,13 +1,15 @@
-"""Toolbar: the bar at the top with tools, time and files."""
+"""Toolbar: the bar at the top with tools, time and files; what has no room there is in a menu."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED, TEXT, Colour
 from sandbox.app.shortcuts import tip_of
+from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.icons import ICONS, painted_icon
 from sandbox.app.widgets.ui import Ui, set_icon
 
@@ -17,8 +19,23 @@ BUTTON = 34.0
 GAP = 6.0
 ICON = 18.0
 SLOW_WIDTH = 46.0
+MARGIN = 14.0
 # Narrower windows leave the level's name out, and the wider gaps between the groups.
 ROOM_FOR_NAME = 1000.0
+WIDE_GAP, NARROW_GAP = 16.0, 4.0
+# Groups of actions from the left, and those at the right end, with their pictures.
+LEFT = (
+    (("edit", "edit"),),
+    (("tool_drag", "drag"), ("tool_pin", "pin"), ("tool_cut", "cut")),
+    (("undo", "undo"), ("redo", "redo")),
+    (("reset", "reset"), ("pause", "pause"), ("step", "step"), ("slow", ""), ("keep", "keep")),
+    (("record", "record"), ("save", "save")),
+)  # fmt: skip
+RIGHT = (("gallery", "levels"), ("settings", "settings"), ("fit", "fit"), ("panel", "panel"), ("help", ""))
+# Words on the buttons that have no picture.
+WORDS = {"slow": "1x", "help": "?"}
+# What goes into the menu where the window is too narrow, first what is missed least.
+LEAVING = ("save", "settings", "record", "fit", "redo", "step", "help", "slow", "keep", "panel", "tool_pin", "edit")
 
 
 @dataclass(frozen=True)
@@ -35,6 +52,22 @@ class BarState:
     panel: bool
 
 
+def fitting(actions: Sequence[str], width: float) -> list[str]:
+    """Those of the actions whose buttons fit side by side into a width [layout units], with that of the menu."""
+    left, shown = width - BUTTON - GAP, list(actions)
+    for action in LEAVING:
+        needed = sum(_width(each) + GAP for each in shown) + NARROW_GAP * len(LEFT)
+        if needed <= (width if len(shown) == len(actions) else left):
+            break
+        if action in shown:
+            shown.remove(action)
+    return shown
+
+
+def _width(action: str) -> float:
+    return SLOW_WIDTH if action == "slow" else BUTTON
+
+
 class Toolbar:
     """Buttons for every action of the bar; `press` starts an action by its name."""
 
@@ -44,54 +77,66 @@ class Toolbar:
         width = ui.units[0]
         self.back = ui.panel(ui.rect(0, 0, width, BAR_HEIGHT))
         self._icons: dict[tuple[str, Colour], pygame.Surface] = {}
-        self._x = 14.0
-        self._button("edit", "edit")
-        wide = 22.0 if width >= ROOM_FOR_NAME else 10.0
-        self._x += wide
-        self.tools = {name: self._button(f"tool_{name}", name) for name in ("drag", "pin", "cut")}
-        self._x += wide
-        self.undo = self._button("undo", "undo")
-        self.redo = self._button("redo", "redo")
-        self._x += wide
-        self.reset = self._button("reset", "reset")
-        self.pause = self._button("pause", "pause")
-        self.step = self._button("step", "step")
-        self.slow = self._text_button("slow", "1x", SLOW_WIDTH)
-        if of_document:
-            self._button("keep", "keep")
-        self._x += wide
-        self.record = self._button("record", "record")
-        self.save = self._button("save", "save")
-        title_left = self._x + 10
-        self._x = width - 14 - 4 * BUTTON - 3 * GAP
+        self._pictures = dict(entry for group in (*LEFT, RIGHT) for entry in group)
+        wanted = [action for action in self._pictures if action != "keep" or of_document]
+        shown = fitting(wanted, width - 2 * MARGIN)
+        self.left_out = [action for action in wanted if action not in shown]
+        self.buttons: dict[str, Any] = {}
+        is_wide = width >= ROOM_FOR_NAME
+        self._x = MARGIN
+        for group in LEFT:
+            for action, _ in group:
+                if action in shown:
+                    self._add(action)
+            self._x += WIDE_GAP if is_wide else NARROW_GAP
+        title_left = self._x + 4
+        at_right = [action for action, _ in RIGHT if action in shown]
+        count = len(at_right) + bool(self.left_out)
+        self._x = width - MARGIN - count * BUTTON - (count - 1) * GAP
         self.title = None
-        if width >= ROOM_FOR_NAME:
+        if is_wide:
             place = ui.rect(title_left, 0, self._x - title_left - 14, BAR_HEIGHT)
             self.title = ui.label(place, "", self.back, "@title")
-        self._button("gallery", "levels")
-        self._button("fit", "fit")
-        self.panel = self._button("panel", "panel")
-        self._text_button("help", "?", BUTTON)
+        for action in at_right:
+            self._add(action)
+        if self.left_out:
+            self._pictures["more"] = "more"
+            self._add("more", self._show_menu, "More: what has no room here")
+        self.tools = {name: self.buttons.get(f"tool_{name}") for name in ("drag", "pin", "cut")}
+
+    def _show_menu(self) -> None:
+        """Offer what has no room on the bar."""
+        press = self._press
+        choices = [(tip_of(action, "play"), partial(press, action)) for action in self.left_out]
+        choose(self._ui, "More", "", choices)
 
     def show(self, state: BarState) -> None:
         """Show a state, changing what differs."""
         before, self._state = self._state, state
         if state == before:
             return
-        for name, button in self.tools.items():
-            set_icon(button, self._icon(name, ACCENT if name == state.tool else TEXT))
-            (button.select if name == state.tool else button.unselect)()
-        set_icon(self.pause, self._icon("play" if state.paused else "pause", ACCENT if state.paused else TEXT))
-        set_icon(self.record, self._icon("stop" if state.recording else "record", DANGER))
-        self.slow.set_text("1x" if state.speed == 1.0 else f"1/{round(1 / state.speed)}x")
-        (self.slow.unselect if state.speed == 1.0 else self.slow.select)()
-        (self.panel.select if state.panel else self.panel.unselect)()
-        (self.undo.enable if state.can_undo else self.undo.disable)()
-        (self.redo.enable if state.can_redo else self.redo.disable)()
-        for button, name, on in ((self.undo, "undo", state.can_undo), (self.redo, "redo", state.can_redo)):
-            set_icon(button, self._icon(name, TEXT if on else DISABLED))
+        for name in self.tools:
+            self._mark(f"tool_{name}", ACCENT if name == state.tool else TEXT, name == state.tool)
+        self._mark("pause", ACCENT if state.paused else TEXT, False, "play" if state.paused else "pause")
+        self._mark("record", DANGER, state.recording, "stop" if state.recording else "record")
+        self._mark("panel", TEXT, state.panel)
+        for name, on in (("undo", state.can_undo), ("redo", state.can_redo)):
+            self._mark(name, TEXT if on else DISABLED, False)
+            if name in self.buttons:
+                (self.buttons[name].enable if on else self.buttons[name].disable)()
+        slow = self.buttons.get("slow")
+        if slow is not None:
+            slow.set_text("1x" if state.speed == 1.0 else f"1/{round(1 / state.speed)}x")
+            (slow.unselect if state.speed == 1.0 else slow.select)()
         if self.title is not None:
             self.title.set_text(state.name)
+
+    def _mark(self, action: str, colour: Colour, on: bool, picture: str | None = None) -> None:
+        """Show an action's button in a colour, on or off, where it is on the bar."""
+        button = self.buttons.get(action)
+        if button is not None:
+            set_icon(button, self._icon(picture or self._pictures[action], colour))
+            (button.select if on else button.unselect)()
 
     def _icon(self, name: str, colour: Colour) -> pygame.Surface:
         key = (name, colour)
@@ -99,24 +144,18 @@ class Toolbar:
             self._icons[key] = painted_icon(ICONS[name], self._ui.px(ICON), colour)
         return self._icons[key]
 
-    def _place(self, width: float) -> pygame.Rect:
+    def _add(self, action: str, do: Callable[[], None] | None = None, tip: str = "") -> None:
+        """A button of an action at the next place; do: in place of what the table of shortcuts has."""
+        width = _width(action)
         place = self._ui.rect(self._x, (BAR_HEIGHT - BUTTON) / 2, width, BUTTON)
         self._x += width + GAP
-        return place
-
-    def _button(self, action: str, picture: str) -> Any:
-        return self._ui.button(
-            self._place(BUTTON),
-            "",
-            lambda: self._press(action),
+        picture = self._pictures[action]
+        self.buttons[action] = self._ui.button(
+            place,
+            WORDS.get(action, ""),
+            do or partial(self._press, action),
             self.back,
-            icon=self._icon(picture, TEXT),
-            tip=tip_of(action, "play"),
+            icon=self._icon(picture, TEXT) if picture else None,
+            tip=tip or tip_of(action, "play"),
             style="@quiet",
-        )
-
-    def _text_button(self, action: str, text: str, width: float) -> Any:
-        place = self._place(width)
-        return self._ui.button(
-            place, text, lambda: self._press(action), self.back, tip=tip_of(action, "play"), style="@quiet"
         )

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from sandbox.editor.storage.preferences import preferences, set_preferences
+from sandbox.editor.storage.preferences import preferences, set_aside_broken, set_preferences
 
 # A value and the words for it.
 Option = tuple[str, str]
@@ -85,6 +85,9 @@ class Chosen:
         self.changed = changed
         self.automatic: dict[str, float] = {}
         self.faults: list[str] = []
+        aside = set_aside_broken()
+        if aside is not None:
+            self.faults.append(f"Your settings cannot be read. The usual ones hold; the file is kept as {aside}.")
         read = preferences()
         self._values = {setting.name: self._taken(setting, read) for setting in SETTINGS}
         self._values |= {name: value for name, value in given.items() if value is not None}

@@ -14,7 +14,7 @@ from sandbox.app.widgets.ui import Ui
 WIDTH, HEIGHT = 720.0, 600.0
 MARGIN = 24.0
 TOP, BOTTOM = 104.0, 66.0
-ROW, KEY_ROW, HEADING = 50.0, 30.0, 36.0
+ROW, KEY_ROW, HEADING = 56.0, 30.0, 36.0
 LABEL_SHARE = 0.42
 # A narrower page has the label of a row above its buttons.
 ROOM_BESIDE = 520.0
@@ -79,20 +79,21 @@ class SettingsPage:
     def _reset(self) -> None:
         """Go back to the usual values of what this page shows."""
         if self._page == "general":
+            self._note.show_text("The usual values hold again.")
             for setting in SETTINGS:
                 self._chosen.choose(setting.name, None)
-            self._show_anew("The usual values hold again.")
-            return
-        names = {entry.name for entry in _changeable(self._page)}
-        self._chosen.choose_keys({name: keys for name, keys in self._chosen.keys.items() if name not in names})
-        self._show_anew("The usual keys hold again.")
+        else:
+            self._note.show_text("The usual keys hold again.")
+            names = {entry.name for entry in _changeable(self._page)}
+            self._chosen.choose_keys({name: keys for name, keys in self._chosen.keys.items() if name not in names})
+        self._show_anew()
 
-    def _show_anew(self, note: str) -> None:
-        # What was chosen may have laid all widgets out anew, and this page with them.
+    def _show_anew(self) -> None:
+        # What was chosen may have laid all widgets out anew, and this page with them, by `_again`.
         if self._sheet.alive():
             focus = self._ui.focus_place
             self.close()
-            SettingsPage(self._ui, self._chosen, self._page, note, self.area.offset, focus)
+            SettingsPage(self._ui, self._chosen, self._page, self._note.text, self.area.offset, focus)
 
     # Rows.
 
@@ -134,7 +135,7 @@ class SettingsPage:
 
     def _choose(self, name: str, value: object) -> None:
         self._chosen.choose(name, value)
-        self._show_anew("")
+        self._show_anew()
 
     def _add_amount(self, setting: Amount) -> None:
         ui, content = self._ui, self.area.content
@@ -170,11 +171,12 @@ class SettingsPage:
     def _take(self, entry: Shortcut, keys: tuple[str, ...]) -> None:
         """Give an action other keys, and say from what they were taken."""
         changed, losers = with_keys(self._chosen.keys, entry, keys)
-        self._chosen.choose_keys(changed)
         note = f"{entry.label}: {spoken(keys)}."
         for loser in losers:
             note += f" “{loser.label}” had that key" + (" and has none now." if not loser.keys else ".")
-        self._show_anew(note)
+        self._note.show_text(note)
+        self._chosen.choose_keys(changed)
+        self._show_anew()
 
 
 def _changeable(mode: str) -> list[Shortcut]:

@@ -100,11 +100,10 @@ def _keep(pen: IconPen) -> None:
 
 
 def _settings(pen: IconPen) -> None:
-    pen.disc(12, 12, 6.2, 2.2)
-    pen.disc(12, 12, 1.6)
+    pen.disc(12, 12, 6.6, 3.4)
     for turn in range(8):
         x, y = math.cos(turn * math.pi / 4), math.sin(turn * math.pi / 4)
-        pen.line((12 + 7 * x, 12 + 7 * y), (12 + 9.4 * x, 12 + 9.4 * y), width=3.0)
+        pen.line((12 + 7 * x, 12 + 7 * y), (12 + 8.6 * x, 12 + 8.6 * y), width=4.2)
 
 
 def _more(pen: IconPen) -> None:

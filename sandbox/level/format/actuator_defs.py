@@ -28,7 +28,10 @@ class MuscleDef(Description):
 class _KeyedDef(Description):
     """What can be driven by keys or commands."""
 
-    key: Key | None = Field(default=None, description="Key that drives it while held down, a letter or digit.")
+    key: Key | None = Field(
+        default=None,
+        description="Key that drives it while held down: a letter, a digit, or the arrow left, right, up or down.",
+    )
     reverse_key: Key | None = Field(default=None, description="Key that drives it the other way.")
 
 

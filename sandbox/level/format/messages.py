@@ -9,7 +9,7 @@ from pydantic import BaseModel, Tag
 from sandbox.level.faults.level_error import Fault, json_path, shown, suggestion
 from sandbox.level.format.look import COLOUR_PATTERN, PALETTE
 from sandbox.level.format.model import Level
-from sandbox.level.format.quantities import ID_PATTERN, KEY_PATTERN
+from sandbox.level.format.quantities import ARROW_KEYS, ID_PATTERN, KEY_PATTERN
 from sandbox.level.kinds.bodies import KINDS
 
 Location = tuple[Any, ...]
@@ -121,7 +121,7 @@ def _pattern(value: Any, context: dict[str, Any]) -> str:
     if context["pattern"] == ID_PATTERN:
         return f"{shown(value)} holds one of . : , or a control character, or begins with +; an id may not"
     if context["pattern"] == KEY_PATTERN:
-        return f"{shown(value)} is no key; use a small letter or a digit"
+        return f"{shown(value)} is no key; use a small letter, a digit, or one of {', '.join(ARROW_KEYS)}"
     if context["pattern"] == COLOUR_PATTERN:
         return f'{shown(value)} is no colour; use one of {", ".join(PALETTE)}, or "#RRGGBB"'
     return f"{shown(value)} holds control characters; take them out"

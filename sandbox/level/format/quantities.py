@@ -72,8 +72,9 @@ LINE_PATTERN = r"^[^\x00-\x1f\x7f-\x9f]*$"
 TEXT_PATTERN = r"^[^\x00-\x08\x0b-\x1f\x7f-\x9f]*$"
 # `.`, `:` and `,` build names of particles and springs; `+` begins the names of what is added while playing.
 ID_PATTERN = r"^[^+.:,\x00-\x1f\x7f-\x9f][^.:,\x00-\x1f\x7f-\x9f]*$"
-# Keys of a keyboard that every layout has unshifted.
-KEY_PATTERN = r"^[a-z0-9]$"
+# Keys of a keyboard that every layout has unshifted, and the arrows.
+ARROW_KEYS = ("left", "right", "up", "down")
+KEY_PATTERN = rf"^([a-z0-9]|{'|'.join(ARROW_KEYS)})$"
 
 Id = Annotated[str, Field(min_length=1, max_length=TEXT_LIMIT, pattern=ID_PATTERN)]
 Line = Annotated[str, Field(max_length=TEXT_LIMIT, pattern=LINE_PATTERN)]
@@ -115,7 +116,7 @@ TurnRate = Annotated[float, Field(ge=-TURN_LIMIT, le=TURN_LIMIT, json_schema_ext
 Torque = Annotated[float, Field(ge=0.0, le=TORQUE_LIMIT, json_schema_extra=unit("N m"))]
 Force = Annotated[float, Field(gt=0.0, le=FORCE_LIMIT, json_schema_extra=unit("N"))]
 Rate = Annotated[float, Field(ge=0.0, le=RATE_LIMIT, json_schema_extra=unit("m/s"))]
-Key = Annotated[str, Field(pattern=KEY_PATTERN, max_length=1)]
+Key = Annotated[str, Field(pattern=KEY_PATTERN)]
 Seconds = Annotated[float, Field(ge=0.0, le=SECONDS_LIMIT, json_schema_extra=unit("s"))]
 Index = Annotated[int, Field(ge=0)]
 Extras = Annotated[dict[str, Any], Field(description="Data of other tools; kept and ignored.")]

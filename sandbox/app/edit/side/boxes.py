@@ -10,8 +10,10 @@ from sandbox.app.widgets.painted import Lit, Pressable, wrapped
 from sandbox.app.widgets.ui import Ui
 
 TEXT_SIZE = 12.5
-# Keys that a level can name: letters and digits.
-KEYS = frozenset(map(ord, "abcdefghijklmnopqrstuvwxyz0123456789"))
+# Keys that a level can name, with their names.
+KEYS = {ord(letter): letter for letter in "abcdefghijklmnopqrstuvwxyz0123456789"} | {
+    pygame.K_LEFT: "left", pygame.K_RIGHT: "right", pygame.K_UP: "up", pygame.K_DOWN: "down",
+}  # fmt: skip
 NO_KEY = "none"
 # A label is dragged so far for each step [layout units].
 SCRUB_STEP = 5.0
@@ -97,9 +99,10 @@ class KeyBox(Pressable):
         place = surface.get_rect()
         pygame.draw.rect(surface, FIELD, place, border_radius=ui.px(6))
         pygame.draw.rect(surface, ACCENT if self.listening else LINE, place, 1, border_radius=ui.px(6))
-        has_key = self.key is not None and len(self.key) == 1 and not self.listening
-        words = "press a letter or digit" if self.listening else self.key or NO_KEY
-        picture = ui.font(TEXT_SIZE).render(words.upper() if has_key else words, True, TEXT if has_key else MUTED)
+        has_key = self.key in KEYS.values() and not self.listening
+        words = "letter, digit or arrow" if self.listening else self.key or NO_KEY
+        words = words.upper() if len(words) == 1 else words
+        picture = ui.font(TEXT_SIZE).render(words, True, TEXT if has_key else MUTED)
         at = picture.get_rect(midleft=(ui.px(9), size[1] // 2))
         if has_key:
             cap = pygame.Rect(ui.px(5), ui.px(4), max(at.width + ui.px(12), size[1] - ui.px(8)), size[1] - ui.px(8))
@@ -121,7 +124,7 @@ class KeyBox(Pressable):
             return False
         if event.key in KEYS:
             self._listen(False)
-            self._choose(chr(event.key))
+            self._choose(KEYS[event.key])
         elif event.key in (pygame.K_DELETE, pygame.K_BACKSPACE):
             self._listen(False)
             self._choose(None)

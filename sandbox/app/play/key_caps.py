@@ -1,0 +1,32 @@
+"""Keys that a level gives a meaning, shown while it is played; those that are held down are lit."""
+
+from collections.abc import Iterable
+
+import pygame
+
+from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, MUTED, NOTICE, TEXT
+from sandbox.app.widgets.ui import Ui
+
+# Sizes in layout units.
+CAP, GAP, INSET = 26.0, 5.0, 14.0
+TEXT_SIZE = 12.5
+
+
+def draw_key_caps(
+    surface: pygame.Surface, ui: Ui, keys: Iterable[tuple[str, bool]], viewport: tuple[int, int, int, int]
+) -> None:
+    """Draw the caps of keys, (name, whether it is held) each, at the lower right of a viewport [pixels]."""
+    left, top, width, height = viewport
+    font, side = ui.font(TEXT_SIZE, True), ui.px(CAP)
+    x, y = left + width - ui.px(INSET), top + height - ui.px(INSET) - side
+    for name, is_held in reversed(list(keys)):
+        picture = font.render(name.upper() if len(name) == 1 else name, True, BACKGROUND if is_held else TEXT)
+        cap = pygame.Rect(0, y, max(side, picture.get_width() + ui.px(12)), side)
+        cap.right = x
+        pygame.draw.rect(surface, ACCENT if is_held else NOTICE, cap, border_radius=ui.px(6))
+        pygame.draw.rect(surface, ACCENT if is_held else LINE, cap, max(1, ui.px(1.2)), border_radius=ui.px(6))
+        surface.blit(picture, picture.get_rect(center=cap.center))
+        x = cap.left - ui.px(GAP)
+    if x < left + width - ui.px(INSET):
+        word = ui.font(TEXT_SIZE).render("keys", True, MUTED)
+        surface.blit(word, word.get_rect(midright=(x - ui.px(3), y + side // 2)))
