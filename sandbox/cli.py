@@ -82,7 +82,7 @@ def _refuse(faults: Iterable[str]) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="sandbox", description="A 2D physics sandbox of damped springs.")
     parser.add_argument("--version", action="version", version=f"sandbox {__version__}")
-    parser.set_defaults(action=_play, level=None, profile=False, seconds=None, scale=None)
+    parser.set_defaults(action=_play, level=None, profile=False, seconds=None, scale=None, theme=None)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
 
     def command(name: str, action: Callable[[argparse.Namespace], int], text: str) -> argparse.ArgumentParser:
@@ -96,7 +96,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     play.add_argument("--profile", action="store_true", help="print where a frame's time goes, at the end")
     play.add_argument("--seconds", type=seconds, help="close the app after so many seconds")
-    play.add_argument("--scale", type=scale, help="size of the widgets, 0.5 to 4; default: the display's own")
+    _add_look_options(play)
 
     run = command("run", _run, "run a level headless and print what came of it")
     run.add_argument("level", metavar="LEVEL")
@@ -134,10 +134,15 @@ def _parser() -> argparse.ArgumentParser:
     layout.add_argument("file", type=Path, metavar="FILE")
     edit = command("edit", _edit, "open the level editor: a level, or an empty sheet")
     edit.add_argument("level", nargs="?", metavar="LEVEL")
-    edit.add_argument("--scale", type=scale, help="size of the widgets, 0.5 to 4; default: the display's own")
+    _add_look_options(edit)
     _add_prepare_options(command("prepare", _prepare, "compile the physics, as the first start would"))
     command("schema", _schema, "print the JSON Schema of level files")
     return parser
+
+
+def _add_look_options(app: argparse.ArgumentParser) -> None:
+    app.add_argument("--scale", type=scale, help="size of the widgets, 0.5 to 4; default: as in the settings")
+    app.add_argument("--theme", choices=("dark", "light", "system"), help="for this time; default: as in the settings")
 
 
 def _add_prepare_options(prepare: argparse.ArgumentParser) -> None:
@@ -190,7 +195,7 @@ def _play(options: argparse.Namespace) -> int:
         source = Path(options.level) if not replay and Path(options.level).is_file() else None
         return StartRequest(None if replay else level, replay, source)
 
-    return open_app(find, profile=options.profile, seconds=options.seconds, scale=options.scale)
+    return open_app(find, profile=options.profile, seconds=options.seconds, scale=options.scale, theme=options.theme)
 
 
 def _level_or_replay(name: str) -> "tuple[Level, Replay | None]":
@@ -407,7 +412,7 @@ def _edit(options: argparse.Namespace) -> int:
     from sandbox.app.opening import open_app
     from sandbox.app.start_request import StartRequest
 
-    return open_app(lambda: StartRequest(edit=options.level or ""), scale=options.scale)
+    return open_app(lambda: StartRequest(edit=options.level or ""), scale=options.scale, theme=options.theme)
 
 
 def _format(options: argparse.Namespace) -> int:

@@ -2,8 +2,9 @@
 
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import pygame
 
@@ -25,7 +26,7 @@ from sandbox.app.profile import Profile
 from sandbox.app.progress import RunProgress
 from sandbox.app.screen import Screen
 from sandbox.app.settings.chosen import Chosen
-from sandbox.app.settings.settings_page import SettingsPage
+from sandbox.app.settings.settings_sheet import SettingsSheet
 from sandbox.app.settings.system_theme import theme_of
 from sandbox.app.shortcuts import Mode, use_keys
 from sandbox.app.start_request import StartRequest
@@ -237,7 +238,7 @@ class App:
             self.rebuild()
 
     def _open_settings(self) -> None:
-        SettingsPage(self.ui, self.chosen)
+        SettingsSheet(self.ui, self.chosen)
 
     # The loop.
 
@@ -339,9 +340,11 @@ class App:
         return " - ".join([*words, "Spring Sandbox"])
 
 
-def run_app(display: Display, wanted: StartRequest, profile: Profile, seconds: float | None = None) -> None:
-    """Show what is wanted in the window and run until it is closed, or for so many seconds."""
-    app = App(display, profile)
+def run_app(
+    display: Display, wanted: StartRequest, profile: Profile, seconds: float | None, given: Mapping[str, Any]
+) -> None:
+    """Show what is wanted in the window and run until it is closed, or for so many seconds; given: see `Chosen`."""
+    app = App(display, profile, Chosen(**given))
     app.guide.may_offer = True
     app.open(wanted)
     app.documents.offer_recovery()

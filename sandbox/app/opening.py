@@ -80,12 +80,17 @@ def _font(name: str, size: int) -> pygame.font.Font:
 
 
 def open_app(
-    find: Callable[[], StartRequest], *, profile: bool = False, seconds: float | None = None, scale: float | None = None
+    find: Callable[[], StartRequest],
+    *,
+    profile: bool = False,
+    seconds: float | None = None,
+    scale: float | None = None,
+    theme: str | None = None,
 ) -> int:
     """Open the window and run until it is closed, or for so many seconds; returns the exit code.
 
     find: says what to show, called once the window is there; what it raises is raised here, with the window closed.
-    profile: print where a frame's time went, at the end. scale: size of the widgets; None = the display's.
+    profile: print where a frame's time went, at the end. scale, theme: in place of what is remembered of the person.
     """
     began = time.perf_counter()
     times = Profile()
@@ -100,7 +105,7 @@ def open_app(
         return 0
     from sandbox.app.app import run_app
 
-    run_app(display, wanted, times, seconds)
+    run_app(display, wanted, times, seconds, {"scale": scale, "theme": theme})
     if profile:
         print(times.table(began))
     return 0

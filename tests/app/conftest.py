@@ -119,6 +119,14 @@ class Driver:
             self.post(pygame.TEXTINPUT, text=letter)
         self.frames()
 
+    def press_letters(self, text):
+        """Press the keys of letters, as a keyboard does: each key first, then what it types."""
+        for letter in text:
+            self.post(pygame.KEYDOWN, key=ord(letter), mod=0, unicode=letter, scancode=0)
+            self.post(pygame.TEXTINPUT, text=letter)
+            self.post(pygame.KEYUP, key=ord(letter), mod=0, unicode=letter, scancode=0)
+        self.frames(2)
+
     def fill(self, field, text):
         """Focus a field, replace its text and press Enter."""
         self.app.ui.focus_on(field.entry)

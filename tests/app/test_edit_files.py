@@ -191,7 +191,7 @@ def test_the_gallery_opens_a_shipped_level_as_a_copy_and_my_levels_to_edit(edit,
     driver = edit()
     driver.key(pygame.K_o, CTRL)
     card = next(card for card in driver.app.gallery.cards if card.name == "Spider web")
-    driver.app.gallery._show(card)
+    driver.app.gallery.area.scroll_to(card.relative_rect.top)
     driver.frames()
     driver.click_widget(card)
     assert driver.editor.document.level.name == "Spider web" and driver.editor.level_file.path is None

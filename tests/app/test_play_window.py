@@ -15,8 +15,8 @@ def with_arrows():
     motor = {"speed": -3.0, "torque": 50.0, "key": "right", "reverse_key": "left"}
     return small_level(
         bodies=[
-            {"type": "wheel", "id": "wheel", "centre": [0, 0], "radius": 1.0, "segments": 12, "motor": motor,
-             "pin": ["hub"]},
+            {"type": "wheel", "id": "wheel", "position": [0, 0], "radius": 1.0, "thickness": 0.3, "segments": 12,
+             "motor": motor, "pin": ["hub"]},
         ],
     )  # fmt: skip
 

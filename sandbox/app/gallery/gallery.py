@@ -163,13 +163,14 @@ class Gallery:
             # What was shipped needs no check before it is shown.
             data = json.loads(content)
             card.show_texts(data["name"], data.get("description", ""), tuple(data.get("tags", ())))
+        else:
+            card.repaint()
         self._paths[card] = path
         self._unfilled.append(self._fill(card, path, content, is_shipped))
 
     def _add_card(self, group: Group, name: str, text: str, action: Callable[[], object]) -> Card:
         place = self._ui.rect(6, 0, group.width, group.height)
         card = Card(self._ui, place, name, text, action, self.area.content, is_small=group.is_shortcut)
-        card.repaint()
         group.cards.append(card)
         return card
 

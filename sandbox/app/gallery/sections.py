@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 @dataclass(frozen=True)
-class Section:
+class GallerySection:
     """A heading, a line beside it, and the stems of level files, each with what to do with the level in a few words."""
 
     title: str
@@ -15,7 +15,7 @@ class Section:
 
 
 SECTIONS = (
-    Section("Toys", "Pick one and grab anything.", {
+    GallerySection("Toys", "Pick one and grab anything.", {
         "jelly_pile": "Squish, stack, throw",
         "truck_bridge": "Will it hold? Set Cs of iron to 1",
         "balloons": "Cut the rope and fly",
@@ -27,7 +27,7 @@ SECTIONS = (
         "catapult": "Hold D and let fly",
         "curtain": "Tug a corner, unpin a hook",
     }),
-    Section("Soft things", "Jellies, cloth and creatures.", {
+    GallerySection("Soft things", "Jellies, cloth and creatures.", {
         "jelly_cube": "Lower Cs, and it softens",
         "trampoline": "Pull the bed down and let go",
         "walker": "Hold it back, or lift it over",
@@ -36,7 +36,7 @@ SECTIONS = (
         "quad_mesh": "Tear it with the cutting tool",
         "rope_bridge_jelly": "One of each kind to pull at",
     }),
-    Section("Machines", "Motors, wheels and balls.", {
+    GallerySection("Machines", "Motors, wheels and balls.", {
         "tumble_drum": "Hold D or A to turn it",
         "ferris_wheel": "D and A turn it either way",
         "marble_mill": "Drag marbles back up",
@@ -44,13 +44,13 @@ SECTIONS = (
         "newtons_cradle": "Lift two, and two leave",
         "clock_spring": "Wind it by its rim",
     }),
-    Section("Bridges and ropes", "Pull, cut, and see who takes the load.", {
+    GallerySection("Bridges and ropes", "Pull, cut, and see who takes the load.", {
         "rope": "Crack it like a whip",
         "suspension_bridge": "Cut a hanger",
         "breaking_bridge": "Hold the weight back",
         "spider_web": "Pull at the fly",
     }),
-    Section("Proofs for engineers", "What the equations promise, and how to try it.", {
+    GallerySection("Proofs for engineers", "What the equations promise, and how to try it.", {
         "girder": "Drag its free end; then choose Iterative",
         "mast": "Drag its head; then choose Iterative",
         "truss_bridge": "Cut a chord under the load",
@@ -60,14 +60,14 @@ SECTIONS = (
     }),
 )  # fmt: skip
 # Where levels go that no section names.
-OTHERS = Section("More", "", {})
+OTHERS = GallerySection("More", "", {})
 # What a first visit is to begin with.
 FIRST = "jelly_pile"
 # Levels that can be played while the physics is still being prepared.
 LIGHT_LEVELS = ("rope", "ferris_wheel", "suspension_bridge", "breaking_bridge", "wrecking_ball", "truss_bridge")
 
 
-def in_sections(paths: Iterable[Path]) -> list[tuple[Section, list[Path]]]:
+def in_sections(paths: Iterable[Path]) -> list[tuple[GallerySection, list[Path]]]:
     """Shipped level files by the sections that name them, in their order; those that none names come last."""
     left = {path.stem: path for path in paths}
     result = [(section, [left.pop(name) for name in section.levels if name in left]) for section in SECTIONS]

@@ -1,4 +1,4 @@
-"""SettingsPage: what can be chosen, a row each, and the keys of everything that keys do."""
+"""SettingsSheet: what can be chosen, a row each, and the keys of everything that keys do."""
 
 from functools import partial
 
@@ -23,7 +23,7 @@ PAGES = (("general", "General", ""), ("play", "Keys in play", ""), ("edit", "Key
 KEYS_NOTE = "Press a row, then the new keys. Delete takes keys away, Escape leaves them as they are."
 
 
-class SettingsPage:
+class SettingsSheet:
     """A modal page; page: one of PAGES. It is made anew after what changes how all widgets look."""
 
     def __init__(
@@ -69,12 +69,12 @@ class SettingsPage:
         self._ui.close_sheet(self._sheet)
 
     def _again(self, ui: Ui) -> None:
-        SettingsPage(ui, self._chosen, self._page, self._note.text, self.area.offset, self._ui.focus_place)
+        SettingsSheet(ui, self._chosen, self._page, self._note.text, self.area.offset, self._ui.focus_place)
 
     def _turn(self, page: str) -> None:
         if page != self._page:
             self.close()
-            SettingsPage(self._ui, self._chosen, page)
+            SettingsSheet(self._ui, self._chosen, page)
 
     def _reset(self) -> None:
         """Go back to the usual values of what this page shows."""
@@ -93,7 +93,7 @@ class SettingsPage:
         if self._sheet.alive():
             focus = self._ui.focus_place
             self.close()
-            SettingsPage(self._ui, self._chosen, self._page, self._note.text, self.area.offset, focus)
+            SettingsSheet(self._ui, self._chosen, self._page, self._note.text, self.area.offset, focus)
 
     # Rows.
 
