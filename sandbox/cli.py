@@ -440,13 +440,13 @@ def _draw_still(session: "Session", options: argparse.Namespace) -> str:
 
 def _draw_film(session: "Session", options: argparse.Namespace, kind: str, length: float) -> str:
     """Draw the last `length` [s] of a run; what was drawn."""
-    from sandbox.app.share.export import Clip, Export
+    from sandbox.app.share.export import Excerpt, Export
     from sandbox.app.share.film import film_of_view
     from sandbox.app.share.kinds import KINDS, possible_size
 
     size, fps = possible_size(options.size or FILM_SIZE, kind), options.fps or KINDS[kind].usual_fps
     film = film_of_view(session, size, length)
-    export = Export(film, Clip(kind, 0.0, film.seconds, fps, size), options.output)
+    export = Export(film, Excerpt(kind, 0.0, film.seconds, fps, size), options.output)
     with Progress(100, "%") as bar, closing(export.slices()) as slices:
         for done in slices:
             bar.update(int(100 * done) - bar.done)

@@ -17,7 +17,7 @@ Slices = Generator[float, None, None]
 
 
 @dataclass(frozen=True)
-class Clip:
+class Excerpt:
     """What is kept of a film: start..end [s from its beginning], of a PNG its end; size [pixels].
 
     name: a text in the corner of every picture.
@@ -32,21 +32,23 @@ class Clip:
 
 
 class Export:
-    """A clip that is being written; `slices` does the work, closing them gives it up and leaves no file.
+    """An excerpt that is being written; `slices` does the work, closing them gives it up and leaves no file.
 
     keep: gives the finished file, which is the first, its name, the second. picture: the one written last.
     """
 
-    def __init__(self, film: Film, clip: Clip, path: Path, keep: Callable[[Path, Path], object] = os.replace) -> None:
-        self.film, self.clip, self.path = film, clip, path
+    def __init__(
+        self, film: Film, excerpt: Excerpt, path: Path, keep: Callable[[Path, Path], object] = os.replace
+    ) -> None:
+        self.film, self.excerpt, self.path = film, excerpt, path
         self.picture: pygame.Surface | None = None
         self._keep = keep
 
     def slices(self) -> Slices:
         """Do the work. Raises OSError where the file cannot be written, of the file's name."""
         # In the same folder, where it can be renamed; hidden, and of the same kind for programs that look.
-        unfinished = self.path.with_name(f".{self.path.stem[:80]}-{os.getpid()}.{self.clip.kind}")
-        write = {"gif": self._write_gif, "mp4": self._write_movie, "png": self._write_still}[self.clip.kind]
+        unfinished = self.path.with_name(f".{self.path.stem[:80]}-{os.getpid()}.{self.excerpt.kind}")
+        write = {"gif": self._write_gif, "mp4": self._write_movie, "png": self._write_still}[self.excerpt.kind]
         try:
             # What the folder refuses is said before any work is done.
             unfinished.touch()
@@ -61,18 +63,18 @@ class Export:
     def _write_gif(self, path: Path) -> Slices:
         from sandbox.app.share.gif import GifWriter
 
-        clip = self.clip
+        excerpt = self.excerpt
         with path.open("wb") as file:
             yield 0.0
-            samples = self.film.samples(clip.start, clip.end, clip.size, clip.name)
-            writer = GifWriter(file, clip.size, clip.fps, samples)
+            samples = self.film.samples(excerpt.start, excerpt.end, excerpt.size, excerpt.name)
+            writer = GifWriter(file, excerpt.size, excerpt.fps, samples)
             yield from self._pictures(writer.add)
             writer.close()
 
     def _write_movie(self, path: Path) -> Slices:
         from sandbox.app.share.movie import MovieWriter
 
-        writer = MovieWriter(path, self.clip.size, self.clip.fps)
+        writer = MovieWriter(path, self.excerpt.size, self.excerpt.fps)
         try:
             yield from self._pictures(writer.add)
             while not writer.is_closed():
@@ -86,10 +88,10 @@ class Export:
         write_png(self.picture, path)
 
     def _pictures(self, write: Callable[[pygame.Surface], object]) -> Slices:
-        clip, done = self.clip, 0
-        start = clip.end if clip.kind == "png" else clip.start
-        count = picture_count(start, clip.end, clip.fps)
-        for picture in self.film.pictures(start, clip.end, clip.fps, clip.size, clip.name):
+        excerpt, done = self.excerpt, 0
+        start = excerpt.end if excerpt.kind == "png" else excerpt.start
+        count = picture_count(start, excerpt.end, excerpt.fps)
+        for picture in self.film.pictures(start, excerpt.end, excerpt.fps, excerpt.size, excerpt.name):
             if picture is not None:
                 write(picture)
                 self.picture = picture

@@ -39,7 +39,9 @@ class GifWriter:
         self._file, self._fps = file, fps
         width, height = size
         palette = _palette([_pixels(sample) for sample in samples])
-        self._table = _nearest(palette)
+        self._colours = palette.astype(np.float32) * WEIGHTS
+        # For each colour of BITS bits a channel the place of the nearest in the palette; UNCHANGED: nobody has asked.
+        self._table = np.full(1 << 3 * BITS, UNCHANGED, dtype=np.uint8)
         # A part of what is cut off, for each channel of 0xRRGGBB.
         dots = (BAYER >> np.uint32(CUT + 2)) & np.uint32((1 << CUT) - 1)
         self._dots = np.tile(dots, (-(-height // 8), -(-width // 8)))[:height, :width] * np.uint32(0x010101)
@@ -84,8 +86,22 @@ class GifWriter:
         top = np.uint32(256 - (1 << CUT))
         channels = [np.minimum((frame >> np.uint32(shift)) & np.uint32(255), top) for shift in (16, 8, 0)]
         red, green, blue = ((channel + (self._dots & np.uint32(255))) >> np.uint32(CUT) for channel in channels)
-        found: Indices = self._table[(red << np.uint32(2 * BITS)) | (green << np.uint32(BITS)) | blue]
+        cells = (red << np.uint32(2 * BITS)) | (green << np.uint32(BITS)) | blue
+        found = self._table[cells]
+        unknown = cells[found == UNCHANGED]
+        if len(unknown):
+            self._look_up(np.unique(unknown))
+            found = self._table[cells]
         return found
+
+    def _look_up(self, cells: Frame) -> None:
+        """Find the nearest colours for cells (n,) of the table."""
+        channels = [(cells >> np.uint32(shift)) & np.uint32((1 << BITS) - 1) for shift in (2 * BITS, BITS, 0)]
+        # With what the dots add, colours are on average as light as they were.
+        colours = np.stack(channels, axis=-1).astype(np.float32) * ((256 - (1 << CUT)) / ((1 << BITS) - 1))
+        for part in np.array_split(np.arange(len(cells)), -(-len(cells) // 1024)):
+            apart = (colours[part] * WEIGHTS)[:, None] - self._colours
+            self._table[cells[part]] = np.argmin((apart * apart).sum(axis=2), axis=1)
 
 
 def _pixels(surface: pygame.Surface) -> Frame:
@@ -107,18 +123,6 @@ def _palette(samples: Sequence[Frame]) -> NDArray[np.uint8]:
     found = picture.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, kmeans=1, dither=Image.Dither.NONE)
     colours = np.array(found.getpalette(), dtype=np.uint8).reshape(-1, 3)
     return np.unique(colours[:COLOURS], axis=0)
-
-
-def _nearest(palette: NDArray[np.uint8]) -> Indices:
-    """For each colour of BITS bits a channel the place of the nearest in the palette."""
-    # With what the dots add, colours are on average as light as they were.
-    level = np.arange(1 << BITS, dtype=np.float32) * (1 << CUT)
-    level[-1] = 255.0
-    cells = np.stack(np.meshgrid(level, level, level, indexing="ij"), axis=-1).reshape(-1, 3) * WEIGHTS
-    colours = palette.astype(np.float32) * WEIGHTS
-    squares = (colours * colours).sum(axis=1)
-    parts = np.array_split(cells, 16)
-    return np.concatenate([np.argmin(squares - 2.0 * (part @ colours.T), axis=1) for part in parts]).astype(np.uint8)
 
 
 def _patch(indices: Indices, changed: NDArray[np.bool_]) -> bytes:

@@ -97,7 +97,7 @@ class SharePage:
         wide = room * PREVIEW_PART
         tall = min(wide * SHAPE, self._height - TOP - SLIDER - CAPTION - BUTTON - MARGIN - 14)
         self._right, self._side = MARGIN + wide + GAP, room - wide
-        self.preview = Preview(ui, ui.rect(MARGIN, TOP, wide, tall), self._box)
+        self.preview = FilmPreview(ui, ui.rect(MARGIN, TOP, wide, tall), self._box)
         self._below = TOP + tall
         self.slider: RangeSlider | None = None
 
@@ -121,6 +121,9 @@ class SharePage:
             self._row("The level's name in the picture", TOP - 4 + 2 * step), NAMED,
             lambda value: sharing.choose(named=value == "yes"), self._box,
         )  # fmt: skip
+        if not sharing.level_name:
+            for button in self.named.buttons.values():
+                button.disable()
         row = self._row("File name", TOP - 4 + 3 * step)
         row.width -= ui.px(44)
         self.field = ui.field(row, sharing.wanted.name, self._type_name, self._box, 120)
@@ -152,7 +155,7 @@ class SharePage:
         kind = sharing.wanted.kind
         name = f"Writing {sharing.wanted.name}.{kind}"
         ui.label(ui.rect(self._right, TOP - 4, self._side, 26), name, self._box)
-        self.bar = Bar(ui, ui.rect(self._right, TOP + 30, self._side, 10), self._box)
+        self.bar = ProgressBar(ui, ui.rect(self._right, TOP + 30, self._side, 10), self._box)
         self._build_note(TOP + 54)
         self._add_button("Cancel", sharing.cancel, 0)
         self._add_button("Play on", self.leave, 1, tip="It is written while you play")
@@ -205,7 +208,7 @@ class SharePage:
             return
         self.kinds.show(wanted.kind)
         self.sizes.show(f"{wanted.size[0]}x{wanted.size[1]}")
-        self.named.show("yes" if wanted.named else "no")
+        self.named.show("yes" if wanted.named and self._sharing.level_name else "no")
         self.field.show(wanted.name)
         self.suffix.set_text(f".{wanted.kind}")
         film = sharing.film
@@ -218,7 +221,7 @@ class SharePage:
             self.caption.set_text(text)
 
 
-class Preview(Painted):
+class FilmPreview(Painted):
     """What will be kept, moving; nothing but a frame at first."""
 
     def __init__(self, ui: Ui, rect: pygame.Rect, container: Any) -> None:
@@ -245,7 +248,7 @@ class Preview(Painted):
         return surface
 
 
-class Bar(Painted):
+class ProgressBar(Painted):
     """How much is done, 0..1."""
 
     def __init__(self, ui: Ui, rect: pygame.Rect, container: Any) -> None:

@@ -15,9 +15,10 @@ from sandbox.app.draw.colours import ACCENT, Colour
 from sandbox.app.draw.picture import write_png
 from sandbox.app.recordings import chosen_path, free_path, move_new, pictures_folder, plain_name
 from sandbox.app.share.desktop import copy_text, copying_picture, open_folder
-from sandbox.app.share.export import Clip, Export, Slices
+from sandbox.app.share.export import Excerpt, Export, Slices
 from sandbox.app.share.film import Film
 from sandbox.app.share.kinds import KINDS, Missing, Size, require
+from sandbox.editor.document import empty_level
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.level.faults.level_error import one_line
 
@@ -29,7 +30,9 @@ SIZES: tuple[Size, ...] = ((640, 360), (1280, 720))
 # The moving preview: its pictures a second, and their size.
 PREVIEW_FPS, PREVIEW_SIZE = 15.0, (380, 214)
 # Wall time [s] that a frame may take for the preview, for the work while its page is open, and beside a run.
-PREVIEW_BUDGET, OPEN_BUDGET, PLAY_BUDGET = 0.02, 0.08, 0.006
+PREVIEW_BUDGET, OPEN_BUDGET, PLAY_BUDGET = 0.02, 0.1, 0.006
+# What files of a level without a name are called.
+NAMELESS = "My toy"
 # Under what choices are remembered.
 KIND, SIZE, NAMED = "share_kind", "share_size", "share_named"
 
@@ -37,7 +40,7 @@ Step = Literal["choose", "work", "done"]
 
 
 @dataclass(frozen=True)
-class Wanted:
+class Choices:
     """What the person has chosen: kind, start..end [s of the film], size, whether the level is named, the file's name.
 
     own_name: whether the name was typed.
@@ -63,7 +66,7 @@ class Sharing:
         self._app = app
         self.is_open = False
         self.film: Film | None = None
-        self.wanted = Wanted("gif", 0.0, 0.0, SIZES[0], True, "")
+        self.wanted = Choices("gif", 0.0, 0.0, SIZES[0], True, "")
         self.pictures: list[pygame.Surface] = []
         self.note = ""
         self.done = 0.0
@@ -96,7 +99,7 @@ class Sharing:
     def _take(self, film: Film) -> None:
         self.film = film
         kind, size = preference(KIND), preference(SIZE)
-        self.wanted = Wanted(
+        self.wanted = Choices(
             kind if isinstance(kind, str) and kind in KINDS else "gif", 0.0, film.seconds,
             SIZES[1] if size == "large" else SIZES[0], preference(NAMED) is not False, "",
         )  # fmt: skip
@@ -127,15 +130,22 @@ class Sharing:
         if "named" in changes:
             set_preference(NAMED, self.wanted.named)
 
+    @property
+    def level_name(self) -> str:
+        """The level's name, "" where nobody has given it one."""
+        name = "" if self.film is None else one_line(self.film.level.name)
+        return "" if name == empty_level().name else name
+
     def _say_where(self) -> None:
         with contextlib.suppress(OSError):
-            self.note = f"Goes to {pictures_folder()}"
+            self.note = f"Goes to {_shown(pictures_folder())}"
 
     def _suggest_name(self) -> None:
         if self.wanted.own_name or self.film is None:
             return
         try:
-            path = free_path(pictures_folder(), plain_name(self.film.level.name), f".{self.wanted.kind}")
+            name = plain_name(self.level_name or NAMELESS)
+            path = free_path(pictures_folder(), name, f".{self.wanted.kind}")
         except OSError as error:
             self.note = f"The folder for pictures cannot be made: {error.strerror or error}."
             return
@@ -155,9 +165,9 @@ class Sharing:
         except OSError as error:
             self._tell(f"The folder for pictures cannot be made: {error.strerror or error}.")
             return
-        name = one_line(film.level.name) if wanted.named else ""
-        clip = Clip(wanted.kind, wanted.start, wanted.end, KINDS[wanted.kind].usual_fps, wanted.size, name)
-        self._export, self.done, self.saved = Export(film, clip, path, move_new), 0.0, None
+        name = self.level_name if wanted.named else ""
+        excerpt = Excerpt(wanted.kind, wanted.start, wanted.end, KINDS[wanted.kind].usual_fps, wanted.size, name)
+        self._export, self.done, self.saved = Export(film, excerpt, path, move_new), 0.0, None
         self.note = "Play on closes this page: it is written while you play."
         self._slices = self._export.slices()
 
@@ -178,7 +188,7 @@ class Sharing:
     def open_folder(self) -> None:
         """Show the file in its folder."""
         if self.saved is not None and not open_folder(self.saved.parent):
-            self._tell(f"No file manager was found. The folder is {self.saved.parent}")
+            self._tell(f"No file manager was found. The folder is {_shown(self.saved.parent)}")
 
     def copy_path(self) -> None:
         """Put the file's path on the clipboard."""
@@ -246,20 +256,20 @@ class Sharing:
             return
         self._slices, self.saved = None, self._export.path
         size = self.saved.stat().st_size / 1e6
-        self._tell(f"Saved as {self.saved.name}, {size:.1f} MB, in {self.saved.parent}.")
+        self._tell(f"Saved as {self.saved.name}, {size:.1f} MB, in {_shown(self.saved.parent)}.")
         self._copying = self._put_on_clipboard(self._export)
 
     def _put_on_clipboard(self, export: Export) -> Generator[None, None, bool]:
         """The last picture, as a file where the system's tool can read it; else the path."""
         with tempfile.TemporaryDirectory() as folder:
             png = Path(folder) / "picture.png"
-            if export.clip.kind == "png":
+            if export.excerpt.kind == "png":
                 png = export.path
             elif export.picture is not None:
                 write_png(export.picture, png)
             copied = yield from copying_picture(png)
         if copied:
-            what = "The picture" if export.clip.kind == "png" else "Its last picture"
+            what = "The picture" if export.excerpt.kind == "png" else "Its last picture"
             self._tell_more(f"{what} is on the clipboard.")
         elif copy_text(str(export.path)):
             self._tell_more("Its path is on the clipboard; there is no tool here that puts pictures there.")
@@ -290,3 +300,9 @@ class Sharing:
         self.cancel()
         if self._copying is not None:
             self._copying.close()
+
+
+def _shown(folder: Path) -> str:
+    """A folder's path as people write it."""
+    home = Path.home()
+    return str(Path("~") / folder.relative_to(home)) if folder.is_relative_to(home) else str(folder)
