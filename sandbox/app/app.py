@@ -28,6 +28,8 @@ from sandbox.app.screen import Screen
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.settings.settings_sheet import SettingsSheet
 from sandbox.app.settings.system_theme import theme_of
+from sandbox.app.share.page import SharePage
+from sandbox.app.share.sharing import Sharing
 from sandbox.app.shortcuts import Mode, use_keys
 from sandbox.app.start_request import StartRequest
 from sandbox.app.widgets.dialogs import show_lines
@@ -61,6 +63,8 @@ class App:
         self.files = FileActions(self)
         self.documents = DocumentActions(self)
         self.guide = Guide(self, self.documents)
+        self.sharing = Sharing(self)
+        self.share_page = SharePage(self, self.sharing)
         self._progress = RunProgress(self)
         self._own_actions = self._actions()
         self._figures = (0.0, 0.0)
@@ -189,6 +193,7 @@ class App:
             "hint": self._show_hint,
             "help": lambda: show_help(self.ui, self.mode, self.guide.begin),
             "tour": self.guide.begin,
+            "share": self.share_page.open,
             "quit": self.quit,
         }
 
@@ -215,6 +220,7 @@ class App:
         """Close the window; whatever ended the loop, a recording gets its last line."""
         if self.screen is not None:
             self.screen.leave()
+        self.sharing.close()
         self.documents.close()
         self.display.close()
         self._collector.close()
@@ -263,6 +269,8 @@ class App:
             if self.gallery is not None:
                 self.gallery.update(self.preparation.is_ready, frame_time)
             self.guide.update(frame_time)
+            self.sharing.update(frame_time)
+            self.share_page.update()
             self.ui.update(frame_time)
         self._draw()
         with self.profile.part("flip"):
@@ -285,6 +293,7 @@ class App:
     def _switched(self) -> None:
         if self.play is not None:
             self.play.playback.session.world.drop_caches()
+        self.sharing.drop_caches()
 
     def _draw(self) -> None:
         surface = self.display.surface
@@ -296,7 +305,7 @@ class App:
             if self.screen is not None:
                 left = None if self.ui.has_sheet else self.screen.notices_left
                 legend = self.play is not None and self.mode == "play" and self.play.stage.renderer.lattice
-                parts = self.screen.status(*self._figures)
+                parts = self.sharing.status() + self.screen.status(*self._figures)
                 if not self.ready and self.mode == "edit":
                     parts.append(("preparing the physics", WARNING))
                 self.status.draw(surface, parts, self.ui.units[0], left, legend)

@@ -81,6 +81,12 @@ class Renderer:
         said = None if self.level is None or self.level.look is None else self.level.look.theme
         self.theme: Theme = theme_now() if said is None else THEMES[said]
 
+    def alike(self, scale: float) -> "Renderer":
+        """Another renderer with the same look at another scale, which has drawn nothing yet."""
+        other = Renderer(scale, self.level)
+        other.compiled, other.lattice, other.theme = self.compiled, self.lattice, self.theme
+        return other
+
     def draw(
         self,
         surface: pygame.Surface,

@@ -20,6 +20,7 @@ GAP = 6.0
 ICON = 18.0
 SLOW_WIDTH = 46.0
 MARGIN = 14.0
+SHARE_WIDTH = 68.0
 # Narrower windows leave the level's name out, and the wider gaps between the groups.
 ROOM_FOR_NAME = 1000.0
 WIDE_GAP, NARROW_GAP = 16.0, 4.0
@@ -31,11 +32,33 @@ LEFT = (
     (("reset", "reset"), ("pause", "pause"), ("step", "step"), ("slow", ""), ("keep", "keep")),
     (("record", "record"), ("save", "save")),
 )  # fmt: skip
-RIGHT = (("gallery", "levels"), ("settings", "settings"), ("fit", "fit"), ("panel", "panel"), ("help", ""))
-# Words on the buttons that have no picture.
+RIGHT = (
+    ("share", "share"),
+    ("gallery", "levels"),
+    ("settings", "settings"),
+    ("fit", "fit"),
+    ("panel", "panel"),
+    ("help", ""),
+)
+# Words on the buttons that have no picture; in a wide window on that to share too.
 WORDS = {"slow": "1x", "help": "?"}
+WIDE_WORDS = {**WORDS, "share": "Share"}
 # What goes into the menu where the window is too narrow, first what is missed least.
-LEAVING = ("save", "settings", "record", "fit", "redo", "step", "help", "slow", "keep", "panel", "tool_pin", "edit")
+LEAVING = (
+    "save",
+    "settings",
+    "record",
+    "fit",
+    "redo",
+    "step",
+    "help",
+    "slow",
+    "keep",
+    "share",
+    "panel",
+    "tool_pin",
+    "edit",
+)
 
 
 @dataclass(frozen=True)
@@ -64,8 +87,8 @@ def fitting(actions: Sequence[str], width: float) -> list[str]:
     return shown
 
 
-def _width(action: str) -> float:
-    return SLOW_WIDTH if action == "slow" else BUTTON
+def _width(action: str, is_wide: bool = False) -> float:
+    return {"slow": SLOW_WIDTH, "share": SHARE_WIDTH if is_wide else BUTTON}.get(action, BUTTON)
 
 
 class Toolbar:
@@ -82,7 +105,7 @@ class Toolbar:
         shown = fitting(wanted, width - 2 * MARGIN)
         self.left_out = [action for action in wanted if action not in shown]
         self.buttons: dict[str, Any] = {}
-        is_wide = width >= ROOM_FOR_NAME
+        is_wide = self._is_wide = width >= ROOM_FOR_NAME
         self._x = MARGIN
         for group in LEFT:
             for action, _ in group:
@@ -91,8 +114,8 @@ class Toolbar:
             self._x += WIDE_GAP if is_wide else NARROW_GAP
         title_left = self._x + 4
         at_right = [action for action, _ in RIGHT if action in shown]
-        count = len(at_right) + bool(self.left_out)
-        self._x = width - MARGIN - count * BUTTON - (count - 1) * GAP
+        at_end = [*at_right, *(["more"] if self.left_out else [])]
+        self._x = width - MARGIN + GAP - sum(_width(action, is_wide) + GAP for action in at_end)
         self.title = None
         if is_wide:
             place = ui.rect(title_left, 0, self._x - title_left - 14, BAR_HEIGHT)
@@ -146,16 +169,16 @@ class Toolbar:
 
     def _add(self, action: str, do: Callable[[], None] | None = None, tip: str = "") -> None:
         """A button of an action at the next place; do: in place of what the table of shortcuts has."""
-        width = _width(action)
+        width, words = _width(action, self._is_wide), (WIDE_WORDS if self._is_wide else WORDS).get(action, "")
         place = self._ui.rect(self._x, (BAR_HEIGHT - BUTTON) / 2, width, BUTTON)
         self._x += width + GAP
         picture = self._pictures[action]
         self.buttons[action] = self._ui.button(
             place,
-            WORDS.get(action, ""),
+            words,
             do or partial(self._press, action),
             self.back,
-            icon=self._icon(picture, TEXT) if picture else None,
+            icon=None if words else self._icon(picture, TEXT),
             tip=tip or tip_of(action, "play"),
-            style="@quiet",
+            style="" if action == "share" and words else "@quiet",
         )
