@@ -189,9 +189,9 @@ def test_a_motor_is_added_gets_its_keys_and_goes_again_with_undo(rolling):
     assert body(rolling, "w").motor.key == "c" and rolling.editor.tool == "select"
     assert any("Cut tool" in notice for notice in rolling.notices)
     rolling.app.ui.focus_on(form(rolling).keys["motor.reverse_key"])
-    for key in (pygame.K_SPACE, pygame.K_LEFT, pygame.K_1):
+    for key in (pygame.K_SPACE, pygame.K_F5, pygame.K_LEFT):
         rolling.key(key)
-    assert body(rolling, "w").motor.reverse_key == "1"
+    assert body(rolling, "w").motor.reverse_key == "left"
     rolling.fill(entry(rolling, "motor.speed"), "-2")
     assert body(rolling, "w").motor.speed == -2.0
     press(rolling, form(rolling).keys["motor.key"])

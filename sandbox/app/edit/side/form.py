@@ -12,6 +12,7 @@ from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.boxes import CheckBox, KeyBox, Scrub
 from sandbox.app.edit.side.rows import Picker, Row
 from sandbox.app.edit.side.scroll import ScrollArea
+from sandbox.app.play.drive_keys import code_of
 from sandbox.app.shortcuts import action_of, tip_of
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.fields import Field
@@ -298,7 +299,7 @@ class Form:
     def _press_key(self, name: str, key: str | None) -> None:
         if not self._set(name, key) or key is None:
             return
-        action = action_of(ord(key), 0, "play")
+        action = action_of(code_of(key), 0, "play")
         if action is not None:
             self._screen.say(f"While this level is played, {key.upper()} drives; else it is: {tip_of(action, 'play')}.")
 
