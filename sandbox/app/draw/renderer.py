@@ -19,6 +19,7 @@ from sandbox.app.draw.themes import DARK, THEMES, Theme
 from sandbox.app.draw.things.cast import Cast, cast_of
 from sandbox.app.draw.things.ensemble import Ensemble
 from sandbox.app.draw.things.frame import Frame, strain_of
+from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
 from sandbox.app.play.playback import interpolated
 from sandbox.app.profile import Profile
 from sandbox.level.format.model import Level
@@ -40,29 +41,36 @@ SHADOW = (4.0, 8.0)
 # The lattice: half widths at rest and strained [pixels at scale 1]; more springs are lines of a pixel, with steps.
 LATTICE_HALF, LATTICE_MORE, MOST_SMOOTH = 0.65, 1.0, 6_000
 NODE = 2.2
+# What things fade behind, and by how much: springs that are drawn by their force would be lost on their colours.
+VEILING, VEIL = frozenset({"forces", "stability"}), 0.55
 
 
 @dataclass
 class Overlay:
-    """What a person is doing, drawn over the world: the particle under the pointer, a cut [m], a cursor [m], pulls."""
+    """What a person is doing, drawn over the world: the particle under the pointer, a cut [m], a cursor [m], pulls.
+
+    stability (m,): how near springs are to the limit of what is proven stable, 1 = at it; None = not known.
+    """
 
     hovered: int | None = None
     trail: list[tuple[float, float]] = field(default_factory=list)
     cursor: tuple[float, float] | None = None
     pulls: list[Pull] = field(default_factory=list)
+    stability: NDArray[np.float64] | None = None
 
 
 class Renderer:
     """Draws on a surface; scale: pixels per layout unit; level: what it shows, None = springs and discs alone.
 
-    lattice: whether springs are shown by their strain, in front of the things that they are. non_finite: particles the
+    lattice: whether springs are shown by their strain, in front of the things that they are; overlays: what else is
+    shown over them. non_finite: particles the
     last drawing had to leave out. compiled: whether kernels may be used.
     """
 
     def __init__(self, scale: float = 1.0, level: Level | None = None) -> None:
         self.scale = scale
         self.compiled = True
-        self.lattice = False
+        self.overlays = Overlays()
         self.non_finite = 0
         self.level = level
         self.theme: Theme = DARK
@@ -75,6 +83,15 @@ class Renderer:
         self._ensemble: Ensemble | None = None
         self._key: tuple[NDArray[np.bool_], ...] = ()
         self._tiles: tuple[str, Tiles] | None = None
+
+    @property
+    def lattice(self) -> bool:
+        """Whether springs are shown by their strain."""
+        return "lattice" in self.overlays.shown
+
+    @lattice.setter
+    def lattice(self, is_shown: bool) -> None:
+        (self.overlays.shown.add if is_shown else self.overlays.shown.discard)("lattice")
 
     def draw(
         self,
@@ -111,8 +128,13 @@ class Renderer:
                     self.effects.see(current, frame.seconds, self._cast.strikes if self._cast is not None else None)
             with profile.part("marks"):
                 if self.lattice or self.level is None:
-                    self._draw_lattice(frame, particles, springs)
+                    self._draw_lattice(frame, current, particles, springs)
                 self._draw_held(frame, current, camera, overlay)
+                if self.overlays.shown & VEILING:
+                    self._backdrop.veil(painter, camera, VEIL)
+                layer = MarkList()
+                self.overlays.mark(layer, frame, current, camera, particles, springs, overlay.stability)
+                painter.marks(layer, frame.tiles.array)
         self._draw_overlay(Canvas(surface, self.compiled), camera, pixels, overlay)
 
     def _tiles_now(self) -> Tiles:
@@ -146,8 +168,10 @@ class Renderer:
             self._ensemble, self._key = Ensemble(self._cast, frame.state, particles, springs), key
         return self._ensemble
 
-    def _draw_lattice(self, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_]) -> None:
-        state, chosen = frame.state, np.flatnonzero(springs)
+    def _draw_lattice(
+        self, frame: Frame, state: Snapshot, particles: NDArray[np.bool_], springs: NDArray[np.bool_]
+    ) -> None:
+        chosen = np.flatnonzero(springs)
         pairs = np.stack([state.particle_a[chosen], state.particle_b[chosen]], axis=1).astype(np.int64)
         strain = frame.strain[chosen]
         place = np.abs(strain_place(strain))
@@ -158,10 +182,24 @@ class Renderer:
             Canvas(self._painter.surface, self.compiled).plain_lines(np.ascontiguousarray(ends), tones)
         else:
             layer = MarkList()
-            layer.strokes(ends, (LATTICE_HALF + LATTICE_MORE * place[order]) * self.scale, tones)
+            half = (LATTICE_HALF + LATTICE_MORE * place[order]) * self.scale
+            layer.strokes(ends, half, tones)
+            yielded = self._yielded(state, chosen[order])
+            for k in range(1, DASHES, 2):
+                gaps = part_of(ends[yielded], k / DASHES, (k + 0.6) / DASHES)
+                layer.strokes(gaps, half[yielded] + 0.3 * self.scale, packed(self.theme.card))
             if self.level is None:
                 self._mark_nodes(layer, frame, particles)
             self._painter.marks(layer, frame.tiles.array)
+
+    def _yielded(self, state: Snapshot, springs: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Which springs have another rest length than they were made with because they yielded."""
+        if self.level is None:
+            return np.zeros(len(springs), dtype=np.bool_)
+        # As in a world: the material that needs no definition comes first.
+        yields = np.array([False, *(each.yield_strain is not None for each in self.level.materials.values())])
+        changed = state.rest_length[springs] != state.natural_length[springs]
+        return changed & yields[np.clip(state.material[springs], 0, len(yields) - 1)]
 
     def _mark_nodes(self, layer: MarkList, frame: Frame, particles: NDArray[np.bool_]) -> None:
         at = frame.at[particles]
@@ -171,7 +209,9 @@ class Renderer:
     def _draw_held(self, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
         """Pins, sparks, and a line from what is held to the cursor, of another colour where it pulls its most."""
         layer = MarkList()
-        if not self.lattice:
+        if self.lattice:
+            self.effects.mark_breaks(layer, camera, self.theme, self.scale)
+        else:
             self.effects.mark_sparks(layer, camera, self.scale)
         if self._ensemble is not None:
             self._ensemble.balls.mark_pins(layer, frame)
