@@ -228,9 +228,10 @@ class App:
                 self.gallery.update(self.preparation.is_ready)
             self.guide.update(frame_time)
             self.ui.update(frame_time)
-        self._draw()
-        with self.profile.part("flip"):
-            self.display.flip()
+        if not self.display.hidden:
+            self._draw()
+            with self.profile.part("flip"):
+                self.display.flip()
         spent = time.perf_counter() - started
         self.profile.milliseconds["frame"].append(1e3 * spent)
         self._count(frame_time, spent)

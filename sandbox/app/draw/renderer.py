@@ -10,9 +10,11 @@ from sandbox.app.draw.backdrop import GRID_STEP as GRID_STEP
 from sandbox.app.draw.backdrop import Backdrop
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import ACCENT, DANGER, WARNING, packed
+from sandbox.app.draw.detail import FULL, NO_EFFECTS, NO_SHADOWS
 from sandbox.app.draw.effects import Effects
 from sandbox.app.draw.lines import Canvas
 from sandbox.app.draw.raster.painter import MarkList, Painter
+from sandbox.app.draw.still import UNSEEN, UNSEEN_STRAIN, UNSEEN_TURN, Still
 from sandbox.app.draw.strain_colours import strain_place, strain_tones
 from sandbox.app.draw.textures import Tiles
 from sandbox.app.draw.themes import DARK, THEMES, Theme
@@ -43,6 +45,8 @@ LATTICE_HALF, LATTICE_MORE, MOST_SMOOTH = 0.65, 1.0, 6_000
 NODE = 2.2
 # What things fade behind, and by how much: springs that are drawn by their force would be lost on their colours.
 VEILING, VEIL = frozenset({"forces", "stability"}), 0.55
+# Overlays that may change while nothing moves.
+CHANGING = frozenset({"contacts", "forces", "velocities", "stability"})
 
 
 @dataclass
@@ -63,7 +67,7 @@ class Renderer:
     """Draws on a surface; scale: pixels per layout unit; level: what it shows, None = springs and discs alone.
 
     lattice: whether springs are shown by their strain, in front of the things that they are; overlays: what else is
-    shown over them. non_finite: particles the
+    shown over them; detail: see detail.py. non_finite: particles the
     last drawing had to leave out. compiled: whether kernels may be used.
     """
 
@@ -71,6 +75,7 @@ class Renderer:
         self.scale = scale
         self.compiled = True
         self.overlays = Overlays()
+        self.detail = FULL
         self.non_finite = 0
         self.level = level
         self.theme: Theme = DARK
@@ -79,6 +84,7 @@ class Renderer:
         self.effects = Effects()
         self._painter = Painter()
         self._backdrop = Backdrop()
+        self._still = Still()
         self._cast: Cast | None = None
         self._ensemble: Ensemble | None = None
         self._key: tuple[NDArray[np.bool_], ...] = ()
@@ -118,6 +124,13 @@ class Renderer:
             )  # fmt: skip
             particles, springs = shown_particles(current), shown_springs(current)
             self.non_finite = int(np.count_nonzero(particles & ~np.isfinite(pixels).all(axis=1)))
+            if self.level is not None:
+                self._cast = self._cast or cast_of(self.level)
+                self.effects.see(current, frame.seconds, self._cast.strikes)
+            place = pygame.Rect(camera.viewport)
+            self._follow(frame, current, camera, overlay)
+            if self._still.show(surface, place):
+                return
             with profile.part("stage"):
                 self._backdrop.draw(
                     painter, camera, current.terrain, self.level, self.theme, frame.tiles, self.scale
@@ -125,7 +138,6 @@ class Renderer:
             with profile.part("things"):
                 if self.level is not None:
                     self._draw_things(self.level, frame, particles, springs, camera)
-                    self.effects.see(current, frame.seconds, self._cast.strikes if self._cast is not None else None)
             with profile.part("marks"):
                 if self.lattice or self.level is None:
                     self._draw_lattice(frame, current, particles, springs)
@@ -136,6 +148,21 @@ class Renderer:
                 self.overlays.mark(layer, frame, current, camera, particles, springs, overlay.stability)
                 painter.marks(layer, frame.tiles.array)
         self._draw_overlay(Canvas(surface, self.compiled), camera, pixels, overlay)
+        self._still.keep(surface, place)
+
+    def _follow(self, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
+        """Note what this picture is drawn from, so that one of the same need not be drawn again."""
+        shown, moves = self.overlays.shown, not self.effects.is_still
+        key = (
+            (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail),
+            (overlay.hovered, tuple(overlay.trail), overlay.cursor),
+            tuple(pull.cursor for pull in overlay.pulls if pull.at_limit), frozenset(shown),
+            current.terrain, (frame.seconds if moves else 0.0), (current.tick if shown & CHANGING else 0),
+            current.particle_active.tobytes(), current.spring_active.tobytes(), (current.inverse_mass == 0.0).tobytes(),
+            self._ensemble.faces.blinks(frame.seconds).tobytes() if self._ensemble is not None else b"",
+        )  # fmt: skip
+        numbers = [(frame.at, UNSEEN), (frame.angle, UNSEEN_TURN)]
+        self._still.follow(key, [*numbers, (frame.strain, UNSEEN_STRAIN)] if self.lattice else numbers)
 
     def _tiles_now(self) -> Tiles:
         if self._tiles is None or self._tiles[0] != self.theme.name:
@@ -150,8 +177,9 @@ class Renderer:
         ensemble.soft.trace(painter, frame)
         thrown, shapes = ensemble.thrown(frame)
         offset = (SHADOW[0] * self.scale, SHADOW[1] * self.scale)
-        painter.shadows(thrown, shapes, offset, packed(self.theme.shadow), self.theme.shadow_strength)
-        if not self.lattice:
+        if self.detail < NO_SHADOWS:
+            painter.shadows(thrown, shapes, offset, packed(self.theme.shadow), self.theme.shadow_strength)
+        if not self.lattice and self.detail < NO_EFFECTS:
             dust = MarkList()
             self.effects.mark_dust(dust, camera, self.theme, self.scale)
             painter.marks(dust, frame.tiles.array)
@@ -164,7 +192,7 @@ class Renderer:
         key = particles, springs, held
         is_same = len(self._key) == 3 and all(map(np.array_equal, key, self._key))
         if self._ensemble is None or not is_same:
-            self._cast = self._cast or cast_of(level)
+            assert self._cast is not None
             self._ensemble, self._key = Ensemble(self._cast, frame.state, particles, springs), key
         return self._ensemble
 
@@ -211,7 +239,7 @@ class Renderer:
         layer = MarkList()
         if self.lattice:
             self.effects.mark_breaks(layer, camera, self.theme, self.scale)
-        else:
+        elif self.detail < NO_EFFECTS:
             self.effects.mark_sparks(layer, camera, self.scale)
         if self._ensemble is not None:
             self._ensemble.balls.mark_pins(layer, frame)

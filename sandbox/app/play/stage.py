@@ -7,6 +7,7 @@ import numpy as np
 import pygame
 
 from sandbox.app.draw.camera import Box, Camera, bounds
+from sandbox.app.draw.detail import Detail
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Overlay, Renderer
 from sandbox.app.play.playback import Playback
@@ -37,6 +38,7 @@ class Stage:
         self.pressed_by_key = False
         self._hovered: int | None = None
         self._paint = StabilityPaint()
+        self.detail = Detail()
         self._make_tools("normal")
         self._first_box = view_of(playback.level, playback.current)
         self._fit(self._first_box)
@@ -175,6 +177,9 @@ class Stage:
 
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
         """Apply what is due and let time pass; pointer: where the mouse is over the world, if it is."""
+        if frame_time > 0.0:
+            self.detail.note(frame_time)
+            self.renderer.detail = self.detail.level
         with profile.part("commands"):
             self.playback.apply_pending()
             for tool in self.tools.values():
