@@ -56,8 +56,8 @@ LIGHT = Theme(
     shadow=_rgb(0x4A4030), shadow_strength=0.26, soil=_pair(0xB08459, 0xBF966A), turf=_pair(0x93CF63, 0x5C9C44),
     rock=_pair(0xA3A9B5, 0x7F8794), metal=_pair(0xAEB8C8, 0x78859A), text=_rgb(0x27303F), accent=_rgb(0x12907A),
     card=_rgb(0xFFFDF8), line=_rgb(0xDDD5C6), tyre=_rgb(0x42444C), dust=_rgb(0xE9DCC2),
-    strain=(_rgb(0x1F5FD6), _rgb(0x8A8F98), _rgb(0xD9730B)),
-    contact=_rgb(0xB3128A), force=_rgb(0x7A4B00), velocity=_rgb(0x006E75), past=_rgb(0xC2004F),
+    strain=(_rgb(0x1446C0), _rgb(0x8A8F98), _rgb(0xD9730B)),
+    contact=_rgb(0x9C1FB0), force=_rgb(0x7A4B00), velocity=_rgb(0x006E75), past=_rgb(0xC2004F),
 )  # fmt: skip
 THEMES = {theme.name: theme for theme in (DARK, LIGHT)}
 
