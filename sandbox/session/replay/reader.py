@@ -66,10 +66,17 @@ class _TickLine(_Sealed):
     arrays: dict[str, Digest]
 
 
+class _Joined(_Line):
+    particle: Tick
+    spring: Tick
+    definition: dict[str, Any]
+
+
 class _StateLine(_Sealed):
     tick: Tick
     state: dict[str, str]
     settings: Settings
+    joined: tuple[_Joined, ...] = ()
 
     @field_validator("settings")
     @classmethod
@@ -257,7 +264,9 @@ def _gather(gathered: _Gathered, line: _Sealed, number: int, where: str) -> None
         gathered.script.append(ScriptLine(line.tick, line.gesture, line.command, number))
     elif isinstance(line, _StateLine):
         arrays = {gathered.once(name): gathered.once(text) for name, text in line.state.items()}
-        gathered.states[tick] = StoredState(arrays, WorldSettings(**dict(line.settings)), number)
+        gathered.states[tick] = StoredState(
+            arrays, WorldSettings(**dict(line.settings)), tuple(each.model_dump() for each in line.joined), number
+        )
     elif isinstance(line, _EndLine):
         gathered.end_hash = line.hash
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.query import slot_name
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, state_hash
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.world import World
@@ -84,7 +85,7 @@ def _guard(replay: Replay, act: Callable[[], object]) -> None:
     try:
         act()
     except CommandError as error:
-        raise ReplayError(f"{replay.source}: {error}") from None
+        raise ReplayError(*(f"{replay.source}: {fault}" for fault in error.faults)) from None
 
 
 def _advance(replay: Replay, session: Session) -> None:
@@ -145,5 +146,5 @@ def _first_difference(tick: int, array: str, expected: NDArray[Any], world: Worl
         return Divergence(tick, array, None, "equal", "equal", note="the two runs agree here")
     place = tuple(int(part) for part in np.unravel_index(flat, actual.shape))
     index = place[0] if len(place) == 1 else (place[0], place[1])
-    name = world.slot_name(array, place[0])
+    name = slot_name(world, array, place[0])
     return Divergence(tick, array, index, expected[place].item(), actual[place].item(), name)
