@@ -28,10 +28,10 @@ from sandbox.level.format.limits import (
 )
 from sandbox.level.format.model import Level, Material, NissenMaterial
 from sandbox.level.format.parse import parse_level
+from sandbox.physics.changing.equipment import Joined
+from sandbox.physics.changing.joining import Place, append_state, equipped
 from sandbox.physics.collision.filter import ALL_GROUPS
 from sandbox.physics.driving import drive_muscles
-from sandbox.physics.equipment import Joined
-from sandbox.physics.joining import Place, append_state, equipped
 from sandbox.physics.state import Slots
 from sandbox.physics.world import World
 
@@ -41,7 +41,7 @@ Mask = NDArray[np.bool_]
 KEPT = 64
 
 
-class Bodies:
+class Joiners:
     """Bodies of a definition, checked and built, ready to join a world.
 
     definition: `body`, and perhaps `others`, `springs`, `welds` and `materials`, as in a level file; springs and welds
@@ -134,16 +134,13 @@ class Bodies:
         group, collides, present = self.groups(world)
         # A muscle is where its wave is by now.
         drive_muscles(self.built, world.tick)
-        place = self._place(world)
-        joined = self._joined(world, place)
-        parts = tuple(self._renamed(world, each.name, "") for each in actuators(self.level))
+        place, naming = self._place(world), self._naming(world)
+        joined = self._joined(place, naming)
+        equipment = equipped(world, self.built, place, tuple(naming[each.name] for each in actuators(self.level)))
         areas, forms = len(world.area_names), len(world.forms)
-        equipment = equipped(world, self.built, place, parts)
         world.equipment = equipment._replace(
-            area_names=equipment.area_names[:areas]
-            + tuple(self._renamed(world, name, "") for name in equipment.area_names[areas:]),
-            forms=equipment.forms[:forms]
-            + tuple(replace(form, name=self._renamed(world, form.name, "")) for form in equipment.forms[forms:]),
+            area_names=(*world.area_names, *(naming[name] for name in equipment.area_names[areas:])),
+            forms=(*world.forms, *(replace(form, name=naming[form.name]) for form in equipment.forms[forms:])),
             joined=(*world.joined, joined),
         )
         world.name_slots(joined.particle_names, joined.spring_names)
@@ -166,32 +163,32 @@ class Bodies:
             np.array([names.index(name) for name in self.built.material_names], dtype=np.int64),
         )
 
-    def _joined(self, world: World, place: Place) -> Joined:
+    def _naming(self, world: World) -> dict[str, str]:
+        """What each body and each loose spring of the definition, by its name there, is called in the world."""
+        count = sum(len(joined.names) for joined in world.joined)
+        springs = world.spring_naming.unused("+:", len(self.level.springs))
+        named = {body.id: f"+{number}" for number, body in enumerate(self.level.bodies, count + 1)}
+        return named | {f":{index}": name for index, name in enumerate(springs)}
+
+    def _joined(self, place: Place, naming: dict[str, str]) -> Joined:
         built = self.built
+
+        def renamed(name: str, mark: str) -> str:
+            body, _, rest = name.partition(mark)
+            return naming.get(name) or naming[body] + mark + rest
+
         seconds = [each for each in built.particle_naming.second if each[1] < self.particles]
         return Joined(
             self.level,
             self.definition,
-            tuple(self._names(world).values()),
+            tuple(naming[body.id] for body in self.level.bodies),
             place.particle,
             place.spring,
             place.part,
-            tuple(self._renamed(world, name, ".") for name in built.particle_names[: self.particles]),
-            tuple(self._renamed(world, name, ":") for name in built.spring_names[: self.springs]),
-            tuple((self._renamed(world, name, "."), slot + place.particle) for name, slot in seconds),
+            tuple(renamed(name, ".") for name in built.particle_names[: self.particles]),
+            tuple(renamed(name, ":") for name in built.spring_names[: self.springs]),
+            tuple((renamed(name, "."), slot + place.particle) for name, slot in seconds),
         )
-
-    def _names(self, world: World) -> dict[str, str]:
-        """The name in the world of each body, by its id in the definition."""
-        count = sum(len(joined.names) for joined in world.joined)
-        return {body.id: f"+{number}" for number, body in enumerate(self.level.bodies, count + 1)}
-
-    def _renamed(self, world: World, name: str, mark: str) -> str:
-        """What a body, particle or spring of that name in the definition is called in the world."""
-        if name.startswith(":"):
-            return world.spring_naming.unused("+:", int(name[1:]) + 1)[-1]
-        body, _, rest = name.partition(mark) if mark else (name, "", "")
-        return self._names(world)[body] + mark + rest
 
 
 def _give_group(group: Slots, others: tuple[Slots, Slots], wheel: Mask, mount: Mask, own: int) -> None:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from sandbox.level.build.joining import Bodies
+from sandbox.level.build.joining import Joiners
 from sandbox.level.faults.level_error import LevelError
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
@@ -29,6 +29,6 @@ class AddBody(Command):
     def carry_out(self, world: World) -> None:
         given = {name: value for name, value in vars(self).items() if value is not None}
         try:
-            Bodies(world, given).join(world)
+            Joiners(world, given).join(world)
         except LevelError as error:
             raise CommandError(str(error)) from None

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from sandbox.level.format.limits import FORCE_LIMIT
 from sandbox.level.format.quantities import Point, Size, unit
-from sandbox.physics.pushing import push
+from sandbox.physics.changing.pushing import push
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 

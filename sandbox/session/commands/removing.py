@@ -6,8 +6,8 @@ import numpy as np
 
 from sandbox.level.faults.level_error import suggestion
 from sandbox.level.format.quantities import Name
+from sandbox.physics.changing.removing import remove_particles
 from sandbox.physics.joints.hands import bodies_of
-from sandbox.physics.removing import remove_particles
 from sandbox.physics.state import Slots
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError

@@ -22,11 +22,11 @@ from typing import Any
 import numpy as np
 
 from sandbox.level.build.build_world import build_world
-from sandbox.level.build.joining import Bodies
+from sandbox.level.build.joining import Joiners
 from sandbox.level.format.files import level_data
 from sandbox.level.format.model import Level
+from sandbox.physics.changing.equipment import Equipment
 from sandbox.physics.constraints import AREA
-from sandbox.physics.equipment import Equipment
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.state import BY_STORED, COLUMNS, FAMILIES, Column, Family
 from sandbox.physics.terrain import NO_TERRAIN
@@ -110,7 +110,7 @@ def _equipment(level: Level, joined: Sequence[Mapping[str, Any]], grabs: tuple[i
         name_slots_to(world, each["particle"], each["spring"])
         world.append(Family.PARTICLE, particles)
         world.append(Family.SPRING, springs)
-        Bodies(world, each["definition"]).join(world)
+        Joiners(world, each["definition"]).join(world)
     return world.equipment
 
 

@@ -66,7 +66,7 @@ class _TickLine(_Sealed):
     arrays: dict[str, Digest]
 
 
-class _Joined(_Line):
+class _JoinedLine(_Line):
     particle: Tick
     spring: Tick
     definition: dict[str, Any]
@@ -76,7 +76,7 @@ class _StateLine(_Sealed):
     tick: Tick
     state: dict[str, str]
     settings: Settings
-    joined: tuple[_Joined, ...] = ()
+    joined: tuple[_JoinedLine, ...] = ()
 
     @field_validator("settings")
     @classmethod
