@@ -177,7 +177,7 @@ def test_undo_and_redo_across_what_joined_give_the_same_bits_and_names(tmp_path)
 
 def test_a_recording_is_verified_from_a_state_that_bodies_have_joined(tmp_path):
     session = Session(room())
-    session.record_to(tmp_path / "run.replay.gz")
+    session.record_to(tmp_path / "run.replay.gz", state_ticks=60)
     session.submit(AddParticle((0.0, 5.0)))
     session.submit(AddBody(placed(BODIES["jelly"], 2, 1) | {"material": "skin"}, materials=SKIN))
     session.submit(AddBody(**placed_cart(0.0, 3.0)))

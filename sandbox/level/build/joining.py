@@ -18,6 +18,7 @@ from sandbox.level.build.surfaces import DEFAULT_GROUP, TERRAIN_NAME, group_bits
 from sandbox.level.faults.level_error import Fault, LevelError, shown, suggestion
 from sandbox.level.format.limits import (
     DEFAULT_MATERIAL,
+    DEFINITION_LIMIT,
     FORMAT,
     LIMITED_LIMIT,
     MATERIAL_LIMIT,
@@ -74,6 +75,8 @@ class Joiners:
             text = json.dumps(data, allow_nan=False)
         except (TypeError, ValueError, RecursionError):
             raise LevelError(SOURCE, [("", "holds something that JSON cannot say")]) from None
+        if len(text) > DEFINITION_LIMIT:
+            raise LevelError(SOURCE, [("", f"is longer than {DEFINITION_LIMIT:,} bytes; make it smaller or coarser")])
         self.level = _parsed(text)
         faults = list(_material_faults(world, self.level, definition.get("materials") or {}))
         if faults:
