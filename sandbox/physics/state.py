@@ -161,14 +161,12 @@ class StateArrays:
 COLUMNS: tuple[Column, ...] = tuple(column for column in vars(StateArrays).values() if isinstance(column, Column))
 BY_NAME: dict[str, Column] = {column.name: column for column in COLUMNS}
 BY_STORED: dict[str, Column] = {column.stored: column for column in COLUMNS}
+FAMILIES: dict[Family, tuple[Column, ...]] = {
+    family: tuple(column for column in COLUMNS if column.family is family) for family in Family
+}
 # Those that no state goes without.
 ALWAYS_STORED: frozenset[str] = frozenset(column.stored for column in COLUMNS if not column.sparse)
 GUARDED: tuple[Column, ...] = tuple(column for column in COLUMNS if column.guarded)
-
-
-def family_of(family: Family) -> tuple[Column, ...]:
-    """The arrays of one family, in order."""
-    return tuple(column for column in COLUMNS if column.family is family)
 
 
 def reference() -> str:
@@ -181,7 +179,7 @@ def reference() -> str:
     ]
     for family in Family:
         lines += ["", f"## One row for each {family.value}", "", "| name | type | unit | is |", "|---|---|---|---|"]
-        for column in family_of(family):
+        for column in FAMILIES[family]:
             kind = np.dtype(column.dtype).name + (f", {column.width} a row" if column.width > 1 else "")
             lines.append(f"| `{column.stored}` | {kind} | {column.unit} | {column.meaning} |")
     return "\n".join(lines) + "\n"
