@@ -76,6 +76,12 @@ class Renderer:
         self._key: tuple[NDArray[np.bool_], ...] = ()
         self._tiles: tuple[str, Tiles] | None = None
 
+    def alike(self, scale: float) -> "Renderer":
+        """Another renderer with the same look at another scale, which has drawn nothing yet."""
+        other = Renderer(scale, self.level)
+        other.compiled, other.lattice, other.theme = self.compiled, self.lattice, self.theme
+        return other
+
     def draw(
         self,
         surface: pygame.Surface,
