@@ -21,6 +21,8 @@ Derived = TypeVar("Derived")
 
 # An energy bank that the direct solver begins anew at its next step: something outside changed the body.
 BANK_UNOPENED = -1.0
+# One of a body that goes on, but has nothing any more.
+BANK_EMPTIED = -2.0
 
 # The last is of a grab's spring while it holds: it pulls at nothing, its hand does (joints/hands.py).
 LAW_NISSEN, LAW_HOOKE, LAW_HAND = range(3)
@@ -564,9 +566,10 @@ class World(StateArrays):
             self.velocity[self.grab_particle : self.grab_particle + GRAB_COUNT] = 0.0
 
     def release(self, grab: int) -> None:
-        """Let go; the grab's slots wait for its next use."""
+        """Let go; the grab's slots wait for its next use. Nothing spends what a hand's work has put into banks."""
         cursor, spring = self.grab_particle + grab, self.grab_spring + grab
         self.change("particle_active", False, cursor)
+        self.energy_bank[self.energy_bank > 0.0] = BANK_EMPTIED
         self.disturb(self.particle_b[spring])
         self.position[cursor] = 0.0
         self.velocity[cursor] = 0.0
