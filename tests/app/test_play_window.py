@@ -3,7 +3,6 @@
 import pygame
 import pytest
 
-from sandbox.app.play.quality import LATE, OVER, Quality
 from sandbox.app.play.toolbar import LEFT, RIGHT, fitting
 from tests.app.conftest import small_level
 
@@ -100,14 +99,3 @@ def test_again_is_offered_once_things_have_left_the_view_and_begins_anew(open_ap
     assert again.visible and any("left the view" in text for text in driver.notices)
     driver.click_widget(again)
     assert driver.playback.session.tick < 20 and not again.visible
-
-
-def test_late_frames_take_shadows_away_first_and_then_effects_unless_they_are_wanted():
-    quality = Quality()
-    for _ in range(OVER):
-        quality.note(2 * LATE)
-    assert not quality.shadows("auto") and quality.effects("auto", "full")
-    for _ in range(OVER):
-        quality.note(2 * LATE)
-    assert not quality.effects("auto", "full")
-    assert quality.shadows("on") and quality.effects("on", "full") and not quality.effects("on", "less")

@@ -6,6 +6,7 @@ import pygame
 import pytest
 
 from sandbox.app.draw.colours import BACKGROUND, show_theme, shown_theme
+from sandbox.app.draw.detail import FULL, NO_EFFECTS
 from sandbox.app.settings.chosen import SETTINGS, Amount, Chosen, OneOf
 from sandbox.app.settings.key_row import KeyRow
 from sandbox.app.settings.system_theme import theme_of
@@ -210,11 +211,12 @@ def test_hints_come_when_a_level_begins_unless_they_are_hidden_and_always_on_dem
 
 def test_shadows_and_effects_are_left_out_by_choice(driver):
     renderer = driver.stage.renderer
-    driver.frames()
-    assert renderer.has_shadows and renderer.has_effects
+    driver.app.chosen.choose("effects", "on")
+    driver.frames(2)
+    assert renderer.detail == FULL and renderer.has_effects
     driver.app.chosen.choose("motion", "less")
-    driver.frames()
-    assert renderer.has_shadows and not renderer.has_effects
+    driver.frames(2)
+    assert renderer.detail == FULL and not renderer.has_effects
     driver.app.chosen.choose("effects", "off")
-    driver.frames()
-    assert not renderer.has_shadows
+    driver.frames(2)
+    assert renderer.detail == NO_EFFECTS

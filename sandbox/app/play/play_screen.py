@@ -1,7 +1,7 @@
 """PlayScreen: a run on the screen, with the bar of its tools at the top and the panel at the right."""
 
-import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pygame
@@ -9,16 +9,18 @@ import pygame
 from sandbox.app.application import Application
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colour
+from sandbox.app.draw.detail import FULL, NO_EFFECTS
+from sandbox.app.draw.views.overlays import NAMES as OVERLAYS
 from sandbox.app.edit.bake_choice import ask_to_keep
 from sandbox.app.loop import SPEEDS
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.hand_labels import draw_labels
 from sandbox.app.play.key_caps import draw_key_caps
+from sandbox.app.play.legend import Legend
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.out_of_view import OutOfView
 from sandbox.app.play.panel import PANEL_WIDTH, Panel
 from sandbox.app.play.playback import Playback
-from sandbox.app.play.quality import Quality
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
 from sandbox.app.play.stuck import NOTICE, StuckBodies
@@ -68,7 +70,7 @@ class PlayScreen:
         self._keys = DriveKeys(playback)
         self.stuck = StuckBodies()
         self.out_of_view = OutOfView()
-        self.quality = Quality()
+        self._legend = Legend()
         self.actions = self._actions()
         app.follow(playback)
 
@@ -112,7 +114,8 @@ class PlayScreen:
         before, self.panel = self.panel, None
         if self.show_panel:
             height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
-            self.panel = Panel(ui, self.playback, self._app.say, self.choose_strength, BAR_HEIGHT, height)
+            choices = {"hand": self.choose_strength, "view": self._app.act}
+            self.panel = Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height)
             if before is not None and before.playback is self.playback:
                 self.panel.choose_material(before.material)
 
@@ -125,7 +128,7 @@ class PlayScreen:
             "tool_pin": lambda: stage.choose_tool("pin"),
             "tool_cut": lambda: stage.choose_tool("cut"),
             "let_go": stage.let_go,
-            "lattice": stage.toggle_lattice,
+            **{name: partial(stage.toggle_view, name) for name in OVERLAYS},
             "hand": self._next_strength,
             "free": self._free,
             "undo": lambda: self.playback.submit_undo(),
@@ -253,6 +256,8 @@ class PlayScreen:
         if self.panel is not None and ready:
             self.panel.refresh()
             self.panel.hand.show(self.stage.drag.strength)
+        if self.panel is not None:
+            self.panel.views.show(self.stage.renderer.overlays.shown)
         self.toolbar.show(
             BarState(
                 self.playback.level.name,
@@ -286,15 +291,17 @@ class PlayScreen:
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw the world, what hands pull with, and the keys that the level has."""
-        began, renderer, chosen = time.perf_counter(), self.stage.renderer, self._app.chosen
-        renderer.has_shadows = self.quality.shadows(chosen["effects"])
-        renderer.has_effects = self.quality.effects(chosen["effects"], chosen["motion"])
+        chosen = self._app.chosen
+        self.stage.fixed_detail = {"on": FULL, "off": NO_EFFECTS}.get(chosen["effects"])
+        self.stage.renderer.has_effects = chosen["motion"] == "full"
         self.stage.draw(surface, profile)
-        self.quality.note(time.perf_counter() - began)
         surface.set_clip(self.viewport)
         self.stuck.draw(surface, self._ui, self.camera, self.playback.current)
         draw_key_caps(surface, self._ui, self._keys.shown(), self.viewport)
         draw_labels(surface, self._ui, self.camera, self.playback.current, self.stage.pulls())
+        renderer, (left, top, width, _) = self.stage.renderer, self.viewport
+        solver = self.playback.current.settings.solver
+        self._legend.draw(surface, self._ui, renderer.overlays, renderer.theme, solver, (left + width, top))
         surface.set_clip(None)
 
     def status(self, ticks: float, frame: float) -> list[tuple[str, Colour]]:
