@@ -181,6 +181,8 @@ class App:
         if self.gallery is not None:
             self.gallery.close()
             self.gallery = None
+            # Its cards hold tens of megabytes of pictures.
+            self._collector.expect_old_garbage()
 
     # Actions.
 
