@@ -302,12 +302,23 @@ class App:
         return " - ".join([*words, "Spring Sandbox"])
 
 
-def run_app(display: Display, wanted: StartRequest, profile: Profile, seconds: float | None = None) -> None:
-    """Show what is wanted in the window and run until it is closed, or for so many seconds."""
+def run_app(
+    display: Display,
+    wanted: StartRequest,
+    profile: Profile,
+    seconds: float | None = None,
+    show_progress: Callable[[], object] = lambda: None,
+) -> None:
+    """Show what is wanted in the window and run until it is closed, or for so many seconds.
+
+    show_progress: called now and then until there is something to show.
+    """
     app = App(display, profile)
+    show_progress()
     app.guide.may_offer = True
     app.open(wanted)
     app.documents.offer_recovery()
+    show_progress()
     clock = pygame.time.Clock()
     started = before = time.perf_counter()
     try:

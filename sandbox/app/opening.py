@@ -50,16 +50,23 @@ class _Work(threading.Thread):
 class _StartPicture:
     """The name of the program, and a ring that turns."""
 
-    def __init__(self, scale: float) -> None:
-        self._scale = scale
+    def __init__(self, display: Display, times: Profile) -> None:
+        self._display, self._times, self._scale = display, times, display.scale
+        self._began = time.perf_counter()
         self._title = self._written("NotoSans-Bold.ttf", TITLE_SIZE, "Spring Sandbox", TEXT)
         self._line = self._written("NotoSans-Regular.ttf", LINE_SIZE, "Starting", MUTED)
 
     def _written(self, font: str, size: int, text: str, colour: tuple[int, int, int]) -> pygame.Surface:
         return _font(font, round(size * self._scale)).render(text, True, colour)
 
-    def draw(self, surface: pygame.Surface, seconds: float) -> None:
-        """Draw the picture of a moment."""
+    def show(self) -> None:
+        """Show the picture of this moment."""
+        with self._times.part("frame"):
+            self._draw(self._display.surface, time.perf_counter() - self._began)
+            self._display.flip()
+        self._times.shown()
+
+    def _draw(self, surface: pygame.Surface, seconds: float) -> None:
         surface.fill(BACKGROUND)
         middle, y = surface.get_width() // 2, surface.get_height() // 2
         surface.blit(self._title, self._title.get_rect(midbottom=(middle, y - round(30 * self._scale))))
@@ -90,8 +97,9 @@ def open_app(
     began = time.perf_counter()
     times = Profile()
     display = Display(scale)
+    words = _StartPicture(display, times)
     try:
-        wanted = _wait(display, times, _Work(find))
+        wanted = _wait(display, words, times, _Work(find))
     except BaseException:
         display.close()
         raise
@@ -100,25 +108,21 @@ def open_app(
         return 0
     from sandbox.app.app import run_app
 
-    run_app(display, wanted, times, seconds)
+    run_app(display, wanted, times, seconds, words.show)
     if profile:
         print(times.table(began))
     return 0
 
 
-def _wait(display: Display, times: Profile, work: _Work) -> StartRequest | None:
+def _wait(display: Display, words: _StartPicture, times: Profile, work: _Work) -> StartRequest | None:
     """Show words until the work is done; None where the window was closed."""
-    words, clock = _StartPicture(display.scale), pygame.time.Clock()
-    began = time.perf_counter()
+    clock = pygame.time.Clock()
     while True:
-        with times.part("frame"):
-            # Keys and clicks stay in the queue, for the app.
-            if pygame.event.get(CLOSING):
-                return None
-            display.refresh()
-            words.draw(display.surface, time.perf_counter() - began)
-            display.flip()
-        times.shown()
+        # Keys and clicks stay in the queue, for the app.
+        if pygame.event.get(CLOSING):
+            return None
+        display.refresh()
+        words.show()
         if work.ident is None:
             times.reached("words in the window")
             work.start()

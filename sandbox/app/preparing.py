@@ -96,11 +96,13 @@ class Preparation:
 
     def _compile(self) -> Iterator[None]:
         """Let children compile, until all is there that the run on the screen needs."""
-        if is_prepared():
-            return
-        self._crew = Crew(usual_processes())
-        while not self._crew.has(GROUPS if self._has_contacts else GROUPS[:1]):
+        yield from self._on_thread(self._hire)
+        while self._crew is not None and not self._crew.has(GROUPS if self._has_contacts else GROUPS[:1]):
             yield
+
+    def _hire(self) -> None:
+        if not is_prepared():
+            self._crew = Crew(usual_processes())
 
     def _may_switch(self) -> bool:
         """Whether no trial is in the midst of a tick."""

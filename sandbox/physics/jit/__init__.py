@@ -204,13 +204,6 @@ def compile_entry(kernel: Kernel, signature: tuple[Any, ...]) -> None:
     kernel.ready().compile(signature)
 
 
-def load_kept() -> Iterator[str]:
-    """Load what is kept on disk of all entries, one at each step, whose name it gives; after `switch_to_compiled`."""
-    for kernel in entries() if _chosen().COMPILED else ():
-        for _ in _way.load_kept(kernel.ready()):
-            yield kernel.name
-
-
 def interpreter_function(name: str, result: str, *arguments: str) -> Any:
     """A function of Python's own C interface for compiled kernels, given the numba names of its types."""
     return interpreted.InterpreterFunction(name, result, arguments)

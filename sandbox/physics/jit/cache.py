@@ -93,18 +93,6 @@ class KernelCache(caching.NullCache):
         versions = sys.implementation.cache_tag, numba.__version__, np.__version__
         return f"{name}-{_short(function.__module__, *versions, *processor)}-"
 
-    def signatures(self, target_context: Any) -> list[tuple[Any, ...]]:
-        """The types of arguments for which this kernel is kept, as it is now."""
-        target_context.refresh()
-        end, found = f"-{digest_of_needs(self._function)}{_SUFFIX}", {}
-        for processor in _processors(target_context):
-            for folder in cache_folders():
-                for file in sorted(folder.glob(f"{glob.escape(self._begin(processor))}*{end}")):
-                    content = _read(file)
-                    if content is not None:
-                        found[file.name.removesuffix(end).rpartition("-")[2]] = pickle.loads(content)[3].args
-        return list(found.values())
-
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """What was compiled for these types of arguments, by any process; None where nothing of it can be used."""
         with contextlib.suppress(Exception):  # inner parts of numba are others than those below

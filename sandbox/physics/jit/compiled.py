@@ -1,7 +1,6 @@
 """Kernels that numba compiles, with what of its inner parts can be used in the version that is installed."""
 
 import importlib
-from collections.abc import Iterator
 from types import CellType, FunctionType, ModuleType
 from typing import Any
 
@@ -134,11 +133,3 @@ def types_of(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
         numba.typeof(bundle(argument.given) if isinstance(argument, interpreted.Bundle) else argument)
         for argument in arguments
     )
-
-
-def load_kept(dispatcher: Any) -> Iterator[Any]:
-    """Load what is kept of a kernel, for one signature after the other."""
-    kept: Any = getattr(dispatcher, "_cache", None)
-    for signature in kept.signatures(dispatcher.targetctx) if hasattr(kept, "signatures") else ():
-        dispatcher.compile(signature)
-        yield signature
