@@ -31,6 +31,8 @@ from sandbox.app.widgets.ui import Ui
 
 # How often the status figures and the window title change [s].
 FIGURES_EVERY = 0.5
+# While a run waits for kernels, more frames [1/s] would take time from what they wait for.
+WAITING_RATE = 20
 # A run that waits for kernels no longer than this [s] says nothing of it.
 WAIT_UNSEEN = 0.3
 
@@ -330,7 +332,7 @@ def run_app(
             profile.reached("the first page")
             if app.play is not None and app.play.playback.session.tick:
                 profile.reached("the first tick")
-            clock.tick(FRAME_RATE)
+            clock.tick(FRAME_RATE if app.ready or app.play is None else WAITING_RATE)
     finally:
         # Whatever ended the loop, a recording gets its last line.
         app.close()

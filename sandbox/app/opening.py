@@ -15,10 +15,11 @@ import pygame
 
 from sandbox.app.display import Display
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, MUTED, TEXT, mixed
-from sandbox.app.loop import FRAME_RATE
 from sandbox.app.profile import Profile
 from sandbox.app.start_request import StartRequest
 
+# Pictures a second until the app is there: more of them would take a quarter of the time from what they wait for.
+START_RATE = 20
 CLOSING = (pygame.QUIT, pygame.WINDOWCLOSE)
 # Sizes in layout units.
 TITLE_SIZE, LINE_SIZE = 30, 14
@@ -128,7 +129,7 @@ def _wait(display: Display, words: _StartPicture, times: Profile, work: _Work) -
             work.start()
         if not work.is_alive():
             break
-        clock.tick(FRAME_RATE)
+        clock.tick(START_RATE)
     if work.error is not None:
         raise work.error
     return work.wanted

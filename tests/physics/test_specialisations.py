@@ -16,7 +16,7 @@ from sandbox.physics.step import step
 from tests.determinism.kernel_script import busy_world, touching_world
 
 def count():
-    return {kernel.name: len(kernel.held.overloads) for kernel in jit.entries() if kernel.held.overloads}
+    return {kernel.name: len(kernel.ready().overloads) for kernel in jit.entries() if kernel.ready().overloads}
 
 def play():
     for solver in ("single_pass", "iterative", "direct"):

@@ -85,9 +85,6 @@ class Entry:
     def __call__(self, *arguments: Any) -> Any:
         return self._kernel.ready()(*arguments)
 
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._kernel.ready(), name)
-
 
 KERNELS: list[Kernel] = []
 _BY_FUNCTION: dict[Any, Kernel] = {}
@@ -193,10 +190,11 @@ def entries() -> list[Kernel]:
 
 def expect(held: Any, *arguments: Any) -> None:
     """Compile a kernel for such arguments, or load it, as a call would, which is not made."""
+    kernel = cast(Kernel, kernel_of(held))
     if _chosen().COMPILED:
-        held.compile(_way.types_of(arguments))
+        kernel.ready().compile(_way.types_of(arguments))
     else:
-        next(kernel for kernel in KERNELS if kernel.held is held).note(*arguments)
+        kernel.note(*arguments)
 
 
 def compile_entry(kernel: Kernel, signature: tuple[Any, ...]) -> None:
@@ -211,12 +209,7 @@ def interpreter_function(name: str, result: str, *arguments: str) -> Any:
 
 def _made(role: str, function: Function) -> Function:
     kernel = Kernel(role, function)
-    if role not in _ENTRIES:
-        kernel.held = function
-    elif _way is interpreted:
-        kernel.held = interpreted.make(kernel)
-    else:
-        kernel.held = Entry(kernel)
+    kernel.held = Entry(kernel) if role in _ENTRIES else function
     KERNELS.append(kernel)
     _BY_FUNCTION[function] = kernel
     return cast(Function, kernel.held)
