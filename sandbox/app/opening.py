@@ -3,13 +3,11 @@
 Nothing that is imported here needs numpy, numba, pydantic or pygame_gui.
 """
 
-import io
+import contextlib
 import math
 import threading
 import time
 from collections.abc import Callable
-from importlib.util import find_spec
-from pathlib import Path
 
 import pygame
 
@@ -17,6 +15,7 @@ from sandbox.app.display import Display
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, MUTED, TEXT, mixed
 from sandbox.app.profile import Profile
 from sandbox.app.start_request import StartRequest
+from sandbox.app.widgets.fonts import plain_font
 
 # Pictures a second until the app is there: more of them would take a quarter of the time from what they wait for.
 START_RATE = 20
@@ -38,8 +37,8 @@ class _Work(threading.Thread):
         try:
             from sandbox.physics import jit
 
-            # A process that has kernels already goes on with them.
-            if not jit.KERNELS:
+            # A process that has compiled kernels already goes on with them.
+            with contextlib.suppress(RuntimeError):
                 jit.start_interpreted()
             import sandbox.app.app  # noqa: F401
 
@@ -54,11 +53,11 @@ class _StartPicture:
     def __init__(self, display: Display, times: Profile) -> None:
         self._display, self._times, self._scale = display, times, display.scale
         self._began = time.perf_counter()
-        self._title = self._written("NotoSans-Bold.ttf", TITLE_SIZE, "Spring Sandbox", TEXT)
-        self._line = self._written("NotoSans-Regular.ttf", LINE_SIZE, "Starting", MUTED)
+        self._title = self._written(True, TITLE_SIZE, "Spring Sandbox", TEXT)
+        self._line = self._written(False, LINE_SIZE, "Starting", MUTED)
 
-    def _written(self, font: str, size: int, text: str, colour: tuple[int, int, int]) -> pygame.Surface:
-        return _font(font, round(size * self._scale)).render(text, True, colour)
+    def _written(self, bold: bool, size: int, text: str, colour: tuple[int, int, int]) -> pygame.Surface:
+        return plain_font(round(size * self._scale), bold).render(text, True, colour)
 
     def show(self) -> None:
         """Show the picture of this moment."""
@@ -77,14 +76,6 @@ class _StartPicture:
             age = (dot / 10 - seconds * 0.9) % 1.0
             at = middle + math.cos(turn) * 16 * self._scale, y + math.sin(turn) * 16 * self._scale
             pygame.draw.aacircle(surface, mixed(LINE, ACCENT, age), at, 3 * self._scale)
-
-
-def _font(name: str, size: int) -> pygame.font.Font:
-    """The widgets' font, found without importing the library that brings it."""
-    library = find_spec("pygame_gui")
-    if library is None or library.origin is None:
-        return pygame.font.Font(None, size)
-    return pygame.font.Font(io.BytesIO((Path(library.origin).parent / "data" / name).read_bytes()), size)
 
 
 def open_app(
