@@ -37,6 +37,8 @@ from sandbox.app.widgets.ui import Ui
 
 # How often the status figures and the window title change [s].
 FIGURES_EVERY = 0.5
+# While a run waits for kernels, more frames [1/s] would take time from what they wait for.
+WAITING_RATE = 20
 # A run that waits for kernels no longer than this [s] says nothing of it.
 WAIT_UNSEEN = 0.3
 # Settings that all widgets are laid out anew for.
@@ -352,13 +354,23 @@ class App:
 
 
 def run_app(
-    display: Display, wanted: StartRequest, profile: Profile, seconds: float | None, given: Mapping[str, Any]
+    display: Display,
+    wanted: StartRequest,
+    profile: Profile,
+    seconds: float | None,
+    given: Mapping[str, Any],
+    show_progress: Callable[[], object] = lambda: None,
 ) -> None:
-    """Show what is wanted in the window and run until it is closed, or for so many seconds; given: see `Chosen`."""
+    """Show what is wanted in the window and run until it is closed, or for so many seconds.
+
+    given: see `Chosen`. show_progress: called now and then until there is something to show.
+    """
     app = App(display, profile, Chosen(**given))
+    show_progress()
     app.guide.may_offer = True
     app.open(wanted)
     app.documents.offer_recovery()
+    show_progress()
     clock = pygame.time.Clock()
     started = before = time.perf_counter()
     try:
@@ -370,7 +382,7 @@ def run_app(
             profile.reached("the first page")
             if app.play is not None and app.play.playback.session.tick:
                 profile.reached("the first tick")
-            clock.tick(FRAME_RATE)
+            clock.tick(FRAME_RATE if app.ready or app.play is None else WAITING_RATE)
     finally:
         # Whatever ended the loop, a recording gets its last line.
         app.close()
