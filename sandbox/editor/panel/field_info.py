@@ -47,6 +47,7 @@ _TITLES = {
     "pin": "Held ends",
     "pinned": "Held",
     "cut": "Cut springs",
+    "phase": "Phase, of a period",
     "drive": "Muscle",
     "area": "Keeps area",
     "collision_group": "In group",
