@@ -24,6 +24,8 @@ from sandbox.app.preparing import Preparation
 from sandbox.app.profile import Profile
 from sandbox.app.progress import RunProgress
 from sandbox.app.screen import Figures, Screen
+from sandbox.app.share.page import SharePage
+from sandbox.app.share.sharing import Sharing
 from sandbox.app.shortcuts import Mode
 from sandbox.app.start_request import StartRequest
 from sandbox.app.widgets.dialogs import show_lines
@@ -52,6 +54,8 @@ class App:
         self.files = FileActions(self)
         self.documents = DocumentActions(self)
         self.guide = Guide(self, self.documents)
+        self.sharing = Sharing(self)
+        self.share_page = SharePage(self, self.sharing)
         self._progress = RunProgress(self)
         self._own_actions = self._actions()
         self._figures = Figures()
@@ -170,6 +174,7 @@ class App:
             "smaller": lambda: self._rescale(1 / 1.125),
             "help": lambda: show_help(self.ui, self.mode, self.guide.begin),
             "tour": self.guide.begin,
+            "share": self.share_page.open,
             "quit": self.quit,
         }
 
@@ -196,6 +201,7 @@ class App:
         """Close the window; whatever ended the loop, a recording gets its last line."""
         if self.screen is not None:
             self.screen.leave()
+        self.sharing.close()
         self.documents.close()
         self.display.close()
         self._collector.close()
@@ -227,6 +233,8 @@ class App:
             if self.gallery is not None:
                 self.gallery.update(self.preparation.is_ready)
             self.guide.update(frame_time)
+            self.sharing.update(frame_time)
+            self.share_page.update()
             self.ui.update(frame_time)
         if not self.display.hidden:
             self._draw()
@@ -250,6 +258,7 @@ class App:
     def _switched(self) -> None:
         if self.play is not None:
             self.play.playback.session.world.drop_caches()
+        self.sharing.drop_caches()
 
     def _draw(self) -> None:
         surface = self.display.surface
@@ -260,7 +269,7 @@ class App:
         with self.profile.part("ui"):
             if self.screen is not None:
                 left = None if self.ui.has_sheet else self.screen.notices_left
-                parts = self.screen.status(self._figures)
+                parts = self.sharing.status() + self.screen.status(self._figures)
                 if not self.ready and self.mode == "edit":
                     parts.append(("preparing the physics", WARNING))
                 self.status.draw(surface, parts, self.ui.units[0], left)

@@ -114,6 +114,7 @@ SHORTCUTS = (
     Shortcut("smaller", ("Ctrl+-",), "Smaller widgets", "View"),
     Shortcut("gallery", ("G",), "Levels", "Files", "play"),
     Shortcut("open", ("Ctrl+O",), "Open a level or replay; or drop its file here", "Files", "play"),
+    Shortcut("share", ("F12",), "Share the last ten seconds: GIF, MP4 or PNG", "Files", "play"),
     Shortcut("record", ("Ctrl+R",), "Start or stop recording", "Files", "play"),
     Shortcut("save", ("Ctrl+S",), "Save the run so far as a replay", "Files", "play"),
     Shortcut("recordings", ("Ctrl+L",), "Saved replays", "Files", "play"),
@@ -131,9 +132,10 @@ SHORTCUTS = (
 
 _NAMES = {
     "Escape": pygame.K_ESCAPE, "Space": pygame.K_SPACE, "Enter": pygame.K_RETURN, "Home": pygame.K_HOME,
-    **{f"F{number}": pygame.K_F1 + number - 1 for number in range(1, 13)}, ".": pygame.K_PERIOD, "+": pygame.K_PLUS,
-    "-": pygame.K_MINUS, "=": pygame.K_EQUALS, "Delete": pygame.K_DELETE, "Backspace": pygame.K_BACKSPACE,
-    "PageUp": pygame.K_PAGEUP, "PageDown": pygame.K_PAGEDOWN, "Tab": pygame.K_TAB,
+    **{f"F{number}": pygame.K_F1 + number - 1 for number in range(1, 13)},
+    ".": pygame.K_PERIOD, "+": pygame.K_PLUS, "-": pygame.K_MINUS, "=": pygame.K_EQUALS,
+    "Delete": pygame.K_DELETE, "Backspace": pygame.K_BACKSPACE, "PageUp": pygame.K_PAGEUP,
+    "PageDown": pygame.K_PAGEDOWN, "Tab": pygame.K_TAB,
 }  # fmt: skip
 _TWINS = {
     pygame.K_KP_ENTER: pygame.K_RETURN, pygame.K_KP_PLUS: pygame.K_PLUS, pygame.K_KP_MINUS: pygame.K_MINUS,

@@ -90,6 +90,12 @@ class Renderer:
         self._key: tuple[NDArray[np.bool_], ...] = ()
         self._tiles: tuple[str, Tiles] | None = None
 
+    def alike(self, scale: float) -> "Renderer":
+        """Another renderer with the same look at another scale, which has drawn nothing yet."""
+        other = Renderer(scale, self.level)
+        other.compiled, other.theme, other.overlays.shown = self.compiled, self.theme, set(self.overlays.shown)
+        return other
+
     @property
     def lattice(self) -> bool:
         """Whether springs are shown by their strain."""

@@ -23,6 +23,7 @@ from sandbox.app.play.stuck import NOTICE, StuckBodies
 from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Figures, Pixel, Pointer
+from sandbox.app.share.film import Film
 from sandbox.app.shortcuts import Mode, tip_of
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
@@ -190,6 +191,10 @@ class PlayScreen:
         path = self.playback.stop_recording()
         if path is not None:
             self._app.say(f"Saved as {path}")
+
+    def film(self, seconds: float) -> Film:
+        """The last seconds [s] of the run, as it is seen now."""
+        return Film(self.playback.session, self.camera, self.stage.renderer, seconds)
 
     # Pointer and keys.
 
