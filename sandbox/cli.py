@@ -120,6 +120,7 @@ def _parser() -> argparse.ArgumentParser:
     replay.add_argument("files", nargs="+", metavar="FILE")
     replay.add_argument("--json", action="store_true", help="print one JSON object a file")
     replay.add_argument("--partial", action="store_true", help="verify what there is of a recording that is cut off")
+    replay.add_argument("--against", metavar="LEVEL", help="run their commands on this level, not on the recorded one")
 
     check = command("check", _check, "validate levels, report their stability, run the checks they carry")
     check.add_argument("levels", nargs="+", metavar="LEVEL")
@@ -285,8 +286,8 @@ def _scripted_session(level: "Level", commands: Path | None) -> "Session":
 
     if commands is None:
         return Session(level)
-    from sandbox.session.replay.reader import read_script
     from sandbox.session.replay.recording import ReplayError
+    from sandbox.session.replay.script import read_script
 
     try:
         return Session(level, read_script(commands))
@@ -336,8 +337,9 @@ def _write_text(path: Path, text: str) -> None:
 
 def _replay(options: argparse.Namespace) -> int:
     worst = EXIT_OK
+    level = _level(options.against) if options.against else None
     for name in options.files:
-        code, outcome = _verify(name, options.partial)
+        code, outcome = _verify(name, options.partial, level)
         worst = max(worst, code)
         if options.json:
             print(json.dumps(outcome))
@@ -348,7 +350,7 @@ def _replay(options: argparse.Namespace) -> int:
     return worst
 
 
-def _verify(name: str, partial: bool) -> tuple[int, dict[str, Any]]:
+def _verify(name: str, partial: bool, level: "Level | None") -> tuple[int, dict[str, Any]]:
     from sandbox.session.probe import finite
     from sandbox.session.replay.recording import ReplayError
     from sandbox.session.replay.verify import verify
@@ -356,7 +358,7 @@ def _verify(name: str, partial: bool) -> tuple[int, dict[str, Any]]:
     try:
         replay = _recording(name, partial)
         with Progress(replay.ticks) as bar:
-            divergence = verify(replay, progress=lambda done, total: bar.update(done - bar.done))
+            divergence = verify(replay, level=level, progress=lambda done, total: bar.update(done - bar.done))
     except (Refused, ReplayError) as error:
         return EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)}
     if divergence is None:

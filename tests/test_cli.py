@@ -154,10 +154,23 @@ def _wrong_step(world):
         world.position[2, 0] += 1e-12
 
 
+def test_a_recording_runs_on_another_level(rope, tmp_path, capsys):
+    replay = tmp_path / "run.jsonl"
+    main(["run", rope, "--ticks", "20", "--record", str(replay)])
+    assert main(["replay", str(replay), "--against", rope]) == 0
+    longer = json.loads(Path(rope).read_text())
+    longer["settings"] = {**longer.get("settings", {}), "gravity": [0, -3]}
+    (tmp_path / "other.json").write_text(json.dumps(longer))
+    capsys.readouterr()
+    assert main(["replay", str(replay), "--against", str(tmp_path / "other.json")]) == 1
+    assert "diverged at tick 0: settings" in _lines(capsys)[0][0]
+    assert main(["replay", str(replay), "--against", "nowhere.json"]) == 2
+
+
 def test_a_cut_off_replay_is_refused_unless_partial_is_asked_for(rope, tmp_path, capsys):
     replay = tmp_path / "run.jsonl"
     main(["run", rope, "--ticks", "20", "--record", str(replay)])
-    replay.write_bytes(b"".join(replay.read_bytes().splitlines(keepends=True)[:-3]))
+    replay.write_bytes(b"".join(replay.read_bytes().splitlines(keepends=True)[:-4]))
     capsys.readouterr()
     assert main(["replay", str(replay)]) == 2
     assert "cut off after tick 18; --partial verifies what is there" in _lines(capsys)[1][0]

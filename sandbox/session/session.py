@@ -13,6 +13,7 @@ from sandbox.physics.world import World
 from sandbox.session.commands import Command, CommandError, Redo, Undo, apply
 from sandbox.session.commands.adding import name_added
 from sandbox.session.commands.records import ScriptLine, from_record, to_record
+from sandbox.session.replay.format import STATE_TICKS
 from sandbox.session.replay.writer import Recorder
 
 KEYFRAME_TICKS = 60
@@ -182,16 +183,17 @@ class Session:
         """The states of ticks first..last that are kept, a few each second or less."""
         return [kept for kept in self._keyframes if first <= kept.tick <= last]
 
-    def record_to(self, path: Path) -> None:
+    def record_to(self, path: Path, state_ticks: int = STATE_TICKS) -> None:
         """Record this run to a file, from the level's start: what was played until now is played again into it.
 
+        state_ticks: from one stored state to the next; from each the recording can be verified, and each takes room.
         Overwrites the file. Raises OSError where it cannot be written, ValueError for a run that began in the middle.
         """
         if self._keyframes[0].tick > 0:
             raise ValueError("only a run from the level's start can be recorded")
         self.stop_recording()
         twin = Session(self.level)
-        twin._recorder = Recorder(path, self.level, twin.world)
+        twin._recorder = Recorder(path, self.level, twin.world, state_ticks)
         self._drop_future()
         try:
             for entry in self._log:
