@@ -236,9 +236,10 @@ class App:
             self.sharing.update(frame_time)
             self.share_page.update()
             self.ui.update(frame_time)
-        self._draw()
-        with self.profile.part("flip"):
-            self.display.flip()
+        if not self.display.hidden:
+            self._draw()
+            with self.profile.part("flip"):
+                self.display.flip()
         spent = time.perf_counter() - started
         self.profile.milliseconds["frame"].append(1e3 * spent)
         self._count(frame_time, spent)
@@ -268,11 +269,10 @@ class App:
         with self.profile.part("ui"):
             if self.screen is not None:
                 left = None if self.ui.has_sheet else self.screen.notices_left
-                legend = self.play is not None and self.mode == "play" and self.play.stage.renderer.lattice
                 parts = self.sharing.status() + self.screen.status(*self._figures)
                 if not self.ready and self.mode == "edit":
                     parts.append(("preparing the physics", WARNING))
-                self.status.draw(surface, parts, self.ui.units[0], left, legend)
+                self.status.draw(surface, parts, self.ui.units[0], left)
             self.ui.draw(surface)
             self.guide.draw(surface)
             if (self.screen is None or self.ui.has_sheet) and not self.ui.shows_page:

@@ -11,7 +11,7 @@ from sandbox.app.draw.camera import Box, Camera
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Renderer
 from sandbox.app.share.kinds import Size
-from sandbox.app.widgets.theme import plain_font
+from sandbox.app.widgets.fonts import plain_font
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.session import Session
 
