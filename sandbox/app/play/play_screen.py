@@ -194,7 +194,8 @@ class PlayScreen:
 
     def film(self, seconds: float) -> Film:
         """The last seconds [s] of the run, as it is seen now."""
-        return Film(self.playback.session, self.camera, self.stage.renderer, seconds)
+        stage = self.stage
+        return Film(self.playback.session, stage.camera, stage.renderer, seconds, stage.fitted_box)
 
     # Pointer and keys.
 
