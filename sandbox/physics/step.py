@@ -1,6 +1,7 @@
 """step(world): one tick on one screen. The order of its parts is part of the replay contract."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,11 +10,11 @@ from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles, St
 from sandbox.physics.breaking import yield_and_break
 from sandbox.physics.collision.triangle_clamp import clamp_world, has_triangles
 from sandbox.physics.constraints import AREA
-from sandbox.physics.driving import drive_springs
+from sandbox.physics.driving import drive_springs, drives_springs
 from sandbox.physics.forces import Before, apply_forces, forces_of
 from sandbox.physics.integrate import integrate
-from sandbox.physics.joints.joint_set import joints_of, keep_joints, load_joints
-from sandbox.physics.sanitise import contain_inputs, contain_outcome
+from sandbox.physics.joints.joint_set import JointSet, joints_of, keep_joints, load_joints
+from sandbox.physics.sanitise import LOST, UNSOUND, contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import (
@@ -33,21 +34,64 @@ if TYPE_CHECKING:
 PHYSICS_VERSION = 2
 
 
-def _collisions(world: World) -> "Collisions | None":
-    if not world.has_contacts:
-        return None
-    # Half of the physics, which a world in which nothing touches does without.
-    from sandbox.physics.collision.collide import collisions_of
+@dataclass(frozen=True, eq=False)
+class TickPlan:
+    """What topology decides of a tick. folds: there are triangles, which may not turn over; drives: springs are driven.
 
-    return collisions_of(world)
+    is_free: no spring, constraint or joint holds anything that can touch something.
+    """
+
+    collisions: "Collisions | None"
+    joints: JointSet | None
+    folds: bool
+    drives: bool
+    is_free: bool
+
+
+def _plan(world: World) -> TickPlan:
+    collisions, joints, drives = None, joints_of(world), drives_springs(world)
+    if world.has_contacts:
+        # Half of the physics, which a world in which nothing touches does without.
+        from sandbox.physics.collision.collide import collisions_of
+
+        collisions = collisions_of(world)
+    is_free = collisions is not None and collisions.is_free and joints is None and not drives
+    return TickPlan(collisions, joints, has_triangles(world), drives, is_free)
 
 
 def step(world: World) -> None:
     """Advance the world by one tick of 1 / tick_rate seconds."""
+    plan = world.derived(_plan)
+    if not (plan.is_free and _step_free(world, plan.collisions)):
+        _step_held(world)
+    yield_and_break(world)
+
+
+def _step_free(world: World, collisions: "Collisions") -> bool:
+    # All of a tick in one entry; False: something is to be taken back before.
+    settings = world.settings
+    substeps = settings.fewest_substeps
+    forces_of(world)
+    collisions.begin(world)
+    h = substep_time(settings, substeps)
+    count = collisions.step_free(substeps, SOLVERS[settings.solver].follows, world.tick, h)
+    if count == UNSOUND:
+        return False
+    collisions.end(world)
+    world.rest_grabs()
+    world.tick += 1
+    if count == LOST:
+        contain_outcome(world)
+    return True
+
+
+def _step_held(world: World) -> None:
     settings = world.settings
     solver = SOLVERS[settings.solver]
     contain_inputs(world)
-    rest_length = drive_springs(world)
+    plan = world.derived(_plan)
+    collisions, joints = plan.collisions, plan.joints
+    rest_length = drive_springs(world) if plan.drives else world.rest_length
     count = substep_count(world)
     h = substep_time(settings, count)
     # Solvers only read them, so a tick of one substep needs no copies.
@@ -57,36 +101,32 @@ def step(world: World) -> None:
     # What a solver keeps is an impulse of one substep: exact, as their number is a power of two.
     scale = settings.fewest_substeps / count
     world.scale_impulses(scale)
-    collisions, folds = world.derived(_collisions), has_triangles(world)
     if collisions is not None:
         collisions.begin(world)
-    joints = joints_of(world)
-    if collisions is not None and collisions.is_free and joints is None:
-        collisions.step_free(forces_of(world), count, solver.follows, world.tick, h)
-    else:
-        for _ in range(count):
-            forces = apply_forces(world, h)
-            if joints is not None:
-                load_joints(joints, world, springs, h)
-            before = Before(forces.particles.before, rest_length)
-            contacts = None if collisions is None else collisions.collide(forces, world.tick, h)
-            solver.solve(world, Substep(h, count, springs, constraints, before), contacts)
-            if joints is not None:
-                keep_joints(joints, world, h)
-            if collisions is not None:
-                collisions.finish(h, not folds)
-            if folds:
-                clamp_world(world, solver.follows, h)
-            if folds or collisions is None:
-                integrate(world.position, world.velocity, world.particle_active, world.angle, world.spin, h)
-            rest_length = world.rest_length
+    forces = forces_of(world)
+    before = forces.particles.before
+    for _ in range(count):
+        if collisions is None or joints is not None:
+            apply_forces(forces, h)
+        if joints is not None:
+            load_joints(joints, world, springs, h)
+        contacts = None if collisions is None else collisions.collide(joints is not None, world.tick, h)
+        solver.solve(world, Substep(h, count, springs, constraints, Before(before, rest_length)), contacts)
+        if joints is not None:
+            keep_joints(joints, world, h)
+        if collisions is not None:
+            collisions.finish(h, not plan.folds)
+        if plan.folds:
+            clamp_world(world, solver.follows, h)
+        if plan.folds or collisions is None:
+            integrate(world.position, world.velocity, world.particle_active, world.angle, world.spin, h)
+        rest_length = world.rest_length
     if collisions is not None:
         collisions.end(world)
     world.scale_impulses(1.0 / scale)
     world.rest_grabs()
     world.tick += 1
     contain_outcome(world)
-    yield_and_break(world)
 
 
 def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> None:

@@ -406,30 +406,55 @@ def _iterate(work: Work, first: int, last: int, small: float, softness: float, p
         new = max(0.0, old - change)
         most = row[i, FRICTION] * new
         held = row[i, ACROSS]
-        slip = nx * uy - ny * ux - arm * (motion[p, SURFACE] + motion[q, SURFACE])
+        sp, sq = motion[p, SURFACE], motion[q, SURFACE]
+        slip = nx * uy - ny * ux - arm * (sp + sq)
         across = min(most, max(-most, held - slip * row[i, MASS_ACROSS]))
         row[i, ALONG] = new
         row[i, ACROSS] = across
         jn, jt = new - old, across - held
-        _apply(work, i, jn * nx - jt * ny, jn * ny + jt * nx, arm * jt, late)
+        jx = jn * nx - jt * ny
+        jy = jn * ny + jt * nx
+        torque = arm * jt
+        weight_p, weight_q = row[i, WEIGHT_P], row[i, WEIGHT_Q]
+        turn_p, turn_q = row[i, TURN_P], row[i, TURN_Q]
+        vpx = motion[p, VX] + jx * weight_p
+        vpy = motion[p, VY] + jy * weight_p
+        vqx = motion[q, VX] - jx * weight_q
+        vqy = motion[q, VY] - jy * weight_q
+        sp = sp - torque * turn_p
+        sq = sq - torque * turn_q
         if not pushes and new > 0.0:
             row[i, ARM] = arm
             if row[i, ROLLING] > 0.0:
-                _resist_rolling(work, i, row[i, ROLLING] * new)
-            _push(work, i, nx, ny, new, across, arm)
-
-
-@inlined_kernel
-def _resist_rolling(work: Work, i: int, most: float) -> None:
-    # A torque against the turn of two surfaces on each other, as an impulse at the smaller radius of at most `most`.
-    row = work.constraint
-    motion = work.motion
-    p = unsigned(work.end[i, 0])
-    q = unsigned(work.end[i, 1])
-    turn = row[i, RATIO_P] * motion[p, SURFACE] - row[i, RATIO_Q] * motion[q, SURFACE]
-    j = min(most, max(-most, -turn * row[i, ROLLING_MASS]))
-    motion[p, SURFACE] += j * row[i, RATIO_P] * row[i, TURN_P]
-    motion[q, SURFACE] -= j * row[i, RATIO_Q] * row[i, TURN_Q]
+                # A torque against the turn of two surfaces on each other, as an impulse at the smaller radius
+                most = row[i, ROLLING] * new
+                ratio_p, ratio_q = row[i, RATIO_P], row[i, RATIO_Q]
+                turn = ratio_p * sp - ratio_q * sq
+                j = min(most, max(-most, -turn * row[i, ROLLING_MASS]))
+                sp += j * ratio_p * turn_p
+                sq -= j * ratio_q * turn_q
+            jx = new * nx - across * ny
+            jy = new * ny + across * nx
+            jt = across * arm
+            motion[p, PUSHED_X] += jx * weight_p
+            motion[p, PUSHED_Y] += jy * weight_p
+            motion[p, PUSHED_SURFACE] -= jt * turn_p
+            motion[q, PUSHED_X] -= jx * weight_q
+            motion[q, PUSHED_Y] -= jy * weight_q
+            motion[q, PUSHED_SURFACE] -= jt * turn_q
+        motion[p, VX] = vpx
+        motion[p, VY] = vpy
+        motion[p, SURFACE] = sp
+        motion[q, VX] = vqx
+        motion[q, VY] = vqy
+        motion[q, SURFACE] = sq
+        if late > 0.0:
+            jx = jn * nx - (across - held) * ny
+            jy = jn * ny + (across - held) * nx
+            motion[p, WX] -= late * jx * weight_p
+            motion[p, WY] -= late * jy * weight_p
+            motion[q, WX] += late * jx * weight_q
+            motion[q, WY] += late * jy * weight_q
 
 
 @inner_kernel
