@@ -18,6 +18,7 @@ from sandbox.physics.sanitise import LOST, UNSOUND, contain_inputs, contain_outc
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import (
+    Pair,
     Substep,
     constraint_coefficients,
     substep_coefficients,
@@ -38,7 +39,8 @@ PHYSICS_VERSION = 2
 class TickPlan:
     """What topology decides of a tick. folds: there are triangles, which may not turn over; drives: springs are driven.
 
-    is_free: no spring, constraint or joint holds anything that can touch something.
+    is_free: no spring, constraint or joint holds anything that can touch something. springs, constraints: room for
+    their Cs and Cd in a substep.
     """
 
     collisions: "Collisions | None"
@@ -46,6 +48,8 @@ class TickPlan:
     folds: bool
     drives: bool
     is_free: bool
+    springs: Pair
+    constraints: Pair
 
 
 def _plan(world: World) -> TickPlan:
@@ -56,7 +60,11 @@ def _plan(world: World) -> TickPlan:
 
         collisions = collisions_of(world)
     is_free = collisions is not None and collisions.is_free and joints is None and not drives
-    return TickPlan(collisions, joints, has_triangles(world), drives, is_free)
+    springs, constraints = np.zeros((2, world.spring_count)), np.zeros((2, world.constraint_count))
+    return TickPlan(
+        collisions, joints, has_triangles(world), drives, is_free, (springs[0], springs[1]),
+        (constraints[0], constraints[1]),
+    )  # fmt: skip
 
 
 def step(world: World) -> None:
@@ -97,7 +105,8 @@ def _step_held(world: World) -> None:
     # Solvers only read them, so a tick of one substep needs no copies.
     springs, constraints = (world.stiffness, world.damping), world.constraint_coefficients
     if count > 1:
-        springs, constraints = substep_coefficients(world, count), constraint_coefficients(world, count)
+        springs = substep_coefficients(world, count, plan.springs)
+        constraints = constraint_coefficients(world, count, plan.constraints)
     # What a solver keeps is an impulse of one substep: exact, as their number is a power of two.
     scale = settings.fewest_substeps / count
     world.scale_impulses(scale)
@@ -140,6 +149,8 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
         world.add_springs(["s", "t"], [0, 0], [1, 1], law=[0, 1])
         world.add_constraints(AREA, [[0, 1, 2]])
         world.limits = StrainLimits(np.ones(1), np.ones(1), np.ones(1), np.zeros(1))
+        # Nothing acts on bodies from outside, then a motor does.
+        step(world)
         one = np.zeros(1, dtype=np.int64)
         muscles = Muscles(one, np.zeros(1), one + 2, np.zeros(1))
         hydraulics = Hydraulics(one + 1, np.ones(1), np.ones(1), np.zeros(1), one)

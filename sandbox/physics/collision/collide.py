@@ -6,7 +6,7 @@ made when the topology changes. Those whose length a step decides have room for 
 too little says so, and is called again with more.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -44,6 +44,7 @@ from sandbox.physics.collision.types import (
     Contacts,
     Flags,
     KeptContacts,
+    LentContacts,
     Near,
     room_for,
     room_near,
@@ -306,8 +307,8 @@ def _finish(items: Any, moves: bool, h: float) -> int:
 class Collisions:
     """The scratch of a world's collisions: what topology decides, what a step fills in, and all as one argument.
 
-    is_free: whether no spring or constraint holds anything. wanted: the largest counts so far. solved: the contacts
-    that the last step left to a solver. kept: the contacts of the last tick, the first of those in room; they are the
+    is_free: whether no spring or constraint holds anything. wanted: the largest counts so far. solved: those
+    left to a solver, by their number. kept: the contacts of the last tick, the first of those in room; they are the
     world's own, which so has them without a copy.
     """
 
@@ -322,7 +323,7 @@ class Collisions:
     is_free: bool
     wanted: Slots
     items: Any = None
-    solved: Contacts = NO_CONTACTS
+    solved: dict[int, LentContacts] = field(default_factory=dict)
     kept: KeptContacts = NOTHING_KEPT
     count: int = 0
 
@@ -339,18 +340,19 @@ class Collisions:
         room.impulse[: self.count] = world.contact_impulse
         _share_kept(world, self)
 
-    def collide(self, has_begun: bool, tick: int, h: float) -> Contacts:
+    def collide(self, has_begun: bool, tick: int, h: float) -> LentContacts | None:
         """Find the contacts of a step of h [s] and solve those of free particles; the others, returned, are a solver's.
 
-        has_begun: forces have acted; otherwise they do now.
+        None: there are no others.         has_begun: forces have acted; otherwise they do now.
         """
         count = _collide(self.items, 1 if has_begun else 0, 0, False, tick, h)
         while count == NO_ROOM:
             _grow(self)
             count = _collide(self.items, 1, 0, False, tick, h)
-        if count != len(self.solved.particle):
-            self.solved = Contacts._make([array[:count] for array in self.room.bound]) if count else NO_CONTACTS
-        return self.solved
+        if count and count not in self.solved:
+            arrays = Contacts._make([array[:count] for array in self.room.bound])
+            self.solved[count] = LentContacts(arrays, bundle((arrays,)))
+        return self.solved[count] if count else None
 
     def step_free(self, substeps: int, follows: bool, tick: int, h: float) -> int:
         """A tick of substeps of h [s], forces included, of a world in which no spring or constraint holds anything.
@@ -436,7 +438,7 @@ def _grow(collisions: Collisions) -> None:
     count = len(old.kept.particle)
     new = collisions.room.kept
     new.particle[:count], new.feature[:count], new.impulse[:count] = old.kept
-    collisions.solved, collisions.kept = NO_CONTACTS, NOTHING_KEPT
+    collisions.solved, collisions.kept = {}, NOTHING_KEPT
     _bundle_up(collisions)
 
 
