@@ -79,7 +79,8 @@ def _step_free(world: World, collisions: "Collisions") -> bool:
     # All of a tick in one entry; False: something is to be taken back before.
     settings = world.settings
     substeps = settings.fewest_substeps
-    forces_of(world)
+    if collisions.forces.settings is not settings:
+        forces_of(world)
     collisions.begin(world)
     h = substep_time(settings, substeps)
     count = collisions.step_free(substeps, SOLVERS[settings.solver].follows, world.tick, h)
