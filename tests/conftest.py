@@ -3,6 +3,7 @@
 import ctypes
 import gc
 import sys
+from contextlib import suppress
 from weakref import WeakKeyDictionary
 
 import pytest
@@ -10,13 +11,39 @@ import pytest
 from sandbox.physics.state import COLUMNS
 from sandbox.physics.world import World
 
+with suppress(ImportError):
+    import resource
+
 TOPOLOGY = [column.name for column in COLUMNS if column.topology]
 # Looks at one world that are made one after another, and ticks between two of them after that.
 FIRST_LOOKS, LATER = 10, 16
 # Of a process that runs tests [bytes].
-MOST_MEMORY = 1.5e9
+MOST_MEMORY = 1.0e9
+# So much more memory [bytes] than after the last search for garbage is worth another.
+WORTH_A_SEARCH = 100e6
 # A setting of the C library, by its number in malloc.h: what is as large [bytes] gets pages of its own.
 M_MMAP_THRESHOLD, OWN_PAGES_FROM = -3, 1_000_000
+
+
+_held = 0.0
+
+
+def memory_held():
+    """What this process holds now [bytes]; 0 where the system does not say it cheaply."""
+    if sys.platform != "linux":
+        return 0.0
+    with open("/proc/self/statm") as figures:
+        return resource.getpagesize() * float(figures.read().split()[1])
+
+
+def pytest_runtest_logfinish():
+    """Give back what a test left behind, where it is much: garbage, and pages of the heap that hold nothing now."""
+    global _held
+    if memory_held() > _held + WORTH_A_SEARCH:
+        gc.collect()
+        if hasattr(ctypes.pythonapi, "malloc_trim"):
+            ctypes.pythonapi.malloc_trim(0)
+        _held = memory_held()
 
 
 def pytest_collection_finish():
@@ -54,7 +81,5 @@ def tests_give_back_the_memory_that_they_take():
     """What a test has opened or built is let go of after it: no process that runs tests grows with their number."""
     yield
     if sys.platform == "linux":
-        import resource
-
         peak = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
         assert peak <= MOST_MEMORY, f"{peak / 1e6:.0f} MB at their most"

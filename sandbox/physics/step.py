@@ -39,15 +39,15 @@ PHYSICS_VERSION = 2
 class TickPlan:
     """What topology decides of a tick. folds: there are triangles, which may not turn over; drives: springs are driven.
 
-    is_free: no spring, constraint or joint holds anything that can touch something. springs, constraints: room for
-    their Cs and Cd in a substep.
+    free: its collisions, where no spring, constraint or joint holds anything. springs, constraints: room for their Cs
+    and Cd in a substep.
     """
 
     collisions: "Collisions | None"
     joints: JointSet | None
     folds: bool
     drives: bool
-    is_free: bool
+    free: "Collisions | None"
     springs: Pair
     constraints: Pair
 
@@ -59,10 +59,10 @@ def _plan(world: World) -> TickPlan:
         from sandbox.physics.collision.collide import collisions_of
 
         collisions = collisions_of(world)
-    is_free = collisions is not None and collisions.is_free and joints is None and not drives
+    free = collisions if collisions is not None and collisions.is_free and joints is None and not drives else None
     springs, constraints = np.zeros((2, world.spring_count)), np.zeros((2, world.constraint_count))
     return TickPlan(
-        collisions, joints, has_triangles(world), drives, is_free, (springs[0], springs[1]),
+        collisions, joints, has_triangles(world), drives, free, (springs[0], springs[1]),
         (constraints[0], constraints[1]),
     )  # fmt: skip
 
@@ -70,7 +70,7 @@ def _plan(world: World) -> TickPlan:
 def step(world: World) -> None:
     """Advance the world by one tick of 1 / tick_rate seconds."""
     plan = world.derived(_plan)
-    if not (plan.is_free and _step_free(world, plan.collisions)):
+    if plan.free is None or not _step_free(world, plan.free):
         _step_held(world)
     yield_and_break(world)
 

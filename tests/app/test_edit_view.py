@@ -176,11 +176,19 @@ def seen(driver, x, y):
 
 
 def test_what_is_driven_is_marked_and_a_motor_by_the_way_it_turns(edit):
+    driver = edit()
+
+    def picture(x, y, **changes):
+        driver.app.documents.edit_level(small_level(**changes))
+        driver.frames(2)
+        driver.rest()
+        return seen(driver, x, y)
+
     def wheel(**more):
-        return seen(edit(small_level(bodies=[{**WHEEL, **more}])), 1, 2)
+        return picture(1, 2, bodies=[{**WHEEL, **more}])
 
     def spring(**more):
-        return seen(edit(small_level(particles=ENDS, springs=[{"a": "p", "b": "q", **more}])), 4, 0)
+        return picture(4, 0, particles=ENDS, springs=[{"a": "p", "b": "q", **more}])
 
     motor = {"torque": 5}
     wheels = [wheel(), *(wheel(motor={"speed": speed, **motor}) for speed in (3, -3, 0))]

@@ -33,7 +33,7 @@ def test_the_command_gives_what_the_level_s_field_gives(asked):
 
 def test_firmness_is_undone_redone_and_recorded(tmp_path):
     session = session_of({"sag": 0.02})
-    session.record_to(tmp_path / "run.replay")
+    session.record_to(tmp_path / "run.replay", state_ticks=60)
     before = state_hash(session.world)
     session.submit(SetFirmness(0, sag=0.25))
     for _ in range(70):
@@ -56,7 +56,7 @@ def test_firmness_is_undone_redone_and_recorded(tmp_path):
 
 def test_a_recording_goes_on_from_a_stored_state_with_the_firmness_it_had(tmp_path):
     session = session_of()
-    session.record_to(tmp_path / "run.replay")
+    session.record_to(tmp_path / "run.replay", state_ticks=60)
     session.submit(SetFirmness(0, hz=2.0, ratio=0.2))
     session.advance()
     session.submit(SetSolver(substeps=4))
@@ -101,4 +101,4 @@ def test_what_cannot_be_had_is_refused_and_changes_nothing():
             apply(world, command)
     assert state_hash(world) == before
     rope = session_of(type="rope", start=[0, 0], end=[1, 0], segments=4)
-    assert rope.world.forms == []
+    assert rope.world.forms == ()

@@ -1,13 +1,17 @@
 """Replay: a recorded run as a file holds it, read back."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
-from sandbox.level.build.actuators import actuators
 from sandbox.level.format.model import Level
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, state_hash
+from sandbox.physics.state import BY_STORED
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import decode_state
+
+_PLACES = {name: place for place, name in enumerate(BY_STORED)}
 
 
 class ReplayError(ValueError):
@@ -20,18 +24,27 @@ class ReplayError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class TickHashes:
-    """What a replay says of the state after a tick: the hash of all, and of each array in the order of the table."""
+    """What a replay says of the state after a tick: the hash of all, and the first digits of that of each array.
+
+    arrays: in the order of the table; nothing for one that is not in use.
+    """
 
     whole: str
     arrays: tuple[str, ...]
 
+    def differs(self, array: str, present: Mapping[str, str]) -> bool:
+        """Whether a state of these hashes by array has another array of that name."""
+        digits = self.arrays[_PLACES[array]]
+        return present.get(array, "")[: len(digits) or None] != digits
+
 
 @dataclass(frozen=True)
 class StoredState:
-    """A state line: arrays as text, see format.decode_state; line: where it stands in its file."""
+    """A state line: arrays as text, see format.decode_state; joined: what joined; line: where it stands in its file."""
 
     arrays: dict[str, str]
     settings: WorldSettings
+    joined: tuple[dict[str, Any], ...]
     line: int
 
 
@@ -57,14 +70,14 @@ class Replay:
         if stored is None:
             raise ReplayError(f"{self.source}: no state is stored at tick {tick}")
         try:
-            snapshot = decode_state(tick, stored.arrays, stored.settings)
+            snapshot = decode_state(self.level, tick, stored.arrays, stored.settings, stored.joined)
         except ValueError as error:
             raise ReplayError(f"{self.source}: line {stored.line}: {error}") from None
-        driven = len(actuators(self.level))
+        driven = len(snapshot.equipment.actuators.names)
         if len(snapshot.actuator_value) != driven:
             raise ReplayError(
                 f"{self.source}: line {stored.line}: state.part_value: has {len(snapshot.actuator_value)} values, "
-                f"where the level has {driven} driven parts"
+                f"where there are {driven} driven parts"
             )
         if state_hash(snapshot) != self.hashes[tick].whole:
             raise ReplayError(
