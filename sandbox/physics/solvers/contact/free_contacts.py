@@ -173,20 +173,15 @@ def _fill_constraints(
         work.end[k, 1] = q
         mass = work.weight[p] + work.weight[q]
         smaller = radius[contacts.particle[c]]
-        row[k, WEIGHT_P] = work.weight[p]
-        row[k, WEIGHT_Q] = work.weight[q]
-        row[k, APART_X] = 0.0
-        row[k, APART_Y] = 0.0
-        row[k, TURN_P] = work.turning[p]
-        row[k, TURN_Q] = work.turning[q]
+        row[k, WEIGHT_P], row[k, WEIGHT_Q] = work.weight[p], work.weight[q]
+        row[k, APART_X], row[k, APART_Y] = 0.0, 0.0
+        row[k, TURN_P], row[k, TURN_Q] = work.turning[p], work.turning[q]
         row[k, ARM] = 1.0
         row[k, PER_REACH] = 0.0
         row[k, WAY] = STANDS
         row[k, GAP] = contacts.gap[c]
-        row[k, NX] = contacts.normal[c, 0]
-        row[k, NY] = contacts.normal[c, 1]
-        row[k, ALONG] = contacts.impulse[c, 0]
-        row[k, ACROSS] = contacts.impulse[c, 1]
+        row[k, NX], row[k, NY] = contacts.normal[c, 0], contacts.normal[c, 1]
+        row[k, ALONG], row[k, ACROSS] = contacts.impulse[c, 0], contacts.impulse[c, 1]
         disc = contacts.end_a[c] if contacts.end_b[c] < 0 else -1
         if disc >= 0:
             smaller = min(smaller, radius[disc])
@@ -412,49 +407,32 @@ def _iterate(work: Work, first: int, last: int, small: float, softness: float, p
         row[i, ALONG] = new
         row[i, ACROSS] = across
         jn, jt = new - old, across - held
-        jx = jn * nx - jt * ny
-        jy = jn * ny + jt * nx
-        torque = arm * jt
-        weight_p, weight_q = row[i, WEIGHT_P], row[i, WEIGHT_Q]
-        turn_p, turn_q = row[i, TURN_P], row[i, TURN_Q]
-        vpx = motion[p, VX] + jx * weight_p
-        vpy = motion[p, VY] + jy * weight_p
-        vqx = motion[q, VX] - jx * weight_q
-        vqy = motion[q, VY] - jy * weight_q
-        sp = sp - torque * turn_p
-        sq = sq - torque * turn_q
-        if not pushes and new > 0.0:
-            row[i, ARM] = arm
-            if row[i, ROLLING] > 0.0:
-                # A torque against the turn of two surfaces on each other, as an impulse at the smaller radius
-                most = row[i, ROLLING] * new
-                ratio_p, ratio_q = row[i, RATIO_P], row[i, RATIO_Q]
-                turn = ratio_p * sp - ratio_q * sq
-                j = min(most, max(-most, -turn * row[i, ROLLING_MASS]))
-                sp += j * ratio_p * turn_p
-                sq -= j * ratio_q * turn_q
-            jx = new * nx - across * ny
-            jy = new * ny + across * nx
-            jt = across * arm
-            motion[p, PUSHED_X] += jx * weight_p
-            motion[p, PUSHED_Y] += jy * weight_p
-            motion[p, PUSHED_SURFACE] -= jt * turn_p
-            motion[q, PUSHED_X] -= jx * weight_q
-            motion[q, PUSHED_Y] -= jy * weight_q
-            motion[q, PUSHED_SURFACE] -= jt * turn_q
-        motion[p, VX] = vpx
-        motion[p, VY] = vpy
-        motion[p, SURFACE] = sp
-        motion[q, VX] = vqx
-        motion[q, VY] = vqy
-        motion[q, SURFACE] = sq
+        jx, jy, torque = jn * nx - jt * ny, jn * ny + jt * nx, arm * jt
+        weight_p, weight_q, turn_p, turn_q = row[i, WEIGHT_P], row[i, WEIGHT_Q], row[i, TURN_P], row[i, TURN_Q]
+        vpx, vpy, sp = motion[p, VX] + jx * weight_p, motion[p, VY] + jy * weight_p, sp - torque * turn_p
+        vqx, vqy, sq = motion[q, VX] - jx * weight_q, motion[q, VY] - jy * weight_q, sq - torque * turn_q
         if late > 0.0:
-            jx = jn * nx - (across - held) * ny
-            jy = jn * ny + (across - held) * nx
+            # It acts where discs meet that are coming: what it changes of their ways until then is taken off.
             motion[p, WX] -= late * jx * weight_p
             motion[p, WY] -= late * jy * weight_p
             motion[q, WX] += late * jx * weight_q
             motion[q, WY] += late * jy * weight_q
+        if not pushes and new > 0.0:
+            row[i, ARM] = arm
+            if row[i, ROLLING] > 0.0:
+                j = _rolling_impulse(row, i, sp, sq, row[i, ROLLING] * new)
+                sp += j * row[i, RATIO_P] * turn_p
+                sq -= j * row[i, RATIO_Q] * turn_q
+            _push(work, i, nx, ny, new, across, arm)
+        motion[p, VX], motion[p, VY], motion[p, SURFACE] = vpx, vpy, sp
+        motion[q, VX], motion[q, VY], motion[q, SURFACE] = vqx, vqy, sq
+
+
+@inlined_kernel
+def _rolling_impulse(row: Floats, i: int, surface_p: float, surface_q: float, most: float) -> float:
+    # A torque against the turn of two surfaces on each other, as an impulse at the smaller radius of at most `most`.
+    turn = row[i, RATIO_P] * surface_p - row[i, RATIO_Q] * surface_q
+    return min(most, max(-most, -turn * row[i, ROLLING_MASS]))
 
 
 @inner_kernel
