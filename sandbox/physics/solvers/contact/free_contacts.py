@@ -333,24 +333,33 @@ def _follow(row: Floats, i: int, dx: float, dy: float) -> tuple[float, float, fl
 
 
 @inlined_kernel
-def _apply(work: Work, i: int, jx: float, jy: float, torque: float, late: float) -> None:
-    # v += J / m, and what it does to the surfaces.
-    row = work.constraint
-    motion = work.motion
-    p = unsigned(work.end[i, 0])
-    q = unsigned(work.end[i, 1])
-    motion[p, VX] += jx * row[i, WEIGHT_P]
-    motion[p, VY] += jy * row[i, WEIGHT_P]
-    motion[p, SURFACE] -= torque * row[i, TURN_P]
-    motion[q, VX] -= jx * row[i, WEIGHT_Q]
-    motion[q, VY] -= jy * row[i, WEIGHT_Q]
-    motion[q, SURFACE] -= torque * row[i, TURN_Q]
+def _apply(
+    work: Work, i: int, nx: float, ny: float, jn: float, jt: float, arm: float, late: float, rolls: bool
+) -> None:  # fmt: skip
+    # v += J / m, and what it does to the surfaces. rolls: against their turn on each other acts a torque as well, as an
+    # impulse at the smaller radius of at most ROLLING times that along the normal.
+    row, motion = work.constraint, work.motion
+    p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
+    jx, jy, torque = jn * nx - jt * ny, jn * ny + jt * nx, arm * jt
+    weight_p, weight_q, turn_p, turn_q = row[i, WEIGHT_P], row[i, WEIGHT_Q], row[i, TURN_P], row[i, TURN_Q]
+    surface_p, surface_q = motion[p, SURFACE] - torque * turn_p, motion[q, SURFACE] - torque * turn_q
+    if rolls and row[i, ROLLING] > 0.0:
+        most = row[i, ROLLING] * row[i, ALONG]
+        turn = row[i, RATIO_P] * surface_p - row[i, RATIO_Q] * surface_q
+        j = min(most, max(-most, -turn * row[i, ROLLING_MASS]))
+        surface_p += j * row[i, RATIO_P] * turn_p
+        surface_q -= j * row[i, RATIO_Q] * turn_q
+    motion[p, VX] += jx * weight_p
+    motion[p, VY] += jy * weight_p
+    motion[q, VX] -= jx * weight_q
+    motion[q, VY] -= jy * weight_q
+    motion[p, SURFACE], motion[q, SURFACE] = surface_p, surface_q
     if late > 0.0:
         # It acts where discs meet that are coming: what it changes of their ways until then is taken off.
-        motion[p, WX] -= late * jx * row[i, WEIGHT_P]
-        motion[p, WY] -= late * jy * row[i, WEIGHT_P]
-        motion[q, WX] += late * jx * row[i, WEIGHT_Q]
-        motion[q, WY] += late * jy * row[i, WEIGHT_Q]
+        motion[p, WX] -= late * jx * weight_p
+        motion[p, WY] -= late * jy * weight_p
+        motion[q, WX] += late * jx * weight_q
+        motion[q, WY] += late * jy * weight_q
 
 
 @inlined_kernel
@@ -401,38 +410,14 @@ def _iterate(work: Work, first: int, last: int, small: float, softness: float, p
         new = max(0.0, old - change)
         most = row[i, FRICTION] * new
         held = row[i, ACROSS]
-        sp, sq = motion[p, SURFACE], motion[q, SURFACE]
-        slip = nx * uy - ny * ux - arm * (sp + sq)
+        slip = nx * uy - ny * ux - arm * (motion[p, SURFACE] + motion[q, SURFACE])
         across = min(most, max(-most, held - slip * row[i, MASS_ACROSS]))
         row[i, ALONG] = new
         row[i, ACROSS] = across
-        jn, jt = new - old, across - held
-        jx, jy, torque = jn * nx - jt * ny, jn * ny + jt * nx, arm * jt
-        weight_p, weight_q, turn_p, turn_q = row[i, WEIGHT_P], row[i, WEIGHT_Q], row[i, TURN_P], row[i, TURN_Q]
-        vpx, vpy, sp = motion[p, VX] + jx * weight_p, motion[p, VY] + jy * weight_p, sp - torque * turn_p
-        vqx, vqy, sq = motion[q, VX] - jx * weight_q, motion[q, VY] - jy * weight_q, sq - torque * turn_q
-        if late > 0.0:
-            # It acts where discs meet that are coming: what it changes of their ways until then is taken off.
-            motion[p, WX] -= late * jx * weight_p
-            motion[p, WY] -= late * jy * weight_p
-            motion[q, WX] += late * jx * weight_q
-            motion[q, WY] += late * jy * weight_q
+        _apply(work, i, nx, ny, new - old, across - held, arm, late, not pushes and new > 0.0)
         if not pushes and new > 0.0:
             row[i, ARM] = arm
-            if row[i, ROLLING] > 0.0:
-                j = _rolling_impulse(row, i, sp, sq, row[i, ROLLING] * new)
-                sp += j * row[i, RATIO_P] * turn_p
-                sq -= j * row[i, RATIO_Q] * turn_q
             _push(work, i, nx, ny, new, across, arm)
-        motion[p, VX], motion[p, VY], motion[p, SURFACE] = vpx, vpy, sp
-        motion[q, VX], motion[q, VY], motion[q, SURFACE] = vqx, vqy, sq
-
-
-@inlined_kernel
-def _rolling_impulse(row: Floats, i: int, surface_p: float, surface_q: float, most: float) -> float:
-    # A torque against the turn of two surfaces on each other, as an impulse at the smaller radius of at most `most`.
-    turn = row[i, RATIO_P] * surface_p - row[i, RATIO_Q] * surface_q
-    return min(most, max(-most, -turn * row[i, ROLLING_MASS]))
 
 
 @inner_kernel

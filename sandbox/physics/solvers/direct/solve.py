@@ -40,7 +40,7 @@ def _solve_bodies(
 
 
 @dataclass(eq=False)
-class Lent:
+class LentArrays:
     """The arrays of a world, and those of its substeps, each as one argument for kernels."""
 
     state: Any
@@ -64,8 +64,8 @@ class Lent:
         return self.inputs
 
 
-def _lent(world: World) -> Lent:
-    return Lent(bundle((State._make(_STATE(world)),)))
+def _lent(world: World) -> LentArrays:
+    return LentArrays(bundle((State._make(_STATE(world)),)))
 
 
 spring_constant = implicit_spring_constant
