@@ -19,6 +19,7 @@ from sandbox.terminal import (
     missing_folder,
     prepare_streams,
     processes,
+    rate,
     refusal_of,
     scale,
     seconds,
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
 EXIT_OK, EXIT_FAILED, EXIT_REFUSED, EXIT_INTERRUPTED = 0, 1, 2, 130
 # What `play` does where there is no display [s].
 HEADLESS_SECONDS = 10.0
+# What `render` draws unless told otherwise: length of a film [s], sizes [pixels].
+FILM_SECONDS, FILM_SIZE, PNG_SIZE = 6.0, (640, 360), (1280, 720)
 # A process that checks levels takes as long to start as a few levels take; fewer for each are not worth one.
 LEVELS_PER_PROCESS = 4
 
@@ -117,6 +120,7 @@ def _parser() -> argparse.ArgumentParser:
     replay.add_argument("files", nargs="+", metavar="FILE")
     replay.add_argument("--json", action="store_true", help="print one JSON object a file")
     replay.add_argument("--partial", action="store_true", help="verify what there is of a recording that is cut off")
+    replay.add_argument("--against", metavar="LEVEL", help="run their commands on this level, not on the recorded one")
 
     check = command("check", _check, "validate levels, report their stability, run the checks they carry")
     check.add_argument("levels", nargs="+", metavar="LEVEL")
@@ -124,11 +128,7 @@ def _parser() -> argparse.ArgumentParser:
         "--processes", type=processes, metavar="N", help="check so many at a time; default: by cores and levels"
     )
 
-    render = command("render", _render, "draw a level or a replay into a PNG picture, off screen")
-    render.add_argument("level", metavar="LEVEL|REPLAY")
-    render.add_argument("--seconds", type=seconds, default=0.0, help="simulated time before the picture; default 0")
-    render.add_argument("--size", type=size, default=(1280, 720), metavar="WxH", help="in pixels; default 1280x720")
-    render.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.png")
+    _add_render_options(command("render", _render, "draw a level or a replay into a PNG, GIF or MP4, off screen"))
 
     layout = command("format", _format, "rewrite a level file in its canonical form")
     layout.add_argument("file", type=Path, metavar="FILE")
@@ -138,6 +138,17 @@ def _parser() -> argparse.ArgumentParser:
     _add_prepare_options(command("prepare", _prepare, "compile the physics, as the first start would"))
     command("schema", _schema, "print the JSON Schema of level files")
     return parser
+
+
+def _add_render_options(render: argparse.ArgumentParser) -> None:
+    render.add_argument("level", metavar="LEVEL|REPLAY")
+    text = "PNG: simulated time before the picture, default 0; GIF and MP4: how long they are, default 6"
+    render.add_argument("--seconds", type=seconds, help=text)
+    render.add_argument("--from", type=seconds, dest="start", help="simulated time before a GIF or MP4; default 0")
+    render.add_argument("--fps", type=rate, help="pictures a second; default 20 for GIF, 30 for MP4")
+    text = "in pixels; default 1280x720 for PNG, 640x360 for GIF and MP4"
+    render.add_argument("--size", type=size, metavar="WxH", help=text)
+    render.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.png|gif|mp4")
 
 
 def _add_prepare_options(prepare: argparse.ArgumentParser) -> None:
@@ -275,8 +286,8 @@ def _scripted_session(level: "Level", commands: Path | None) -> "Session":
 
     if commands is None:
         return Session(level)
-    from sandbox.session.replay.reader import read_script
     from sandbox.session.replay.recording import ReplayError
+    from sandbox.session.replay.script import read_script
 
     try:
         return Session(level, read_script(commands))
@@ -326,8 +337,9 @@ def _write_text(path: Path, text: str) -> None:
 
 def _replay(options: argparse.Namespace) -> int:
     worst = EXIT_OK
+    level = _level(options.against) if options.against else None
     for name in options.files:
-        code, outcome = _verify(name, options.partial)
+        code, outcome = _verify(name, options.partial, level)
         worst = max(worst, code)
         if options.json:
             print(json.dumps(outcome))
@@ -338,7 +350,7 @@ def _replay(options: argparse.Namespace) -> int:
     return worst
 
 
-def _verify(name: str, partial: bool) -> tuple[int, dict[str, Any]]:
+def _verify(name: str, partial: bool, level: "Level | None") -> tuple[int, dict[str, Any]]:
     from sandbox.session.probe import finite
     from sandbox.session.replay.recording import ReplayError
     from sandbox.session.replay.verify import verify
@@ -346,7 +358,7 @@ def _verify(name: str, partial: bool) -> tuple[int, dict[str, Any]]:
     try:
         replay = _recording(name, partial)
         with Progress(replay.ticks) as bar:
-            divergence = verify(replay, progress=lambda done, total: bar.update(done - bar.done))
+            divergence = verify(replay, level=level, progress=lambda done, total: bar.update(done - bar.done))
     except (Refused, ReplayError) as error:
         return EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)}
     if divergence is None:
@@ -383,20 +395,64 @@ def _cores() -> int:
 def _render(options: argparse.Namespace) -> int:
     from sandbox.session.session import Session
 
-    if options.output.suffix.lower() != ".png":
-        raise Refused(f"{options.output}: this version draws PNG pictures; end the name in .png")
+    kind = options.output.suffix.lower().removeprefix(".")
+    if kind not in ("png", "gif", "mp4"):
+        raise Refused(f"{options.output}: pictures are PNG, GIF or MP4; end the name in .png, .gif or .mp4")
+    _check_render_options(options, kind)
     level, replay = _level_or_replay(options.level)
-    session = Session(level, replay.script if replay else ())
-    ticks = round(options.seconds * level.settings.tick_rate)
+    length = (0.0 if kind == "png" else FILM_SECONDS) if options.seconds is None else options.seconds
+    ticks = round(((options.start or 0.0) + length) * level.settings.tick_rate)
     if replay and ticks > replay.ticks:
         raise Refused(f"{options.level}: is {replay.ticks / level.settings.tick_rate:g} s long")
+    session = Session(level, replay.script if replay else ())
     _run_with_bar(session, ticks, options.level)
+    what = _draw_still(session, options) if kind == "png" else _draw_film(session, options, kind, length)
+    print(f"{options.output}: {what}, {options.output.stat().st_size / 1e6:.2f} MB")
+    return EXIT_OK
+
+
+def _check_render_options(options: argparse.Namespace, kind: str) -> None:
+    from sandbox.app.share.kinds import KINDS, Missing, require
+
+    most = KINDS[kind].most_fps
+    if kind == "png":
+        for name, value in (("from", options.start), ("fps", options.fps)):
+            if value is not None:
+                raise Refused(f"--{name}: is for GIF and MP4; a PNG is drawn after --seconds")
+    elif (options.fps or 0.0) > most:
+        raise Refused(f"--fps: a {kind.upper()} shows at most {most:g} pictures a second")
+    elif options.seconds == 0.0:
+        raise Refused(f"--seconds: a {kind.upper()} of no length has no pictures")
+    try:
+        require(kind)
+    except Missing as missing:
+        raise Refused(f"{options.output}: {missing}") from None
+
+
+def _draw_still(session: "Session", options: argparse.Namespace) -> str:
+    """Draw the present state of a run; what was drawn."""
     from sandbox.app.draw.picture import save_picture
 
+    size = options.size or PNG_SIZE
     with Progress(1, "picture") as bar:
-        save_picture(session, options.output, options.size)
+        save_picture(session, options.output, size)
         bar.update()
-    return EXIT_OK
+    return f"{size[0]}x{size[1]}"
+
+
+def _draw_film(session: "Session", options: argparse.Namespace, kind: str, length: float) -> str:
+    """Draw the last `length` [s] of a run; what was drawn."""
+    from sandbox.app.share.export import Excerpt, Export
+    from sandbox.app.share.film import film_of_view
+    from sandbox.app.share.kinds import KINDS, possible_size
+
+    size, fps = possible_size(options.size or FILM_SIZE, kind), options.fps or KINDS[kind].usual_fps
+    film = film_of_view(session, size, length)
+    export = Export(film, Excerpt(kind, 0.0, film.seconds, fps, size), options.output)
+    with Progress(100, "%") as bar, closing(export.slices()) as slices:
+        for done in slices:
+            bar.update(int(100 * done) - bar.done)
+    return f"{size[0]}x{size[1]}, {film.seconds:g} s of {fps:g} pictures a second"
 
 
 def _edit(options: argparse.Namespace) -> int:

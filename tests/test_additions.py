@@ -14,7 +14,8 @@ PLAY = """
 from pathlib import Path
 from sandbox.level.format.files import parse_level
 from sandbox.physics.step import step
-from sandbox.session.replay.reader import read_replay, read_script
+from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.script import read_script
 from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 

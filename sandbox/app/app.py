@@ -24,6 +24,8 @@ from sandbox.app.preparing import Preparation
 from sandbox.app.profile import Profile
 from sandbox.app.progress import RunProgress
 from sandbox.app.screen import Screen
+from sandbox.app.share.page import SharePage
+from sandbox.app.share.sharing import Sharing
 from sandbox.app.shortcuts import Mode
 from sandbox.app.start_request import StartRequest
 from sandbox.app.widgets.dialogs import show_lines
@@ -52,6 +54,8 @@ class App:
         self.files = FileActions(self)
         self.documents = DocumentActions(self)
         self.guide = Guide(self, self.documents)
+        self.sharing = Sharing(self)
+        self.share_page = SharePage(self, self.sharing)
         self._progress = RunProgress(self)
         self._own_actions = self._actions()
         self._figures = (0.0, 0.0)
@@ -170,6 +174,7 @@ class App:
             "smaller": lambda: self._rescale(1 / 1.125),
             "help": lambda: show_help(self.ui, self.mode, self.guide.begin),
             "tour": self.guide.begin,
+            "share": self.share_page.open,
             "quit": self.quit,
         }
 
@@ -196,6 +201,7 @@ class App:
         """Close the window; whatever ended the loop, a recording gets its last line."""
         if self.screen is not None:
             self.screen.leave()
+        self.sharing.close()
         self.documents.close()
         self.display.close()
         self._collector.close()
@@ -227,10 +233,13 @@ class App:
             if self.gallery is not None:
                 self.gallery.update(self.preparation.is_ready)
             self.guide.update(frame_time)
+            self.sharing.update(frame_time)
+            self.share_page.update()
             self.ui.update(frame_time)
-        self._draw()
-        with self.profile.part("flip"):
-            self.display.flip()
+        if not self.display.hidden:
+            self._draw()
+            with self.profile.part("flip"):
+                self.display.flip()
         spent = time.perf_counter() - started
         self.profile.milliseconds["frame"].append(1e3 * spent)
         self._count(frame_time, spent)
@@ -249,6 +258,7 @@ class App:
     def _switched(self) -> None:
         if self.play is not None:
             self.play.playback.session.world.drop_caches()
+        self.sharing.drop_caches()
 
     def _draw(self) -> None:
         surface = self.display.surface
@@ -259,11 +269,10 @@ class App:
         with self.profile.part("ui"):
             if self.screen is not None:
                 left = None if self.ui.has_sheet else self.screen.notices_left
-                legend = self.play is not None and self.mode == "play" and self.play.stage.renderer.lattice
-                parts = self.screen.status(*self._figures)
+                parts = self.sharing.status() + self.screen.status(*self._figures)
                 if not self.ready and self.mode == "edit":
                     parts.append(("preparing the physics", WARNING))
-                self.status.draw(surface, parts, self.ui.units[0], left, legend)
+                self.status.draw(surface, parts, self.ui.units[0], left)
             self.ui.draw(surface)
             self.guide.draw(surface)
             if (self.screen is None or self.ui.has_sheet) and not self.ui.shows_page:

@@ -3,13 +3,10 @@
 Nothing that is imported here needs numpy, numba, pydantic or pygame_gui.
 """
 
-import io
 import math
 import threading
 import time
 from collections.abc import Callable
-from importlib.util import find_spec
-from pathlib import Path
 
 import pygame
 
@@ -18,6 +15,7 @@ from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, MUTED, TEXT, mixe
 from sandbox.app.loop import FRAME_RATE
 from sandbox.app.profile import Profile
 from sandbox.app.start_request import StartRequest
+from sandbox.app.widgets.fonts import plain_font
 
 CLOSING = (pygame.QUIT, pygame.WINDOWCLOSE)
 # Sizes in layout units.
@@ -52,11 +50,11 @@ class _StartPicture:
 
     def __init__(self, scale: float) -> None:
         self._scale = scale
-        self._title = self._written("NotoSans-Bold.ttf", TITLE_SIZE, "Spring Sandbox", TEXT)
-        self._line = self._written("NotoSans-Regular.ttf", LINE_SIZE, "Starting", MUTED)
+        self._title = self._written(True, TITLE_SIZE, "Spring Sandbox", TEXT)
+        self._line = self._written(False, LINE_SIZE, "Starting", MUTED)
 
-    def _written(self, font: str, size: int, text: str, colour: tuple[int, int, int]) -> pygame.Surface:
-        return _font(font, round(size * self._scale)).render(text, True, colour)
+    def _written(self, bold: bool, size: int, text: str, colour: tuple[int, int, int]) -> pygame.Surface:
+        return plain_font(round(size * self._scale), bold).render(text, True, colour)
 
     def draw(self, surface: pygame.Surface, seconds: float) -> None:
         """Draw the picture of a moment."""
@@ -69,14 +67,6 @@ class _StartPicture:
             age = (dot / 10 - seconds * 0.9) % 1.0
             at = middle + math.cos(turn) * 16 * self._scale, y + math.sin(turn) * 16 * self._scale
             pygame.draw.aacircle(surface, mixed(LINE, ACCENT, age), at, 3 * self._scale)
-
-
-def _font(name: str, size: int) -> pygame.font.Font:
-    """The widgets' font, found without importing the library that brings it."""
-    library = find_spec("pygame_gui")
-    if library is None or library.origin is None:
-        return pygame.font.Font(None, size)
-    return pygame.font.Font(io.BytesIO((Path(library.origin).parent / "data" / name).read_bytes()), size)
 
 
 def open_app(

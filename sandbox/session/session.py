@@ -1,7 +1,7 @@
 """Session: one run of a level: ticks, commands, the log, undo, time travel. No wall clock."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from sandbox.physics.world import World
 from sandbox.session.commands import Command, CommandError, Redo, Undo, apply
 from sandbox.session.commands.adding import name_added
 from sandbox.session.commands.records import ScriptLine, from_record, to_record
+from sandbox.session.replay.format import STATE_TICKS
 from sandbox.session.replay.writer import Recorder
 
 KEYFRAME_TICKS = 60
@@ -166,16 +167,33 @@ class Session:
             raise ValueError("stop the recording before going back in time")
         self._rewind(tick, tick)
 
-    def record_to(self, path: Path) -> None:
+    def retold(self, tick: int) -> "Session":
+        """A run of its own with the same history, at the last keyframe at or before a tick; `advance` follows it from
+        there to the last tick. Neither run changes the other.
+        """
+        first = self._keyframe_before(tick)
+        twin = Session(self.level, start=first)
+        twin._keyframes = [kept for kept in self._keyframes if kept.tick >= first.tick]
+        twin._log = [replace(entry) for entry in self._effective_log() if entry.tick >= first.tick]
+        twin._last_tick = self._last_tick
+        twin._follow([entry for entry in twin._log if entry.tick == first.tick], first.tick)
+        return twin
+
+    def keyframes(self, first: int, last: int) -> list[Snapshot]:
+        """The states of ticks first..last that are kept, a few each second or less."""
+        return [kept for kept in self._keyframes if first <= kept.tick <= last]
+
+    def record_to(self, path: Path, state_ticks: int = STATE_TICKS) -> None:
         """Record this run to a file, from the level's start: what was played until now is played again into it.
 
+        state_ticks: from one stored state to the next; from each the recording can be verified, and each takes room.
         Overwrites the file. Raises OSError where it cannot be written, ValueError for a run that began in the middle.
         """
         if self._keyframes[0].tick > 0:
             raise ValueError("only a run from the level's start can be recorded")
         self.stop_recording()
         twin = Session(self.level)
-        twin._recorder = Recorder(path, self.level, twin.world)
+        twin._recorder = Recorder(path, self.level, twin.world, state_ticks)
         self._drop_future()
         try:
             for entry in self._log:
@@ -286,10 +304,13 @@ class Session:
 
     def _rewind(self, back_to: int, tick: int) -> None:
         """Restore the last keyframe at or before a tick and follow the log to another."""
-        keyframe = next(kept for kept in reversed(self._keyframes) if kept.tick <= back_to)
+        keyframe = self._keyframe_before(back_to)
         restore(self.world, keyframe)
         name_added(self.world)
         self._follow([entry for entry in self._effective_log() if keyframe.tick <= entry.tick <= tick], tick)
+
+    def _keyframe_before(self, tick: int) -> Snapshot:
+        return next(kept for kept in reversed(self._keyframes) if kept.tick <= tick)
 
     def _follow(self, log: list[LogEntry], tick: int) -> None:
         start, done = self.tick, 0

@@ -4,7 +4,8 @@ Some of its springs yield and break.
 
 python kernel_script.py SOLVER SUBSTEPS TICKS [--without-numba | --broken-numba | --without-cache | --switch TICK]
 
---without-cache: only of a rope, which comes last else: to compile all that a busy world needs takes a minute. --switch: kernels are interpreted until this tick, counted over all worlds that follow one another.
+--without-cache: only of a rope, which comes last else: to compile all that a busy world needs takes a minute.
+--switch: kernels are interpreted until this tick, counted over all worlds that follow one another.
 """
 
 import gc

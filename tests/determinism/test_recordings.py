@@ -45,7 +45,7 @@ def test_played_levels_verify_in_every_way(paths, tmp_path):
         long, short = tmp_path / f"{path.stem}.replay.gz", tmp_path / f"{path.stem}.short.replay.gz"
         for name, length in ((long, ticks), (short, few)):
             session = Session(level)
-            session.record_to(name)
+            session.record_to(name, state_ticks=60)
             play(session, length)
             session.stop_recording()
             assert session.tick == length

@@ -9,7 +9,8 @@ from sandbox.level.format.parse import parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import CommandError, CutSprings, Grab, MoveGrab, SetAir, SetDrive, SetInflation, apply
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.replay.reader import read_replay, read_script
+from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.script import read_script
 from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from sandbox.session.summary import run
@@ -83,7 +84,7 @@ def test_going_back_tells_no_break_a_second_time_and_meets_it_at_the_same_tick()
 @pytest.mark.parametrize("solver", ["single_pass", "iterative", "direct"])
 def test_a_recording_of_breaks_drives_and_air_verifies_from_every_state(solver, tmp_path):
     session = Session(busy_level(solver))
-    session.record_to(tmp_path / "run.replay")
+    session.record_to(tmp_path / "run.replay", state_ticks=60)
     for tick in range(200):
         if tick == 20:
             session.submit(SetDrive(0, 1.0), 500)
@@ -112,7 +113,7 @@ def test_a_recording_of_breaks_drives_and_air_verifies_from_every_state(solver, 
 
 def test_a_divergence_names_the_driven_part(tmp_path):
     session = Session(busy_level())
-    session.record_to(tmp_path / "run.replay")
+    session.record_to(tmp_path / "run.replay", state_ticks=60)
     advance(session, 30)
     session.stop_recording()
 
@@ -175,7 +176,7 @@ def test_drives_of_nothing_and_beyond_1_are_refused_in_one_line():
 
 def test_a_state_with_another_number_of_parts_is_refused(tmp_path):
     session = Session(busy_level())
-    session.record_to(tmp_path / "run.replay")
+    session.record_to(tmp_path / "run.replay", state_ticks=60)
     advance(session, 60)
     session.stop_recording()
     replay = read_replay(tmp_path / "run.replay")
@@ -222,7 +223,7 @@ def test_a_balloon_and_a_jelly_are_pumped_up_by_commands_that_replay_and_undo(tm
 
     session = Session(level)
     assert session.world.area_names == ["cube", "balloon"]
-    session.record_to(tmp_path / "run.replay")
+    session.record_to(tmp_path / "run.replay", state_ticks=60)
     before = {body: size(session, body) for body in ("cube", "balloon", "hoop")}
     session.submit(SetInflation(0, 1.5), 1)
     session.submit(SetInflation(1, 2.0), 2)

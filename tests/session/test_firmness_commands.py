@@ -33,7 +33,7 @@ def test_the_command_gives_what_the_level_s_field_gives(asked):
 
 def test_firmness_is_undone_redone_and_recorded(tmp_path):
     session = session_of({"sag": 0.02})
-    session.record_to(tmp_path / "run.replay")
+    session.record_to(tmp_path / "run.replay", state_ticks=60)
     before = state_hash(session.world)
     session.submit(SetFirmness(0, sag=0.25))
     for _ in range(70):
@@ -56,7 +56,7 @@ def test_firmness_is_undone_redone_and_recorded(tmp_path):
 
 def test_a_recording_goes_on_from_a_stored_state_with_the_firmness_it_had(tmp_path):
     session = session_of()
-    session.record_to(tmp_path / "run.replay")
+    session.record_to(tmp_path / "run.replay", state_ticks=60)
     session.submit(SetFirmness(0, hz=2.0, ratio=0.2))
     session.advance()
     session.submit(SetSolver(substeps=4))

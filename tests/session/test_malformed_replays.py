@@ -1,12 +1,15 @@
+import json
+import tracemalloc
 from pathlib import Path
 
 import pytest
 
-from sandbox.session.replay.reader import read_replay, read_script
+from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
+from sandbox.session.replay.script import read_script
 from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
-from tests.support.malformed_replays import bad_commands, cases, sealed
+from tests.support.malformed_replays import bad_commands, cases, compressed, sealed
 from tests.support.play import play
 from tests.support.rope_level import rope_level
 
@@ -15,7 +18,7 @@ from tests.support.rope_level import rope_level
 def good(tmp_path_factory) -> bytes:
     path = tmp_path_factory.mktemp("good") / "good.jsonl"
     session = Session(rope_level())
-    session.record_to(path)
+    session.record_to(path, state_ticks=60)
     play(session, 65)
     session.stop_recording()
     return path.read_bytes()
@@ -42,11 +45,10 @@ def test_every_malformed_replay_is_refused_in_clear_lines(good, tmp_path):
 
 
 def test_a_damaged_stored_state_is_refused_when_it_is_used(good, tmp_path):
-    import json
-
     lines = [json.loads(line) for line in good.splitlines()]
-    place = [number for number, line in enumerate(lines) if "state" in line][1]
-    for text in ("", "%%%", "AAAA", lines[place]["state"]["velocity"][:-8], lines[place]["state"]["mass"]):
+    first, place, _ = (number for number, line in enumerate(lines) if "state" in line)
+    mass = lines[first]["state"]["mass"]
+    for text in ("", "%%%", "AAAA", lines[place]["state"]["velocity"][:-8], mass):
         lines[place]["state"]["position"] = text
         (tmp_path / "bad.jsonl").write_bytes(sealed(lines))
         replay = read_replay(tmp_path / "bad.jsonl")
@@ -55,8 +57,6 @@ def test_a_damaged_stored_state_is_refused_when_it_is_used(good, tmp_path):
 
 
 def test_a_stored_state_that_its_own_hash_belies_is_refused(good, tmp_path):
-    import json
-
     lines = [json.loads(line) for line in good.splitlines()]
     place = [number for number, line in enumerate(lines) if "state" in line][1]
     for change in (
@@ -71,8 +71,6 @@ def test_a_stored_state_that_its_own_hash_belies_is_refused(good, tmp_path):
 
 
 def test_every_bad_command_is_refused_with_its_line(good, tmp_path):
-    import json
-
     lines = [json.loads(line) for line in good.splitlines()]
     after_tick_zero = next(place for place, line in enumerate(lines) if "state" in line) + 1
     for name, record in bad_commands():
@@ -89,6 +87,64 @@ def test_missing_files_folders_and_unreadable_names_are_refused(tmp_path):
     for path in (tmp_path / "missing.jsonl", tmp_path, tmp_path / ("x" * 300)):
         for read in (read_replay, read_script):
             _refusal(read, path)
+
+
+@pytest.mark.parametrize("cut", [1, 4, 8, 9])
+def test_the_last_bytes_of_a_compressed_recording_are_missed(good, tmp_path, cut):
+    path = tmp_path / "cut.gz"
+    path.write_bytes(compressed(good)[:-cut])
+    assert any("cut off" in fault for fault in _refusal(read_replay, path))
+    assert verify(read_replay(path, partial=True)) is None
+
+
+@pytest.mark.parametrize("tail", [b"x", bytes(8), compressed(b"more\n")])
+def test_bytes_behind_a_compressed_recording_are_refused(good, tmp_path, tail):
+    path = tmp_path / "long.gz"
+    path.write_bytes(compressed(good) + tail)
+    assert "bytes follow" in _refusal(read_replay, path)[0]
+
+
+def test_a_recording_cut_before_its_first_tick_verifies_nothing(good, tmp_path):
+    path = tmp_path / "cut.jsonl"
+    path.write_bytes(b"".join(good.splitlines(keepends=True)[:3]))
+    with pytest.raises(ReplayError, match="cut off before tick 1: nothing to verify"):
+        read_replay(path, partial=True)
+
+
+def test_a_forged_line_is_refused_before_it_is_held(good, tmp_path):
+    lines = [json.loads(line) for line in good.splitlines()]
+    flood = {"tick": 0, "gesture": 1, "command": {"type": "x" * 40_000_000}}
+    wide = {"tick": 0, "state": {"position": "A" * 40_000_000}, "settings": {}}
+    for forged in (flood, wide, {"note": [[]] * 3_000_000}):
+        path = tmp_path / "forged.gz"
+        path.write_bytes(compressed(sealed([*lines[:3], forged])))
+        tracemalloc.start()
+        fault = _refusal(read_replay, path)[0]
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert "line 4: longer than" in fault
+        assert peak < 10_000_000
+
+
+def test_a_header_of_endless_lists_is_refused_before_it_is_parsed(tmp_path):
+    path = tmp_path / "forged.gz"
+    path.write_bytes(compressed(b'{"format": "spring-sandbox/replay", "level": [' + b"[]," * 2_000_000 + b"[]]}\n"))
+    assert "more than 1,000,000 lists" in _refusal(read_replay, path)[0]
+
+
+def test_a_key_that_stands_twice_in_a_command_is_refused(tmp_path):
+    path = tmp_path / "moves.jsonl"
+    path.write_text('{"tick": 1, "tick": 2, "command": {}}\n{"tick": 1, "command": {"type": "pin", "type": "undo"}}\n')
+    faults = _refusal(read_script, path)
+    assert ['"tick": this key' in faults[0], '"type": this key' in faults[1]] == [True, True]
+
+
+def test_a_script_of_endless_lines_is_refused(tmp_path):
+    path = tmp_path / "moves.jsonl"
+    path.write_bytes(b'{"tick": 1, "command": ' + b" " * 2_000_000 + b"{}}\n")
+    assert "line 1: longer than" in _refusal(read_script, path)[0]
+    path.write_bytes(b" " * 40_000_000)
+    assert "larger than 32 MiB" in _refusal(read_script, path)[0]
 
 
 def test_faults_in_a_script_are_told_all_at_once(tmp_path):

@@ -249,7 +249,7 @@ class SessionMachine(RuleBasedStateMachine):
         self._flush()
         self._finish()
         self.files += 1
-        self.session.record_to(Path(self.folder.name) / f"{self.files}.{suffix}")
+        self.session.record_to(Path(self.folder.name) / f"{self.files}.{suffix}", state_ticks=60)
         self.model._drop_future()
 
     @rule()
@@ -296,7 +296,7 @@ class SessionMachine(RuleBasedStateMachine):
     def _recorded_early(self) -> Path:
         path = Path(self.folder.name) / "early.jsonl"
         session = Session(self.level)
-        session.record_to(path)
+        session.record_to(path, state_ticks=60)
         for act in self.acts:
             if act is None:
                 session.advance()

@@ -64,7 +64,7 @@ def recorded(tmp_path_factory):
     """A recording of a session in which things touch."""
     path = tmp_path_factory.mktemp("replays") / "touching.replay.jsonl"
     session = Session(touching_level())
-    session.record_to(path)
+    session.record_to(path, state_ticks=60)
     play(session)
     session.stop_recording()
     assert session.messages == [] or all("broke" in message for message in session.messages)
@@ -117,7 +117,7 @@ def test_a_recording_verifies_from_its_start_and_from_its_middle(recorded):
 def test_a_recording_of_a_level_that_begins_empty_verifies_from_its_middle(tmp_path):
     session = Session(touching_level(bodies=[], particles=[], springs=[]))
     path = tmp_path / "empty.replay.jsonl"
-    session.record_to(path)
+    session.record_to(path, state_ticks=60)
     session.submit(AddParticle((0.0, 0.5), radius=0.1))
     for _ in range(90):
         session.advance()

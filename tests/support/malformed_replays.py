@@ -1,6 +1,7 @@
 """Malformed replays: each is a name, its bytes, and what is wrong with it."""
 
 import gzip
+import io
 import json
 import random
 from collections.abc import Callable, Iterator
@@ -18,6 +19,14 @@ def sealed(lines: Lines) -> bytes:
         data, chain = seal({key: value for key, value in values.items() if key != "chain"}, chain)
         out.append(data)
     return b"".join(out)
+
+
+def compressed(data: bytes) -> bytes:
+    """Bytes as a Recorder compresses them."""
+    out = io.BytesIO()
+    with gzip.GzipFile(filename="", mode="wb", compresslevel=9, fileobj=out, mtime=0) as file:
+        file.write(data)
+    return out.getvalue()
 
 
 def cases(good: bytes) -> Iterator[tuple[str, bytes]]:
@@ -80,7 +89,7 @@ def _forged_cases(lines: Lines) -> Iterator[tuple[str, bytes]]:
     state = next(place for place, line in enumerate(lines) if "state" in line)
     command = next(place for place, line in enumerate(lines) if "command" in line)
     for key, value in (
-        ("version", 2), ("version", "1"), ("version", True), ("physics_version", 999), ("physics_version", None),
+        ("version", 3), ("version", "2"), ("version", True), ("physics_version", 999), ("physics_version", None),
         ("sandbox_version", 5), ("format", "spring-sandbox/level"), ("format", None), ("level", []), ("level", None),
         ("level", {}), ("level", {"format": "spring-sandbox/level", "version": 1}), ("surprise", 1),
     ):  # fmt: skip
@@ -89,7 +98,7 @@ def _forged_cases(lines: Lines) -> Iterator[tuple[str, bytes]]:
     for key in ("format", "version", "physics_version", "sandbox_version", "level"):
         yield f"header without {key}", changed(0, lambda line, k=key: line.pop(k))
     for key, value in (("tick", 2), ("tick", -1), ("tick", 3.5), ("tick", True), ("tick", "3"), ("hash", 7),
-                       ("arrays", {}), ("arrays", []), ("arrays", {"position": 3}), ("surprise", 0)):  # fmt: skip
+                       ("arrays", {"a": "0"}), ("arrays", []), ("arrays", {"position": 3}), ("noise", 0)):  # fmt: skip
         yield f"tick line {key} {value!r}", changed(tick, lambda line, k=key, v=value: line.__setitem__(k, v))
     for key, value in (("tick", 10**6), ("gesture", -1), ("gesture", 1.5), ("gesture", True), ("command", []),
                        ("command", "undo"), ("surprise", 0)):  # fmt: skip

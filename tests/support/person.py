@@ -107,10 +107,7 @@ class Person:
         """Do something and poll the pixels until they change; whether they did."""
         before = self.screen.pixels()
         self.do(*arguments)
-        for _ in looks(patience):
-            if not np.array_equal(before, self.screen.pixels()):
-                return True
-        return False
+        return any(not np.array_equal(before, self.screen.pixels()) for _ in looks(patience))
 
     def move(self, pixel: tuple[float, float]) -> None:
         """Move the mouse; the app has seen it once what is under the mouse looks otherwise."""

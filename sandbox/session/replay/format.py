@@ -1,12 +1,17 @@
-"""The replay file, version 1: JSON Lines, each line sealed by a chain of hashes over everything before it.
+"""The replay file, version 2: JSON Lines, each line sealed by a chain of hashes over everything before it.
 
-    {"format": "spring-sandbox/replay", "version": 1, "physics_version": ..., "level": {...}, ..., "chain": "..."}
+    {"format": "spring-sandbox/replay", "version": 2, "physics_version": ..., "level": {...}, ..., "chain": "..."}
     {"tick": 12, "gesture": 3, "command": {...}, "chain": "..."}       applied at tick 12, before its step
     {"tick": 13, "hash": "...", "arrays": {...}, "chain": "..."}       the state after 13 steps, for every tick from 0
-    {"tick": 60, "state": {...}, "settings": {...}, "chain": "..."}    every bit of it, every 60 ticks
-    {"end": true, "tick": 600, "hash": "...", "chain": "..."}
+    {"tick": 600, "state": {...}, "settings": {...}, "chain": "..."}   every bit of it, now and then and at the end
+    {"end": true, "tick": 900, "hash": "...", "chain": "..."}
 
-chain = blake2b over the previous line's chain and this line's bytes up to its own chain.
+`arrays` holds the first digits of the hash of each array that changed since the line before, null of one that is no
+longer in use; at a stored state, of all that are in use. `state` holds the arrays that changed since the state stored
+before. chain = blake2b over the previous line's whole digest and this line's bytes up to its own chain, of which a line
+has the first digits.
+
+Version 1, which is read as well: all arrays in every line, and all digits.
 """
 
 import base64
@@ -14,6 +19,7 @@ import binascii
 import hashlib
 import json
 import zlib
+from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
@@ -23,39 +29,43 @@ from sandbox.level.format.files import level_data
 from sandbox.level.format.model import Level
 from sandbox.physics.constraints import AREA
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
-from sandbox.physics.state import BY_STORED, COLUMNS, Column, Family, family_of
+from sandbox.physics.state import BY_STORED, Column, Family, family_of
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.world import GRAB_COUNT, GRAB_MATERIAL, World, WorldSettings
 
 FORMAT = "spring-sandbox/replay"
-VERSION = 1
-STATE_TICKS = 60
-# The longest line [bytes] and the largest array [bytes] that a reader accepts; ten times what the level limits allow.
-LINE_LIMIT = 256 * 2**20
-# The longest first line [bytes]: a level of 8 MiB with every number written out and every character escaped.
-HEADER_LIMIT = 64 * 2**20
-ARRAY_LIMIT = 64 * 2**20
+VERSION = 2
+# Hexadecimal digits of a line's chain, by version; of arrays' hashes a reader compares as many as there are.
+CHAIN_DIGITS = {1: 32, VERSION: 8}
+ARRAY_DIGITS = 8
+# Ticks between two stored states, unless a writer is told otherwise.
+STATE_TICKS = 600
+ARRAY_LIMIT = 64 * 2**20  # [bytes]
 
 _CHAIN_MARK = b', "chain": "'
-_CHAIN_DIGITS = 32
+_DIGEST_BYTES = 16
 
 
-def seal(values: dict[str, Any], previous: str) -> tuple[bytes, str]:
-    """A line's bytes, newline included, and its chain."""
+def seal(values: dict[str, Any], previous: str, version: int = VERSION) -> tuple[bytes, str]:
+    """A line's bytes, newline included, and its digest: the `previous` of the next line, "" of the first."""
     body = json.dumps(values, allow_nan=False, ensure_ascii=True)[:-1].encode()
-    chain = _chain(body, previous)
-    return body + _CHAIN_MARK + chain.encode() + b'"}\n', chain
+    digest = _digest(body, previous)
+    return body + _ending(digest, version), digest
 
 
-def unseal(line: bytes, previous: str) -> str | None:
-    """The chain of a line, or None where a byte of it, or of anything before it, has changed."""
+def unseal(line: bytes, previous: str, version: int = VERSION) -> str | None:
+    """The digest of a line, or None where a byte of it, or of anything before it, has changed."""
     body, mark, tail = line.rpartition(_CHAIN_MARK)
-    chain = _chain(body, previous)
-    return chain if mark and tail == chain.encode() + b'"}\n' else None
+    digest = _digest(body, previous)
+    return digest if mark + tail == _ending(digest, version) else None
 
 
-def _chain(body: bytes, previous: str) -> str:
-    return hashlib.blake2b(previous.encode() + body, digest_size=_CHAIN_DIGITS // 2).hexdigest()
+def _digest(body: bytes, previous: str) -> str:
+    return hashlib.blake2b(previous.encode() + body, digest_size=_DIGEST_BYTES).hexdigest()
+
+
+def _ending(digest: str, version: int) -> bytes:
+    return _CHAIN_MARK + digest[: CHAIN_DIGITS[version]].encode() + b'"}\n'
 
 
 def level_digest(data: dict[str, Any]) -> str:
@@ -76,11 +86,11 @@ def header(level: Level, physics_version: int, sandbox_version: str) -> dict[str
     }
 
 
-def encode_state(world: World) -> dict[str, Any]:
-    """Every state array as base64 of zlib of its little-endian bytes, and the settings."""
+def encode_state(world: World, names: Iterable[str] = tuple(BY_STORED)) -> dict[str, Any]:
+    """State arrays of those names as base64 of zlib of their little-endian bytes, and the settings."""
     arrays = {
-        column.stored: base64.b64encode(zlib.compress(canonical_bytes(getattr(world, column.name)), 6)).decode()
-        for column in COLUMNS
+        name: base64.b64encode(zlib.compress(canonical_bytes(getattr(world, BY_STORED[name].name)), 6)).decode()
+        for name in names
     }
     return {"state": arrays, "settings": asdict(world.settings)}
 

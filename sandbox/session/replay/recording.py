@@ -1,13 +1,17 @@
 """Replay: a recorded run as a file holds it, read back."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from sandbox.level.build.actuators import actuators
 from sandbox.level.format.model import Level
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, state_hash
+from sandbox.physics.state import BY_STORED
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import decode_state
+
+_PLACES = {name: place for place, name in enumerate(BY_STORED)}
 
 
 class ReplayError(ValueError):
@@ -20,10 +24,18 @@ class ReplayError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class TickHashes:
-    """What a replay says of the state after a tick: the hash of all, and of each array in the order of the table."""
+    """What a replay says of the state after a tick: the hash of all, and the first digits of that of each array.
+
+    arrays: in the order of the table; nothing for one that is not in use.
+    """
 
     whole: str
     arrays: tuple[str, ...]
+
+    def differs(self, array: str, present: Mapping[str, str]) -> bool:
+        """Whether a state of these hashes by array has another array of that name."""
+        digits = self.arrays[_PLACES[array]]
+        return present.get(array, "")[: len(digits) or None] != digits
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.level.format.model import Level
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, state_hash
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.world import World
@@ -45,28 +46,33 @@ def verify(
     replay: Replay,
     *,
     start: int = 0,
+    level: Level | None = None,
     on_tick: Callable[[World], None] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Divergence | None:
     """Run a replay again and compare every tick; None where all bits are equal.
 
-    start: the tick of a stored state to begin from instead of the level. on_tick: called with the world after every
+    start: the tick of a stored state to begin from instead of the level. level: to run the commands on, from its
+    beginning, instead of the recorded one. on_tick: called with the world after every
     step, before it is compared. progress: called with ticks done and ticks in all. Raises ReplayError where the
     recording holds a command that cannot be carried out.
     """
-    session = _session(replay, start)
+    if level is not None and start:
+        raise ReplayError(f"{replay.source}: on another level it runs from the beginning, not from tick {start}")
+    run = _Run(replay, level)
+    session = run.session(start)
     while True:
         difference = _compare(replay, session.world)
         if difference:
-            return _locate(replay, session.tick, difference, session.world)
+            return run.locate(session.tick, difference, session.world)
         if session.tick == replay.ticks:
             break
-        _advance(replay, session)
+        run.advance(session)
         if on_tick is not None:
             on_tick(session.world)
         if progress is not None and session.tick % PROGRESS_TICKS == 0:
             progress(session.tick - start, replay.ticks - start)
-    _guard(replay, session.apply_pending)
+    run.guard(session.apply_pending)
     if replay.end_hash is not None and state_hash(session.world) != replay.end_hash:
         return Divergence(
             session.tick, "hash", None, replay.end_hash, state_hash(session.world), note="at the end line"
@@ -74,21 +80,69 @@ def verify(
     return None
 
 
-def _session(replay: Replay, start: int) -> Session:
-    if start == 0:
-        return Session(replay.level, script=replay.script)
-    return Session(replay.level, script=replay.script, start=replay.state(start))
+@dataclass(frozen=True)
+class _Run:
+    """A recording's commands, on the level that they were recorded on or on another."""
 
+    replay: Replay
+    level: Level | None
 
-def _guard(replay: Replay, act: Callable[[], object]) -> None:
-    try:
-        act()
-    except CommandError as error:
-        raise ReplayError(f"{replay.source}: {error}") from None
+    def session(self, start: int) -> Session:
+        """A session at a tick whose state is stored."""
+        replay = self.replay
+        if start == 0:
+            return Session(self.level or replay.level, script=replay.script)
+        return Session(replay.level, script=replay.script, start=replay.state(start))
 
+    def advance(self, session: Session) -> None:
+        """One tick. Raises ReplayError."""
+        self.guard(session.advance)
 
-def _advance(replay: Replay, session: Session) -> None:
-    _guard(replay, session.advance)
+    def guard(self, act: Callable[[], object]) -> None:
+        """Act, and say of which recording a command cannot be carried out. Raises ReplayError."""
+        try:
+            act()
+        except CommandError as error:
+            raise ReplayError(f"{self.replay.source}: {error}") from None
+
+    def locate(self, tick: int, array: str, world: World) -> Divergence:
+        """Find index and values by stepping again, undisturbed, from the last stored state that was verified."""
+        replay = self.replay
+        if array == "settings":
+            return Divergence(tick, array, None, replay.hashes[tick].whole, state_hash(world))
+        clean = self._clean_session(verified=tick - 1, tick=tick)
+        if not replay.hashes[tick].differs(array, hash_by_array(clean.world)):
+            return _first_difference(tick, array, getattr(clean.world, BY_STORED[array].name), world)
+        steps = f"this {'build' if self.level is None else 'level'} steps differently"
+        later = min((stored for stored in replay.states if stored >= tick), default=None)
+        if later is None:
+            note = f"{steps}, and no later state is stored to show the values"
+            return Divergence(tick, array, None, "unknown", "unknown", note=note)
+        try:
+            clean = self._clean_session(verified=tick - 1, tick=later)
+        except ReplayError:
+            note = f"{steps}, and cannot reach the next stored state, tick {later}, to show the values"
+            return Divergence(tick, array, None, "unknown", "unknown", note=note)
+        recorded = replay.state(later)
+        found = _first_difference(tick, array, getattr(recorded, BY_STORED[array].name), clean.world)
+        note = f"{steps}; the values are those of the next stored state, tick {later}"
+        return Divergence(tick, array, found.index, found.expected, found.actual, found.name, note)
+
+    def _clean_session(self, verified: int, tick: int) -> Session:
+        """A fresh session at a tick, begun from the last state stored up to the verified tick.
+
+        It begins from the level where an undo reaches back behind that state, and where it is another level.
+        """
+        stored = [] if self.level else [tick for tick in self.replay.states if tick <= verified]
+        for start in (max(stored, default=0), 0):
+            try:
+                session = self.session(start)
+                while session.tick < tick:
+                    self.advance(session)
+            except ReplayError:
+                continue
+            return session
+        raise ReplayError(f"{self.replay.source}: tick {tick} cannot be reached")
 
 
 def _compare(replay: Replay, world: World) -> str | None:
@@ -96,42 +150,7 @@ def _compare(replay: Replay, world: World) -> str | None:
     recorded, present = replay.hashes[world.tick], hash_by_array(world)
     if state_hash(world, present) == recorded.whole:
         return None
-    pairs = zip(BY_STORED, recorded.arrays, strict=True)
-    return next((name for name, expected in pairs if present.get(name, "") != expected), "settings")
-
-
-def _locate(replay: Replay, tick: int, array: str, world: World) -> Divergence:
-    """Find index and values by stepping again, undisturbed, from the last stored state that was verified."""
-    if array == "settings":
-        return Divergence(tick, array, None, replay.hashes[tick].whole, state_hash(world))
-    clean = _clean_session(replay, verified=tick - 1, tick=tick)
-    if hash_by_array(clean.world).get(array, "") == replay.hashes[tick].arrays[list(BY_STORED).index(array)]:
-        return _first_difference(tick, array, getattr(clean.world, BY_STORED[array].name), world)
-    later = min((stored for stored in replay.states if stored >= tick), default=None)
-    if later is None:
-        note = "this build steps differently, and no later state is stored to show the values"
-        return Divergence(tick, array, None, "unknown", "unknown", note=note)
-    clean = _clean_session(replay, verified=tick - 1, tick=later)
-    recorded = replay.state(later)
-    found = _first_difference(tick, array, getattr(recorded, BY_STORED[array].name), clean.world)
-    note = f"this build steps differently; the values are those of the next stored state, tick {later}"
-    return Divergence(tick, array, found.index, found.expected, found.actual, found.name, note)
-
-
-def _clean_session(replay: Replay, verified: int, tick: int) -> Session:
-    """A fresh session at a tick, begun from the last state stored up to the verified tick.
-
-    It begins from the level where an undo reaches back behind that state.
-    """
-    for start in (max((stored for stored in replay.states if stored <= verified), default=0), 0):
-        try:
-            session = _session(replay, start)
-            while session.tick < tick:
-                _advance(replay, session)
-        except ReplayError:
-            continue
-        return session
-    raise ReplayError(f"{replay.source}: tick {tick} cannot be reached")
+    return next((name for name in BY_STORED if recorded.differs(name, present)), "settings")
 
 
 def _first_difference(tick: int, array: str, expected: NDArray[Any], world: World) -> Divergence:

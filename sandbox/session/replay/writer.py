@@ -10,26 +10,35 @@ from typing import Any, BinaryIO
 from sandbox import __version__
 from sandbox.level.format.model import Level
 from sandbox.physics.snapshot import hash_by_array, state_hash
+from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
-from sandbox.session.replay.format import STATE_TICKS, encode_state, header, seal
+from sandbox.session.replay.format import ARRAY_DIGITS, STATE_TICKS, encode_state, header, seal
+
+# Ticks after which what is compressed reaches the file: a second of the usual rate.
+FLUSH_TICKS = 60
+GZIP_LEVEL = 9
 
 
 class Recorder:
     """Writes one run to a file, from the level's first tick; a name ending in .gz is compressed.
 
-    Every line reaches the file when it is written (compressed: at every state line), so that a crash leaves a
-    recording that is only cut off.
+    Every line reaches the file when it is written (compressed: every 60 ticks), so that a crash leaves a recording
+    that is only cut off. state_ticks: from one stored state to the next.
     Raises OSError where the file cannot be written.
     """
 
-    def __init__(self, path: Path, level: Level, world: World) -> None:
+    def __init__(self, path: Path, level: Level, world: World, state_ticks: int = STATE_TICKS) -> None:
         self.path = Path(path)
         self._chain = ""
+        self._state_ticks = state_ticks
+        # Of the last tick, and of the last stored state: hashes by array, and there the rows of each too.
+        self._hashes: dict[str, str] = {}
+        self._stored: dict[str, tuple[str | None, int]] = {}
         raw = self._raw = io.FileIO(self.path, "wb")
         # No name and no time in the compressed header, so that the same run gives the same bytes.
         self._file: BinaryIO | gzip.GzipFile = (
-            gzip.GzipFile(filename="", mode="wb", compresslevel=6, fileobj=raw, mtime=0)
+            gzip.GzipFile(filename="", mode="wb", compresslevel=GZIP_LEVEL, fileobj=raw, mtime=0)
             if self.path.suffix == ".gz"
             else io.BufferedWriter(raw)
         )
@@ -46,16 +55,29 @@ class Recorder:
         self._write({"tick": tick, "gesture": gesture, "command": record})
 
     def write_tick(self, world: World) -> None:
-        """Write the hashes of the present state, and now and then the state itself."""
-        arrays = hash_by_array(world)
-        self._write({"tick": world.tick, "hash": state_hash(world, arrays), "arrays": arrays})
-        if world.tick % STATE_TICKS == 0:
-            self._write({"tick": world.tick, **encode_state(world)})
-            self._flush()
+        """Write what changed in the hashes of the present state, and now and then the state itself."""
+        hashes, before = hash_by_array(world), self._hashes
+        storing = world.tick % self._state_ticks == 0
+        told = hashes if storing else [name for name in BY_STORED if hashes.get(name) != before.get(name)]
+        arrays = {name: hashes[name][:ARRAY_DIGITS] if name in hashes else None for name in told}
+        self._hashes = hashes
+        self._write({"tick": world.tick, "hash": state_hash(world, hashes), "arrays": arrays})
+        if storing:
+            self._write_state(world, hashes)
+        if world.tick % FLUSH_TICKS == 0 and isinstance(self._file, gzip.GzipFile):
+            self._file.flush(zlib.Z_SYNC_FLUSH)
+
+    def _write_state(self, world: World, hashes: dict[str, str]) -> None:
+        present = {name: (hashes.get(name), len(getattr(world, column.name))) for name, column in BY_STORED.items()}
+        changed = [name for name in BY_STORED if present[name] != self._stored.get(name)]
+        self._stored = present
+        self._write({"tick": world.tick, **encode_state(world, changed)})
 
     def finish(self, world: World) -> None:
-        """Write the last line and close the file."""
+        """Write the last state and the last line, and close the file."""
         try:
+            if world.tick % self._state_ticks:
+                self._write_state(world, self._hashes)
             self._write({"end": True, "tick": world.tick, "hash": state_hash(world)})
             self._file.close()
         finally:
@@ -72,7 +94,3 @@ class Recorder:
         self._file.write(line)
         if not isinstance(self._file, gzip.GzipFile):
             self._file.flush()
-
-    def _flush(self) -> None:
-        if isinstance(self._file, gzip.GzipFile):
-            self._file.flush(zlib.Z_SYNC_FLUSH)
