@@ -313,7 +313,7 @@ def _run_with_bar(
         try:
             return run(session, ticks, after)
         except CommandError as error:
-            raise Refused(f"{source}: tick {session.tick}: {error}") from None
+            raise Refused(*(f"{source}: tick {session.tick}: {fault}" for fault in error.faults)) from None
 
 
 def _probe(options: argparse.Namespace, world: "World") -> Any:

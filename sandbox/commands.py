@@ -5,6 +5,7 @@
 
 from sandbox.session.commands import (
     COMMAND_TYPES,
+    AddBody,
     AddParticle,
     AddSpring,
     Command,
@@ -14,8 +15,10 @@ from sandbox.session.commands import (
     Grab,
     MoveGrab,
     Pin,
+    Push,
     Redo,
     Release,
+    Remove,
     SetAir,
     SetCoefficients,
     SetDrive,
@@ -32,6 +35,7 @@ from sandbox.session.replay.script import read_script
 
 __all__ = [
     "COMMAND_TYPES",
+    "AddBody",
     "AddParticle",
     "AddSpring",
     "Command",
@@ -41,8 +45,10 @@ __all__ = [
     "Grab",
     "MoveGrab",
     "Pin",
+    "Push",
     "Redo",
     "Release",
+    "Remove",
     "ScriptLine",
     "SetAir",
     "SetCoefficients",

@@ -53,8 +53,8 @@ def test_the_program_in_the_readme_prints_that_every_tick_is_equal(tmp_path, mon
 
 
 def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_carried_out(tmp_path):
-    lines, driving, pumping, firming = re.findall(r"```jsonl\n(.*?)```", COMMANDS, re.DOTALL)
-    shown = (lines + driving + pumping + firming).splitlines()
+    lines, driving, pumping, firming, joining = re.findall(r"```jsonl\n(.*?)```", COMMANDS, re.DOTALL)
+    shown = (lines + driving + pumping + firming + joining).splitlines()
     assert {json.loads(line)["command"]["type"] for line in shown} == set(COMMAND_TYPES)
     table = COMMANDS.split("|---|---|---|")[1]
     named = {
@@ -71,6 +71,11 @@ def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_ca
     assert not session.messages
     assert session.world.settings.solver == "iterative"
     assert "+.0" in session.world.particle_names
+    (tmp_path / "drop.jsonl").write_text(joining)
+    session = Session(load_level("jelly_pile"), read_script(tmp_path / "drop.jsonl"))
+    for _ in range(116):
+        session.advance()
+    assert not session.messages and session.world.particle_slot("+4.hub")
     (tmp_path / "fire.jsonl").write_text(driving)
     session = Session(load_level("catapult"), read_script(tmp_path / "fire.jsonl"))
     for _ in range(180):

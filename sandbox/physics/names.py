@@ -1,5 +1,6 @@
 """Names: what the slots of one kind are called, and the slots of those names."""
 
+import bisect
 from collections.abc import Sequence
 
 
@@ -9,10 +10,24 @@ class Names:
     def __init__(self) -> None:
         self.in_order: list[str] = []
         self._slots: dict[str, int] = {}
+        self._second: list[str] = []
+
+    @property
+    def second(self) -> list[tuple[str, int]]:
+        """The second names, with their slots, as they were given."""
+        return [(name, self._slots[name]) for name in self._second]
 
     def slot(self, name: str) -> int:
         """The slot of that name. Raises KeyError."""
         return self._slots[name]
+
+    def unused(self, prefix: str, count: int) -> list[str]:
+        """Names of that prefix and a number each, the next that are free where they are given in order from 0 on."""
+        beyond = 1
+        while f"{prefix}{beyond - 1}" in self._slots:
+            beyond *= 2
+        first = bisect.bisect_left(range(beyond), True, key=lambda number: f"{prefix}{number}" not in self._slots)
+        return [f"{prefix}{number}" for number in range(first, first + count)]
 
     def append(self, names: Sequence[str]) -> None:
         """Name the next slots. Raises ValueError for a name that is taken."""
@@ -28,9 +43,12 @@ class Names:
         if name in self._slots:
             raise ValueError(f"the name {name!r} is taken")
         self._slots[name] = slot
+        self._second.append(name)
 
     def forget_beyond(self, count: int) -> None:
-        """Drop the names of all slots but the first `count`."""
+        """Drop the names of all slots but the first `count`, second names given since included."""
+        while self._second and self._slots[self._second[-1]] >= count:
+            del self._slots[self._second.pop()]
         for name in self.in_order[count:]:
             del self._slots[name]
         del self.in_order[count:]

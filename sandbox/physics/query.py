@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.constraints import AREA
+from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.snapshot import Snapshot
+from sandbox.physics.state import BY_STORED, Family
 from sandbox.physics.world import GRAB_COUNT, Floats, Slots, World
 
 Point = tuple[float, float]
@@ -108,3 +109,23 @@ def load_bearing(state: World | Snapshot) -> NDArray[np.bool_]:
     """Springs (m,) whose strain counts: active, of a rest length above 0, with a free end."""
     free = (state.inverse_mass[state.particle_a] > 0.0) | (state.inverse_mass[state.particle_b] > 0.0)
     return state.spring_active & (state.rest_length > 0.0) & free
+
+
+def slot_name(world: World, array: str, slot: int) -> str:
+    """What a person calls the owner of a slot of the state array that files call by that name."""
+    match BY_STORED[array].family:
+        case Family.PARTICLE:
+            return world.particle_names[slot]
+        case Family.SPRING:
+            return world.spring_names[slot]
+        case Family.ACTUATOR:
+            return world.actuators.names[slot]
+        case Family.CONTACT:
+            return f"contact of {world.particle_names[world.contact_particle[slot]]}"
+        case Family.CORNER:
+            return f"corner at {world.particle_names[world.corner_particle[slot]]}"
+        case Family.HAND:
+            return f"hand {slot}"
+    bend = world.constraint_kind[slot] == BEND
+    middle = world.corner_particle[world.constraint_first[slot] + bend]
+    return f"{'bend' if bend else 'area'} at {world.particle_names[middle]}"

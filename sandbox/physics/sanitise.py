@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.events import Containment
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
+from sandbox.physics.query import slot_name
 from sandbox.physics.state import GUARDED, Family, Floats
 from sandbox.physics.world import World
 
@@ -161,7 +162,7 @@ def contain_inputs(world: World) -> None:
     if not _are_bounded(world.contact_impulse):
         for slot in np.flatnonzero(_outside(world.contact_impulse, -ABSURD)).tolist():
             world.contact_impulse[slot] = 0.0
-            owner = world.slot_name("contact_impulse", slot)
+            owner = slot_name(world, "contact_impulse", slot)
             world.contained.append(Containment(world.tick, "contact_impulse", owner, frozen=False))
     if _are_sound(world.derived(_checked_arrays)):
         return
@@ -177,7 +178,7 @@ def contain_inputs(world: World) -> None:
         highest = 1.0 if name.endswith(("stiffness", "damping")) and "hooke" not in name else ABSURD
         for slot in np.flatnonzero(_outside(getattr(world, name), lowest, highest)).tolist():
             world.change(name, world.good[name][slot], slot)
-            owner = world.slot_name(stored, slot)
+            owner = slot_name(world, stored, slot)
             world.contained.append(Containment(world.tick, stored, owner, frozen=False))
 
 

@@ -1,6 +1,7 @@
 """Snapshot: a read-only copy of every bit of a world's state; hashes of that state."""
 
 import hashlib
+import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import Field, dataclass, fields
 from typing import Any
@@ -8,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.changing.equipment import Equipment
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import COLUMNS, StateArrays
 from sandbox.physics.terrain import Terrain
@@ -16,7 +18,7 @@ from sandbox.physics.world import World
 
 @dataclass(frozen=True, eq=False)
 class Snapshot(StateArrays):
-    """A read-only copy of a world's state: its arrays (see StateArrays), settings and tick; and its terrain.
+    """A read-only copy of a world's state: its arrays (see StateArrays), settings and tick; its equipment and terrain.
 
     arrays: by attribute; each is an attribute of the snapshot too.
     """
@@ -27,6 +29,7 @@ class Snapshot(StateArrays):
     grab_particle: int
     grab_spring: int
     terrain: Terrain
+    equipment: Equipment
 
     def __post_init__(self) -> None:
         self.__dict__.update(self.arrays)
@@ -44,11 +47,14 @@ def take(world: World) -> Snapshot:
         grab_particle=world.grab_particle,
         grab_spring=world.grab_spring,
         terrain=world.terrain,
+        equipment=world.equipment,
     )
 
 
 def restore(world: World, snapshot: Snapshot) -> None:
     """Bring a world back to a snapshot of itself, slots added since then included."""
+    _forget_names(world, snapshot)
+    world.equipment = snapshot.equipment
     # Before the arrays: another solver begins some of them anew.
     world.settings = snapshot.settings
     for column in COLUMNS:
@@ -63,7 +69,17 @@ def restore(world: World, snapshot: Snapshot) -> None:
     world.grab_particle = snapshot.grab_particle
     world.grab_spring = snapshot.grab_spring
     world.trust()
-    world.forget_names_beyond(len(snapshot.mass), len(snapshot.rest_length))
+
+
+def _forget_names(world: World, snapshot: Snapshot) -> None:
+    """Drop the names of slots that the snapshot does not have, or has for something else that joined."""
+    particles, springs = len(snapshot.mass), len(snapshot.rest_length)
+    for present, kept in itertools.zip_longest(world.joined, snapshot.equipment.joined):
+        if present is not kept:
+            for joined in filter(None, (present, kept)):
+                particles, springs = min(particles, joined.first_particle), min(springs, joined.first_spring)
+            break
+    world.forget_names_beyond(particles, springs)
 
 
 def canonical_bytes(array: NDArray[Any]) -> bytes:

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.energy import measure_constraints, reduced_masses
+from sandbox.physics.query import slot_name
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import halve, substep_time
 from sandbox.physics.world import LAW_HAND, LAW_HOOKE, Floats, World
@@ -218,7 +219,7 @@ def _owner_name(world: World, slot: int) -> str:
     """Name of a spring, or of the constraint after the springs."""
     if slot < world.spring_count:
         return world.spring_names[slot]
-    return world.slot_name("element_kind", slot - world.spring_count)
+    return slot_name(world, "element_kind", slot - world.spring_count)
 
 
 def _largest(inside: Callable[[float], bool]) -> float:

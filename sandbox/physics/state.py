@@ -102,7 +102,7 @@ class StateArrays:
     gravity_scale = _array("gravity_scale", P, F64, "1", "how many times the world's gravity pulls at it", guarded=True)
     particle_active = _array("particle_active", P, BOOL, "", "whether its slot is in use", topology=True)
     slow_velocity = _array("slow_velocity", P, F64, "m/s", "the slow part of the velocity, for the direct solver", width=2)
-    energy_bank = _array("energy_bank", P, F64, "J", "what a body's earlier losses still allow it, at its free particle of lowest slot; -1: to be begun anew")
+    energy_bank = _array("energy_bank", P, F64, "J", "what a body's earlier losses still allow it, at its free particle of lowest slot; -1: to be begun anew, -2: with nothing")
     friction = _array("friction", P, F64, "1", "of two that touch the geometric mean counts", guarded=True)
     restitution = _array("restitution", P, F64, "1", "of two that touch the larger counts", guarded=True)
     owner = _array("owner", P, I32, "", "the body that it belongs to, negative: its own", topology=True)
@@ -161,14 +161,12 @@ class StateArrays:
 COLUMNS: tuple[Column, ...] = tuple(column for column in vars(StateArrays).values() if isinstance(column, Column))
 BY_NAME: dict[str, Column] = {column.name: column for column in COLUMNS}
 BY_STORED: dict[str, Column] = {column.stored: column for column in COLUMNS}
+FAMILIES: dict[Family, tuple[Column, ...]] = {
+    family: tuple(column for column in COLUMNS if column.family is family) for family in Family
+}
 # Those that no state goes without.
 ALWAYS_STORED: frozenset[str] = frozenset(column.stored for column in COLUMNS if not column.sparse)
 GUARDED: tuple[Column, ...] = tuple(column for column in COLUMNS if column.guarded)
-
-
-def family_of(family: Family) -> tuple[Column, ...]:
-    """The arrays of one family, in order."""
-    return tuple(column for column in COLUMNS if column.family is family)
 
 
 def reference() -> str:
@@ -181,7 +179,7 @@ def reference() -> str:
     ]
     for family in Family:
         lines += ["", f"## One row for each {family.value}", "", "| name | type | unit | is |", "|---|---|---|---|"]
-        for column in family_of(family):
+        for column in FAMILIES[family]:
             kind = np.dtype(column.dtype).name + (f", {column.width} a row" if column.width > 1 else "")
             lines.append(f"| `{column.stored}` | {kind} | {column.unit} | {column.meaning} |")
     return "\n".join(lines) + "\n"

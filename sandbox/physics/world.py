@@ -7,18 +7,22 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.actuators import Actuators, StrainLimits, Surface, unlimited
+from sandbox.physics.changing.equipment import Equipment, Joined
+from sandbox.physics.changing.room import Room
 from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, rest_of_area, rest_of_bend, sides_gone
 from sandbox.physics.events import Containment
 from sandbox.physics.forms import FirmBody
 from sandbox.physics.names import Names
 from sandbox.physics.settings import AUTO, WorldSettings
-from sandbox.physics.state import BY_NAME, BY_STORED, COLUMNS, GUARDED, Family, Floats, Slots, StateArrays
+from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, Family, Floats, Slots, StateArrays
 from sandbox.physics.terrain import NO_TERRAIN, Terrain
 
 Derived = TypeVar("Derived")
 
 # An energy bank that the direct solver begins anew at its next step: something outside changed the body.
 BANK_UNOPENED = -1.0
+# One of a body that goes on, but has nothing any more.
+BANK_EMPTIED = -2.0
 
 # The last is of a grab's spring while it holds: it pulls at nothing, its hand does (joints/hands.py).
 LAW_NISSEN, LAW_HOOKE, LAW_HAND = range(3)
@@ -44,7 +48,9 @@ HIGHEST_OF_RING = 0.99
 
 # Attributes that another value of counts as a change of topology. A step's contacts are other arrays in every step, and
 # nothing is derived from them.
-_WATCHED = frozenset({"terrain", *(column.name for column in COLUMNS if column.family is not Family.CONTACT)})
+_WATCHED = frozenset(
+    {"terrain", "actuators", *(column.name for column in COLUMNS if column.family is not Family.CONTACT)}
+)
 
 
 class World(StateArrays):
@@ -59,6 +65,7 @@ class World(StateArrays):
         # Counts the changes of what solvers and collision derive from, see derived; never state.
         self.topology_version = 0
         self._derived: dict[Callable[[World], Any], tuple[int, Any]] = {}
+        self._room = Room()
         for column in COLUMNS:
             setattr(self, column.name, column.empty())
         # The last good values of what is guarded; never state.
@@ -71,11 +78,14 @@ class World(StateArrays):
         self.actuators = Actuators()
         # What a particle that is added while the world runs is like to the touch.
         self.surface = Surface()
-        self._particles, self._springs = Names(), Names()
+        self.particle_naming, self.spring_naming = Names(), Names()
         # Bodies that keep areas, and the constraints of each.
-        self.area_names: list[str] = []
-        self.area_constraints: list[range] = []
-        self.forms: list[FirmBody] = []  # bodies that may be stiff by their form
+        self.area_names: tuple[str, ...] = ()
+        self.area_constraints: tuple[range, ...] = ()
+        self.forms: tuple[FirmBody, ...] = ()  # bodies that may be stiff by their form
+        # What it was built from, for who adds more of the kind, and what joined it since.
+        self.source: Any = None
+        self.joined: tuple[Joined, ...] = ()
         self.grab_particle = -1
         self.grab_spring = -1
         self.terrain: Terrain = NO_TERRAIN
@@ -91,7 +101,7 @@ class World(StateArrays):
 
     def __getstate__(self) -> dict[str, Any]:
         """What a copy starts from: all but what was derived, which may hold a thread."""
-        return self.__dict__ | {"_derived": {}}
+        return self.__dict__ | {"_derived": {}, "_room": Room()}
 
     def derived(self, make: Callable[["World"], Derived]) -> Derived:
         """What `make` makes of this world, kept until the world's topology or one of its arrays is another.
@@ -124,18 +134,23 @@ class World(StateArrays):
             else:
                 self.good[column.name] = values.copy()
 
-    def _append(self, family: Family, count: int, **arrays: ArrayLike) -> None:
+    def append(self, family: Family, count: int, **arrays: ArrayLike) -> None:
         """Append `count` rows to the arrays of a family: (count, ...) or one value for all; as usual where none is."""
-        for column in COLUMNS:
-            if column.family is family:
-                present, given = getattr(self, column.name), arrays.pop(column.name, column.usual)
-                added = np.broadcast_to(np.asarray(given, present.dtype), (count, *present.shape[1:]))
-                setattr(self, column.name, np.concatenate([present, added]))
-                if column.guarded:
-                    self.good[column.name] = np.concatenate([self.good[column.name], added])
+        room, mine = self._room.appended, self.__dict__
+        for column in FAMILIES[family]:
+            name = column.name
+            grown = room(name, mine[name], count)
+            grown[len(grown) - count :] = arrays.pop(name, column.usual)
+            # One change of topology for all of them, however many there are.
+            mine[name] = grown
+            if column.guarded:
+                good = self.good[name] = room(f"good {name}", self.good[name], count)
+                good[len(good) - count :] = grown[len(grown) - count :]
+        self.topology_version += 1
         assert not arrays, f"no arrays of {family}: {', '.join(arrays)}"
 
-    def _disturb(self, *particles: NDArray[np.integer] | int) -> None:
+    def disturb(self, *particles: NDArray[np.integer] | int) -> None:
+        """Begin the energy banks anew of the bodies of these particles, which something outside has changed."""
         for slots in particles:
             self.energy_bank[slots] = BANK_UNOPENED
 
@@ -175,6 +190,16 @@ class World(StateArrays):
     def has_contacts(self) -> bool:
         """Whether anything in the world can touch anything."""
         return self.derived(_collides)
+
+    @property
+    def equipment(self) -> Equipment:
+        """What it has beside its state, replaced as a whole."""
+        return Equipment(*(getattr(self, name) for name in Equipment._fields))
+
+    @equipment.setter
+    def equipment(self, equipment: Equipment) -> None:
+        for name, value in equipment._asdict().items():
+            setattr(self, name, value)
 
     def keep_contacts(self, particle: NDArray[np.int32], feature: Slots, impulse: Floats) -> None:
         """Keep the contacts of a step and their impulses [N s] for the next."""
@@ -219,43 +244,24 @@ class World(StateArrays):
     @property
     def particle_names(self) -> list[str]:
         """Name of each particle, by slot."""
-        return self._particles.in_order
+        return self.particle_naming.in_order
 
     @property
     def spring_names(self) -> list[str]:
         """Name of each spring, by slot."""
-        return self._springs.in_order
+        return self.spring_naming.in_order
 
     def particle_slot(self, name: str) -> int:
         """Slot of the particle of that name. Raises KeyError."""
-        return self._particles.slot(name)
+        return self.particle_naming.slot(name)
 
     def name_particle(self, slot: int, name: str) -> None:
         """Give a particle a second name to be found by. Raises ValueError where that is taken."""
-        self._particles.add_second(slot, name)
+        self.particle_naming.add_second(slot, name)
 
     def spring_slot(self, name: str) -> int:
         """Slot of the spring of that name. Raises KeyError."""
-        return self._springs.slot(name)
-
-    def slot_name(self, array: str, slot: int) -> str:
-        """What a person calls the owner of a slot of the state array of that name."""
-        match BY_STORED[array].family:
-            case Family.PARTICLE:
-                return self.particle_names[slot]
-            case Family.SPRING:
-                return self.spring_names[slot]
-            case Family.ACTUATOR:
-                return self.actuators.names[slot]
-            case Family.CONTACT:
-                return f"contact of {self.particle_names[self.contact_particle[slot]]}"
-            case Family.CORNER:
-                return f"corner at {self.particle_names[self.corner_particle[slot]]}"
-            case Family.HAND:
-                return f"hand {slot}"
-        bend = self.constraint_kind[slot] == BEND
-        middle = self.corner_particle[self.constraint_first[slot] + bend]
-        return f"{'bend' if bend else 'area'} at {self.particle_names[middle]}"
+        return self.spring_naming.slot(name)
 
     def is_grab_particle(self, slot: int) -> bool:
         """Whether the slot is a grab's cursor."""
@@ -289,19 +295,19 @@ class World(StateArrays):
         A pinned particle starts at rest. Raises ValueError for a name that is taken or a mass that is not above 0.
         """
         count, first = len(names), self.particle_count
-        masses = np.broadcast_to(np.asarray(mass, dtype=np.float64), count)
-        is_pinned = np.broadcast_to(np.asarray(pinned, dtype=np.bool_), count)
+        masses, is_pinned = np.asarray(mass, dtype=np.float64), np.asarray(pinned, dtype=np.bool_)
         if not np.all(masses > 0.0):
             raise ValueError("every particle has a mass above 0 kg")
-        self._particles.append(names)
-        velocities = np.broadcast_to(np.asarray(velocity, dtype=np.float64), (count, 2))
-        self._append(
+        self.particle_naming.append(names)
+        places = np.asarray(position, dtype=np.float64).reshape(count, 2)
+        velocities = np.where(is_pinned[..., None], 0.0, np.asarray(velocity, dtype=np.float64))
+        self.append(
             Family.PARTICLE,
             count,
-            position=np.asarray(position, dtype=np.float64).reshape(count, 2),
-            origin=np.asarray(position, dtype=np.float64).reshape(count, 2),
-            velocity=np.where(is_pinned[:, None], 0.0, velocities),
-            slow_velocity=np.where(is_pinned[:, None], 0.0, velocities),
+            position=places,
+            origin=places,
+            velocity=velocities,
+            slow_velocity=velocities,
             energy_bank=BANK_UNOPENED,
             mass=masses,
             inverse_mass=np.where(is_pinned, 0.0, 1.0 / masses),
@@ -344,12 +350,12 @@ class World(StateArrays):
             raise ValueError("a spring names a particle slot that does not exist")
         if np.any(a == b):
             raise ValueError("a spring joins two different particles")
-        self._springs.append(names)
+        self.spring_naming.append(names)
         separation = self.position[b] - self.position[a]
         placed = np.sqrt(separation[:, 0] * separation[:, 0] + separation[:, 1] * separation[:, 1])
         given = np.broadcast_to(np.asarray(np.nan if rest_length is None else rest_length, dtype=np.float64), count)
         rest = np.where(np.isnan(given), placed, given)
-        self._append(
+        self.append(
             Family.SPRING, count, particle_a=a, particle_b=b, rest_length=rest, natural_length=rest,
             stiffness=stiffness, damping=damping, law=law, hooke_stiffness=hooke_stiffness,
             hooke_damping=hooke_damping, material=material, spring_active=True, edge=edge,
@@ -357,7 +363,7 @@ class World(StateArrays):
         # A grab's spring joins nothing yet.
         joins = np.broadcast_to(np.asarray(material) != GRAB_MATERIAL, count)
         self.spin[a[joins]] = self.spin[b[joins]] = 0.0
-        self._disturb(a, b)
+        self.disturb(a, b)
         return first
 
     def add_constraints(
@@ -389,7 +395,7 @@ class World(StateArrays):
         places = self.position[slots] if form is None else np.asarray(form, dtype=np.float64)
         rest, weight = rest_of_area(places, inflation) if kind == AREA else rest_of_bend(places)
         first = self.constraint_count
-        self._append(
+        self.append(
             Family.CONSTRAINT,
             count,
             constraint_kind=kind,
@@ -401,7 +407,7 @@ class World(StateArrays):
             constraint_material=material,
             constraint_active=True,
         )
-        self._append(
+        self.append(
             Family.CORNER,
             count * size,
             corner_particle=slots.reshape(-1),
@@ -409,13 +415,13 @@ class World(StateArrays):
             corner_form=places.reshape(-1, 2),
         )
         self.spin[slots] = 0.0
-        self._disturb(slots)
+        self.disturb(slots)
         return first
 
     def name_areas(self, name: str, constraints: range) -> None:
         """Name the areas of a body, to be inflated together."""
-        self.area_names.append(name)
-        self.area_constraints.append(constraints)
+        self.area_names += (name,)
+        self.area_constraints += (constraints,)
 
     def inflate(self, body: int, inflation: float) -> None:
         """Let each area of a body, by its place in `area_names`, want this multiple of its form's."""
@@ -423,7 +429,7 @@ class World(StateArrays):
         self.constraint_rest[first:last, 0] = inflation * self.constraint_rest[first:last, 1]
         self.good["constraint_rest"][first:last] = self.constraint_rest[first:last]
         corners = self.constraint_first[first], self.constraint_first[last - 1] + self.constraint_corners[last - 1]
-        self._disturb(self.corner_particle[corners[0] : corners[1]])
+        self.disturb(self.corner_particle[corners[0] : corners[1]])
 
     def set_coefficients(self, stiffness: float | None, damping: float | None, material: int | None) -> None:
         """Set Cs, Cd or both, of one material's springs and areas or (None) of all, and end their bodies' firmness.
@@ -438,9 +444,9 @@ class World(StateArrays):
                 self.good[name][chosen] = getattr(self, name)[chosen]
             self.change(f"{family}lowest_mode", 0.0, chosen)
             if not family:
-                self._disturb(self.particle_a[chosen], self.particle_b[chosen])
+                self.disturb(self.particle_a[chosen], self.particle_b[chosen])
             else:
-                self._disturb(self.corner_particle[np.repeat(chosen, self.constraint_corners)])
+                self.disturb(self.corner_particle[np.repeat(chosen, self.constraint_corners)])
 
     def reserve_grabs(self) -> None:
         """Reserve the slots of all grabs, inactive; done once, when the world is built."""
@@ -459,7 +465,7 @@ class World(StateArrays):
             damping=GRAB_DAMPING,
             material=GRAB_MATERIAL,
         )
-        self._append(Family.HAND, GRAB_COUNT)
+        self.append(Family.HAND, GRAB_COUNT)
         self.change("particle_active", False, slice(self.grab_particle, None))
         self.change("spring_active", False, slice(self.grab_spring, None))
 
@@ -469,7 +475,7 @@ class World(StateArrays):
         self.velocity[particle] = 0.0
         self.slow_velocity[particle] = 0.0
         self.spin[particle] = 0.0
-        self._disturb(particle)
+        self.disturb(particle)
 
     def freeze(self, particle: int) -> None:
         """Bring a particle back to its last good values and pin it there."""
@@ -481,13 +487,13 @@ class World(StateArrays):
         """Let a pinned particle move again, with the mass it has."""
         self.change("inverse_mass", 1.0 / self.mass[particle], particle)
         self.slow_velocity[particle] = self.velocity[particle]
-        self._disturb(particle)
+        self.disturb(particle)
 
     def cut(self, springs: Sequence[int]) -> None:
         """Take springs out of the world; their slots stay."""
         slots = np.asarray(springs, dtype=np.int64)
         self._take_out(slots)
-        self._disturb(self.particle_a[slots], self.particle_b[slots])
+        self.disturb(self.particle_a[slots], self.particle_b[slots])
 
     def break_springs(self, springs: Slots) -> None:
         """Take springs out that broke by themselves: what is left of a body goes on with the energy that it has."""
@@ -539,7 +545,7 @@ class World(StateArrays):
         self.hand_strength[grab], self.hand_radius[grab] = strength, radius
         self.hand_force[grab] = 0.0
         self.spin[particle] = 0.0
-        self._disturb(particle)
+        self.disturb(particle)
 
     def is_held(self, grab: int) -> bool:
         """Whether a grab holds a particle."""
@@ -560,10 +566,11 @@ class World(StateArrays):
             self.velocity[self.grab_particle : self.grab_particle + GRAB_COUNT] = 0.0
 
     def release(self, grab: int) -> None:
-        """Let go; the grab's slots wait for its next use."""
+        """Let go; the grab's slots wait for its next use. Nothing spends what a hand's work has put into banks."""
         cursor, spring = self.grab_particle + grab, self.grab_spring + grab
         self.change("particle_active", False, cursor)
-        self._disturb(self.particle_b[spring])
+        self.energy_bank[self.energy_bank > 0.0] = BANK_EMPTIED
+        self.disturb(self.particle_b[spring])
         self.position[cursor] = 0.0
         self.velocity[cursor] = 0.0
         self.slow_velocity[cursor] = 0.0
@@ -575,8 +582,8 @@ class World(StateArrays):
 
     def name_slots(self, particles: Sequence[str], springs: Sequence[str]) -> None:
         """Name the slots that a restored state brought along, from the first one without a name on."""
-        self._particles.append(particles)
-        self._springs.append(springs)
+        self.particle_naming.append(particles)
+        self.spring_naming.append(springs)
 
     def name_grabs(self) -> None:
         """Name the grabs' slots, where a restored state brought them along."""
@@ -584,8 +591,8 @@ class World(StateArrays):
 
     def forget_names_beyond(self, particle_count: int, spring_count: int) -> None:
         """Drop the names of slots that a restored state does not have."""
-        self._particles.forget_beyond(particle_count)
-        self._springs.forget_beyond(spring_count)
+        self.particle_naming.forget_beyond(particle_count)
+        self.spring_naming.forget_beyond(spring_count)
 
 
 def _grab_names() -> list[str]:

@@ -1,60 +1,86 @@
 """Probe and dump: positions and velocities of particles and what motors give, by name, as text for other programs."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from sandbox.physics.collision.outline import outline_of
-from sandbox.physics.joints.readings import motor_readings
+from sandbox.physics.joints.readings import MotorReading, motor_readings
 from sandbox.physics.query import shown_particles
 from sandbox.physics.world import World
+
+# How names begin of what commands add.
+ADDED = "+"
 
 
 class Probe:
     """Follows particles and motors by name during a run and makes a table of tick, seconds, then what each does.
 
     Of a particle x, y, vx, vy, of one that no spring holds angle and spin as well; of a motor, by its wheel's id,
-    torque [N m] and share, that of it which is in use. Raises KeyError, with the name, for what the world does not
-    have.
+    torque [N m] and share, that of it which is in use. What commands add and remove has empty columns while it is not
+    there. Raises KeyError, with the name, for what the world does not have and commands do not add.
     """
 
     def __init__(self, world: World, names: Sequence[str], every: int = 1) -> None:
         motors = [reading.name for reading in motor_readings(world)]
-        self._followed = [
-            (True, motors.index(name)) if name in motors else (False, world.particle_slot(name)) for name in names
-        ]
-        self._every = every
         held = outline_of(world).held
-        self._loose = [not is_motor and not held[at] for is_motor, at in self._followed]
-        columns = [
-            f"{name}.{quantity}"
-            for name, (is_motor, _), loose in zip(names, self._followed, self._loose, strict=True)
-            for quantity in (
-                ("torque", "share") if is_motor else ("x", "y", "vx", "vy", *(("angle", "spin") if loose else ()))
-            )
+        self._every = every
+        self._followed: list[_Followed] = []
+        for name in names:
+            later = name.startswith(ADDED) and not _exists(world, name)
+            is_motor = name in motors or (later and "." not in name)
+            loose = not is_motor and (name.startswith(f"{ADDED}.") if later else not held[world.particle_slot(name)])
+            self._followed.append(_Followed(name, is_motor, loose))
+        self._lines = [
+            ["tick", "seconds", *(f"{each.name}.{what}" for each in self._followed for what in each.columns)]
         ]
-        self._lines = [["tick", "seconds", *columns]]
         self.take(world)
 
     def take(self, world: World) -> None:
         """Add a line, if one is due at this tick."""
         if not self._followed or world.tick % self._every:
             return
-        readings = motor_readings(world)
-        values = [
-            repr(value)
-            for (is_motor, at), loose in zip(self._followed, self._loose, strict=True)
-            for value in (
-                (readings[at].torque, readings[at].share)
-                if is_motor
-                else (*world.position[at].tolist(), *world.velocity[at].tolist(), *_turning(world, at, loose))
-            )
-        ]
+        readings = {reading.name: reading for reading in motor_readings(world)}
+        values = [value for each in self._followed for value in each.values(world, readings)]
         self._lines.append([str(world.tick), repr(world.tick / world.settings.tick_rate), *values])
 
     def table(self) -> str:
         """The table as CSV."""
         return "".join(",".join(line) + "\n" for line in self._lines)
+
+
+@dataclass(frozen=True)
+class _Followed:
+    """A motor, or a particle that no spring holds (loose) or that one does."""
+
+    name: str
+    is_motor: bool
+    loose: bool
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        if self.is_motor:
+            return "torque", "share"
+        return "x", "y", "vx", "vy", *(("angle", "spin") if self.loose else ())
+
+    def values(self, world: World, readings: Mapping[str, MotorReading]) -> list[str]:
+        """Its columns, empty while there is no such thing."""
+        if self.is_motor and self.name in readings:
+            found = [readings[self.name].torque, readings[self.name].share]
+        elif not self.is_motor and _exists(world, self.name):
+            slot = world.particle_slot(self.name)
+            found = [*world.position[slot].tolist(), *world.velocity[slot].tolist(), *_turning(world, slot, self.loose)]
+        else:
+            return [""] * len(self.columns)
+        return [repr(value) for value in found]
+
+
+def _exists(world: World, name: str) -> bool:
+    try:
+        return bool(world.particle_active[world.particle_slot(name)])
+    except KeyError:
+        return False
 
 
 def _turning(world: World, slot: int, loose: bool) -> list[float]:

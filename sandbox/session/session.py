@@ -1,5 +1,7 @@
 """Session: one run of a level: ticks, commands, the log, undo, time travel. No wall clock."""
 
+import bisect
+from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,6 +19,10 @@ from sandbox.session.replay.format import STATE_TICKS
 from sandbox.session.replay.writer import Recorder
 
 KEYFRAME_TICKS = 60
+# Commands of one tick after which its state is kept as well, until the next keyframe, so that undoing the last of
+# thousands does not carry out all the others again: so many, and so many more for each particle, as keeping takes
+# longer then. Lower keeps more, higher undoes slower.
+KEYFRAME_COMMANDS, COMMANDS_PER_PARTICLE = 4, 0.004
 # Memory for keyframes [bytes]; beyond it every other one goes, and undo re-steps twice as far.
 KEYFRAME_BUDGET = 256 * 2**20
 # Ticks between two calls of `progress` while re-stepping.
@@ -27,17 +33,32 @@ MOST_NAMED = 3
 
 @dataclass
 class LogEntry:
-    """A command that was applied at a tick, before that tick's step.
+    """A command that was applied at a tick, before that tick's step; order: its place among all that ever were.
 
     in_effect: False while the command cannot be carried out because what it needed is undone. implied: the end of a
     drag or drive that an Undo brings about by itself, so that a recording of that Undo does not hold it.
     """
 
+    order: int
     tick: int
     gesture: int
     command: Command
     in_effect: bool = True
     implied: bool = False
+
+
+@dataclass(frozen=True)
+class Keyframe:
+    """The state of a tick once all commands of an order below this one are applied; between: of some of that tick."""
+
+    order: int
+    snapshot: Snapshot
+    between: bool = False
+
+    @property
+    def tick(self) -> int:
+        """Ticks since the level's start."""
+        return self.snapshot.tick
 
 
 class Session:
@@ -59,14 +80,23 @@ class Session:
         self.progress: Callable[[int, int], None] | None = None
         self._script = iter(script)
         self._scripted = next((line for line in self._script if line.tick >= self.tick), None)
-        self._pending: list[tuple[Command, int]] = []
+        self._pending: deque[tuple[Command, int]] = deque()
+        # All that was applied, Undo and Redo too; the entries of each gesture; and history as it now stands, in order:
+        # without undone gestures, and without Undo and Redo.
         self._log: list[LogEntry] = []
-        self._done: set[int] = set()
+        self._entries: dict[int, list[LogEntry]] = {}
+        self._timeline: list[LogEntry] = []
+        # Gestures that count, by the order of their first command.
+        self._done: list[int] = []
         self._undone: set[int] = set()
         self._redoable: list[int] = []
         self._last_gesture = 0
         self._last_tick = self.tick
-        self._keyframes = [take(self.world)]
+        self._next_order = 0
+        # Gestures of which a command has or had no effect; and how many commands of this tick no keyframe holds.
+        self._hindered: set[int] = set()
+        self._unkept = 0
+        self._keyframes = [Keyframe(0, take(self.world))]
         self._recorder: Recorder | None = None
 
     @property
@@ -132,13 +162,13 @@ class Session:
             try:
                 self._apply(from_record(line.record, self.world), line.gesture)
             except CommandError as error:
-                raise CommandError(f"line {line.line}: {error}") from None
+                raise CommandError("\n".join(f"line {line.line}: {fault}" for fault in error.faults)) from None
         while self._pending:
-            command, gesture = self._pending.pop(0)
+            command, gesture = self._pending.popleft()
             try:
                 self._apply(command, gesture)
             except CommandError as error:
-                self.messages.append(str(error))
+                self.messages.extend(error.faults)
             else:
                 self._scripted = None
         return due
@@ -147,9 +177,9 @@ class Session:
         """One tick: apply what is due, then step. In the past that `seek` reached, the logged commands follow again."""
         self.apply_pending()
         if self.tick < self._last_tick:
-            self._follow([entry for entry in self._effective_log() if entry.tick == self.tick + 1], self.tick + 1)
+            self._follow(self._first_of(self.tick + 1), self.tick + 1)
             return
-        self._step()
+        self._step(self._next_order)
         self._last_tick = self.tick
         self.messages.extend(str(hit) for hit in self.world.contained)
         self.messages.extend(_break_lines(self.world))
@@ -172,16 +202,16 @@ class Session:
         there to the last tick. Neither run changes the other.
         """
         first = self._keyframe_before(tick)
-        twin = Session(self.level, start=first)
-        twin._keyframes = [kept for kept in self._keyframes if kept.tick >= first.tick]
-        twin._log = [replace(entry) for entry in self._effective_log() if entry.tick >= first.tick]
-        twin._last_tick = self._last_tick
-        twin._follow([entry for entry in twin._log if entry.tick == first.tick], first.tick)
+        twin = Session(self.level, start=first.snapshot)
+        twin._keyframes = [kept for kept in self._keyframes if kept.order >= first.order]
+        twin._take_over([replace(entry) for entry in self._timeline if entry.order >= first.order])
+        twin._next_order, twin._last_tick = self._next_order, self._last_tick
+        twin._follow(0, first.tick)
         return twin
 
     def keyframes(self, first: int, last: int) -> list[Snapshot]:
         """The states of ticks first..last that are kept, a few each second or less."""
-        return [kept for kept in self._keyframes if first <= kept.tick <= last]
+        return [kept.snapshot for kept in self._keyframes if first <= kept.tick <= last]
 
     def record_to(self, path: Path, state_ticks: int = STATE_TICKS) -> None:
         """Record this run to a file, from the level's start: what was played until now is played again into it.
@@ -250,29 +280,55 @@ class Session:
         else:
             apply(self.world, command)
             self._drop_future()
-            if gesture not in self._done:
-                self._done.add(gesture)
+            if gesture not in self._entries:
+                self._done.append(gesture)
                 self._redoable.clear()
         self._last_gesture = max(self._last_gesture, gesture)
-        self._log.append(LogEntry(tick, gesture, command))
+        self._note(command, gesture)
         if self._recorder is not None:
             self._record(self._recorder.write_command, tick, gesture, to_record(command, self.world))
+
+    def _note(self, command: Command, gesture: int, implied: bool = False) -> None:
+        """Enter a command that was applied, or is implied by what is, into the log."""
+        entry = LogEntry(self._next_order, self.tick, gesture, command, implied=implied)
+        self._next_order += 1
+        self._log.append(entry)
+        if isinstance(command, (Undo, Redo)):
+            return
+        self._entries.setdefault(gesture, []).append(entry)
+        self._timeline.append(entry)
+        self._keep_between(self._next_order)
 
     # Undo and time travel: restore the nearest earlier keyframe and step again with the commands that still count.
 
     def _undo(self) -> None:
         if self._keyframes[0].tick > 0:
             raise CommandError(f"undo reaches back before tick {self._keyframes[0].tick}, where this run began")
-        past = [entry.gesture for entry in self._effective_log() if entry.tick <= self.tick and entry.in_effect]
-        if not past:
+        gesture = self._last_in_effect()
+        if gesture is None:
             raise CommandError("nothing to undo")
         self._drop_future()
-        gesture = list(dict.fromkeys(past))[-1]
         self._let_go(gesture)
-        self._done.remove(gesture)
+        first = self._first_order(gesture)
+        del self._done[bisect.bisect_left(self._done, first, key=self._first_order)]
         self._undone.add(gesture)
         self._redoable.append(gesture)
-        self._step_again_from(gesture)
+        at = bisect.bisect_left(self._timeline, first, key=_order)
+        self._timeline[at:] = [entry for entry in self._timeline[at:] if entry.gesture != gesture]
+        self._step_again_from(first)
+
+    def _last_in_effect(self) -> int | None:
+        """The gesture whose first command that has an effect is the last of all until now."""
+        sound = (gesture for gesture in reversed(self._done) if gesture not in self._hindered)
+        chosen = next((gesture for gesture in sound if self._entries[gesture][0].tick <= self.tick), None)
+        found = [] if chosen is None else [(self._first_order(chosen), chosen)]
+        for gesture in self._hindered - self._undone:
+            orders = [each.order for each in self._entries[gesture] if each.in_effect and each.tick <= self.tick]
+            found += [(orders[0], gesture)] if orders else []
+        return max(found)[1] if found else None
+
+    def _first_order(self, gesture: int) -> int:
+        return self._entries[gesture][0].order
 
     def _redo(self) -> None:
         if not self._redoable:
@@ -281,90 +337,128 @@ class Session:
             raise CommandError(f"redo works at the end of the run: go to tick {self._last_tick} first")
         gesture = self._redoable.pop()
         self._undone.remove(gesture)
-        self._done.add(gesture)
-        self._step_again_from(gesture)
+        entries, first = self._entries[gesture], self._first_order(gesture)
+        bisect.insort(self._done, gesture, key=self._first_order)
+        at = bisect.bisect_left(self._timeline, first, key=_order)
+        after = self._timeline[at:]
+        self._timeline[at:] = sorted([*after, *entries], key=_order)
+        if not after and entries[0].tick == self.tick:
+            # All else is as it was when it was made first.
+            self._follow(at, self.tick)
+        else:
+            self._step_again_from(first)
 
     def _let_go(self, gesture: int) -> None:
         """End what a gesture began and is still going on, so that doing it again cannot leave it going for ever."""
+        if all(entry.command.begins() is None for entry in self._entries[gesture]):
+            return
         going = {
             begun: (entry.gesture, entry.command)
-            for entry in self._effective_log()
+            for entry in self._timeline
             if entry.in_effect and (begun := entry.command.begins()) is not None
         }
         for owner, command in going.values():
             ending = command.ending(self.world)
             if owner == gesture and ending is not None:
-                self._log.append(LogEntry(self.tick, gesture, ending, implied=True))
+                self._note(ending, gesture, implied=True)
 
-    def _step_again_from(self, gesture: int) -> None:
-        first = next(entry.tick for entry in self._log if entry.gesture == gesture)
-        while self._keyframes[-1].tick > first:
+    def _step_again_from(self, order: int) -> None:
+        """Come to the present tick once more, by history as it now stands, which is another from an order on."""
+        tick = self.tick
+        while self._keyframes[-1].order > order:
             self._keyframes.pop()
-        self._rewind(first, self.tick)
+        self._rewind(tick, tick)
 
     def _rewind(self, back_to: int, tick: int) -> None:
-        """Restore the last keyframe at or before a tick and follow the log to another."""
+        """Restore the last keyframe at or before a tick and follow history to another."""
         keyframe = self._keyframe_before(back_to)
-        restore(self.world, keyframe)
+        restore(self.world, keyframe.snapshot)
+        self._unkept = 0
         name_added(self.world)
-        self._follow([entry for entry in self._effective_log() if keyframe.tick <= entry.tick <= tick], tick)
+        self._follow(bisect.bisect_left(self._timeline, keyframe.order, key=_order), tick)
 
-    def _keyframe_before(self, tick: int) -> Snapshot:
+    def _keyframe_before(self, tick: int) -> Keyframe:
         return next(kept for kept in reversed(self._keyframes) if kept.tick <= tick)
 
-    def _follow(self, log: list[LogEntry], tick: int) -> None:
-        start, done = self.tick, 0
+    def _first_of(self, tick: int) -> int:
+        """Where in history the commands of a tick begin."""
+        return bisect.bisect_left(self._timeline, tick, key=lambda entry: entry.tick)
+
+    def _follow(self, place: int, tick: int) -> None:
+        """Go on to a tick, carrying out history from a place in it on."""
+        start, history = self.tick, self._timeline
         while True:
-            while done < len(log) and log[done].tick == self.tick:
+            while place < len(history) and history[place].tick == self.tick:
                 # What needed an undone gesture has no effect any more.
                 try:
-                    apply(self.world, log[done].command)
-                    log[done].in_effect = True
+                    apply(self.world, history[place].command)
+                    history[place].in_effect = True
                 except CommandError:
-                    log[done].in_effect = False
-                done += 1
+                    history[place].in_effect = False
+                    self._hindered.add(history[place].gesture)
+                place += 1
+                self._keep_between(self._order_at(place))
             if self.tick >= tick:
                 return
-            self._step()
+            self._step(self._order_at(place))
             self._report_progress(self.tick - start, tick - start)
 
-    def _effective_log(self) -> list[LogEntry]:
-        """The log as history now stands: without undone gestures, and without Undo and Redo themselves."""
-        return [
-            entry
-            for entry in self._log
-            if entry.gesture not in self._undone and not isinstance(entry.command, (Undo, Redo))
-        ]
+    def _order_at(self, place: int) -> int:
+        """The order of the command at a place in history, or of the next one to come."""
+        return self._timeline[place].order if place < len(self._timeline) else self._next_order
 
     def _drop_future(self) -> None:
         """Make the present tick the end of history, after `seek` went back."""
         if self.tick == self._last_tick:
             return
-        self._log = [entry for entry in self._effective_log() if entry.tick <= self.tick and entry.in_effect]
-        for entry in self._log:
-            entry.implied = False
-        self._done = {entry.gesture for entry in self._log}
+        self._take_over([entry for entry in self._timeline if entry.tick <= self.tick and entry.in_effect])
         self._undone.clear()
+        self._hindered.clear()
         self._redoable.clear()
         self._keyframes = [keyframe for keyframe in self._keyframes if keyframe.tick <= self.tick]
         self._last_tick = self.tick
         self._scripted = None
 
-    def _step(self) -> None:
+    def _take_over(self, history: list[LogEntry]) -> None:
+        """Make these entries all that ever was."""
+        self._timeline, self._log, self._entries = history, list(history), {}
+        for entry in history:
+            entry.implied = False
+            self._entries.setdefault(entry.gesture, []).append(entry)
+        self._done = list(self._entries)
+
+    def _step(self, order: int) -> None:
+        """One tick; order: of the next command to come."""
         self.world.contained.clear()
         step(self.world)
+        self._unkept = 0
         if self.tick % KEYFRAME_TICKS == 0 and self._keyframes[-1].tick < self.tick:
-            self._keep_keyframe()
+            self._keyframes = [kept for kept in self._keyframes if not kept.between]
+            self._keep(Keyframe(order, take(self.world)))
 
-    def _keep_keyframe(self) -> None:
-        self._keyframes.append(take(self.world))
-        size = sum(array.nbytes for array in self._keyframes[-1].arrays.values())
+    def _keep_between(self, order: int) -> None:
+        """Keep the state after a command where enough of this tick have been applied; order: of the next to come."""
+        self._unkept += 1
+        enough = KEYFRAME_COMMANDS + COMMANDS_PER_PARTICLE * self.world.particle_count
+        # In the past that `seek` reached, later ones are kept already.
+        if self._unkept >= enough and self._keyframes[-1].order < order:
+            self._keep(Keyframe(order, take(self.world), between=True))
+
+    def _keep(self, keyframe: Keyframe) -> None:
+        self._unkept = 0
+        self._keyframes.append(keyframe)
+        size = sum(array.nbytes for array in keyframe.snapshot.arrays.values())
         if size * len(self._keyframes) > KEYFRAME_BUDGET and len(self._keyframes) > 2:
-            del self._keyframes[1::2]
+            first = next((place for place, kept in enumerate(self._keyframes) if kept.between), 1)
+            del self._keyframes[first::2]
 
     def _report_progress(self, done: int, total: int) -> None:
         if self.progress is not None and done % PROGRESS_TICKS == 0:
             self.progress(done, total)
+
+
+def _order(entry: LogEntry) -> int:
+    return entry.order
 
 
 def _break_lines(world: World) -> list[str]:

@@ -4,7 +4,7 @@ import pygame
 import pytest
 
 from sandbox.app.play import stuck
-from sandbox.physics.freeing import overlapping
+from sandbox.physics.changing.freeing import overlapping
 from tests.session.test_freeing import cage
 
 

@@ -8,7 +8,7 @@ from sandbox.physics.energy import kinetic_energy, spring_energy
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import take
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.state import Family, family_of
+from sandbox.physics.state import FAMILIES, Family
 from sandbox.physics.step import step
 from sandbox.physics.world import GRAB_COUNT, LAW_HOOKE, World
 from tests.support.physics_scenes import STILL, grid_with_diagonals, network, rope, run, scaled
@@ -37,7 +37,7 @@ def test_every_array_keeps_its_type_and_one_item_per_slot():
     world.add_constraints(AREA, [[0, 1, 2, 3]])
     counts = (5 + GRAB_COUNT, 4 + GRAB_COUNT, 1, 4, 0, 0, GRAB_COUNT)
     for family, count in zip(Family, counts, strict=True):
-        for column in family_of(family):
+        for column in FAMILIES[family]:
             array = getattr(world, column.name)
             assert array.dtype == column.dtype and array.flags.c_contiguous and len(array) == count
     assert (world.particle_count, world.spring_count, world.constraint_count) == counts[:3]

@@ -101,4 +101,4 @@ def test_what_cannot_be_had_is_refused_and_changes_nothing():
             apply(world, command)
     assert state_hash(world) == before
     rope = session_of(type="rope", start=[0, 0], end=[1, 0], segments=4)
-    assert rope.world.forms == []
+    assert rope.world.forms == ()

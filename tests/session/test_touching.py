@@ -7,7 +7,7 @@ import pytest
 
 from sandbox.level.format.parse import parse_level
 from sandbox.physics.snapshot import state_hash
-from sandbox.physics.state import BY_STORED, Family, family_of
+from sandbox.physics.state import BY_STORED, FAMILIES, Family
 from sandbox.session.commands import AddParticle, CutSprings, SetDrive, apply
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
@@ -126,7 +126,7 @@ def test_a_recording_of_a_level_that_begins_empty_verifies_from_its_middle(tmp_p
     assert verify(read_replay(path), start=60) is None
 
 
-@pytest.mark.parametrize("array", [*(column.stored for column in family_of(Family.CONTACT)), "part_value"])
+@pytest.mark.parametrize("array", [*(column.stored for column in FAMILIES[Family.CONTACT]), "part_value"])
 def test_a_fault_of_one_bit_in_a_contact_or_a_driven_part_is_named(recorded, array):
     def disturb(world):
         if world.tick == 137:

@@ -6,7 +6,7 @@ import pygame
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import WARNING
 from sandbox.app.widgets.ui import Ui
-from sandbox.physics.freeing import body_of, overlapping
+from sandbox.physics.changing.freeing import body_of, overlapping
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import World
 

@@ -43,6 +43,7 @@ def build_world(level: Level) -> World:
     firsts = add_constraints(world, plan.layout, level, plan.bodies, slots, materials)
     add_forms(world, level, plan, materials, firsts)
     world.terrain, world.surface = terrain_of(level), surface_of(level)
+    world.source = level
     return world
 
 

@@ -26,7 +26,7 @@ def add_forms(
             continue
         if body.firmness is None and not made.may_be_stiff:
             continue
-        world.forms.append(FirmBody(body.id, made.stiff_form, springs, narrow))
+        world.forms += (FirmBody(body.id, made.stiff_form, springs, narrow),)
         if body.firmness is not None:
             reach = Reach.of(made.stiff_form, level.settings.gravity, level.settings.tick_rate)
             set_firmness(world, len(world.forms) - 1, *reach.coefficients(body.firmness.asked))

@@ -7,6 +7,7 @@ from sandbox.physics.settings import SUBSTEPS as SUBSTEPS
 
 # Reading a hostile file costs time and memory in proportion to these.
 FILE_LIMIT = 8 * 1024 * 1024  # [bytes]
+DEFINITION_LIMIT = 1_000_000  # [bytes] of bodies that join a running level: a line of a recording holds no more
 DEPTH_LIMIT = 32  # lists and objects inside each other
 CONTAINER_LIMIT = 1_000_000  # lists and objects in one file; a full mesh with velocities, pose and welds has 800,000
 TEXT_LIMIT = 256  # [characters] of any string

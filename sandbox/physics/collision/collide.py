@@ -377,7 +377,7 @@ def collisions_of(world: World) -> Collisions | None:
 def _make_collisions(world: World) -> Collisions | None:
     if not world.has_contacts:
         return None
-    outline, triangles = outline_of(world), triangles_of(world)
+    outline, triangles = outline_of(world), world.derived(triangles_of)
     particles = CollidingParticles._make([getattr(world, name) for name in CollidingParticles._fields])
     wanted = np.full(7, len(world.contact_particle))
     wanted[[CROSSED, OVERLAPPING]] = 0

@@ -51,8 +51,8 @@ def group_triangles(corners: Slots) -> Jellies:
     member = member.reshape(-1, 3)
     # Once round: as many triangles as neighbours.
     pairs = np.stack([member, np.roll(member, -1, axis=1)], axis=-1).reshape(-1, 2)
-    pairs = np.unique(np.concatenate([pairs, pairs[:, ::-1]]), axis=0)
-    neighbours, triangles = (np.bincount(ends, minlength=len(particles)) for ends in (pairs[:, 0], member.reshape(-1)))
+    ends = np.unique(np.append(pairs[:, 0] << 32 | pairs[:, 1], pairs[:, 1] << 32 | pairs[:, 0])) >> 32
+    neighbours, triangles = (np.bincount(each, minlength=len(particles)) for each in (ends, member.reshape(-1)))
     start = np.searchsorted(particles >> 32, np.arange(len(first) + 1))
     return Jellies(group, member, first, start, particles & 0xFFFFFFFF, corner, neighbours == triangles)
 

@@ -398,7 +398,7 @@ def new_triangles(
 
 
 def _make_items(world: World) -> Any:
-    triangles = triangles_of(world)
+    triangles = world.derived(triangles_of)
     if not len(triangles.constraint):
         return None
     corner = np.zeros((world.constraint_count, TRIANGLE), dtype=np.int64)

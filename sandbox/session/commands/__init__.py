@@ -16,12 +16,16 @@ from sandbox.session.commands.freeing import Free
 from sandbox.session.commands.grabbing import Grab, MoveGrab, Release
 from sandbox.session.commands.history import Redo, Undo
 from sandbox.session.commands.inflation import SetInflation
+from sandbox.session.commands.joining import AddBody
 from sandbox.session.commands.materials import SetCoefficients
 from sandbox.session.commands.pinning import Pin, Unpin
+from sandbox.session.commands.pushing import Push
+from sandbox.session.commands.removing import Remove
 from sandbox.session.commands.world_settings import SetAir, SetGravity, SetSolver
 
 __all__ = [
     "COMMAND_TYPES",
+    "AddBody",
     "AddParticle",
     "AddSpring",
     "Command",
@@ -31,8 +35,10 @@ __all__ = [
     "Grab",
     "MoveGrab",
     "Pin",
+    "Push",
     "Redo",
     "Release",
+    "Remove",
     "SetAir",
     "SetCoefficients",
     "SetDrive",

@@ -1,9 +1,9 @@
 """Particles and springs are added to a running world, and named."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 from sandbox.level.format.limits import PARTICLE_LIMIT, SPRING_LIMIT
-from sandbox.level.format.quantities import Length, Mass, Point, Share
+from sandbox.level.format.quantities import FrictionCoefficient, Length, Mass, Point, Share, Velocity
 from sandbox.physics.world import LAW_NISSEN, World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot, particle_of
@@ -11,24 +11,33 @@ from sandbox.session.commands.named import ParticleSlot, particle_of
 
 @dataclass(frozen=True)
 class AddParticle(Command):
-    """Add a particle at position [m], of mass [kg] and radius [m]; it is named +.0, +.1, ... in order of adding."""
+    """Add a particle at position [m], of mass [kg] and radius [m]; it is named +.0, +.1, ... in order of adding.
+
+    velocity [m/s]; friction, restitution: None = as what says nothing in the level.
+    """
 
     type = "add_particle"
     position: Point
     mass: Mass = 1.0
     radius: Length = 0.05
     pinned: bool = False
+    velocity: Velocity | None = None
+    friction: FrictionCoefficient | None = None
+    restitution: Share | None = None
 
     def carry_out(self, world: World) -> None:
         if world.particle_count >= PARTICLE_LIMIT:
             raise CommandError(f"a world holds at most {PARTICLE_LIMIT:,} particles")
+        surface = vars(world.surface)
+        given = {"friction": self.friction, "restitution": self.restitution}
         world.add_particles(
-            _next_names("+.", world.particle_names),
+            world.particle_naming.unused("+.", 1),
             [self.position],
             mass=self.mass,
             radius=self.radius,
             pinned=self.pinned,
-            **asdict(world.surface),
+            velocity=self.velocity or (0.0, 0.0),
+            **surface | {name: value for name, value in given.items() if value is not None},
         )
 
 
@@ -51,7 +60,7 @@ class AddSpring(Command):
         if self.particle_a == self.particle_b:
             raise CommandError(f"a spring joins two different particles, not {name} to itself")
         world.add_springs(
-            _next_names("+:", world.spring_names),
+            world.spring_naming.unused("+:", 1),
             [self.particle_a],
             [self.particle_b],
             rest_length=self.rest_length,
@@ -61,23 +70,24 @@ class AddSpring(Command):
         )
 
 
-def _next_names(prefix: str, names: list[str], count: int = 1) -> list[str]:
-    first = sum(name.startswith(prefix) for name in names)
-    return [f"{prefix}{number}" for number in range(first, first + count)]
-
-
 def name_added(world: World) -> None:
     """Name the slots that a restored state brought along as the commands that added them did."""
-    if len(world.particle_names) <= world.grab_particle:
-        # A level without particles reserves its hands at the first grab, behind what was added until then.
-        _name_slots(world, world.grab_particle, world.grab_spring)
-        world.name_grabs()
-    _name_slots(world, world.particle_count, world.spring_count)
+    for joined in world.joined:
+        if joined.first_particle >= len(world.particle_names):
+            name_slots_to(world, joined.first_particle, joined.first_spring)
+            world.name_slots(joined.particle_names, joined.spring_names)
+            for name, slot in joined.second_names:
+                world.name_particle(slot, name)
+    name_slots_to(world, world.particle_count, world.spring_count)
 
 
-def _name_slots(world: World, particle_count: int, spring_count: int) -> None:
+def name_slots_to(world: World, particle_count: int, spring_count: int) -> None:
     """Name the slots up to these counts that have no name yet."""
+    if len(world.particle_names) <= world.grab_particle < particle_count:
+        # A level without particles reserves its hands at the first grab, behind what was added until then.
+        name_slots_to(world, world.grab_particle, world.grab_spring)
+        world.name_grabs()
     world.name_slots(
-        _next_names("+.", world.particle_names, particle_count - len(world.particle_names)),
-        _next_names("+:", world.spring_names, spring_count - len(world.spring_names)),
+        world.particle_naming.unused("+.", particle_count - len(world.particle_names)),
+        world.spring_naming.unused("+:", spring_count - len(world.spring_names)),
     )

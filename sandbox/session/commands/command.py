@@ -10,7 +10,12 @@ from sandbox.physics.world import World
 
 
 class CommandError(ValueError):
-    """A command that cannot be carried out; its text is one line for a person."""
+    """A command that cannot be carried out; its text is one line for a person, of a definition one line per fault."""
+
+    @property
+    def faults(self) -> list[str]:
+        """The lines, one for each fault."""
+        return str(self).splitlines()
 
 
 # Every command by the name that files use.

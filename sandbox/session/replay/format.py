@@ -3,7 +3,8 @@
     {"format": "spring-sandbox/replay", "version": 2, "physics_version": ..., "level": {...}, ..., "chain": "..."}
     {"tick": 12, "gesture": 3, "command": {...}, "chain": "..."}       applied at tick 12, before its step
     {"tick": 13, "hash": "...", "arrays": {...}, "chain": "..."}       the state after 13 steps, for every tick from 0
-    {"tick": 600, "state": {...}, "settings": {...}, "chain": "..."}   every bit of it, now and then and at the end
+    {"tick": 600, "state": {...}, "settings": {...}, "chain": "..."}   every bit of it, now and then and at the end;
+                                                                       also "joined", where bodies joined while it ran
     {"end": true, "tick": 900, "hash": "...", "chain": "..."}
 
 `arrays` holds the first digits of the hash of each array that changed since the line before, null of one that is no
@@ -19,19 +20,23 @@ import binascii
 import hashlib
 import json
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
+from sandbox.level.build.build_world import build_world
+from sandbox.level.build.joining import Joiners
 from sandbox.level.format.files import level_data
 from sandbox.level.format.model import Level
+from sandbox.physics.changing.equipment import Equipment
 from sandbox.physics.constraints import AREA
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
-from sandbox.physics.state import BY_STORED, Column, Family, family_of
+from sandbox.physics.state import BY_STORED, FAMILIES, Column, Family
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.world import GRAB_COUNT, GRAB_MATERIAL, World, WorldSettings
+from sandbox.session.commands.adding import name_slots_to
 
 FORMAT = "spring-sandbox/replay"
 VERSION = 2
@@ -92,16 +97,41 @@ def encode_state(world: World, names: Iterable[str] = tuple(BY_STORED)) -> dict[
         name: base64.b64encode(zlib.compress(canonical_bytes(getattr(world, BY_STORED[name].name)), 6)).decode()
         for name in names
     }
-    return {"state": arrays, "settings": asdict(world.settings)}
+    joined = [
+        {"particle": each.first_particle, "spring": each.first_spring, "definition": each.definition}
+        for each in world.joined
+    ]
+    return {"state": arrays, "settings": asdict(world.settings)} | ({"joined": joined} if joined else {})
 
 
-def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> Snapshot:
-    """The snapshot of a state line. Raises ValueError, one line."""
+def _equipment(level: Level, joined: Sequence[Mapping[str, Any]], grabs: tuple[int, int]) -> Equipment:
+    """The equipment of a level's world that bodies of a state line have joined; grabs: where hands have their slots.
+
+    Raises ValueError.
+    """
+    world = build_world(level)
+    world.grab_particle, world.grab_spring = grabs
+    for each in joined:
+        particles, springs = each["particle"] - world.particle_count, each["spring"] - world.spring_count
+        if particles < 0 or springs < 0:
+            raise ValueError("joined: bodies lie over each other")
+        # What lies between them counts for its names alone.
+        name_slots_to(world, each["particle"], each["spring"])
+        world.append(Family.PARTICLE, particles)
+        world.append(Family.SPRING, springs)
+        Joiners(world, each["definition"]).join(world)
+    return world.equipment
+
+
+def decode_state(
+    level: Level, tick: int, state: dict[str, str], settings: WorldSettings, joined: Sequence[Mapping[str, Any]]
+) -> Snapshot:
+    """The snapshot of a state line of a level's run; joined: what joined it until then. Raises ValueError, one line."""
     if set(state) != set(BY_STORED):
         raise ValueError(f"state: the arrays are {', '.join(BY_STORED)}")
     arrays = {name: _decode_array(BY_STORED[name], text) for name, text in state.items()}
     for family in Family:
-        names = [column.stored for column in family_of(family)]
+        names = [column.stored for column in FAMILIES[family]]
         if len({len(arrays[name]) for name in names}) != 1:
             raise ValueError(f"state: {', '.join(names)} are not equally long")
     for name in ("particle_a", "particle_b", "corner_particle", "contact_particle"):
@@ -130,6 +160,7 @@ def decode_state(tick: int, state: dict[str, str], settings: WorldSettings) -> S
         grab_particle=grab_particle,
         grab_spring=grab_spring,
         terrain=NO_TERRAIN,
+        equipment=_equipment(level, joined, (grab_particle, grab_spring)),
     )
 
 

@@ -50,10 +50,17 @@ class _TickLine(_Sealed):
     arrays: dict[str, Digest | None]
 
 
+class _JoinedLine(Line):
+    particle: Tick
+    spring: Tick
+    definition: dict[str, Any]
+
+
 class _StateLine(_Sealed):
     tick: Tick
     state: dict[str, str]
     settings: Settings
+    joined: tuple[_JoinedLine, ...] = ()
 
     @field_validator("settings")
     @classmethod
@@ -115,7 +122,8 @@ class _Gathered:
             self.slots += PARTICLE_LIMIT + SPRING_LIMIT if kind == "add_body" else 1
         elif isinstance(line, _StateLine):
             self._state_now = {**self._state_now, **{self._once(name): text for name, text in line.state.items()}}
-            self.states[tick] = StoredState(self._state_now, WorldSettings(**dict(line.settings)), number)
+            joined = tuple(each.model_dump() for each in line.joined)
+            self.states[tick] = StoredState(self._state_now, WorldSettings(**dict(line.settings)), joined, number)
         else:
             self.end_hash = line.hash
 

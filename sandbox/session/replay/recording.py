@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
-from sandbox.level.build.actuators import actuators
 from sandbox.level.format.model import Level
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, state_hash
@@ -40,10 +40,11 @@ class TickHashes:
 
 @dataclass(frozen=True)
 class StoredState:
-    """A state line: arrays as text, see format.decode_state; line: where it stands in its file."""
+    """A state line: arrays as text, see format.decode_state; joined: what joined; line: where it stands in its file."""
 
     arrays: dict[str, str]
     settings: WorldSettings
+    joined: tuple[dict[str, Any], ...]
     line: int
 
 
@@ -69,14 +70,14 @@ class Replay:
         if stored is None:
             raise ReplayError(f"{self.source}: no state is stored at tick {tick}")
         try:
-            snapshot = decode_state(tick, stored.arrays, stored.settings)
+            snapshot = decode_state(self.level, tick, stored.arrays, stored.settings, stored.joined)
         except ValueError as error:
             raise ReplayError(f"{self.source}: line {stored.line}: {error}") from None
-        driven = len(actuators(self.level))
+        driven = len(snapshot.equipment.actuators.names)
         if len(snapshot.actuator_value) != driven:
             raise ReplayError(
                 f"{self.source}: line {stored.line}: state.part_value: has {len(snapshot.actuator_value)} values, "
-                f"where the level has {driven} driven parts"
+                f"where there are {driven} driven parts"
             )
         if state_hash(snapshot) != self.hashes[tick].whole:
             raise ReplayError(

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.level.format.model import Level
+from sandbox.physics.query import slot_name
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, state_hash
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.world import World
@@ -103,7 +104,7 @@ class _Run:
         try:
             act()
         except CommandError as error:
-            raise ReplayError(f"{self.replay.source}: {error}") from None
+            raise ReplayError(*(f"{self.replay.source}: {fault}" for fault in error.faults)) from None
 
     def locate(self, tick: int, array: str, world: World) -> Divergence:
         """Find index and values by stepping again, undisturbed, from the last stored state that was verified."""
@@ -164,5 +165,5 @@ def _first_difference(tick: int, array: str, expected: NDArray[Any], world: Worl
         return Divergence(tick, array, None, "equal", "equal", note="the two runs agree here")
     place = tuple(int(part) for part in np.unravel_index(flat, actual.shape))
     index = place[0] if len(place) == 1 else (place[0], place[1])
-    name = world.slot_name(array, place[0])
+    name = slot_name(world, array, place[0])
     return Divergence(tick, array, index, expected[place].item(), actual[place].item(), name)

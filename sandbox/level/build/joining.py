@@ -1,0 +1,270 @@
+"""Bodies that join a running world: definitions of the level format, checked as in a file, built and added."""
+
+import functools
+import itertools
+import json
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.level.build.actuators import actuators
+from sandbox.level.build.axles import free_wheels
+from sandbox.level.build.build_world import build_world
+from sandbox.level.build.surfaces import DEFAULT_GROUP, TERRAIN_NAME, group_bits
+from sandbox.level.faults.level_error import Fault, LevelError, shown, suggestion
+from sandbox.level.format.limits import (
+    DEFAULT_MATERIAL,
+    DEFINITION_LIMIT,
+    FORMAT,
+    LIMITED_LIMIT,
+    MATERIAL_LIMIT,
+    MOTOR_LIMIT,
+    PARTICLE_LIMIT,
+    SPRING_LIMIT,
+    VERSION,
+)
+from sandbox.level.format.model import Level, Material, NissenMaterial
+from sandbox.level.format.parse import parse_level
+from sandbox.physics.changing.equipment import Joined
+from sandbox.physics.changing.joining import Place, append_state, equipped
+from sandbox.physics.collision.filter import ALL_GROUPS
+from sandbox.physics.driving import drive_muscles
+from sandbox.physics.state import Slots
+from sandbox.physics.world import World
+
+SOURCE = "add_body"
+Mask = NDArray[np.bool_]
+# Definitions that are kept once checked: undoing and redoing add the same ones again.
+KEPT = 64
+
+
+class Joiners:
+    """Bodies of a definition, checked and built, ready to join a world.
+
+    definition: `body`, and perhaps `others`, `springs`, `welds` and `materials`, as in a level file; springs and welds
+    are between these bodies, which go by their ids in it. Raises LevelError with every fault.
+    """
+
+    def __init__(self, world: World, definition: Mapping[str, Any]) -> None:
+        if not isinstance(world.source, Level):
+            raise LevelError(SOURCE, [("", "only a world that was built from a level takes bodies")])
+        self.definition = dict(definition)
+        base, bodies = world.source, [definition["body"], *(definition.get("others") or ())]
+        bodies = [_identified(body, number) for number, body in enumerate(bodies)]
+        self._said, plain = zip(*(_without_groups(body) for body in bodies), strict=True)
+        self._bits = group_bits(base)
+        faults = list(itertools.chain.from_iterable(map(self._group_faults, range(len(bodies)))))
+        if faults:
+            raise LevelError(SOURCE, faults)
+        data = {
+            "format": FORMAT,
+            "version": VERSION,
+            "name": SOURCE,
+            "settings": base.settings.model_dump(mode="json"),
+            "contacts": _contacts(base),
+            "materials": _materials(world, definition, bodies),
+            "bodies": plain,
+            "springs": definition.get("springs") or [],
+            "welds": definition.get("welds") or [],
+        }
+        try:
+            text = json.dumps(data, allow_nan=False)
+        except (TypeError, ValueError, RecursionError):
+            raise LevelError(SOURCE, [("", "holds something that JSON cannot say")]) from None
+        if len(text) > DEFINITION_LIMIT:
+            raise LevelError(SOURCE, [("", f"is longer than {DEFINITION_LIMIT:,} bytes; make it smaller or coarser")])
+        self.level = _parsed(text)
+        faults = list(_material_faults(world, self.level, definition.get("materials") or {}))
+        if faults:
+            raise LevelError(SOURCE, faults)
+        self.built = build_world(self.level)
+        self.particles, self.springs = self.built.grab_particle, self.built.grab_spring
+
+    def _group_faults(self, index: int) -> Iterator[Fault]:
+        said, path = self._said[index], "body" if index == 0 else f"others.{index - 1}"
+        group = said.get("collision_group")
+        if group is not None and (group not in self._bits or group == TERRAIN_NAME):
+            yield f"{path}.collision_group", f"the level has no group {shown(group)}" + suggestion(group, self._bits)
+        for number, name in enumerate(said.get("collides", ())):
+            if name not in self._bits:
+                place = f"{path}.collides.{number}"
+                yield place, f"the level has no group {shown(name)}" + suggestion(name, self._bits)
+
+    def groups(self, world: World) -> tuple[Slots, Slots, Slots]:
+        """Group and collides of their particles, and collides of the world's own from now on. Raises LevelError."""
+        owner, present = self.built.owner[: self.particles], world.collides.copy()
+        group, collides = np.zeros((2, self.particles), np.int64)
+        for index, said in enumerate(self._said):
+            mine = owner == index
+            group[mine] = self._bits[said.get("collision_group") or DEFAULT_GROUP]
+            named = sum(self._bits[name] for name in dict.fromkeys(said["collides"])) if "collides" in said else None
+            collides[mine] = self.built.collides[: self.particles][mine] if named is None else named
+        if not self.level.has_contacts:
+            return group, np.zeros_like(collides), present
+        used = max(int(world.group.max(initial=1)), *self._bits.values())
+        for number, (wheel, mount) in enumerate(free_wheels(self.level), used.bit_length()):
+            if 1 << number > ALL_GROUPS:
+                raise LevelError(SOURCE, [("", "there are too many wheels that do not touch their mounts")])
+            _give_group(group, (collides, present), owner == wheel, np.isin(owner, list(mount)), 1 << number)
+        return group, collides, present
+
+    def check_room(self, world: World) -> None:
+        """Raise LevelError where the world would become larger than a level may be."""
+        limited = sum(
+            int(np.isfinite(driven.force).sum())
+            for each in (world, self.built)
+            for driven in (each.actuators.muscles, each.actuators.hydraulics)
+        )
+        motors = len(world.actuators.motors.hub) + len(self.built.actuators.motors.hub)
+        materials = {*world.material_names, *self.built.material_names}
+        for count, limit, noun in (
+            (world.particle_count + self.particles, PARTICLE_LIMIT, "particles"),
+            (world.spring_count + self.springs, SPRING_LIMIT, "springs"),
+            (motors, MOTOR_LIMIT, "motors"),
+            (limited, LIMITED_LIMIT, "springs of limited force"),
+            (len(materials) - 1, MATERIAL_LIMIT, "materials"),
+        ):
+            if count > limit:
+                raise LevelError(SOURCE, [("", f"a world holds at most {limit:,} {noun}; this would make {count:,}")])
+
+    def join(self, world: World) -> None:
+        """Add them to a world at its present tick. Raises LevelError and changes nothing where there is no room."""
+        self.check_room(world)
+        group, collides, present = self.groups(world)
+        # A muscle is where its wave is by now.
+        drive_muscles(self.built, world.tick)
+        place, naming = self._place(world), self._naming(world)
+        joined = self._joined(place, naming)
+        equipment = equipped(world, self.built, place, tuple(naming[each.name] for each in actuators(self.level)))
+        areas, forms = len(world.area_names), len(world.forms)
+        world.equipment = equipment._replace(
+            area_names=(*world.area_names, *(naming[name] for name in equipment.area_names[areas:])),
+            forms=(*world.forms, *(replace(form, name=naming[form.name]) for form in equipment.forms[forms:])),
+            joined=(*world.joined, joined),
+        )
+        world.name_slots(joined.particle_names, joined.spring_names)
+        for name, slot in joined.second_names:
+            world.name_particle(slot, name)
+        append_state(world, self.built, place, group, collides)
+        if not np.array_equal(present, world.collides[: len(present)]):
+            world.change("collides", present, slice(0, len(present)))
+
+    def _place(self, world: World) -> Place:
+        names = tuple(dict.fromkeys((*world.material_names, *self.built.material_names)))
+        return Place(
+            world.particle_count,
+            world.spring_count,
+            world.constraint_count,
+            len(world.corner_particle),
+            len(world.actuator_value),
+            max(int(world.owner.max(initial=-1)) + 1, 0),
+            names,
+            np.array([names.index(name) for name in self.built.material_names], dtype=np.int64),
+        )
+
+    def _naming(self, world: World) -> dict[str, str]:
+        """What each body and each loose spring of the definition, by its name there, is called in the world."""
+        count = sum(len(joined.names) for joined in world.joined)
+        springs = world.spring_naming.unused("+:", len(self.level.springs))
+        named = {body.id: f"+{number}" for number, body in enumerate(self.level.bodies, count + 1)}
+        return named | {f":{index}": name for index, name in enumerate(springs)}
+
+    def _joined(self, place: Place, naming: dict[str, str]) -> Joined:
+        built = self.built
+
+        def renamed(name: str, mark: str) -> str:
+            body, _, rest = name.partition(mark)
+            return naming.get(name) or naming[body] + mark + rest
+
+        seconds = [each for each in built.particle_naming.second if each[1] < self.particles]
+        return Joined(
+            self.level,
+            self.definition,
+            tuple(naming[body.id] for body in self.level.bodies),
+            place.particle,
+            place.spring,
+            place.part,
+            tuple(renamed(name, ".") for name in built.particle_names[: self.particles]),
+            tuple(renamed(name, ":") for name in built.spring_names[: self.springs]),
+            tuple((renamed(name, "."), slot + place.particle) for name, slot in seconds),
+        )
+
+
+def _give_group(group: Slots, others: tuple[Slots, Slots], wheel: Mask, mount: Mask, own: int) -> None:
+    """Put a wheel in a group of its own, which its mount does not touch, and whoever touched its named group does."""
+    named = group[wheel][0]
+    for collides, is_mount in zip(others, (mount, False), strict=True):
+        touches = (collides & named) != 0
+        collides[touches] |= own
+        collides[~touches | is_mount] &= ~own
+    group[wheel] = own
+
+
+def _identified(body: Any, number: int) -> Any:
+    return {"id": f"body {number}", **body} if isinstance(body, dict) else body
+
+
+def _without_groups(body: Any) -> tuple[dict[str, Any], Any]:
+    """What a body says of groups, which are those of the level that it joins, and the body without that."""
+    if not isinstance(body, dict):
+        return {}, body
+    said = {}
+    if isinstance(body.get("collision_group"), str):
+        said["collision_group"] = body["collision_group"]
+    collides = body.get("collides")
+    if isinstance(collides, list | tuple) and all(isinstance(name, str) for name in collides):
+        said["collides"] = list(collides)
+    return said, {key: value for key, value in body.items() if key not in said}
+
+
+def _contacts(level: Level) -> dict[str, Any] | None:
+    """How things touch in a level; None where nothing does."""
+    if not level.has_contacts:
+        return None
+    return {} if level.contacts is None else level.contacts.model_dump(mode="json")
+
+
+def _known_material(world: World, name: str) -> Material | None:
+    """The material of that name that a world has."""
+    sources = [world.source, *(joined.source for joined in world.joined)]
+    found = next((source.materials[name] for source in sources if name in source.materials), None)
+    return NissenMaterial() if found is None and name == DEFAULT_MATERIAL else found
+
+
+def _materials(world: World, definition: Mapping[str, Any], bodies: list[Any]) -> Any:
+    """The materials of a definition, and those of the world that its bodies and springs name."""
+    given = definition.get("materials")
+    if given is not None and not isinstance(given, dict):
+        return given
+    users = [item for item in (*bodies, *(definition.get("springs") or ())) if isinstance(item, dict)]
+    names = dict.fromkeys([DEFAULT_MATERIAL, *(str(item["material"]) for item in users if "material" in item)])
+    found = {name: _known_material(world, name) for name in names}
+    known = {name: each.model_dump(mode="json") for name, each in found.items() if each is not None}
+    return known | (given or {})
+
+
+def _material_faults(world: World, level: Level, given: Mapping[str, Any]) -> Iterator[Fault]:
+    for name in given:
+        known = _known_material(world, name)
+        if known is not None and known != level.materials[name]:
+            yield f"materials.{name}", "is another material here; leave it out, or give it another name"
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _parsed(text: str) -> Level:
+    """The bodies of a definition as a level of their own. Raises LevelError, which speaks of the definition."""
+    try:
+        return parse_level(text.encode(), SOURCE)
+    except LevelError as error:
+        lines = [line.removeprefix(f"{SOURCE}: ") for line in error.faults]
+        raise LevelError(SOURCE, [("", _in_definition(line)) for line in lines]) from None
+
+
+def _in_definition(fault: str) -> str:
+    """A fault of a level as one of the definition that it was made of."""
+    fault = re.sub(r"^bodies\.(\d+)", lambda found: "body" if found[1] == "0" else f"others.{int(found[1]) - 1}", fault)
+    return fault.replace("bodies: ", "body: ", 1) if fault.startswith("bodies: ") else fault

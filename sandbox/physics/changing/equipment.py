@@ -1,0 +1,44 @@
+"""What a world has beside its state: constant but where bodies join it while it runs, and then replaced as a whole."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from sandbox.physics.actuators import Actuators, StrainLimits
+from sandbox.physics.forms import FirmBody
+
+
+@dataclass(frozen=True, eq=False)
+class Joined:
+    """Bodies that joined a world together while it ran.
+
+    source: what they were made of, and definition: what a command said of them, both for who made them. names: of the
+    bodies. first_particle, first_spring, first_part: their slots, in the order of the names of particles and springs;
+    second_names: further names of particles, with their slots.
+    """
+
+    source: Any
+    definition: Mapping[str, Any]
+    names: tuple[str, ...]
+    first_particle: int
+    first_spring: int
+    first_part: int
+    particle_names: tuple[str, ...]
+    spring_names: tuple[str, ...]
+    second_names: tuple[tuple[str, int], ...]
+
+
+class Equipment(NamedTuple):
+    """What a world has beside its state, by the names that World has for it.
+
+    Names of materials and the strains that each bears; driven parts; bodies that keep areas, and the constraints of
+    each; bodies that may be stiff by their form; what joined the world while it ran, in order.
+    """
+
+    material_names: tuple[str, ...]
+    limits: StrainLimits
+    actuators: Actuators
+    area_names: tuple[str, ...]
+    area_constraints: tuple[range, ...]
+    forms: tuple[FirmBody, ...]
+    joined: tuple[Joined, ...]

@@ -1,0 +1,35 @@
+"""Things are pushed."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from pydantic import Field
+
+from sandbox.level.format.limits import FORCE_LIMIT
+from sandbox.level.format.quantities import Point, Size, unit
+from sandbox.physics.changing.pushing import push
+from sandbox.physics.world import World
+from sandbox.session.commands.command import Command, CommandError
+
+# The hardest push [N s]: more than anything bears.
+HARDEST_PUSH = FORCE_LIMIT
+Impulse = Annotated[float, Field(ge=-HARDEST_PUSH, le=HARDEST_PUSH, json_schema_extra=unit("N s"))]
+
+
+@dataclass(frozen=True)
+class Push(Command):
+    """Give what can move within radius [m] of position [m] an impulse [N s] together, and one outward [N s] in sum.
+
+    What is nearer moves more: all momentum that there is more afterwards is `impulse`, but for what goes outward.
+    """
+
+    type = "push"
+    position: Point
+    radius: Size
+    impulse: tuple[Impulse, Impulse] = (0.0, 0.0)
+    outward: Impulse = 0.0
+
+    def carry_out(self, world: World) -> None:
+        if not push(world, self.position, self.impulse, self.outward, self.radius):
+            x, y = self.position
+            raise CommandError(f"there is nothing to push within {self.radius:.3g} m of ({x:.3g}, {y:.3g})")

@@ -1,0 +1,82 @@
+"""Bodies are removed."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sandbox.level.faults.level_error import suggestion
+from sandbox.level.format.quantities import Name
+from sandbox.physics.changing.removing import remove_particles
+from sandbox.physics.joints.hands import bodies_of
+from sandbox.physics.state import Slots
+from sandbox.physics.world import World
+from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.named import ParticleSlot, particle_of
+
+
+@dataclass(frozen=True)
+class Remove(Command):
+    """Take out a body by its name, or a particle with all that hangs on it.
+
+    body: its springs, and its particles that no spring of others holds. particle: it, and whatever springs and areas
+    join to it by way of particles that are not pinned, with the pinned ones that nothing else holds then.
+    """
+
+    type = "remove"
+    body: Name | None = None
+    particle: ParticleSlot | None = None
+
+    def carry_out(self, world: World) -> None:
+        if (self.body is None) == (self.particle is None):
+            raise CommandError("say body, or particle: one of the two")
+        if self.particle is not None:
+            particle_of(world, self.particle)
+            remove_particles(world, _hanging_on(world, self.particle))
+            return
+        particles, springs = _parts_of(world, str(self.body))
+        if len(springs):
+            world.cut(springs.tolist())
+        remove_particles(world, _left_alone(world, particles))
+
+
+def _hanging_on(world: World, particle: int) -> Slots:
+    label = bodies_of(world)
+    body = np.flatnonzero((label == label[particle]) & world.particle_active)
+    ends = np.concatenate([world.particle_a, world.particle_b])[np.tile(_held_by(world, body), 2)]
+    # What is pinned goes along where all that it holds does.
+    anchors = np.setdiff1d(ends, body)
+    holds = _held_by(world, anchors) & ~_held_by(world, body)
+    others = np.concatenate([world.particle_a[holds], world.particle_b[holds]])
+    return np.union1d(body, np.setdiff1d(anchors, others)).astype(np.int64)
+
+
+def _held_by(world: World, particles: Slots) -> np.ndarray:
+    """The active springs (m,) at any of these particles, but those of hands."""
+    is_end = np.isin(world.particle_a, particles) | np.isin(world.particle_b, particles)
+    return np.asarray(world.spring_active & (world.material >= 0) & is_end)
+
+
+def _parts_of(world: World, body: str) -> tuple[Slots, Slots]:
+    """Active particles and springs of a body by name. Raises CommandError."""
+    bodies = dict.fromkeys(name.partition(mark)[0] for mark, names in _names(world) for name in names if mark in name)
+    for added in ("+", "+hand", ""):
+        bodies.pop(added, None)
+    if body not in bodies:
+        raise CommandError(f"there is no body {body!r:.80}" + suggestion(body, bodies))
+    found = []
+    for (mark, names), active in zip(_names(world), (world.particle_active, world.spring_active), strict=True):
+        named = [slot for slot, name in enumerate(names) if name.startswith(body + mark) and active[slot]]
+        found.append(np.array(named, dtype=np.int64))
+    if not any(map(len, found)):
+        raise CommandError(f"{body} is removed already")
+    return found[0], found[1]
+
+
+def _names(world: World) -> tuple[tuple[str, list[str]], tuple[str, list[str]]]:
+    return (".", world.particle_names), (":", world.spring_names)
+
+
+def _left_alone(world: World, particles: Slots) -> Slots:
+    """Those of the particles that no spring holds."""
+    holds = world.spring_active & (world.material >= 0)
+    return np.setdiff1d(particles, np.concatenate([world.particle_a[holds], world.particle_b[holds]])).astype(np.int64)
