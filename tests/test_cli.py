@@ -603,13 +603,16 @@ HEADLESS = """
 import sys
 from sandbox.cli import main
 code = main(sys.argv[1:])
+from sandbox.physics import jit
 print(*sorted(name for name in sys.modules if name.partition(".")[0] in ("sandbox", "pygame")), file=sys.stderr)
+print(*(f"kernel:{kernel.name}" for kernel in jit.entries() if not isinstance(kernel.held, jit.Entry)), file=sys.stderr)
 sys.exit(code)
 """
 
 
 def test_a_headless_run_loads_no_drawing_and_without_contacts_nothing_that_finds_or_solves_them(rope, tmp_path):
     def loaded(*arguments: str) -> set[str]:
+        """Modules that a run has loaded, and the kernels that it has made."""
         environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1]), "NUMBA_DISABLE_JIT": "1"}
         command = [sys.executable, "-c", HEADLESS, *arguments]
         run = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
@@ -629,4 +632,9 @@ def test_a_headless_run_loads_no_drawing_and_without_contacts_nothing_that_finds
     for modules in runs[:2]:
         # Which terrain a triangle that is about to turn over must not cross.
         assert contacts(modules) <= {"sandbox.physics.solvers.contact", "sandbox.physics.collision.terrain_clamp"}
+        # Nor anything of what parts folds, of triangles, joints and drives: none of these are there.
+        assert not modules & {"sandbox.physics.changing.freeing", "sandbox.physics.collision.parting"}
+        words = ("joint", "driving", "triangle", "constraint", "breaking", "dissect", "lowest_mode", "parallel")
+        made = {name for name in modules if name.startswith("kernel:")}
+        assert made and not {name for name in made if any(word in name for word in words)}
     assert len(contacts(loaded("run", str(touching), "--ticks", "2", "--solver", "direct"))) > 8

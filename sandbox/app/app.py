@@ -33,6 +33,8 @@ from sandbox.app.widgets.ui import Ui
 
 # How often the status figures and the window title change [s].
 FIGURES_EVERY = 0.5
+# While a run waits for kernels, more frames [1/s] would take time from what they wait for.
+WAITING_RATE = 20
 # A run that waits for kernels no longer than this [s] says nothing of it.
 WAIT_UNSEEN = 0.3
 
@@ -311,12 +313,23 @@ class App:
         return " - ".join([*words, "Spring Sandbox"])
 
 
-def run_app(display: Display, wanted: StartRequest, profile: Profile, seconds: float | None = None) -> None:
-    """Show what is wanted in the window and run until it is closed, or for so many seconds."""
+def run_app(
+    display: Display,
+    wanted: StartRequest,
+    profile: Profile,
+    seconds: float | None = None,
+    show_progress: Callable[[], object] = lambda: None,
+) -> None:
+    """Show what is wanted in the window and run until it is closed, or for so many seconds.
+
+    show_progress: called now and then until there is something to show.
+    """
     app = App(display, profile)
+    show_progress()
     app.guide.may_offer = True
     app.open(wanted)
     app.documents.offer_recovery()
+    show_progress()
     clock = pygame.time.Clock()
     started = before = time.perf_counter()
     try:
@@ -328,7 +341,7 @@ def run_app(display: Display, wanted: StartRequest, profile: Profile, seconds: f
             profile.reached("the first page")
             if app.play is not None and app.play.playback.session.tick:
                 profile.reached("the first tick")
-            clock.tick(FRAME_RATE)
+            clock.tick(FRAME_RATE if app.ready or app.play is None else WAITING_RATE)
     finally:
         # Whatever ended the loop, a recording gets its last line.
         app.close()
