@@ -90,10 +90,26 @@ def canonical_bytes(array: NDArray[Any]) -> bytes:
     return array.astype(array.dtype.newbyteorder("<"), copy=False).tobytes()
 
 
+# The bytes of each array that was hashed last, by its name in files, and their hash: most arrays are those of the tick
+# before. Arrays larger than so much [bytes] are hashed anew rather than kept.
+_LAST: dict[str, tuple[bytes, str]] = {}
+_LARGEST_KEPT = 1_000_000
+
+
+def _digest(name: str, array: NDArray[Any]) -> str:
+    present = array.tobytes()
+    last, digest = _LAST.get(name, (None, ""))
+    if present != last:
+        digest = hashlib.blake2b(canonical_bytes(array), digest_size=8).hexdigest()
+        if len(present) <= _LARGEST_KEPT:
+            _LAST[name] = present, digest
+    return digest
+
+
 def hash_by_array(world: World | Snapshot) -> dict[str, str]:
     """blake2b of each state array in use, 16 hexadecimal digits, by its name in files."""
     return {
-        column.stored: hashlib.blake2b(canonical_bytes(getattr(world, column.name)), digest_size=8).hexdigest()
+        column.stored: _digest(column.stored, getattr(world, column.name))
         for column in COLUMNS
         if not column.sparse or (getattr(world, column.name) != column.usual).any()
     }

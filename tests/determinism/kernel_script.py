@@ -4,6 +4,7 @@ Some of its springs yield and break.
 
 python kernel_script.py SOLVER SUBSTEPS TICKS [--without-numba | --broken-numba | --without-cache | --switch TICK]
 
+--without-cache: only of a rope, which comes last else: to compile all that a busy world needs takes a minute.
 --switch: kernels are interpreted until this tick, counted over all worlds that follow one another.
 """
 
@@ -198,6 +199,24 @@ def hashes(advance, solver: str, substeps: int, ticks: int):
         yield state_hash(world)
 
 
+def swings(advance, solver: str, substeps: int, ticks: int):
+    """Hash after each tick of a rope of unequal masses."""
+    import numpy as np
+
+    from sandbox.physics.settings import WorldSettings
+    from sandbox.physics.snapshot import state_hash
+    from sandbox.physics.world import World
+
+    world, links = World(WorldSettings((0.3, -9.81), substeps=substeps, solver=solver)), np.arange(9)
+    points = np.column_stack([0.4 * np.arange(10), np.zeros(10)])
+    names = [f"rope.{k}" for k in range(10)]
+    world.add_particles(names, points, mass=0.1 + 0.37 * np.arange(10), pinned=[True] + [False] * 9)
+    world.add_springs([f"rope:{k}" for k in links], links, links + 1, stiffness=0.2, damping=0.1)
+    for _ in range(ticks):
+        advance(world)
+        yield state_hash(world)
+
+
 def modes():
     """The lowest modes of some forms, as text that shows every bit."""
     import numpy as np
@@ -233,7 +252,10 @@ if __name__ == "__main__":
 
     advance = Ticks(int(mode[1]) if mode[:1] == ["--switch"] else -1).advance
     print("compiled" if COMPILED else "interpreted")
-    print("\n".join(hashes(advance, chosen, substeps if substeps == "auto" else int(substeps), int(ticks))))
-    print("\n".join(touches(advance, chosen, substeps if substeps == "auto" else int(substeps), int(ticks))))
-    print("\n".join(modes()))
-    print("\n".join(blow_up(advance, chosen, 2 * int(ticks))))
+    given = advance, chosen, substeps if substeps == "auto" else int(substeps), int(ticks)
+    if mode != ["--without-cache"]:
+        print("\n".join(hashes(*given)))
+        print("\n".join(touches(*given)))
+        print("\n".join(modes()))
+        print("\n".join(blow_up(advance, chosen, 2 * int(ticks))))
+    print("\n".join(swings(*given)))

@@ -1,4 +1,7 @@
-"""Every shipped level, played for a while by a scripted person, verifies everywhere with the same bits."""
+"""Every shipped level, played for a while by a scripted person, verifies everywhere with the same bits.
+
+From the level's beginning in a fresh process, from the middle in the one that made it, and interpreted.
+"""
 
 import os
 import subprocess
@@ -48,9 +51,8 @@ def test_played_levels_verify_in_every_way(paths, tmp_path):
             assert session.tick == length
         replay = read_replay(long)
         assert len(replay.script) > 0.4 * ticks
-        assert verify(replay) is None
         assert _verifies_from_the_middle(replay)
-        recordings += [str(long), str(short)]
+        recordings.append(str(long))
         short_ones.append(str(short))
     _run_fresh(recordings)
     _run_fresh(short_ones, NUMBA_DISABLE_JIT="1")

@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,8 @@ from sandbox.app.display import WINDOW_SIZE
 DEADLINE = 90.0
 # A movement that changes no pixel is given up after this [s].
 PATIENCE = 1.0
+# Between two looks at the window [s]: whoever looks without a pause takes the processor from what is looked at.
+BLINK = 0.02
 
 # So long a drag is held on to where it ends.
 HELD_TICKS = 20
@@ -24,6 +27,14 @@ HELD_TICKS = 20
 needs_a_screen = pytest.mark.skipif(
     not (shutil.which("Xvfb") and shutil.which("xdotool")), reason="needs Xvfb and xdotool (apt install xvfb xdotool)"
 )
+
+
+def looks(patience: float) -> Iterator[None]:
+    """Moments to look at something, until it was looked at for so long [s]."""
+    give_up = time.monotonic() + patience
+    while time.monotonic() < give_up:
+        yield
+        time.sleep(BLINK)
 
 
 class VirtualScreen:
@@ -84,9 +95,8 @@ class Person:
 
     def wait_for(self, *words: str, without: str = "\0") -> None:
         """Poll the title until it has the words."""
-        give_up = time.monotonic() + DEADLINE
         title = ""
-        while time.monotonic() < give_up:
+        for _ in looks(DEADLINE):
             title = self.title()
             if all(word in title for word in words) and without not in title:
                 return
@@ -97,11 +107,7 @@ class Person:
         """Do something and poll the pixels until they change; whether they did."""
         before = self.screen.pixels()
         self.do(*arguments)
-        give_up = time.monotonic() + patience
-        while time.monotonic() < give_up:
-            if not np.array_equal(before, self.screen.pixels()):
-                return True
-        return False
+        return any(not np.array_equal(before, self.screen.pixels()) for _ in looks(patience))
 
     def move(self, pixel: tuple[float, float]) -> None:
         """Move the mouse; the app has seen it once what is under the mouse looks otherwise."""
@@ -117,6 +123,14 @@ class Person:
         """The tick of the run, as the title has it."""
         return int(self.title().partition("tick ")[2].split()[0])
 
+    def wait_for_tick(self, tick: int) -> None:
+        """Wait until the run is that far."""
+        for _ in looks(DEADLINE):
+            if self.tick() >= tick:
+                return
+            assert self.app.poll() is None
+        raise AssertionError(f"the run stays at tick {self.tick()}")
+
     def drag(self, points: list[tuple[float, float]], while_held: str | None = None) -> None:
         """Drag along points; while_held: what the title says of what is held, which then is held on for some ticks."""
         self.do("mousemove", *map(round, points[0]))
@@ -126,7 +140,5 @@ class Person:
         for point in points[1:]:
             self.do("mousemove", *map(round, point))
         if while_held:
-            until = self.tick() + HELD_TICKS
-            while self.tick() < until:
-                assert self.app.poll() is None
+            self.wait_for_tick(self.tick() + HELD_TICKS)
         self.do("mouseup", 1)

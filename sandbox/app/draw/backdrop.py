@@ -1,5 +1,7 @@
 """Backdrop: what does not move, stage, grid and ground, as a picture that is kept while the camera stands still."""
 
+import functools
+
 import numpy as np
 import pygame
 from numpy.typing import NDArray
@@ -37,7 +39,6 @@ class Backdrop:
 
     def __init__(self) -> None:
         self._painter = Painter()
-        self._bare: tuple[object, NDArray[np.uint32], NDArray[np.uint32]] | None = None
         self._key: tuple[object, ...] = ()
         self._terrain: Terrain | None = None
         self._layer: pygame.Surface | None = None
@@ -73,7 +74,7 @@ class Backdrop:
         layer = pygame.Surface((width, height), 0, 32)
         own = Camera(camera.centre, camera.zoom, (0, 0, width, height))
         pixels = pygame.surfarray.pixels2d(layer).T
-        bare, gridded = self._stage((width, height), theme)
+        bare, gridded = _stage_pictures((width, height), theme)
         pixels[:] = bare
         columns, rows = _grid_lines(own, scale)
         pixels[:, columns] = gridded[:, columns]
@@ -84,12 +85,6 @@ class Backdrop:
         if len(terrain.edge_a):
             self._draw_ground(own, terrain, level, theme, tiles, scale)
         return layer
-
-    def _stage(self, size: tuple[int, int], theme: Theme) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
-        """The stage (h, w) without and with its grid everywhere."""
-        if self._bare is None or self._bare[0] != (size, theme.name):
-            self._bare = ((size, theme.name), *_stage_pictures(size, theme))
-        return self._bare[1], self._bare[2]
 
     def _draw_ground(
         self, camera: Camera, terrain: Terrain, level: Level | None, theme: Theme, tiles: Tiles, scale: float
@@ -194,7 +189,9 @@ def _grid_lines(camera: Camera, scale: float) -> tuple[list[int], list[int]]:
     return found[0], found[1]
 
 
+@functools.lru_cache(maxsize=1)
 def _stage_pictures(size: tuple[int, int], theme: Theme) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+    """The stage (h, w) without and with its grid everywhere: takes 0.1 s, and the next run has mostly the same."""
     width, height = size
     y, x = np.mgrid[0:height, 0:width].astype(np.float32)
     share = (y / max(height, 1))[..., None]

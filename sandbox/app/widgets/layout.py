@@ -3,7 +3,7 @@
 import pygame
 
 from sandbox.app.widgets.fonts import plain_font
-from sandbox.app.widgets.theme import Manager, scaled_theme
+from sandbox.app.widgets.theme import Manager
 
 
 class WindowLayout:
@@ -12,7 +12,7 @@ class WindowLayout:
     def __init__(self, size: tuple[int, int], scale: float, pixel_ratio: tuple[float, float] = (1.0, 1.0)) -> None:
         self.size = size
         self.scale = scale
-        self.manager = Manager(size, scaled_theme(scale), enable_live_theme_updates=False)
+        self.manager = Manager(size, scale)
         self.manager.mouse_pos_scale_factor = list(pixel_ratio)
         self.root = self.manager.get_root_container()
 

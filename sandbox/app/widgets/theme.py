@@ -1,10 +1,13 @@
 """Theme: the look of the widgets in assets/theme.json, at a scale."""
 
 import json
+from collections import OrderedDict
 from typing import Any
 
+import pygame
 import pygame_gui
 from pygame_gui.core import gui_font_pygame
+from pygame_gui.core.surface_cache import SurfaceCache
 from pygame_gui.core.ui_appearance_theme import UIAppearanceTheme
 
 from sandbox.app.draw.colours import shown_theme
@@ -20,6 +23,10 @@ _SCALED = {
 
 # The library has no way to be told which fonts it makes.
 gui_font_pygame.Font = SafeFont  # type: ignore[assignment, misc]
+# The theme of the last window, by its scale: it takes 30 ms to read, and the next window has mostly the same.
+_THEMES: dict[float, UIAppearanceTheme] = {}
+# Pictures of buttons and the like that are kept; most have 10 kB, none has more than 160.
+MOST_SHAPES = 500
 
 
 def _read(name: str) -> dict[str, Any]:
@@ -44,15 +51,47 @@ def scaled_theme(scale: float) -> dict[str, Any]:
 
 
 class Manager(pygame_gui.UIManager):
-    """The library's manager of widgets, with a theme that answers at once."""
+    """The library's manager of widgets in a window of a size [pixels] and at a scale, whose theme answers at once."""
+
+    def __init__(self, size: tuple[int, int], scale: float) -> None:
+        self._scale = scale
+        super().__init__(size, enable_live_theme_updates=False)
 
     def create_new_theme(self, theme_path: Any = None) -> UIAppearanceTheme:
-        """A theme that the manager looks widgets up in."""
-        theme = _Theme(self.resource_loader, self._locale)
-        theme.get_font_dictionary().add_font_path(FONT, str(font_file(False)), str(font_file(True)))
-        if theme_path is not None:
-            theme.load_theme(theme_path)
+        """The theme that the manager looks widgets up in: that of the window before, where the scale is the same."""
+        theme = _THEMES.get(self._scale)
+        if theme is None:
+            theme = _Theme(self.resource_loader, self._locale)
+            theme.get_font_dictionary().add_font_path(FONT, str(font_file(False)), str(font_file(True)))
+            theme.load_theme(scaled_theme(self._scale))
+            _THEMES.clear()
+            _THEMES[self._scale] = theme
         return theme
+
+
+class _Shapes(SurfaceCache):
+    # The library's cache takes 4 MB at once and copies each picture into them, and counts users of a theme that are
+    # taken away: those of a window that is let go of as a whole are not.
+    def __init__(self) -> None:
+        super().__init__()
+        self.cache_surfaces.clear()
+        self._pictures: OrderedDict[str, pygame.Surface] = OrderedDict()
+
+    def add_surface_to_cache(self, surface: pygame.Surface, string_id: str) -> None:
+        self._pictures[string_id] = surface
+        if len(self._pictures) > MOST_SHAPES:
+            self._pictures.popitem(last=False)
+
+    def find_surface_in_cache(self, lookup_id: str) -> pygame.Surface | None:
+        if lookup_id in self._pictures:
+            self._pictures.move_to_end(lookup_id)
+        return self._pictures.get(lookup_id)
+
+    def remove_user_from_cache_item(self, string_id: str) -> None:
+        pass
+
+    def update(self) -> None:
+        pass
 
 
 class _Theme(UIAppearanceTheme):
@@ -61,6 +100,7 @@ class _Theme(UIAppearanceTheme):
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
         self._combined: dict[tuple[tuple[str | None, ...] | None, ...], list[str]] = {}
+        self._shape_cache = _Shapes()
 
     def build_all_combined_ids(self, *ids: Any) -> list[str]:
         key = tuple(None if each is None else tuple(each) for each in ids)

@@ -1,6 +1,7 @@
 """The one way a level is written: defaults left out, keys in the order of the models, kind to line-by-line diffs."""
 
 import json
+import math
 from typing import Any
 
 from sandbox.level.format.model import Level, Settings
@@ -10,6 +11,8 @@ from sandbox.level.kinds.body_def import file_order
 _WIDTH = 100
 # Parts of a level whose items always go one to a line, so that adding one changes one line.
 _LISTED = ("materials", "terrain", "bodies", "particles", "springs", "welds", "checks")
+
+_encoded = json.JSONEncoder(ensure_ascii=False).encode
 
 
 def level_data(level: Level) -> dict[str, Any]:
@@ -65,4 +68,7 @@ def _broken(value: list[Any] | dict[str, Any], indent: int, items: list[str]) ->
 
 
 def _dump(value: Any) -> str:
-    return json.dumps(value, ensure_ascii=False)
+    # Most values are numbers, and the encoder takes long to begin.
+    if type(value) is float and math.isfinite(value):
+        return float.__repr__(value)
+    return _encoded(value)
