@@ -16,12 +16,13 @@ from sandbox.app.draw.raster.painter import MarkList, Painter
 from sandbox.app.draw.strain_colours import strain_place, strain_tones
 from sandbox.app.draw.textures import Tiles
 from sandbox.app.draw.themes import DARK, THEMES, Theme
-from sandbox.app.draw.things.cast import Cast, cast_of
+from sandbox.app.draw.things.cast import Cast, cast_of, joined_cast
 from sandbox.app.draw.things.ensemble import Ensemble
 from sandbox.app.draw.things.frame import Frame, strain_of
 from sandbox.app.play.playback import interpolated
 from sandbox.app.profile import Profile
 from sandbox.level.format.model import Level
+from sandbox.physics.changing.equipment import Joined
 from sandbox.physics.joints.pulls import Pull
 from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.snapshot import Snapshot
@@ -44,12 +45,16 @@ NODE = 2.2
 
 @dataclass
 class Overlay:
-    """What a person is doing, drawn over the world: the particle under the pointer, a cut [m], a cursor [m], pulls."""
+    """What a person is doing, drawn over the world: the particle under the pointer, a cut [m], a cursor [m], pulls.
+
+    ghost: lines [m] of what a click would do.
+    """
 
     hovered: int | None = None
     trail: list[tuple[float, float]] = field(default_factory=list)
     cursor: tuple[float, float] | None = None
     pulls: list[Pull] = field(default_factory=list)
+    ghost: list[list[tuple[float, float]]] = field(default_factory=list)
 
 
 class Renderer:
@@ -72,6 +77,8 @@ class Renderer:
         self._painter = Painter()
         self._backdrop = Backdrop()
         self._cast: Cast | None = None
+        self._level_cast: Cast | None = None
+        self._joined: tuple[Joined, ...] = ()
         self._ensemble: Ensemble | None = None
         self._key: tuple[NDArray[np.bool_], ...] = ()
         self._tiles: tuple[str, Tiles] | None = None
@@ -107,7 +114,8 @@ class Renderer:
                 )  # fmt: skip
             with profile.part("things"):
                 if self.level is not None:
-                    self._draw_things(self.level, frame, particles, springs, camera)
+                    ensemble = self._ensemble_of(self.level, frame, particles, springs, current.equipment.joined)
+                    self._draw_things(ensemble, frame, camera)
                     self.effects.see(current, frame.seconds, self._cast.strikes if self._cast is not None else None)
             with profile.part("marks"):
                 if self.lattice or self.level is None:
@@ -120,11 +128,8 @@ class Renderer:
             self._tiles = self.theme.name, Tiles(self.theme)
         return self._tiles[1]
 
-    def _draw_things(
-        self, level: Level, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_], camera: Camera
-    ) -> None:
+    def _draw_things(self, ensemble: Ensemble, frame: Frame, camera: Camera) -> None:
         painter = self._painter
-        ensemble = self._ensemble_of(level, frame, particles, springs)
         ensemble.soft.trace(painter, frame)
         thrown, shapes = ensemble.thrown(frame)
         offset = (SHADOW[0] * self.scale, SHADOW[1] * self.scale)
@@ -136,13 +141,20 @@ class Renderer:
         ensemble.draw(painter, frame, self.lattice)
 
     def _ensemble_of(
-        self, level: Level, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_]
+        self,
+        level: Level,
+        frame: Frame,
+        particles: NDArray[np.bool_],
+        springs: NDArray[np.bool_],
+        joined: tuple[Joined, ...],
     ) -> Ensemble:
         held = frame.state.inverse_mass == 0.0
         key = particles, springs, held
-        is_same = len(self._key) == 3 and all(map(np.array_equal, key, self._key))
+        is_same = len(self._key) == 3 and all(map(np.array_equal, key, self._key)) and self._joined is joined
         if self._ensemble is None or not is_same:
-            self._cast = self._cast or cast_of(level)
+            self._level_cast = self._level_cast or cast_of(level)
+            if self._cast is None or self._joined is not joined:
+                self._cast, self._joined = joined_cast(self._level_cast, joined), joined
             self._ensemble, self._key = Ensemble(self._cast, frame.state, particles, springs), key
         return self._ensemble
 
@@ -196,6 +208,10 @@ class Renderer:
             points = camera.project(np.array(overlay.trail))
             ends = np.concatenate([points[:-1], points[1:]], axis=1)
             canvas.lines(np.ascontiguousarray(ends), np.full(len(ends), packed(DANGER)), 2.4 * scale)
+        for line in overlay.ghost:
+            points = camera.project(np.array(line))
+            ends = np.ascontiguousarray(np.concatenate([points[:-1], points[1:]], axis=1))
+            canvas.lines(ends, np.full(len(ends), packed(ACCENT)), 2.0 * scale)
         if overlay.cursor is not None:
             self._draw_cursor(canvas, camera.to_pixels(overlay.cursor))
 

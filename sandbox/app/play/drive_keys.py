@@ -12,9 +12,21 @@ class DriveKeys:
 
     def __init__(self, playback: Playback) -> None:
         self.playback = playback
-        self._keys = {ord(key): parts for key, parts in driving_keys(playback.level).items()}
+        self._joined: object = None
+        self._all: dict[int, list[tuple[int, float]]] = {}
         # The gesture of each key that is held, in the order of pressing.
         self._held: dict[int, int] = {}
+
+    @property
+    def _keys(self) -> dict[int, list[tuple[int, float]]]:
+        """What each key drives: parts of the level, and of what has joined it."""
+        joined = self.playback.session.world.joined
+        if self._joined is not joined:
+            self._joined, self._all = joined, {}
+            for level, first in [(self.playback.level, 0), *((each.source, each.first_part) for each in joined)]:
+                for key, parts in driving_keys(level).items():
+                    self._all.setdefault(ord(key), []).extend((first + part, value) for part, value in parts)
+        return self._all
 
     def press(self, key: int, modifiers: int) -> bool:
         """Drive what the key drives; whether it drives anything."""
@@ -31,6 +43,6 @@ class DriveKeys:
         gesture = self._held.pop(key, None)
         if gesture is None:
             return
-        for part, _ in self._keys[key]:
-            still = [value for held in self._held for other, value in self._keys[held] if other == part]
+        for part, _ in self._keys.get(key, []):
+            still = [value for held in self._held for other, value in self._keys.get(held, []) if other == part]
             self.playback.submit(SetDrive(part, still[-1] if still else 0.0), gesture)

@@ -12,6 +12,7 @@ from sandbox.app.edit.bake_choice import ask_to_keep
 from sandbox.app.loop import SPEEDS
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.hand_labels import draw_labels
+from sandbox.app.play.palette import NAMES, Palette, PaletteState
 from sandbox.app.play.panel import PANEL_WIDTH, Panel
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.stage import Stage
@@ -28,6 +29,7 @@ from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.solvers import SOLVERS
 from sandbox.session.commands import Free
 from sandbox.tools.drag import STRENGTHS
+from sandbox.tools.parts import PARTS
 
 # Where the button is that frees what is stuck, below the bar, and its size [layout units].
 FREE_PLACE, FREE_SIZE = (16.0, 12.0), (110.0, 34.0)
@@ -48,6 +50,8 @@ class PlayScreen:
         self._ui = app.ui
         self.source, self.of_document = source, of_document
         self.show_panel = True
+        self.show_palette = False
+        self.palette: Palette | None = None
         self.panel: Panel | None = None
         self.stage = Stage(playback, self.viewport, app.scale)
         kept = preference(HAND)
@@ -86,7 +90,11 @@ class PlayScreen:
         self._ui = ui
         self.toolbar = Toolbar(ui, self._app.act, self.of_document)
         self.stage.place(self.viewport, ui.scale)
-        place = ui.rect(FREE_PLACE[0], BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
+        self.palette = None
+        if self.show_palette:
+            self.palette = Palette(ui, self._app.act, BAR_HEIGHT, ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT)
+        left = FREE_PLACE[0] if self.palette is None else self.palette.right + FREE_PLACE[1]
+        place = ui.rect(left, BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
         self.free = ui.button(place, "Free it", self._free, tip=tip_of("free", "play"))
         self.free.hide()
         before, self.panel = self.panel, None
@@ -104,6 +112,8 @@ class PlayScreen:
             "tool_drag": lambda: stage.choose_tool("drag"),
             "tool_pin": lambda: stage.choose_tool("pin"),
             "tool_cut": lambda: stage.choose_tool("cut"),
+            **{f"tool_{name}": lambda name=name: self._take_up(name) for name in NAMES},  # type: ignore[misc]
+            "palette": self._toggle_palette,
             "let_go": stage.let_go,
             "lattice": stage.toggle_lattice,
             "hand": self._next_strength,
@@ -114,8 +124,8 @@ class PlayScreen:
             "step": lambda: self.playback.clock.step_once(),
             "slow": self._slower,
             "reset": self._reset,
-            "zoom_in": lambda: stage.camera.zoom_at(stage.cursor, 2),
-            "zoom_out": lambda: stage.camera.zoom_at(stage.cursor, -2),
+            "zoom_in": lambda: self._zoom(2),
+            "zoom_out": lambda: self._zoom(-2),
             "fit": stage.fit,
             "record": files.toggle_recording,
             "save": files.save_run,
@@ -139,6 +149,33 @@ class PlayScreen:
             documents.open(self.source)
         else:
             documents.edit_level(self.playback.level)
+
+    def _toggle_palette(self) -> None:
+        self.show_palette = not self.show_palette
+        if self.stage.tool_name in NAMES:
+            self.stage.choose_tool("drag")
+        self._app.rebuild()
+
+    def _take_up(self, name: str) -> None:
+        """Take up a part or a deed of the palette; again: back to the hand."""
+        if self.stage.tool_name == name:
+            self.stage.choose_tool("drag")
+            return
+        self.stage.choose_tool(name)
+        if not self.show_palette:
+            self.show_palette = True
+            self._app.rebuild()
+        if name in PARTS and not self.has_contacts:
+            self._app.say("Nothing touches anything in this level: what you drop passes through all else.")
+
+    def _zoom(self, steps: int) -> None:
+        if not self.stage.resize(steps):
+            self.camera.zoom_at(self.stage.cursor, steps)
+
+    def turn_wheel(self, pixel: Pixel, steps: float) -> None:
+        """Make what is dropped larger, or zoom."""
+        if not self.stage.resize(steps):
+            self.camera.turn_wheel(pixel, steps)
 
     def choose_strength(self, name: str) -> None:
         """Let the hand be gentle, normal or strong from its next hold on, in later runs too."""
@@ -225,6 +262,8 @@ class PlayScreen:
         if self.panel is not None and ready:
             self.panel.refresh()
             self.panel.hand.show(self.stage.drag.strength)
+        if self.palette is not None:
+            self.palette.show(PaletteState(self.stage.tool_name, ready))
         self.toolbar.show(
             BarState(
                 self.playback.level.name,
@@ -235,6 +274,7 @@ class PlayScreen:
                 self.playback.session.can_undo,
                 self.playback.session.can_redo,
                 self.show_panel,
+                self.show_palette,
             )
         )
 

@@ -33,6 +33,7 @@ class BarState:
     can_undo: bool
     can_redo: bool
     panel: bool
+    palette: bool
 
 
 class Toolbar:
@@ -49,6 +50,7 @@ class Toolbar:
         wide = 22.0 if width >= ROOM_FOR_NAME else 10.0
         self._x += wide
         self.tools = {name: self._button(f"tool_{name}", name) for name in ("drag", "pin", "cut")}
+        self.palette = self._button("palette", "parts")
         self._x += wide
         self.undo = self._button("undo", "undo")
         self.redo = self._button("redo", "redo")
@@ -86,6 +88,7 @@ class Toolbar:
         self.slow.set_text("1x" if state.speed == 1.0 else f"1/{round(1 / state.speed)}x")
         (self.slow.unselect if state.speed == 1.0 else self.slow.select)()
         (self.panel.select if state.panel else self.panel.unselect)()
+        (self.palette.select if state.palette else self.palette.unselect)()
         (self.undo.enable if state.can_undo else self.undo.disable)()
         (self.redo.enable if state.can_redo else self.redo.disable)()
         for button, name, on in ((self.undo, "undo", state.can_undo), (self.redo, "redo", state.can_redo)):

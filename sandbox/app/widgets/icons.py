@@ -97,10 +97,17 @@ def _keep(pen: IconPen) -> None:
     pen.line((6.5, 3.5), (17.5, 3.5), (17.5, 20.5), (12, 15.5), (6.5, 20.5), (6.5, 3.5))
 
 
+def _parts(pen: IconPen) -> None:
+    pen.disc(7.5, 7.5, 4.2, 2)
+    pen.line((13.5, 4), (20, 4), (20, 10.5), (13.5, 10.5), (13.5, 4))
+    pen.line((12, 14), (12, 21))
+    pen.line((8.5, 17.5), (15.5, 17.5))
+
+
 ICONS: dict[str, Icon] = {
     "drag": _drag, "pin": draw_pin, "cut": _cut, "play": _play, "pause": _pause, "step": _step, "reset": _reset,
     "undo": _undo, "redo": _redo, "record": _record, "stop": _stop, "levels": _levels, "fit": _fit,
-    "panel": _panel, "save": _save, "edit": _edit, "keep": _keep, "spring": draw_spring,
+    "panel": _panel, "save": _save, "edit": _edit, "keep": _keep, "parts": _parts, "spring": draw_spring,
 }  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """Cast: which slots of a world each body, ball and loose spring of a level has, and what it looks like; made once."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.level.kinds.jelly import JellyDef
+from sandbox.physics.changing.equipment import Joined
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
@@ -72,17 +74,17 @@ class Join:
 
 @dataclass(eq=False)
 class Cast:
-    """Everything in a level that can be seen; particles and springs: how many slots are the level's own.
+    """Everything in a level that can be seen; particles and springs: the slots that belong to its bodies and parts.
 
-    strikes (springs,): those that spark when they tear.
+    strikes: by the spring's slot, as far as there are any, those that spark when they tear.
     """
 
     level: Level
     actors: list[Actor]
     balls: list[Ball]
     joins: list[Join]
-    particles: int
-    springs: int
+    particles: Slots
+    springs: Slots
     strikes: Mask
 
 
@@ -113,4 +115,21 @@ def cast_of(level: Level, is_welded: bool = True) -> Cast:
     kinds = [(actor.look, len(actor.springs)) for actor in actors] + [(join.look, 1) for join in joins]
     sparks = [look.line in METALS and look.skin in ("", "steel wheel") for look, _ in kinds]
     strikes = np.repeat(np.array(sparks, dtype=np.bool_), [count for _, count in kinds])
-    return Cast(level, actors, balls, joins, int(slots.max(initial=-1)) + 1, spring + len(joins), strikes)
+    return Cast(level, actors, balls, joins, np.unique(slots), np.arange(spring + len(joins)), strikes)
+
+
+def joined_cast(cast: Cast, joined: Sequence[Joined]) -> Cast:
+    """The cast of a level that bodies have joined while it ran."""
+    actors, joins = list(cast.actors), list(cast.joins)
+    particles, springs = [cast.particles], [cast.springs]
+    for each in joined:
+        own, first, spring = cast_of(each.source), each.first_particle, each.first_spring
+        actors += [replace(actor, slots=actor.slots + first, springs=actor.springs + spring) for actor in own.actors]
+        joins += [
+            Join(join.spring + spring, (join.ends[0] + first, join.ends[1] + first), join.look) for join in own.joins
+        ]
+        particles.append(own.particles + first)
+        springs.append(own.springs + spring)
+    return replace(
+        cast, actors=actors, joins=joins, particles=np.concatenate(particles), springs=np.concatenate(springs)
+    )

@@ -48,11 +48,11 @@ class Ensemble:
         for actor in cast.actors:
             there = springs[actor.springs]
             joins += self._add(actor, there)
-        strangers = np.flatnonzero(springs[cast.springs :]) + cast.springs
+        strangers = np.setdiff1d(np.flatnonzero(springs), cast.springs)
         ends = np.stack([state.particle_a, state.particle_b], axis=1).astype(np.int64)
         self._add_joins(joins, ends)
         self.members.add_strangers(ends[strangers], strangers, state.rest_length)
-        self.balls = Balls(cast, state, np.flatnonzero(particles[cast.particles :]) + cast.particles)
+        self.balls = Balls(cast, state, np.setdiff1d(np.flatnonzero(particles), cast.particles))
         self.faces = Faces(self._faces)
         self._hems = [Shape([loop], CLOTH, 0, -1, rounds=0, line=False) for loop in self.sheets.outlines()]
         self.soft = Soft(self._shapes + self._hems)
