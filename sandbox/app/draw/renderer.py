@@ -154,7 +154,15 @@ class Renderer:
         if self._ensemble is None or not is_same:
             self._level_cast = self._level_cast or cast_of(level)
             if self._cast is None or self._joined is not joined:
-                self._cast, self._joined = joined_cast(self._level_cast, joined), joined
+                # Bodies that were there go on as they are.
+                before = self._joined
+                goes_on = self._cast is not None and joined[: len(before)] == before
+                self._cast = (
+                    joined_cast(self._cast or self._level_cast, joined[len(before) :])
+                    if goes_on
+                    else (joined_cast(self._level_cast, joined))
+                )
+                self._joined = joined
             self._ensemble, self._key = Ensemble(self._cast, frame.state, particles, springs), key
         return self._ensemble
 

@@ -1,13 +1,14 @@
 """Cast: which slots of a world each body, ball and loose spring of a level has, and what it looks like; made once."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.draw.looks import GRAINS, Look, ball_look, body_looks, spring_look
+from sandbox.app.draw.things.borders import sides_of, traced
 from sandbox.level.build.plan import Plan, kept_plan
 from sandbox.level.format.model import Level
 from sandbox.level.format.quantities import replaced
@@ -23,9 +24,24 @@ Mask = NDArray[np.bool_]
 METALS = ("steel", "paint", "brass", "chain", "cable", "piston")
 
 
+class Filling(NamedTuple):
+    """What of a filled body is left: triangles (t, 3) by index, loops of slots round them, springs (m,) inside.
+
+    key: which springs were there, as bytes.
+    """
+
+    key: bytes
+    left: Slots
+    loops: list[Slots]
+    inside: Mask
+
+
 @dataclass(eq=False)
 class Actor:
-    """A body. slots (n,) of its particles; springs (m,) slots, pairs (m, 2) their ends by index, ends by slot."""
+    """A body. slots (n,) of its particles; springs (m,) slots, pairs (m, 2) their ends by index, ends by slot.
+
+    What it takes long to find of it is kept, as all bodies are gone through anew where one is torn or another is added.
+    """
 
     body: BodyDef
     look: Look
@@ -33,6 +49,8 @@ class Actor:
     slots: Slots
     springs: Slots
     pairs: Slots
+    _filling: Filling | None = field(default=None, init=False)
+    _spot: tuple[bytes, tuple[Floats, float]] | None = field(default=None, init=False)
 
     @property
     def ends(self) -> Slots:
@@ -43,6 +61,26 @@ class Actor:
     def cell(self) -> float:
         """A usual length [m] of its springs."""
         return float(np.median(self.made.rest_length)) if len(self.pairs) else 1.0
+
+    def filling(self, there: Mask) -> Filling:
+        """What is left of it, where these springs (m,) are there: a triangle while those along all its sides are."""
+        key = there.tobytes()
+        if self._filling is None or self._filling.key != key:
+            triangles = self.triangles()
+            sides = sides_of(triangles, self.pairs)
+            left = triangles[((sides >= 0) & np.append(there, False)[sides]).all(axis=1)]
+            filled = np.zeros(len(self.slots), dtype=np.bool_)
+            filled[left] = True
+            loops = [self.slots[loop] for loop in traced(left)] if len(left) else []
+            self._filling = Filling(key, left, loops, np.asarray(filled[self.pairs].all(axis=1)))
+        return self._filling
+
+    def spot(self, loop: Slots, find: Callable[["Actor", Slots], tuple[Floats, float]]) -> tuple[Floats, float]:
+        """What `find` finds of it inside a loop of slots."""
+        key = loop.tobytes()
+        if self._spot is None or self._spot[0] != key:
+            self._spot = key, find(self, loop)
+        return self._spot[1]
 
     def triangles(self) -> Slots:
         """Triangles (t, 3) of particles by index, that a jelly is filled with, whether or not they keep their area."""
@@ -119,7 +157,7 @@ def cast_of(level: Level, is_welded: bool = True) -> Cast:
 
 
 def joined_cast(cast: Cast, joined: Sequence[Joined]) -> Cast:
-    """The cast of a level that bodies have joined while it ran."""
+    """The cast of a level, or of one that bodies have joined while it ran, once these bodies have joined it as well."""
     actors, joins = list(cast.actors), list(cast.joins)
     particles, springs = [cast.particles], [cast.springs]
     for each in joined:
