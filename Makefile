@@ -1,7 +1,7 @@
 # make play: install into .venv and run the app.    make test: install into .venv and run every test.
 # Kernels are compiled before, or each worker would compile all of them.
 # make abuse: what stirring, throwing and driving does to things, in figures; hours.
-# make pictures: draw the gallery's pictures of shipped levels anew, after one was changed.
+# make pictures: draw the gallery's pictures of shipped levels anew, after one was changed, and those of docs/.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
@@ -22,8 +22,9 @@ lint: $(VENV)/installed-dev
 	$(BIN)/mypy
 	$(BIN)/mypy --strict --follow-imports=silent examples
 
-pictures: $(VENV)/installed
+pictures: $(VENV)/installed-dev
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.picture_cache
+	$(BIN)/python -m tests.pictures.sharing
 
 bench: $(VENV)/installed-dev
 	for bench in tests/bench/*.py; do echo "## $$bench"; PYTHONPATH=. $(BIN)/python "$$bench" || exit 1; done
@@ -39,7 +40,7 @@ $(BIN)/python:
 	$(BIN)/python -m pip install --quiet --upgrade pip
 
 $(VENV)/installed: $(BIN)/python pyproject.toml
-	$(BIN)/python -m pip install --quiet --editable .
+	$(BIN)/python -m pip install --quiet --editable ".[export]"
 	$(BIN)/python -m compileall -q sandbox
 	touch $@
 

@@ -2,7 +2,7 @@
 
 import sys
 
-from sandbox.cli import main
+from sandbox.cli import program
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(program())

@@ -1,6 +1,7 @@
 """The command line. A sub-command imports what it needs when it runs, so that --help answers at once."""
 
 import argparse
+import gc
 import json
 import os
 import sys
@@ -19,6 +20,7 @@ from sandbox.terminal import (
     missing_folder,
     prepare_streams,
     processes,
+    rate,
     refusal_of,
     scale,
     seconds,
@@ -36,6 +38,11 @@ if TYPE_CHECKING:
 EXIT_OK, EXIT_FAILED, EXIT_REFUSED, EXIT_INTERRUPTED = 0, 1, 2, 130
 # What `play` does where there is no display [s].
 HEADLESS_SECONDS = 10.0
+# Python searches for garbage after so many new objects, in place of 700: what is imported stays, and looking through it
+# again and again was a sixth of a start. Objects that hold each other, as those do, are few in a run.
+SEARCH_AFTER = 200_000
+# What `render` draws unless told otherwise: length of a film [s], sizes [pixels].
+FILM_SECONDS, FILM_SIZE, PNG_SIZE = 6.0, (640, 360), (1280, 720)
 # A process that checks levels takes as long to start as a few levels take; fewer for each are not worth one.
 LEVELS_PER_PROCESS = 4
 
@@ -46,6 +53,16 @@ class Refused(Exception):
     def __init__(self, *faults: str) -> None:
         super().__init__(*faults)
         self.faults = faults
+
+
+def program() -> int:
+    """Run the command line as a process of its own, which ends after it; returns as `main`."""
+    gc.set_threshold(SEARCH_AFTER, 5, 5)
+    try:
+        return main()
+    finally:
+        # What is left goes with the process.
+        gc.freeze()
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -125,11 +142,7 @@ def _parser() -> argparse.ArgumentParser:
         "--processes", type=processes, metavar="N", help="check so many at a time; default: by cores and levels"
     )
 
-    render = command("render", _render, "draw a level or a replay into a PNG picture, off screen")
-    render.add_argument("level", metavar="LEVEL|REPLAY")
-    render.add_argument("--seconds", type=seconds, default=0.0, help="simulated time before the picture; default 0")
-    render.add_argument("--size", type=size, default=(1280, 720), metavar="WxH", help="in pixels; default 1280x720")
-    render.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.png")
+    _add_render_options(command("render", _render, "draw a level or a replay into a PNG, GIF or MP4, off screen"))
 
     layout = command("format", _format, "rewrite a level file in its canonical form")
     layout.add_argument("file", type=Path, metavar="FILE")
@@ -139,6 +152,17 @@ def _parser() -> argparse.ArgumentParser:
     _add_prepare_options(command("prepare", _prepare, "compile the physics, as the first start would"))
     command("schema", _schema, "print the JSON Schema of level files")
     return parser
+
+
+def _add_render_options(render: argparse.ArgumentParser) -> None:
+    render.add_argument("level", metavar="LEVEL|REPLAY")
+    text = "PNG: simulated time before the picture, default 0; GIF and MP4: how long they are, default 6"
+    render.add_argument("--seconds", type=seconds, help=text)
+    render.add_argument("--from", type=seconds, dest="start", help="simulated time before a GIF or MP4; default 0")
+    render.add_argument("--fps", type=rate, help="pictures a second; default 20 for GIF, 30 for MP4")
+    text = "in pixels; default 1280x720 for PNG, 640x360 for GIF and MP4"
+    render.add_argument("--size", type=size, metavar="WxH", help=text)
+    render.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.png|gif|mp4")
 
 
 def _add_prepare_options(prepare: argparse.ArgumentParser) -> None:
@@ -385,20 +409,64 @@ def _cores() -> int:
 def _render(options: argparse.Namespace) -> int:
     from sandbox.session.session import Session
 
-    if options.output.suffix.lower() != ".png":
-        raise Refused(f"{options.output}: this version draws PNG pictures; end the name in .png")
+    kind = options.output.suffix.lower().removeprefix(".")
+    if kind not in ("png", "gif", "mp4"):
+        raise Refused(f"{options.output}: pictures are PNG, GIF or MP4; end the name in .png, .gif or .mp4")
+    _check_render_options(options, kind)
     level, replay = _level_or_replay(options.level)
-    session = Session(level, replay.script if replay else ())
-    ticks = round(options.seconds * level.settings.tick_rate)
+    length = (0.0 if kind == "png" else FILM_SECONDS) if options.seconds is None else options.seconds
+    ticks = round(((options.start or 0.0) + length) * level.settings.tick_rate)
     if replay and ticks > replay.ticks:
         raise Refused(f"{options.level}: is {replay.ticks / level.settings.tick_rate:g} s long")
+    session = Session(level, replay.script if replay else ())
     _run_with_bar(session, ticks, options.level)
+    what = _draw_still(session, options) if kind == "png" else _draw_film(session, options, kind, length)
+    print(f"{options.output}: {what}, {options.output.stat().st_size / 1e6:.2f} MB")
+    return EXIT_OK
+
+
+def _check_render_options(options: argparse.Namespace, kind: str) -> None:
+    from sandbox.app.share.kinds import KINDS, Missing, require
+
+    most = KINDS[kind].most_fps
+    if kind == "png":
+        for name, value in (("from", options.start), ("fps", options.fps)):
+            if value is not None:
+                raise Refused(f"--{name}: is for GIF and MP4; a PNG is drawn after --seconds")
+    elif (options.fps or 0.0) > most:
+        raise Refused(f"--fps: a {kind.upper()} shows at most {most:g} pictures a second")
+    elif options.seconds == 0.0:
+        raise Refused(f"--seconds: a {kind.upper()} of no length has no pictures")
+    try:
+        require(kind)
+    except Missing as missing:
+        raise Refused(f"{options.output}: {missing}") from None
+
+
+def _draw_still(session: "Session", options: argparse.Namespace) -> str:
+    """Draw the present state of a run; what was drawn."""
     from sandbox.app.draw.picture import save_picture
 
+    size = options.size or PNG_SIZE
     with Progress(1, "picture") as bar:
-        save_picture(session, options.output, options.size)
+        save_picture(session, options.output, size)
         bar.update()
-    return EXIT_OK
+    return f"{size[0]}x{size[1]}"
+
+
+def _draw_film(session: "Session", options: argparse.Namespace, kind: str, length: float) -> str:
+    """Draw the last `length` [s] of a run; what was drawn."""
+    from sandbox.app.share.export import Excerpt, Export
+    from sandbox.app.share.film import film_of_view
+    from sandbox.app.share.kinds import KINDS, possible_size
+
+    size, fps = possible_size(options.size or FILM_SIZE, kind), options.fps or KINDS[kind].usual_fps
+    film = film_of_view(session, size, length)
+    export = Export(film, Excerpt(kind, 0.0, film.seconds, fps, size), options.output)
+    with Progress(100, "%") as bar, closing(export.slices()) as slices:
+        for done in slices:
+            bar.update(int(100 * done) - bar.done)
+    return f"{size[0]}x{size[1]}, {film.seconds:g} s of {fps:g} pictures a second"
 
 
 def _edit(options: argparse.Namespace) -> int:

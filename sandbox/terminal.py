@@ -13,6 +13,8 @@ from typing import Any, cast
 # Longest run [s] and picture side [pixels] that a person can mean; more is a slip of the finger.
 SECONDS_LIMIT = 1e6
 PIXEL_LIMIT = 16384
+# Most pictures a second that a film can use.
+RATE_LIMIT = 60.0
 # Most processes that a person can mean.
 PROCESS_LIMIT = 256
 # How long [s] a watch waits between two looks; where nothing has happened from one to the next, it says why.
@@ -35,6 +37,11 @@ def _number(low: float, high: float, text: str) -> float:
 def seconds(text: str) -> float:
     """A simulated time [s]."""
     return _number(0.0, SECONDS_LIMIT, text)
+
+
+def rate(text: str) -> float:
+    """Pictures a second."""
+    return _number(1.0, RATE_LIMIT, text)
 
 
 def scale(text: str) -> float:

@@ -9,7 +9,9 @@ import threading
 from contextlib import suppress
 from pathlib import Path
 
+import imageio_ffmpeg
 import pytest
+from PIL import Image, ImageSequence
 
 from sandbox.cli import main
 from sandbox.level.format.files import shipped_folder
@@ -198,12 +200,53 @@ def test_format_is_idempotent_and_schema_is_a_schema(rope, capsys):
     assert "properties" in json.loads(capsys.readouterr().out)
 
 
-def test_render_draws_a_picture_of_the_size_asked_for(rope, tmp_path):
+def test_render_draws_a_picture_of_the_size_asked_for(rope, tmp_path, capsys):
     picture = tmp_path / "out.png"
     assert main(["render", rope, "--seconds", "0.5", "--size", "320x200", "-o", str(picture)]) == 0
+    assert capsys.readouterr().out.startswith(f"{picture}: 320x200, ")
     data = picture.read_bytes()
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
     assert (int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")) == (320, 200)
+
+
+@pytest.mark.parametrize(("kind", "size", "fps"), [("gif", (161, 91), 10), ("mp4", (160, 90), 12)])
+def test_render_draws_a_film_of_the_length_size_and_rate_asked_for(kind, size, fps, rope, tmp_path, capsys):
+    film = tmp_path / f"out.{kind}"
+    options = ["--from", "0.5", "--seconds", "1", "--size", "161x91", "--fps", str(fps)]
+    assert main(["render", rope, *options, "-o", str(film)]) == 0
+    assert capsys.readouterr().out.startswith(f"{film}: {size[0]}x{size[1]}, 1 s of {fps} pictures a second, ")
+    assert sorted(path.name for path in tmp_path.iterdir()) == [film.name, "rope.json"]
+    if kind == "gif":
+        with Image.open(film) as gif:
+            frames = [frame.info["duration"] for frame in ImageSequence.Iterator(gif)]
+            assert (gif.size, len(frames), sum(frames)) == (size, fps, 1000)
+    else:
+        assert imageio_ffmpeg.count_frames_and_secs(str(film)) == (fps, 1.0)
+        assert next(imageio_ffmpeg.read_frames(str(film)))["source_size"] == size
+
+
+def test_a_film_that_is_interrupted_leaves_no_file_and_the_one_before_as_it_was(rope, tmp_path, monkeypatch):
+    film = tmp_path / "films" / "out.gif"
+    film.parent.mkdir()
+    film.write_bytes(b"before")
+    monkeypatch.setattr("sandbox.app.share.gif.GifWriter.close", interrupt)
+    assert main(["render", rope, "--seconds", "0.2", "--size", "64x36", "-o", str(film)]) == 130
+    assert [(path, path.read_bytes()) for path in film.parent.iterdir()] == [(film, b"before")]
+
+
+def interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize(("kind", "package"), [("gif", "Pillow"), ("mp4", "imageio-ffmpeg")])
+def test_without_the_extra_a_film_is_a_line_that_says_what_to_install_and_a_picture_is_drawn(
+    kind, package, rope, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert main(["render", rope, "-o", str(tmp_path / f"x.{kind}")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.endswith(f'{kind.upper()} needs {package}: pip install "spring-sandbox[export]"')
+    assert main(["render", rope, "-o", str(tmp_path / "x.png")]) == 0
 
 
 @pytest.mark.parametrize(
@@ -213,8 +256,11 @@ def test_render_draws_a_picture_of_the_size_asked_for(rope, tmp_path):
         ["format", "nowhere.json"], ["run", "rope", "--solver", "magic"], ["run", "rope", "--substeps", "3"],
         ["run", "rope", "--probe", "rope.1"], ["run", "rope", "--probe", "x.1", "-o", "x.csv"],
         ["run", "rope", "--ticks", "1", "--dump", "/nowhere/x"], ["run", "rope", "--commands", "/nowhere/x"],
-        ["run", "rope", "--record", "/nowhere/x"], ["render", "rope", "-o", "x.gif"],
-        ["render", "nowhere.json", "-o", "x.png"],
+        ["run", "rope", "--record", "/nowhere/x"], ["render", "rope", "-o", "x.jpg"],
+        ["render", "nowhere.json", "-o", "x.png"], ["render", "rope", "-o", "/nowhere/x.gif", "--seconds", "0.1"],
+        ["render", "rope", "-o", "/nowhere/x.mp4", "--seconds", "0.1"], ["render", "rope", "-o", "x.png", "--fps", "9"],
+        ["render", "rope", "-o", "x.png", "--from", "1"], ["render", "rope", "-o", "x.gif", "--fps", "55"],
+        ["render", "rope", "-o", "x.mp4", "--seconds", "0"],
     ],
 )  # fmt: skip
 def test_refusals_are_single_lines_and_exit_2(arguments, tmp_path, monkeypatch, capsys):
@@ -557,13 +603,16 @@ HEADLESS = """
 import sys
 from sandbox.cli import main
 code = main(sys.argv[1:])
+from sandbox.physics import jit
 print(*sorted(name for name in sys.modules if name.partition(".")[0] in ("sandbox", "pygame")), file=sys.stderr)
+print(*(f"kernel:{kernel.name}" for kernel in jit.entries() if not isinstance(kernel.held, jit.Entry)), file=sys.stderr)
 sys.exit(code)
 """
 
 
 def test_a_headless_run_loads_no_drawing_and_without_contacts_nothing_that_finds_or_solves_them(rope, tmp_path):
     def loaded(*arguments: str) -> set[str]:
+        """Modules that a run has loaded, and the kernels that it has made."""
         environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1]), "NUMBA_DISABLE_JIT": "1"}
         command = [sys.executable, "-c", HEADLESS, *arguments]
         run = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
@@ -583,4 +632,9 @@ def test_a_headless_run_loads_no_drawing_and_without_contacts_nothing_that_finds
     for modules in runs[:2]:
         # Which terrain a triangle that is about to turn over must not cross.
         assert contacts(modules) <= {"sandbox.physics.solvers.contact", "sandbox.physics.collision.terrain_clamp"}
+        # Nor anything of what parts folds, of triangles, joints and drives: none of these are there.
+        assert not modules & {"sandbox.physics.changing.freeing", "sandbox.physics.collision.parting"}
+        words = ("joint", "driving", "triangle", "constraint", "breaking", "dissect", "lowest_mode", "parallel")
+        made = {name for name in modules if name.startswith("kernel:")}
+        assert made and not {name for name in made if any(word in name for word in words)}
     assert len(contacts(loaded("run", str(touching), "--ticks", "2", "--solver", "direct"))) > 8

@@ -1,8 +1,12 @@
 import os
+import re
 import subprocess
 import sys
+import tomllib
 import zipfile
 from pathlib import Path
+
+from sandbox.app.share.kinds import KINDS
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -40,3 +44,15 @@ def test_an_installed_wheel_finds_its_levels_and_assets_from_another_folder(tmp_
     assert Path(file).is_relative_to(installed)
     assert int(levels) == len(list((ROOT / "levels").glob("*.json")))
     assert int(assets) == len(list((ROOT / "assets").iterdir()))
+
+
+def test_make_play_installs_what_gif_and_mp4_need_and_dev_contains_it():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    assert f"{project['name']}[export]" in extras["dev"]
+    packages = {re.split(r"[<>=]", needed)[0] for needed in extras["export"]}
+    assert packages == {kind.package for kind in KINDS.values() if kind.package}
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    recipe = makefile.split("$(VENV)/installed:")[1].split("\n\n")[0]
+    assert '--editable ".[export]"' in recipe
+    assert "play: $(VENV)/installed\n" in makefile

@@ -24,6 +24,8 @@ from sandbox.app.preparing import Preparation
 from sandbox.app.profile import Profile
 from sandbox.app.progress import RunProgress
 from sandbox.app.screen import Screen
+from sandbox.app.share.page import SharePage
+from sandbox.app.share.sharing import Sharing
 from sandbox.app.shortcuts import Mode
 from sandbox.app.start_request import StartRequest
 from sandbox.app.widgets.dialogs import show_lines
@@ -31,6 +33,8 @@ from sandbox.app.widgets.ui import Ui
 
 # How often the status figures and the window title change [s].
 FIGURES_EVERY = 0.5
+# While a run waits for kernels, more frames [1/s] would take time from what they wait for.
+WAITING_RATE = 20
 # A run that waits for kernels no longer than this [s] says nothing of it.
 WAIT_UNSEEN = 0.3
 
@@ -52,6 +56,8 @@ class App:
         self.files = FileActions(self)
         self.documents = DocumentActions(self)
         self.guide = Guide(self, self.documents)
+        self.sharing = Sharing(self)
+        self.share_page = SharePage(self, self.sharing)
         self._progress = RunProgress(self)
         self._own_actions = self._actions()
         self._figures = (0.0, 0.0)
@@ -170,6 +176,7 @@ class App:
             "smaller": lambda: self._rescale(1 / 1.125),
             "help": lambda: show_help(self.ui, self.mode, self.guide.begin),
             "tour": self.guide.begin,
+            "share": self.share_page.open,
             "quit": self.quit,
         }
 
@@ -196,6 +203,7 @@ class App:
         """Close the window; whatever ended the loop, a recording gets its last line."""
         if self.screen is not None:
             self.screen.leave()
+        self.sharing.close()
         self.documents.close()
         self.display.close()
         self._collector.close()
@@ -227,10 +235,13 @@ class App:
             if self.gallery is not None:
                 self.gallery.update(self.preparation.is_ready)
             self.guide.update(frame_time)
+            self.sharing.update(frame_time)
+            self.share_page.update()
             self.ui.update(frame_time)
-        self._draw()
-        with self.profile.part("flip"):
-            self.display.flip()
+        if not self.display.hidden:
+            self._draw()
+            with self.profile.part("flip"):
+                self.display.flip()
         spent = time.perf_counter() - started
         self.profile.milliseconds["frame"].append(1e3 * spent)
         self._count(frame_time, spent)
@@ -249,6 +260,7 @@ class App:
     def _switched(self) -> None:
         if self.play is not None:
             self.play.playback.session.world.drop_caches()
+        self.sharing.drop_caches()
 
     def _draw(self) -> None:
         surface = self.display.surface
@@ -259,11 +271,10 @@ class App:
         with self.profile.part("ui"):
             if self.screen is not None:
                 left = None if self.ui.has_sheet else self.screen.notices_left
-                legend = self.play is not None and self.mode == "play" and self.play.stage.renderer.lattice
-                parts = self.screen.status(*self._figures)
+                parts = self.sharing.status() + self.screen.status(*self._figures)
                 if not self.ready and self.mode == "edit":
                     parts.append(("preparing the physics", WARNING))
-                self.status.draw(surface, parts, self.ui.units[0], left, legend)
+                self.status.draw(surface, parts, self.ui.units[0], left)
             self.ui.draw(surface)
             self.guide.draw(surface)
             if (self.screen is None or self.ui.has_sheet) and not self.ui.shows_page:
@@ -302,12 +313,23 @@ class App:
         return " - ".join([*words, "Spring Sandbox"])
 
 
-def run_app(display: Display, wanted: StartRequest, profile: Profile, seconds: float | None = None) -> None:
-    """Show what is wanted in the window and run until it is closed, or for so many seconds."""
+def run_app(
+    display: Display,
+    wanted: StartRequest,
+    profile: Profile,
+    seconds: float | None = None,
+    show_progress: Callable[[], object] = lambda: None,
+) -> None:
+    """Show what is wanted in the window and run until it is closed, or for so many seconds.
+
+    show_progress: called now and then until there is something to show.
+    """
     app = App(display, profile)
+    show_progress()
     app.guide.may_offer = True
     app.open(wanted)
     app.documents.offer_recovery()
+    show_progress()
     clock = pygame.time.Clock()
     started = before = time.perf_counter()
     try:
@@ -319,7 +341,7 @@ def run_app(display: Display, wanted: StartRequest, profile: Profile, seconds: f
             profile.reached("the first page")
             if app.play is not None and app.play.playback.session.tick:
                 profile.reached("the first tick")
-            clock.tick(FRAME_RATE)
+            clock.tick(FRAME_RATE if app.ready or app.play is None else WAITING_RATE)
     finally:
         # Whatever ended the loop, a recording gets its last line.
         app.close()

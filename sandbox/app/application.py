@@ -8,6 +8,7 @@ from sandbox.app.display import Display
 from sandbox.app.edit.editing import Editing
 from sandbox.app.play.playback import Playback
 from sandbox.app.screen import Screen
+from sandbox.app.share.film import Film
 from sandbox.app.shortcuts import Mode
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.model import Level
@@ -21,6 +22,10 @@ class Run(Screen, Protocol):
     @property
     def playback(self) -> Playback:
         """The run."""
+        ...
+
+    def film(self, seconds: float) -> Film:
+        """Its last seconds [s], as it is seen now."""
         ...
 
 

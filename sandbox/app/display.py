@@ -56,6 +56,8 @@ class Display:
         self.surface = self.window.get_surface()
         self._shown_size = self.size
         self.fullscreen = False
+        # Whether nobody sees it, because it is minimised: then nothing is drawn.
+        self.hidden = False
         # A window in points of two pixels says so itself.
         ratio = self.pixel_ratio[1]
         self.scale = scale or (ratio if ratio > 1.0 else guess)

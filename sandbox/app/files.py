@@ -5,7 +5,7 @@ from pathlib import Path
 
 from sandbox.app.application import Application
 from sandbox.app.play.playback import Playback
-from sandbox.app.recordings import SUFFIX, chosen_path, free_path, plain_name, recordings_folder
+from sandbox.app.recordings import SUFFIX, chosen_path, free_path, move_new, plain_name, recordings_folder
 from sandbox.app.widgets.dialogs import ask
 from sandbox.level.faults.level_error import LevelError, one_line
 from sandbox.level.format.files import load_level, read_level
@@ -145,7 +145,7 @@ class FileActions:
             return None
         try:
             wanted = chosen_path(path.parent, typed)
-            _move(path, wanted)
+            move_new(path, wanted)
         except ValueError as error:
             return str(error)
         except OSError as error:
@@ -170,16 +170,3 @@ def _recording(path: Path) -> str:
 
 def _saved(path: Path) -> str:
     return f"Saved as {path}"
-
-
-def _move(path: Path, wanted: Path) -> None:
-    """Give a file another name, never that of a file that is there. Raises OSError."""
-    try:
-        # A link appears only where nothing is yet: no other program's file is lost in between.
-        os.link(path, wanted)
-    except FileExistsError:
-        raise
-    except (OSError, NotImplementedError):  # a file system without links
-        path.rename(wanted)
-    else:
-        path.unlink()

@@ -19,6 +19,8 @@ REPEATED = (
 )  # fmt: skip
 # Actions that lay the widgets out anew, which keeps what is being typed; they work over a page, too.
 LAYOUT = ("fullscreen", "larger", "smaller")
+HIDING = (pygame.WINDOWMINIMIZED, pygame.WINDOWHIDDEN)
+SHOWING = (pygame.WINDOWRESTORED, pygame.WINDOWSHOWN, pygame.WINDOWEXPOSED, pygame.WINDOWMAXIMIZED)
 ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, 1), pygame.K_DOWN: (0, -1)}
 
 Pixel = tuple[float, float]
@@ -49,6 +51,10 @@ class Input:
                 self.app.quit()
             elif event.type == pygame.DROPFILE:
                 self.app.files.open_path(event.file)
+            elif event.type in HIDING:
+                self.app.display.hidden = True
+            elif event.type in SHOWING:
+                self.app.display.hidden = False
             elif event.type == pygame.WINDOWFOCUSGAINED:
                 self.app.documents.look_at_disk()
             elif self._follows_world(event) or not self.app.ui.process(event):

@@ -3,22 +3,22 @@
 Nothing that is imported here needs numpy, numba, pydantic or pygame_gui.
 """
 
-import io
+import contextlib
 import math
 import threading
 import time
 from collections.abc import Callable
-from importlib.util import find_spec
-from pathlib import Path
 
 import pygame
 
 from sandbox.app.display import Display
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, MUTED, TEXT, mixed
-from sandbox.app.loop import FRAME_RATE
 from sandbox.app.profile import Profile
 from sandbox.app.start_request import StartRequest
+from sandbox.app.widgets.fonts import plain_font
 
+# Pictures a second until the app is there: more of them would take a quarter of the time from what they wait for.
+START_RATE = 20
 CLOSING = (pygame.QUIT, pygame.WINDOWCLOSE)
 # Sizes in layout units.
 TITLE_SIZE, LINE_SIZE = 30, 14
@@ -37,8 +37,8 @@ class _Work(threading.Thread):
         try:
             from sandbox.physics import jit
 
-            # A process that has kernels already goes on with them.
-            if not jit.KERNELS:
+            # A process that has compiled kernels already goes on with them.
+            with contextlib.suppress(RuntimeError):
                 jit.start_interpreted()
             import sandbox.app.app  # noqa: F401
 
@@ -50,16 +50,23 @@ class _Work(threading.Thread):
 class _StartPicture:
     """The name of the program, and a ring that turns."""
 
-    def __init__(self, scale: float) -> None:
-        self._scale = scale
-        self._title = self._written("NotoSans-Bold.ttf", TITLE_SIZE, "Spring Sandbox", TEXT)
-        self._line = self._written("NotoSans-Regular.ttf", LINE_SIZE, "Starting", MUTED)
+    def __init__(self, display: Display, times: Profile) -> None:
+        self._display, self._times, self._scale = display, times, display.scale
+        self._began = time.perf_counter()
+        self._title = self._written(True, TITLE_SIZE, "Spring Sandbox", TEXT)
+        self._line = self._written(False, LINE_SIZE, "Starting", MUTED)
 
-    def _written(self, font: str, size: int, text: str, colour: tuple[int, int, int]) -> pygame.Surface:
-        return _font(font, round(size * self._scale)).render(text, True, colour)
+    def _written(self, bold: bool, size: int, text: str, colour: tuple[int, int, int]) -> pygame.Surface:
+        return plain_font(round(size * self._scale), bold).render(text, True, colour)
 
-    def draw(self, surface: pygame.Surface, seconds: float) -> None:
-        """Draw the picture of a moment."""
+    def show(self) -> None:
+        """Show the picture of this moment."""
+        with self._times.part("frame"):
+            self._draw(self._display.surface, time.perf_counter() - self._began)
+            self._display.flip()
+        self._times.shown()
+
+    def _draw(self, surface: pygame.Surface, seconds: float) -> None:
         surface.fill(BACKGROUND)
         middle, y = surface.get_width() // 2, surface.get_height() // 2
         surface.blit(self._title, self._title.get_rect(midbottom=(middle, y - round(30 * self._scale))))
@@ -69,14 +76,6 @@ class _StartPicture:
             age = (dot / 10 - seconds * 0.9) % 1.0
             at = middle + math.cos(turn) * 16 * self._scale, y + math.sin(turn) * 16 * self._scale
             pygame.draw.aacircle(surface, mixed(LINE, ACCENT, age), at, 3 * self._scale)
-
-
-def _font(name: str, size: int) -> pygame.font.Font:
-    """The widgets' font, found without importing the library that brings it."""
-    library = find_spec("pygame_gui")
-    if library is None or library.origin is None:
-        return pygame.font.Font(None, size)
-    return pygame.font.Font(io.BytesIO((Path(library.origin).parent / "data" / name).read_bytes()), size)
 
 
 def open_app(
@@ -90,8 +89,9 @@ def open_app(
     began = time.perf_counter()
     times = Profile()
     display = Display(scale)
+    words = _StartPicture(display, times)
     try:
-        wanted = _wait(display, times, _Work(find))
+        wanted = _wait(display, words, times, _Work(find))
     except BaseException:
         display.close()
         raise
@@ -100,31 +100,27 @@ def open_app(
         return 0
     from sandbox.app.app import run_app
 
-    run_app(display, wanted, times, seconds)
+    run_app(display, wanted, times, seconds, words.show)
     if profile:
         print(times.table(began))
     return 0
 
 
-def _wait(display: Display, times: Profile, work: _Work) -> StartRequest | None:
+def _wait(display: Display, words: _StartPicture, times: Profile, work: _Work) -> StartRequest | None:
     """Show words until the work is done; None where the window was closed."""
-    words, clock = _StartPicture(display.scale), pygame.time.Clock()
-    began = time.perf_counter()
+    clock = pygame.time.Clock()
     while True:
-        with times.part("frame"):
-            # Keys and clicks stay in the queue, for the app.
-            if pygame.event.get(CLOSING):
-                return None
-            display.refresh()
-            words.draw(display.surface, time.perf_counter() - began)
-            display.flip()
-        times.shown()
+        # Keys and clicks stay in the queue, for the app.
+        if pygame.event.get(CLOSING):
+            return None
+        display.refresh()
+        words.show()
         if work.ident is None:
             times.reached("words in the window")
             work.start()
         if not work.is_alive():
             break
-        clock.tick(FRAME_RATE)
+        clock.tick(START_RATE)
     if work.error is not None:
         raise work.error
     return work.wanted

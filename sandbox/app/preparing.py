@@ -39,7 +39,9 @@ class Preparation:
         """Go on a step, between two ticks of the run of a level; contacts: one in which things touch."""
         self._has_contacts = contacts
         self._wants_contacts = self._wants_contacts or contacts
-        if level is not None and not jit.COMPILED and (self._pace is None or self._pace.level is not level):
+        # Where kernels are only to be loaded, they are there before a trial with contacts is over.
+        is_worth_it = not jit.COMPILED and (self._crew is not None or not contacts)
+        if level is not None and is_worth_it and (self._pace is None or self._pace.level is not level):
             self._pace = Pace(level)
             self._trials.append(self._pace)
         next(self._steps, None)
@@ -77,6 +79,8 @@ class Preparation:
     def _prepare(self) -> Iterator[None]:
         if not jit.COMPILED:
             yield from self._compile()
+            while self._is_tried_out:
+                yield
             yield from self._on_thread(_import_numba)
             while not self._may_switch():
                 yield
@@ -96,11 +100,18 @@ class Preparation:
 
     def _compile(self) -> Iterator[None]:
         """Let children compile, until all is there that the run on the screen needs."""
-        if is_prepared():
-            return
-        self._crew = Crew(usual_processes())
-        while not self._crew.has(GROUPS if self._has_contacts else GROUPS[:1]):
+        yield from self._on_thread(self._hire)
+        while self._crew is not None and not self._crew.has(GROUPS if self._has_contacts else GROUPS[:1]):
             yield
+
+    def _hire(self) -> None:
+        if not is_prepared():
+            self._crew = Crew(usual_processes())
+
+    @property
+    def _is_tried_out(self) -> bool:
+        """Whether a run is about to begin interpreted, unless what is done beside it holds it up."""
+        return self._pace is not None and not self._has_contacts and not self._pace.is_known
 
     def _may_switch(self) -> bool:
         """Whether no trial is in the midst of a tick."""

@@ -1,5 +1,6 @@
-"""Recordings: the folder that they are kept in, and names that overwrite nothing."""
+"""Recordings, and pictures of runs: the folders that they are kept in, and names that overwrite nothing."""
 
+import os
 import re
 from pathlib import Path
 
@@ -19,6 +20,13 @@ def recordings_folder() -> Path:
     return folder
 
 
+def pictures_folder() -> Path:
+    """The folder of what the person shares, made where it is missing. Raises OSError."""
+    folder = Path(platformdirs.user_pictures_dir()) / "Spring Sandbox"
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
 def saved_recordings() -> list[Path]:
     """Recordings in the folder, newest first."""
     try:
@@ -33,26 +41,39 @@ def plain_name(text: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:60] or "run"
 
 
-def free_path(folder: Path, name: str) -> Path:
+def free_path(folder: Path, name: str, suffix: str = SUFFIX) -> Path:
     """A path in the folder that nothing has: name, then name-2, name-3, ..."""
     count = 1
     while True:
-        path = folder / f"{name if count == 1 else f'{name}-{count}'}{SUFFIX}"
+        path = folder / f"{name if count == 1 else f'{name}-{count}'}{suffix}"
         if not path.exists():
             return path
         count += 1
 
 
-def chosen_path(folder: Path, typed: str) -> Path:
+def chosen_path(folder: Path, typed: str, suffix: str = SUFFIX) -> Path:
     """The path for a name that was typed. Raises ValueError with one line where it cannot be used."""
-    name = typed.removesuffix(SUFFIX).strip()
+    name = typed.removesuffix(suffix).strip()
     if not name:
         raise ValueError("Type a name.")
     if len(name) > NAME_LIMIT or re.search(r'[\\/:*?"<>|\x00-\x1f]', name) or name.startswith("."):
         raise ValueError(
             'A name has no / \\ : * ? " < > | in it, does not begin with a dot and is not longer than 120.'
         )
-    path = folder / f"{name}{SUFFIX}"
+    path = folder / f"{name}{suffix}"
     if path.exists():
         raise ValueError(f"{path.name} exists already. Choose another name.")
     return path
+
+
+def move_new(path: Path, wanted: Path) -> None:
+    """Give a file another name, never that of a file that is there. Raises OSError."""
+    try:
+        # A link appears only where nothing is yet: no other program's file is lost in between.
+        os.link(path, wanted)
+    except FileExistsError:
+        raise
+    except (OSError, NotImplementedError):  # a file system without links
+        path.rename(wanted)
+    else:
+        path.unlink()

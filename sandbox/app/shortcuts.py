@@ -48,7 +48,12 @@ SHORTCUTS = (
     Shortcut("tool_freeze", ("I",), "Freeze or thaw a body", "Parts", "play"),
     Shortcut("", ("Wheel", "+", "-"), "With a part or push: larger, smaller", "Parts", "play"),
     Shortcut("", ("Shift+click",), "Keep hold of a particle; a click lets go", "Tools", "play"),
-    Shortcut("lattice", ("L",), "Show springs by their strain, or things as they look", "View", "play"),
+    Shortcut("lattice", ("L",), "Lattice: springs, coloured by their strain", "View", "play"),
+    Shortcut("particles", ("F3",), "Particles", "View", "play"),
+    Shortcut("contacts", ("F4",), "Contact points and their normals", "View", "play"),
+    Shortcut("forces", ("F5",), "Forces of springs and contacts", "View", "play"),
+    Shortcut("velocities", ("F6",), "Velocities", "View", "play"),
+    Shortcut("stability", ("F7",), "Stability: how near springs are to the limit", "View", "play"),
     Shortcut("let_go", ("Escape",), "Let go of everything; back to the hand", "Tools", "play"),
     Shortcut("hand", ("T",), "Hand: gentle, normal or strong", "Tools", "play"),
     Shortcut("free", ("J",), "Free it: what is stuck in something", "Tools", "play"),
@@ -121,6 +126,7 @@ SHORTCUTS = (
     Shortcut("smaller", ("Ctrl+-",), "Smaller widgets", "View"),
     Shortcut("gallery", ("G",), "Levels", "Files", "play"),
     Shortcut("open", ("Ctrl+O",), "Open a level or replay; or drop its file here", "Files", "play"),
+    Shortcut("share", ("F12",), "Share the last ten seconds: GIF, MP4 or PNG", "Files", "play"),
     Shortcut("record", ("Ctrl+R",), "Start or stop recording", "Files", "play"),
     Shortcut("save", ("Ctrl+S",), "Save the run so far as a replay", "Files", "play"),
     Shortcut("recordings", ("Ctrl+L",), "Saved replays", "Files", "play"),
@@ -138,9 +144,10 @@ SHORTCUTS = (
 
 _NAMES = {
     "Escape": pygame.K_ESCAPE, "Space": pygame.K_SPACE, "Enter": pygame.K_RETURN, "Home": pygame.K_HOME,
-    "F1": pygame.K_F1, "F10": pygame.K_F10, "F11": pygame.K_F11, ".": pygame.K_PERIOD, "+": pygame.K_PLUS,
-    "-": pygame.K_MINUS, "=": pygame.K_EQUALS, "Delete": pygame.K_DELETE, "Backspace": pygame.K_BACKSPACE,
-    "PageUp": pygame.K_PAGEUP, "PageDown": pygame.K_PAGEDOWN, "Tab": pygame.K_TAB,
+    **{f"F{number}": pygame.K_F1 + number - 1 for number in range(1, 13)},
+    ".": pygame.K_PERIOD, "+": pygame.K_PLUS, "-": pygame.K_MINUS, "=": pygame.K_EQUALS,
+    "Delete": pygame.K_DELETE, "Backspace": pygame.K_BACKSPACE, "PageUp": pygame.K_PAGEUP,
+    "PageDown": pygame.K_PAGEDOWN, "Tab": pygame.K_TAB,
 }  # fmt: skip
 _TWINS = {
     pygame.K_KP_ENTER: pygame.K_RETURN, pygame.K_KP_PLUS: pygame.K_PLUS, pygame.K_KP_MINUS: pygame.K_MINUS,

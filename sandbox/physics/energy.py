@@ -3,25 +3,61 @@
 import numpy as np
 
 from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, constraint_values
+from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
+from sandbox.physics.substeps import constraint_coefficients, halve, substep_time
 from sandbox.physics.world import GRAB_MATERIAL, LAW_HOOKE, TRIANGLE, Floats, World
 
 # The energy of what blew up is inf or NaN, and no fault.
 _unbounded = np.errstate(over="ignore", invalid="ignore")
 
 
-def reduced_masses(world: World) -> Floats:
+def reduced_masses(world: World | Snapshot) -> Floats:
     """Reduced mass [kg] of every spring (m,); 0 where both ends are pinned."""
     total = world.inverse_mass[world.particle_a] + world.inverse_mass[world.particle_b]
     return np.divide(1.0, total, out=np.zeros_like(total), where=total > 0.0)
 
 
 @_unbounded
-def spring_lengths(world: World) -> Floats:
+def spring_lengths(world: World | Snapshot) -> Floats:
     """Present length [m] of every spring (m,)."""
     separation = world.position[world.particle_b] - world.position[world.particle_a]
     return np.sqrt(np.sum(separation * separation, axis=1))
+
+
+def _spring_constants(state: World | Snapshot) -> Floats:
+    """k [N/m] of every spring (m,), as the solver gives it to them."""
+    stiffness, damping = _halved_coefficients(state)
+    h = substep_time(state.settings)
+    nissen = SOLVERS[state.settings.solver].spring_constant(stiffness, damping, reduced_masses(state), h)
+    return np.where(state.law == LAW_HOOKE, state.hooke_stiffness, nissen)
+
+
+def _halved_coefficients(state: World | Snapshot) -> tuple[Floats, Floats]:
+    stiffness, damping = state.stiffness.copy(), state.damping.copy()
+    halve(stiffness, damping, state.lowest_mode, state.settings.fewest_substeps)
+    return stiffness, damping
+
+
+@_unbounded
+def spring_forces(state: World | Snapshot) -> Floats:
+    """Force [N] of every spring (m,) as the next step begins, above 0: it pulls; 0 where inactive, and of the grabs'.
+
+    F = k x + c u, with the speed u at which the ends part once gravity has acted. Where the solver bounds the energy
+    it is k x alone: its k has the damping in it.
+    """
+    constant, h = _spring_constants(state), substep_time(state.settings)
+    separation = state.position[state.particle_b] - state.position[state.particle_a]
+    length = spring_lengths(state)
+    force = constant * (length - state.rest_length)
+    if not SOLVERS[state.settings.solver].bounded:
+        falling = np.where(state.inverse_mass > 0.0, state.gravity_scale * h, 0.0)[:, None] * state.settings.gravity
+        velocity = state.velocity + falling
+        parting = np.sum((velocity[state.particle_b] - velocity[state.particle_a]) * separation, axis=1)
+        speed = np.divide(parting, length, out=np.zeros_like(length), where=length > 0.0)
+        nissen = _halved_coefficients(state)[1] * reduced_masses(state) / h
+        force = force + np.where(state.law == LAW_HOOKE, state.hooke_damping, nissen) * speed
+    return np.where(state.spring_active & (state.material != GRAB_MATERIAL), force, 0.0)
 
 
 @_unbounded
@@ -41,11 +77,8 @@ def spring_energy(world: World) -> float:
 
     With substeps "auto" that is the k of a tick in one part, however many parts the last tick had.
     """
-    h = substep_time(world.settings)
-    stiffness, damping = substep_coefficients(world)
-    nissen = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, reduced_masses(world), h)
-    constant = np.where(world.law == LAW_HOOKE, world.hooke_stiffness, nissen)
     error = spring_lengths(world) - world.rest_length
+    constant = _spring_constants(world)
     springs = np.sum((constant * error * error)[world.spring_active & (world.material != GRAB_MATERIAL)])
     return float(0.5 * springs) + (float(np.sum(constraint_energies(world))) if world.constraint_count else 0.0)
 

@@ -196,6 +196,17 @@ def spring_loads(world: World) -> Floats:
     return summed if summed.max() < counted.max() else counted
 
 
+def stability_shares(world: World) -> Floats:
+    """How near each spring (m,) is to the limit of what is proven stable: 1 = at it, more = beyond.
+
+    Under a solver without a proven limit, to that of the single pass. Under one that bounds the energy no spring is
+    beyond: 1 where Cs is above Cd, so that the bound is four times the energy, else 0.
+    """
+    if SOLVERS[world.settings.solver].bounded:
+        return np.where(_working(world) & (world.law != LAW_HOOKE) & (world.stiffness > world.damping), 1.0, 0.0)
+    return spring_loads(world)[: world.spring_count] / BOUND
+
+
 def _particles_of(world: World, slot: int) -> NDArray[np.int32]:
     """Particles that a spring, or the constraint after the springs, joins."""
     if slot < world.spring_count:

@@ -102,7 +102,7 @@ class StateArrays:
     gravity_scale = _array("gravity_scale", P, F64, "1", "how many times the world's gravity pulls at it", guarded=True)
     particle_active = _array("particle_active", P, BOOL, "", "whether its slot is in use", topology=True)
     slow_velocity = _array("slow_velocity", P, F64, "m/s", "the slow part of the velocity, for the direct solver", width=2)
-    energy_bank = _array("energy_bank", P, F64, "J", "what a body's earlier losses still allow it, at its free particle of lowest slot; -1: to be begun anew")
+    energy_bank = _array("energy_bank", P, F64, "J", "what a body's earlier losses still allow it, at its free particle of lowest slot; -1: to be begun anew, -2: with nothing")
     friction = _array("friction", P, F64, "1", "of two that touch the geometric mean counts", guarded=True)
     restitution = _array("restitution", P, F64, "1", "of two that touch the larger counts", guarded=True)
     owner = _array("owner", P, I32, "", "the body that it belongs to, negative: its own", topology=True)

@@ -21,6 +21,8 @@ Derived = TypeVar("Derived")
 
 # An energy bank that the direct solver begins anew at its next step: something outside changed the body.
 BANK_UNOPENED = -1.0
+# One of a body that goes on, but has nothing any more.
+BANK_EMPTIED = -2.0
 
 # The last is of a grab's spring while it holds: it pulls at nothing, its hand does (joints/hands.py).
 LAW_NISSEN, LAW_HOOKE, LAW_HAND = range(3)
@@ -28,6 +30,7 @@ LAW_NISSEN, LAW_HOOKE, LAW_HAND = range(3)
 # How many particles can be held at once. A grab is a pinned cursor particle and one spring, in slots reserved when
 # the world is built, so that grabbing never moves another slot.
 GRAB_COUNT = 10
+_GRAB_NAMES = [f"+hand.{grab}" for grab in range(GRAB_COUNT)]
 # The material index of a grab's spring: of no material, so that no slider reaches it.
 GRAB_MATERIAL = -1
 # Cs and Cd of a grab's spring, which nothing reads; hashes hold them.
@@ -450,12 +453,11 @@ class World(StateArrays):
         """Reserve the slots of all grabs, inactive; done once, when the world is built."""
         if self.grab_particle >= 0 or self.particle_count == 0:
             return
-        names = _grab_names()
-        self.grab_particle = self.add_particles(names, np.zeros((GRAB_COUNT, 2)), pinned=True, radius=0.0)
+        self.grab_particle = self.add_particles(_GRAB_NAMES, np.zeros((GRAB_COUNT, 2)), pinned=True, radius=0.0)
         held = np.zeros(GRAB_COUNT, dtype=np.int64)
         cursors = self.grab_particle + np.arange(GRAB_COUNT)
         self.grab_spring = self.add_springs(
-            names,
+            _GRAB_NAMES,
             cursors,
             held,
             rest_length=0.0,
@@ -564,9 +566,10 @@ class World(StateArrays):
             self.velocity[self.grab_particle : self.grab_particle + GRAB_COUNT] = 0.0
 
     def release(self, grab: int) -> None:
-        """Let go; the grab's slots wait for its next use."""
+        """Let go; the grab's slots wait for its next use. Nothing spends what a hand's work has put into banks."""
         cursor, spring = self.grab_particle + grab, self.grab_spring + grab
         self.change("particle_active", False, cursor)
+        self.energy_bank[self.energy_bank > 0.0] = BANK_EMPTIED
         self.disturb(self.particle_b[spring])
         self.position[cursor] = 0.0
         self.velocity[cursor] = 0.0
@@ -584,16 +587,12 @@ class World(StateArrays):
 
     def name_grabs(self) -> None:
         """Name the grabs' slots, where a restored state brought them along."""
-        self.name_slots(_grab_names(), _grab_names())
+        self.name_slots(_GRAB_NAMES, _GRAB_NAMES)
 
     def forget_names_beyond(self, particle_count: int, spring_count: int) -> None:
         """Drop the names of slots that a restored state does not have."""
         self.particle_naming.forget_beyond(particle_count)
         self.spring_naming.forget_beyond(spring_count)
-
-
-def _grab_names() -> list[str]:
-    return [f"+hand.{grab}" for grab in range(GRAB_COUNT)]
 
 
 def _collides(world: World) -> bool:

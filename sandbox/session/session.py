@@ -3,7 +3,7 @@
 import bisect
 from collections import deque
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -197,6 +197,22 @@ class Session:
             raise ValueError("stop the recording before going back in time")
         self._rewind(tick, tick)
 
+    def retold(self, tick: int) -> "Session":
+        """A run of its own with the same history, at the last keyframe at or before a tick; `advance` follows it from
+        there to the last tick. Neither run changes the other.
+        """
+        first = self._keyframe_before(tick)
+        twin = Session(self.level, start=first.snapshot)
+        twin._keyframes = [kept for kept in self._keyframes if kept.order >= first.order]
+        twin._take_over([replace(entry) for entry in self._timeline if entry.order >= first.order])
+        twin._next_order, twin._last_tick = self._next_order, self._last_tick
+        twin._follow(0, first.tick)
+        return twin
+
+    def keyframes(self, first: int, last: int) -> list[Snapshot]:
+        """The states of ticks first..last that are kept, a few each second or less."""
+        return [kept.snapshot for kept in self._keyframes if first <= kept.tick <= last]
+
     def record_to(self, path: Path, state_ticks: int = STATE_TICKS) -> None:
         """Record this run to a file, from the level's start: what was played until now is played again into it.
 
@@ -355,11 +371,14 @@ class Session:
 
     def _rewind(self, back_to: int, tick: int) -> None:
         """Restore the last keyframe at or before a tick and follow history to another."""
-        keyframe = next(kept for kept in reversed(self._keyframes) if kept.tick <= back_to)
+        keyframe = self._keyframe_before(back_to)
         restore(self.world, keyframe.snapshot)
         self._unkept = 0
         name_added(self.world)
         self._follow(bisect.bisect_left(self._timeline, keyframe.order, key=_order), tick)
+
+    def _keyframe_before(self, tick: int) -> Keyframe:
+        return next(kept for kept in reversed(self._keyframes) if kept.tick <= tick)
 
     def _first_of(self, tick: int) -> int:
         """Where in history the commands of a tick begin."""
@@ -392,19 +411,21 @@ class Session:
         """Make the present tick the end of history, after `seek` went back."""
         if self.tick == self._last_tick:
             return
-        self._timeline = [entry for entry in self._timeline if entry.tick <= self.tick and entry.in_effect]
-        self._log = list(self._timeline)
-        self._entries = {}
-        for entry in self._timeline:
-            entry.implied = False
-            self._entries.setdefault(entry.gesture, []).append(entry)
-        self._done = list(self._entries)
+        self._take_over([entry for entry in self._timeline if entry.tick <= self.tick and entry.in_effect])
         self._undone.clear()
         self._hindered.clear()
         self._redoable.clear()
         self._keyframes = [keyframe for keyframe in self._keyframes if keyframe.tick <= self.tick]
         self._last_tick = self.tick
         self._scripted = None
+
+    def _take_over(self, history: list[LogEntry]) -> None:
+        """Make these entries all that ever was."""
+        self._timeline, self._log, self._entries = history, list(history), {}
+        for entry in history:
+            entry.implied = False
+            self._entries.setdefault(entry.gesture, []).append(entry)
+        self._done = list(self._entries)
 
     def _step(self, order: int) -> None:
         """One tick; order: of the next command to come."""
@@ -418,7 +439,9 @@ class Session:
     def _keep_between(self, order: int) -> None:
         """Keep the state after a command where enough of this tick have been applied; order: of the next to come."""
         self._unkept += 1
-        if self._unkept >= KEYFRAME_COMMANDS + COMMANDS_PER_PARTICLE * self.world.particle_count:
+        enough = KEYFRAME_COMMANDS + COMMANDS_PER_PARTICLE * self.world.particle_count
+        # In the past that `seek` reached, later ones are kept already.
+        if self._unkept >= enough and self._keyframes[-1].order < order:
             self._keep(Keyframe(order, take(self.world), between=True))
 
     def _keep(self, keyframe: Keyframe) -> None:

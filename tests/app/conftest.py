@@ -165,6 +165,7 @@ def documents(tmp_path, monkeypatch):
         "sandbox.editor.storage.level_file.platformdirs.user_data_dir", lambda *_, **__: str(tmp_path / "data")
     )
     monkeypatch.setattr("sandbox.app.recordings.platformdirs.user_documents_dir", lambda: str(tmp_path))
+    monkeypatch.setattr("sandbox.app.recordings.platformdirs.user_pictures_dir", lambda: str(tmp_path / "pictures"))
     monkeypatch.setattr(
         "sandbox.app.picture_cache.platformdirs.user_cache_dir", lambda *_, **__: str(tmp_path / "cache")
     )

@@ -32,6 +32,10 @@ class FakePace:
     def __init__(self, level):
         self.level, self.holds, self.is_over = level, False, False
 
+    @property
+    def is_known(self):
+        return self.is_over
+
     def end(self):
         return self.is_over
 
@@ -131,6 +135,23 @@ def test_where_children_fail_this_process_compiles_and_nothing_is_noted(start):
     assert start.loaded == ["basics", "contacts"] and start.noted == 0
 
 
+def test_no_trial_with_contacts_holds_up_kernels_that_are_only_to_be_loaded(start, monkeypatch):
+    monkeypatch.setattr(preparing, "is_prepared", lambda: True)
+    steps(start, small_level(contacts={}), contacts=True)
+    assert start.paces == [] and start.loaded == ["basics", "contacts"]
+
+
+def test_a_trial_without_contacts_is_over_before_numba_takes_its_time(start, monkeypatch):
+    monkeypatch.setattr(preparing, "is_prepared", lambda: True)
+    monkeypatch.setattr(preparing, "_import_numba", lambda: start.loaded.append("numba"))
+    level = small_level()
+    steps(start, level)
+    assert start.loaded == []
+    start.paces[0].is_over = True
+    steps(start, level)
+    assert start.loaded == ["numba", "basics"]
+
+
 def test_when_all_is_compiled_it_is_noted_for_the_next_start(start):
     start.crew.there.update(("basics", "contacts"))
     steps(start, contacts=True)
@@ -139,8 +160,10 @@ def test_when_all_is_compiled_it_is_noted_for_the_next_start(start):
 
 def test_without_numba_every_level_is_played_as_it_is(start):
     start.can_compile = False
+    level = small_level(contacts={})
+    steps(start, level, contacts=True)
     start.crew.there.update(("basics", "contacts"))
-    steps(start, small_level(contacts={}), contacts=True)
+    steps(start, level, contacts=True)
     assert not start.preparation.may_play(True)
     start.paces[0].is_over = True
     steps(start, start.paces[0].level, contacts=True)

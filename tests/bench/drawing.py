@@ -15,7 +15,7 @@ import pygame
 
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.picture import view_of
-from sandbox.app.draw.renderer import Renderer
+from sandbox.app.draw.renderer import Overlay, Renderer
 from sandbox.level.format.files import read_level, shipped_levels
 from sandbox.session.session import Session
 
@@ -36,8 +36,10 @@ def frame_times(path):
         if tick < level.settings.tick_rate:
             continue
         now = session.snapshot()
+        # A cursor far away that moves: a world at rest would not be drawn again.
+        overlay = Overlay(cursor=(1e6 + tick, 0.0))
         start = time.thread_time()
-        renderer.draw(surface, camera, before, now, 0.5)
+        renderer.draw(surface, camera, before, now, 0.5, overlay)
         times.append(1e3 * (time.thread_time() - start))
         before = now
     return np.array(times[WARM_UP:])

@@ -1,4 +1,5 @@
-"""How the app starts: when there are words, the first page and the first tick, and how long the window stands still.
+"""How programs start: what commands take, when the app has words, the first page and the first tick, and how long its
+window stands still; and what compiling everything takes.
 
 Wall time counts what else the machine does; processor time is that of the app alone, its children not among it.
 """
@@ -8,8 +9,15 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+# What is started again and again, with filled caches; the median is of so many starts.
+COMMANDS = (
+    ("--help",), ("check", "rope"), ("check", "dominoes"), ("run", "rope", "--seconds", "5", "--json"),
+    ("run", "dominoes", "--seconds", "1", "--json"),
+)  # fmt: skip
+STARTS = 7
 ROOT = Path(__file__).resolve().parents[2]
 SECONDS = 4.0
 PROGRAM = """
@@ -22,8 +30,8 @@ def reached(profile, what):
         print(f"  {what}: {time.perf_counter() - began:.2f} s, {time.process_time():.2f} s of processor time")
     plain(profile, what)
 Profile.reached = reached
-from sandbox.cli import main
-main(sys.argv[1:])
+from sandbox.cli import program
+program()
 """
 
 
@@ -40,16 +48,29 @@ def start(*arguments: str, cache: str) -> None:
     print("\n".join(kept))
 
 
+def spent(arguments: Sequence[str], environment: Mapping[str, str]) -> float:
+    """Processor time [s] of a command and of the processes that it starts."""
+    before = os.times()
+    command = [sys.executable, "-m", "sandbox", *arguments]
+    subprocess.run(command, cwd=ROOT, env=environment, check=True, stdout=subprocess.DEVNULL)
+    after = os.times()
+    return after.children_user + after.children_system - before.children_user - before.children_system
+
+
 def main() -> None:
-    """Start with empty caches, then with filled ones."""
+    """Compile everything, start with filled caches, then with empty ones, whose compiling goes on behind the last."""
     with tempfile.TemporaryDirectory() as cache:
-        for arguments in ((), ("rope",)):
-            print("empty caches:", *arguments)
-            start(*arguments, cache=cache)
         environment = {**os.environ, "NUMBA_CACHE_DIR": cache, "XDG_CACHE_HOME": cache}
-        subprocess.run([sys.executable, "-m", "sandbox", "prepare"], cwd=ROOT, env=environment, check=True)
+        print(f"compiling everything: {spent(['prepare', '--processes', '2'], environment):.0f} s of processor time")
+        for command in COMMANDS:
+            times = sorted(spent(command, environment) for _ in range(STARTS))
+            print(*command, f"- {times[STARTS // 2]:.2f} s of processor time, at least {times[0]:.2f}")
         for arguments in ((), ("rope",), ("dominoes",)):
             print("filled caches:", *arguments)
+            start(*arguments, cache=cache)
+    for arguments in ((), ("rope",)):
+        with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as cache:
+            print("empty caches:", *arguments)
             start(*arguments, cache=cache)
 
 

@@ -251,13 +251,13 @@ def test_a_drive_is_added_with_values_that_fit_changed_and_taken_away(level):
     assert "motor.speed" not in fields(document)
     driven = fields(document)["motor"].set(document, True)
     motor = body(driven, "wheel").motor
-    # Half the weight of 13 particles at a radius of 2 m.
-    assert (motor.speed, motor.torque, motor.key) == (3.0, 128.0, None)
+    # Twice what lifts 13 particles over the corners of 6 segments, at a radius of 2 m.
+    assert (motor.speed, motor.torque, motor.key) == (3.0, 255.0, None)
     driven = changed(driven, "motor.speed", "-5")
     driven = changed(driven, "motor.key", "d")
     driven = changed(driven, "motor.reverse_key", "a")
     assert body(driven, "wheel").motor.__dict__ == {
-        "key": "d", "reverse_key": "a", "speed": -5.0, "torque": 128.0,
+        "key": "d", "reverse_key": "a", "speed": -5.0, "torque": 255.0,
     }  # fmt: skip
     with pytest.raises(EditError, match=r'"wheel": motor\.reverse_key: "d" is the key as well; name another'):
         changed(driven, "motor.reverse_key", "d")

@@ -1,11 +1,14 @@
 """The axle and the chassis tool: what a drag adds, what holds it, and that it drives, carries and turns."""
 
+import json
 import math
 
 import numpy as np
 import pytest
 
 from sandbox.editor.document import Document, empty_level
+from sandbox.editor.edits.additions import add_object
+from sandbox.editor.items import Item
 from sandbox.editor.scene import make_scene
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import snap
@@ -84,6 +87,16 @@ def test_a_drag_beside_a_body_hangs_the_hub_on_three_of_its_particles(empty):
     # Two of them stand apart enough to hold it either way.
     assert max(abs(a[0] * b[1] - a[1] * b[0]) / math.hypot(*a) / math.hypot(*b) for a in ways for b in ways) > 0.3
     assert mount_of(document.level, 1) == {0}
+
+
+def test_a_motor_that_a_wheel_is_given_later_carries_what_its_axle_is_loaded_with():
+    wheel = {"type": "wheel", "id": "w", "position": [0, 0], "radius": 0.5, "thickness": 0.1, "segments": 20}
+    loads = [{"id": "near", "position": [0, -0.2], "mass": 300.0}, {"id": "far", "position": [1, 0], "mass": 700.0}]
+    springs = [{"a": "w.hub", "b": "near"}, {"a": "near", "b": "far"}]
+    data = {"format": "spring-sandbox/level", "version": 1, "name": "cart", "bodies": [wheel], "particles": loads}
+    level = parse_level(json.dumps({**data, "springs": springs}).encode(), "cart")
+    driven = add_object(Document(level), [Item("body", "w")], "motor").level.bodies[0].motor
+    assert driven.torque >= 2.0 * 1000.0 * 9.81 * 0.5 * math.sin(math.pi / 20)
 
 
 def test_options_leave_out_motor_and_keys_and_ask_for_touch(chassis):

@@ -118,6 +118,12 @@ def test_a_flood_of_keys_does_not_make_present_keys_missing():
         ("bodies.2.shape", {"star": 5}, 'bodies.2.shape: a shape is {"box": [width, height]}, '),
         ("bodies.1.id", "rope", 'bodies.1.id: "rope" is taken; every body and loose particle needs an id of its own'),
         ("bodies.1.material", "stel", 'bodies.1.material: there is no material "stel"; did you mean "steel"?'),
+        (
+            "bodies.1.material",
+            "st\u0435el",
+            'bodies.1.material: there is no material "st\u0435el"; it only looks like "steel": '
+            "its character 3 is CYRILLIC SMALL LETTER IE",
+        ),
         ("bodies.0.pinned", [31], "bodies.0.pinned.0: 31 is beyond the last particle, 30"),
         ("bodies.6.cut", [15], "bodies.6.cut.0: 15 is beyond the last spring, 14"),
         ("bodies.8.pose", [[0, 0]], "bodies.8.pose: has 1 items for 7 particles; give one each"),

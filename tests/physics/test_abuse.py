@@ -17,14 +17,19 @@ from tests.support.stirring import heap, stir
 pytestmark = pytest.mark.skipif(not COMPILED, reason="takes minutes where kernels are interpreted")
 
 
-# A jelly that is inside out may spend at once what it has lost, on its way back: that of 2167 has one.
-@pytest.mark.parametrize(
-    ("name", "growth"), [("abuse-2057", 0.05), ("abuse-2109", 0.05), ("abuse-2167", 0.25), ("abuse-2198", 0.05)]
-)
-def test_no_energy_appears_after_the_hands_have_let_go(name, growth):
+@pytest.mark.parametrize("name", ["abuse-2057", "abuse-2109", "abuse-2167", "abuse-2198"])
+def test_no_energy_appears_after_the_hands_have_let_go(name):
     found = energies(*kept_scene(name), 120)
     assert found.over <= 1.001
-    assert found.growth <= growth
+    assert found.growth <= 0.05
+
+
+# With banks that kept what hands had put in, or all that contacts of a stiff rope might cost, these grew by .3 to 32 %.
+@pytest.mark.parametrize("seed", [348, 360, 424, 449, 460])
+def test_in_random_scenes_no_energy_appears(seed):
+    found = energies(*random_scene(seed), 90)
+    assert found.over <= 1.001
+    assert found.growth <= 0.05
 
 
 def test_bouncy_springs_have_at_most_four_times_the_energy_of_the_release():

@@ -56,3 +56,51 @@ def test_kernels_are_interpreted_where_compiling_is_switched_off():
     environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
     ended = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     assert ended.stdout.split() == ["False", "True"]
+
+
+LAZY = """
+import sys
+import sandbox.physics.step, sandbox.physics.solvers.direct.solve, sandbox.physics.collision.collide
+from sandbox.physics import jit
+from sandbox.physics.components import label_bodies
+assert "numba" not in sys.modules
+import numpy as np
+none = np.zeros(0, dtype=np.int64)
+label_bodies(none, none, none)
+print(*(kernel.function.__name__ for kernel in jit.entries() if not isinstance(kernel.held, jit.Entry)))
+print(sum(kernel.part is not None for kernel in jit.KERNELS))
+"""
+
+
+def test_a_kernel_costs_nothing_until_it_is_called():
+    ended = subprocess.run([sys.executable, "-c", LAZY], capture_output=True, text=True, check=True)
+    assert ended.stdout.split() == ["label_bodies", "0"]
+
+
+@jit.scalar_kernel
+def doubled(value):
+    return 2.0 * value
+
+
+@jit.kernel
+def fill(values, number):
+    for k in range(values.shape[0]):
+        values[k] = doubled(number)
+
+
+@jit.kernel
+def fill_both(values, others):
+    fill(values, 1.0)
+    fill(others, 0.5)
+
+
+def test_python_and_kernels_call_the_same_kernels_and_modules_hold_them_as_they_are_after_the_first_call():
+    values, others = np.zeros(2), np.zeros(1)
+    first = fill_both
+    first(values, others)
+    assert values.tolist() == [2.0, 2.0] and others.tolist() == [1.0]
+    fill(others, doubled(1.0))
+    assert others.tolist() == [4.0]
+    assert fill_both is not first and not isinstance(fill_both, jit.Entry)
+    first(others, values)
+    assert others.tolist() == [2.0]

@@ -132,13 +132,15 @@ def test_where_dispatchers_are_others_kernels_give_the_same_bits(tmp_path, attri
 from sandbox.physics.jit import cache, lending
 for module, name in ((cache, "keep"), (lending, "lend_to")):
     given = getattr(module, name)
-    def guarded(dispatcher, given=given):
+    def guarded(dispatcher, *others, given=given):
         class Other:
             def __getattr__(self, attribute):
                 if attribute == {attribute!r}:
                     raise AttributeError(attribute)
                 return getattr(dispatcher, attribute)
-        given(Other())
+            def __setattr__(self, attribute, value):
+                setattr(dispatcher, attribute, value)
+        return given(Other(), *others)
     setattr(module, name, guarded)
 """
     assert outcome(tmp_path, change) == expected()

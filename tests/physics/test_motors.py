@@ -160,8 +160,8 @@ def test_carts_of_any_weight_come_to_their_speed_with_twice_the_torque_that_clim
     for _ in range(scaled(3, 1)):
         rim, load = 10.0 ** generator.uniform(-0.7, 0.7), 10.0 ** generator.uniform(-0.3, 2.08)
         slope, substeps = float(generator.choice([0.0, 10.0])), int(generator.choice([1, 4]))
-        # The iterative solver's carts may hop uphill in small steps, and are slower then.
-        least = 0.8 if solver == "iterative" and slope and substeps > 1 else 0.93
+        # Of the iterative solver's carts of one driven wheel some hop uphill in small steps, and are slower then.
+        least = 0.9 if solver == "iterative" and slope and substeps > 1 else 0.93
         if scaled(1, 0):
             assert cart_speed(rim, load, slope, solver, substeps, seconds=4) >= least
 

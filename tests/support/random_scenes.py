@@ -13,6 +13,7 @@ from sandbox.level.format.parse import parse_level
 from sandbox.physics.energy import kinetic_energy, total_energy
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
+from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import World
 from sandbox.session.commands.grabbing import STRONGEST_HAND
 
@@ -31,7 +32,11 @@ class Drag(NamedTuple):
 
 
 class Energies(NamedTuple):
-    """From the release on, a value a tick [J]: all energy, gravity's from the room's lowest corner, and the kinetic."""
+    """From the release on, a value a tick [J]: all energy, gravity's from the room's lowest corner, and the kinetic.
+
+    Velocities are those of the middle of a step, so gravity's energy is that of the places half a step ago: what falls
+    freely keeps that sum (docs/physics.md, restitution), and not that with the height at the end of the step.
+    """
 
     total: np.ndarray
     kinetic: np.ndarray
@@ -153,12 +158,14 @@ def energies(world: World, drags: list[Drag], after: int) -> Energies:
     for hand in range(len(drags)):
         world.release(hand)
     live = world.particle_active & (world.inverse_mass > 0.0)
-    lowest = float(np.sum((world.mass * world.gravity_scale)[live])) * world.settings.gravity[1] * BOX[1]
+    weight = (world.mass * world.gravity_scale)[live, None] * np.array(world.settings.gravity)
+    lowest, half = float(np.sum(weight[:, 1])) * BOX[1], 0.5 * substep_time(world.settings)
     rows = []
     for tick in range(after + 1):
         if tick:
             step(world)
-        rows.append((total_energy(world) + lowest, kinetic_energy(world)))
+        back = half * float(np.sum(weight * world.velocity[live]))
+        rows.append((total_energy(world) + lowest + back, kinetic_energy(world)))
     return Energies(*np.array(rows).T)
 
 

@@ -55,7 +55,14 @@ class Backdrop:
             self._is_fine = is_same or is_new
             self._layer = self._made(painter, camera, terrain, level, theme, tiles, scale)
         assert self._layer is not None
+        self._layer.set_alpha(None)
         painter.surface.blit(self._layer, camera.viewport[:2])
+
+    def veil(self, painter: Painter, camera: Camera, share: float) -> None:
+        """Draw it once more over all that was drawn on it, which then shows by the rest of a share (0..1)."""
+        if self._layer is not None:
+            self._layer.set_alpha(round(255 * share))
+            painter.surface.blit(self._layer, camera.viewport[:2])
 
     def _made(
         self, painter: Painter, camera: Camera, terrain: Terrain, level: Level | None, theme: Theme, tiles: Tiles,

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import packed
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.themes import SPARK, SPARK_GLOW, Theme
 from sandbox.physics.query import shown_springs
@@ -20,6 +21,8 @@ SPARKS_A_TEAR = 9
 HARD = 2.2
 FALL = 9.8
 LIVES = {"spark": (0.25, 0.6), "dust": (0.35, 0.9)}
+# How long [s] the lattice shows where something broke, how many places of it, and how large [pixels at scale 1].
+CROSS_LIFE, MOST_CROSSES, CROSS = 1.5, 64, 5.0
 # Longest time [s] that passes for them in a frame.
 LONGEST = 0.1
 TAIL = 0.028
@@ -49,19 +52,28 @@ class Effects:
     """What flies about on one screen."""
 
     def __init__(self) -> None:
-        self._sparks, self._dust = _Motes(MOST_SPARKS), _Motes(MOST_DUST)
+        self._forget()
         self._before: Snapshot | None = None
         self._seconds = 0.0
+
+    def _forget(self) -> None:
+        self._sparks, self._dust, self._crosses = _Motes(MOST_SPARKS), _Motes(MOST_DUST), _Motes(MOST_CROSSES)
+
+    @property
+    def is_still(self) -> bool:
+        """Whether nothing flies about."""
+        return not (len(self._sparks.rows) or len(self._dust.rows) or len(self._crosses.rows))
 
     def see(self, now: Snapshot, seconds: float, strikes: NDArray[np.bool_] | None) -> None:
         """Take in a snapshot, shown at a time [s] of the run; strikes (m,): springs that spark when they tear."""
         before, passed = self._before, seconds - self._seconds
         self._before, self._seconds = now, seconds
         if before is None or now.tick < before.tick or len(now.mass) != len(before.mass) or passed < 0.0:
-            self._sparks, self._dust = _Motes(MOST_SPARKS), _Motes(MOST_DUST)
+            self._forget()
             return
         self._sparks.pass_time(min(passed, LONGEST), FALL, 0.0)
         self._dust.pass_time(min(passed, LONGEST), 0.0, 3.0)
+        self._crosses.pass_time(min(passed, LONGEST), 0.0, 0.0)
         if now.tick > before.tick:
             # By the tick, so that a run looks alike each time.
             rng = np.random.default_rng(now.tick)
@@ -78,6 +90,8 @@ class Effects:
             return
         torn = torn[:: max(1, len(torn) // PLACES)]
         at = 0.5 * (before.position[before.particle_a[torn]] + before.position[before.particle_b[torn]])
+        nothing = np.zeros(len(at))
+        self._crosses.add(at, np.zeros_like(at), nothing + CROSS_LIFE, nothing)
         sparking = np.ones(len(torn), dtype=np.bool_) if strikes is None else np.append(strikes, False)[
             np.minimum(torn, len(strikes))
         ]  # fmt: skip
@@ -123,3 +137,14 @@ class Effects:
             at, tail = camera.project(rows[:, :2]), camera.project(rows[:, :2] - TAIL * rows[:, 2:4])
             marks.discs(at, 9.0 * scale * left + 1.0, SPARK_GLOW, 0.55 * left, glow=True)
             marks.strokes(np.concatenate([tail, at], axis=1), 1.2 * scale * left + 0.3, SPARK, left)
+
+    def mark_breaks(self, marks: MarkList, camera: Camera, theme: Theme, scale: float) -> None:
+        """Draw a cross where something broke a moment ago."""
+        rows = self._crosses.rows
+        if len(rows):
+            at, left, arm = camera.project(rows[:, :2]), 1.0 - rows[:, 4] / rows[:, 5], CROSS * scale
+            for side in (-1.0, 1.0):
+                way = np.array([arm, side * arm])
+                ends = np.concatenate([at - way, at + way], axis=1)
+                for half, colour in ((2.4 * scale, theme.card), (1.1 * scale, theme.past)):
+                    marks.strokes(ends, half, packed(colour), np.minimum(1.0, 3.0 * left))

@@ -1,5 +1,6 @@
 """Pictures of levels and runs, drawn off screen."""
 
+import io
 import os
 from collections.abc import Generator
 from pathlib import Path
@@ -14,6 +15,7 @@ from sandbox.app.draw.camera import Box, Camera, bounds
 from sandbox.app.draw.renderer import Renderer
 from sandbox.app.draw.themes import THEMES
 from sandbox.level.format.model import Level
+from sandbox.level.format.writing import write_file
 from sandbox.physics.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.session import Session
@@ -58,11 +60,21 @@ def draw_picture(
 
 def save_picture(session: Session, path: Path, size: tuple[int, int] = (1280, 720)) -> None:
     """Draw the present state of a session into a PNG file; needs no display. Raises OSError."""
-    surface = draw_picture(session.level, session.snapshot(), size)
+    write_png(draw_picture(session.level, session.snapshot(), size), path)
+
+
+def write_png(picture: pygame.Surface, path: Path) -> None:
+    """Write a picture into a PNG file, whole or not at all. Raises OSError."""
+    # pygame itself says nothing of a disk that is full.
+    data = io.BytesIO()
     try:
-        pygame.image.save(surface, str(path))
+        pygame.image.save(picture, data, "picture.png")
     except pygame.error as error:
         raise OSError(0, str(error), str(path)) from None
+    try:
+        write_file(path, data.getvalue())
+    except OSError as error:
+        raise OSError(error.errno or 0, error.strerror or str(error), str(path)) from None
 
 
 def run_ahead(level: Level, ticks: int, most_particles: int) -> Generator[bool, None, Snapshot]:

@@ -10,15 +10,18 @@ from sandbox.app.draw.backdrop import GRID_STEP as GRID_STEP
 from sandbox.app.draw.backdrop import Backdrop
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import ACCENT, DANGER, WARNING, packed
+from sandbox.app.draw.detail import FULL, NO_EFFECTS, NO_SHADOWS
 from sandbox.app.draw.effects import Effects
 from sandbox.app.draw.lines import Canvas
 from sandbox.app.draw.raster.painter import MarkList, Painter
+from sandbox.app.draw.still import UNSEEN, UNSEEN_STRAIN, UNSEEN_TURN, Still
 from sandbox.app.draw.strain_colours import strain_place, strain_tones
 from sandbox.app.draw.textures import Tiles
 from sandbox.app.draw.themes import DARK, THEMES, Theme
 from sandbox.app.draw.things.cast import Cast, cast_of, joined_cast
 from sandbox.app.draw.things.ensemble import Ensemble
 from sandbox.app.draw.things.frame import Frame, strain_of
+from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
 from sandbox.app.play.playback import interpolated
 from sandbox.app.profile import Profile
 from sandbox.level.format.model import Level
@@ -41,6 +44,10 @@ SHADOW = (4.0, 8.0)
 # The lattice: half widths at rest and strained [pixels at scale 1]; more springs are lines of a pixel, with steps.
 LATTICE_HALF, LATTICE_MORE, MOST_SMOOTH = 0.65, 1.0, 6_000
 NODE = 2.2
+# What things fade behind, and by how much: springs that are drawn by their force would be lost on their colours.
+VEILING, VEIL = frozenset({"forces", "stability"}), 0.55
+# Overlays that may change while nothing moves.
+CHANGING = frozenset({"contacts", "forces", "velocities", "stability"})
 
 
 @dataclass
@@ -48,6 +55,7 @@ class Overlay:
     """What a person is doing, drawn over the world: the particle under the pointer, a cut [m], a cursor [m], pulls.
 
     ghost: lines [m] of what a click would do.
+    stability (m,): how near springs are to the limit of what is proven stable, 1 = at it; None = not known.
     """
 
     hovered: int | None = None
@@ -55,19 +63,22 @@ class Overlay:
     cursor: tuple[float, float] | None = None
     pulls: list[Pull] = field(default_factory=list)
     ghost: list[list[tuple[float, float]]] = field(default_factory=list)
+    stability: NDArray[np.float64] | None = None
 
 
 class Renderer:
     """Draws on a surface; scale: pixels per layout unit; level: what it shows, None = springs and discs alone.
 
-    lattice: whether springs are shown by their strain, in front of the things that they are. non_finite: particles the
+    lattice: whether springs are shown by their strain, in front of the things that they are; overlays: what else is
+    shown over them; detail: see detail.py. non_finite: particles the
     last drawing had to leave out. compiled: whether kernels may be used.
     """
 
     def __init__(self, scale: float = 1.0, level: Level | None = None) -> None:
         self.scale = scale
         self.compiled = True
-        self.lattice = False
+        self.overlays = Overlays()
+        self.detail = FULL
         self.non_finite = 0
         self.level = level
         self.theme: Theme = DARK
@@ -76,12 +87,28 @@ class Renderer:
         self.effects = Effects()
         self._painter = Painter()
         self._backdrop = Backdrop()
+        self._still = Still()
         self._cast: Cast | None = None
         self._level_cast: Cast | None = None
         self._joined: tuple[Joined, ...] = ()
         self._ensemble: Ensemble | None = None
         self._key: tuple[NDArray[np.bool_], ...] = ()
         self._tiles: tuple[str, Tiles] | None = None
+
+    def alike(self, scale: float) -> "Renderer":
+        """Another renderer with the same look at another scale, which has drawn nothing yet."""
+        other = Renderer(scale, self.level)
+        other.compiled, other.theme, other.overlays.shown = self.compiled, self.theme, set(self.overlays.shown)
+        return other
+
+    @property
+    def lattice(self) -> bool:
+        """Whether springs are shown by their strain."""
+        return "lattice" in self.overlays.shown
+
+    @lattice.setter
+    def lattice(self, is_shown: bool) -> None:
+        (self.overlays.shown.add if is_shown else self.overlays.shown.discard)("lattice")
 
     def draw(
         self,
@@ -108,20 +135,46 @@ class Renderer:
             )  # fmt: skip
             particles, springs = shown_particles(current), shown_springs(current)
             self.non_finite = int(np.count_nonzero(particles & ~np.isfinite(pixels).all(axis=1)))
+            if self.level is not None:
+                self._cast = self._cast_now(self.level, current.equipment.joined)
+                self.effects.see(current, frame.seconds, self._cast.strikes)
+            place = pygame.Rect(camera.viewport)
+            self._follow(frame, current, camera, overlay)
+            if self._still.show(surface, place):
+                return
             with profile.part("stage"):
                 self._backdrop.draw(
                     painter, camera, current.terrain, self.level, self.theme, frame.tiles, self.scale
                 )  # fmt: skip
             with profile.part("things"):
                 if self.level is not None:
-                    ensemble = self._ensemble_of(self.level, frame, particles, springs, current.equipment.joined)
+                    ensemble = self._ensemble_of(frame, particles, springs)
                     self._draw_things(ensemble, frame, camera)
-                    self.effects.see(current, frame.seconds, self._cast.strikes if self._cast is not None else None)
             with profile.part("marks"):
                 if self.lattice or self.level is None:
-                    self._draw_lattice(frame, particles, springs)
+                    self._draw_lattice(frame, current, particles, springs)
                 self._draw_held(frame, current, camera, overlay)
+                if self.overlays.shown & VEILING:
+                    self._backdrop.veil(painter, camera, VEIL)
+                layer = MarkList()
+                self.overlays.mark(layer, frame, current, camera, particles, springs, overlay.stability)
+                painter.marks(layer, frame.tiles.array)
         self._draw_overlay(Canvas(surface, self.compiled), camera, pixels, overlay)
+        self._still.keep(surface, place)
+
+    def _follow(self, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
+        """Note what this picture is drawn from, so that one of the same need not be drawn again."""
+        shown, moves = self.overlays.shown, not self.effects.is_still
+        key = (
+            (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail),
+            (overlay.hovered, tuple(overlay.trail), overlay.cursor, tuple(map(tuple, overlay.ghost))),
+            tuple(pull.cursor for pull in overlay.pulls if pull.at_limit), frozenset(shown),
+            current.terrain, (frame.seconds if moves else 0.0), (current.tick if shown & CHANGING else 0),
+            current.particle_active.tobytes(), current.spring_active.tobytes(), (current.inverse_mass == 0.0).tobytes(),
+            self._ensemble.faces.blinks(frame.seconds).tobytes() if self._ensemble is not None else b"",
+        )  # fmt: skip
+        numbers = [(frame.at, UNSEEN), (frame.angle, UNSEEN_TURN)]
+        self._still.follow(key, [*numbers, (frame.strain, UNSEEN_STRAIN)] if self.lattice else numbers)
 
     def _tiles_now(self) -> Tiles:
         if self._tiles is None or self._tiles[0] != self.theme.name:
@@ -133,41 +186,38 @@ class Renderer:
         ensemble.soft.trace(painter, frame)
         thrown, shapes = ensemble.thrown(frame)
         offset = (SHADOW[0] * self.scale, SHADOW[1] * self.scale)
-        painter.shadows(thrown, shapes, offset, packed(self.theme.shadow), self.theme.shadow_strength)
-        if not self.lattice:
+        if self.detail < NO_SHADOWS:
+            painter.shadows(thrown, shapes, offset, packed(self.theme.shadow), self.theme.shadow_strength)
+        if not self.lattice and self.detail < NO_EFFECTS:
             dust = MarkList()
             self.effects.mark_dust(dust, camera, self.theme, self.scale)
             painter.marks(dust, frame.tiles.array)
         ensemble.draw(painter, frame, self.lattice)
 
-    def _ensemble_of(
-        self,
-        level: Level,
-        frame: Frame,
-        particles: NDArray[np.bool_],
-        springs: NDArray[np.bool_],
-        joined: tuple[Joined, ...],
-    ) -> Ensemble:
+    def _cast_now(self, level: Level, joined: tuple[Joined, ...]) -> Cast:
+        """The cast of the level and of what has joined it."""
+        if self._cast is None or self._joined is not joined:
+            # Bodies that were there go on as they are.
+            goes_on = self._cast is not None and joined[: len(self._joined)] == self._joined
+            self._level_cast = self._level_cast or cast_of(level)
+            present = self._cast if goes_on and self._cast is not None else self._level_cast
+            self._cast = joined_cast(present, joined[len(self._joined) if goes_on else 0 :])
+            self._joined, self._ensemble = joined, None
+        return self._cast
+
+    def _ensemble_of(self, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_]) -> Ensemble:
         held = frame.state.inverse_mass == 0.0
         key = particles, springs, held
-        is_same = len(self._key) == 3 and all(map(np.array_equal, key, self._key)) and self._joined is joined
+        is_same = len(self._key) == 3 and all(map(np.array_equal, key, self._key))
         if self._ensemble is None or not is_same:
-            self._level_cast = self._level_cast or cast_of(level)
-            if self._cast is None or self._joined is not joined:
-                # Bodies that were there go on as they are.
-                before = self._joined
-                goes_on = self._cast is not None and joined[: len(before)] == before
-                self._cast = (
-                    joined_cast(self._cast or self._level_cast, joined[len(before) :])
-                    if goes_on
-                    else (joined_cast(self._level_cast, joined))
-                )
-                self._joined = joined
+            assert self._cast is not None
             self._ensemble, self._key = Ensemble(self._cast, frame.state, particles, springs), key
         return self._ensemble
 
-    def _draw_lattice(self, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_]) -> None:
-        state, chosen = frame.state, np.flatnonzero(springs)
+    def _draw_lattice(
+        self, frame: Frame, state: Snapshot, particles: NDArray[np.bool_], springs: NDArray[np.bool_]
+    ) -> None:
+        chosen = np.flatnonzero(springs)
         pairs = np.stack([state.particle_a[chosen], state.particle_b[chosen]], axis=1).astype(np.int64)
         strain = frame.strain[chosen]
         place = np.abs(strain_place(strain))
@@ -178,10 +228,24 @@ class Renderer:
             Canvas(self._painter.surface, self.compiled).plain_lines(np.ascontiguousarray(ends), tones)
         else:
             layer = MarkList()
-            layer.strokes(ends, (LATTICE_HALF + LATTICE_MORE * place[order]) * self.scale, tones)
+            half = (LATTICE_HALF + LATTICE_MORE * place[order]) * self.scale
+            layer.strokes(ends, half, tones)
+            yielded = self._yielded(state, chosen[order])
+            for k in range(1, DASHES, 2):
+                gaps = part_of(ends[yielded], k / DASHES, (k + 0.6) / DASHES)
+                layer.strokes(gaps, half[yielded] + 0.3 * self.scale, packed(self.theme.card))
             if self.level is None:
                 self._mark_nodes(layer, frame, particles)
             self._painter.marks(layer, frame.tiles.array)
+
+    def _yielded(self, state: Snapshot, springs: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Which springs have another rest length than they were made with because they yielded."""
+        if self.level is None:
+            return np.zeros(len(springs), dtype=np.bool_)
+        # As in a world: the material that needs no definition comes first.
+        yields = np.array([False, *(each.yield_strain is not None for each in self.level.materials.values())])
+        changed = state.rest_length[springs] != state.natural_length[springs]
+        return changed & yields[np.clip(state.material[springs], 0, len(yields) - 1)]
 
     def _mark_nodes(self, layer: MarkList, frame: Frame, particles: NDArray[np.bool_]) -> None:
         at = frame.at[particles]
@@ -191,7 +255,9 @@ class Renderer:
     def _draw_held(self, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
         """Pins, sparks, and a line from what is held to the cursor, of another colour where it pulls its most."""
         layer = MarkList()
-        if not self.lattice:
+        if self.lattice:
+            self.effects.mark_breaks(layer, camera, self.theme, self.scale)
+        elif self.detail < NO_EFFECTS:
             self.effects.mark_sparks(layer, camera, self.scale)
         if self._ensemble is not None:
             self._ensemble.balls.mark_pins(layer, frame)

@@ -28,6 +28,11 @@ class Theme:
     dust: Colour
     # Strain: squeezed, at rest, stretched.
     strain: tuple[Colour, Colour, Colour]
+    # Overlays: contact points, forces of contacts, velocities, and springs past what is proven stable.
+    contact: Colour
+    force: Colour
+    velocity: Colour
+    past: Colour
 
 
 def _rgb(code: int) -> Colour:
@@ -44,13 +49,15 @@ DARK = Theme(
     rock=_pair(0x59627A, 0x2A2F3D), metal=_pair(0x7D8AA5, 0x39425A), text=_rgb(0xE8ECF4), accent=_rgb(0x5ED0B2),
     card=_rgb(0x1A202C), line=_rgb(0x2E384A), tyre=_rgb(0x343842), dust=_rgb(0xCDBFA6),
     strain=(_rgb(0x4D8DFF), _rgb(0xC9CFDA), _rgb(0xFFB03A)),
+    contact=_rgb(0xFF6AD5), force=_rgb(0xFFE45C), velocity=_rgb(0x6FF2E0), past=_rgb(0xFF4D8B),
 )  # fmt: skip
 LIGHT = Theme(
     "light", stage=_pair(0xCFE4F1, 0xFBF3E3), lamp=(14, 12, 6), grid=_rgb(0xB9CBD6), vignette=0.14,
     shadow=_rgb(0x4A4030), shadow_strength=0.26, soil=_pair(0xB08459, 0xBF966A), turf=_pair(0x93CF63, 0x5C9C44),
     rock=_pair(0xA3A9B5, 0x7F8794), metal=_pair(0xAEB8C8, 0x78859A), text=_rgb(0x27303F), accent=_rgb(0x12907A),
     card=_rgb(0xFFFDF8), line=_rgb(0xDDD5C6), tyre=_rgb(0x42444C), dust=_rgb(0xE9DCC2),
-    strain=(_rgb(0x1F5FD6), _rgb(0x8A8F98), _rgb(0xD9730B)),
+    strain=(_rgb(0x1446C0), _rgb(0x8A8F98), _rgb(0xD9730B)),
+    contact=_rgb(0x9C1FB0), force=_rgb(0x7A4B00), velocity=_rgb(0x006E75), past=_rgb(0xC2004F),
 )  # fmt: skip
 THEMES = {theme.name: theme for theme in (DARK, LIGHT)}
 

@@ -1,7 +1,7 @@
 """Panel: Cs and Cd with their Hz reading and proven limit, gravity, and the solver with its settings."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import pygame
@@ -9,6 +9,7 @@ import pygame
 from sandbox.app.draw.colours import WARNING
 from sandbox.app.play.firmness_rows import ALL_BODIES, FirmnessRows
 from sandbox.app.play.playback import Playback
+from sandbox.app.play.view_row import ViewRow
 from sandbox.app.widgets.fields import Field, typed_number
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.sliders import LogSlider
@@ -32,9 +33,9 @@ ROW = 28.0
 ENTRY_WIDTH = 82.0
 HAND_LABEL = 46.0
 # Height that everything takes; in a lower window rows and gaps shrink by the same part.
-FULL_HEIGHT = 670.0
+FULL_HEIGHT = 636.0
 # What is added where there are bodies whose firmness can be set.
-FIRMNESS_HEIGHT = 121.0
+FIRMNESS_HEIGHT = 118.0
 # Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
 LOOK_EVERY = 15
 ALL_MATERIALS = "All springs"
@@ -43,13 +44,16 @@ SOLVER_LABELS = {"single_pass": "Single pass", "iterative": "Iterative", "direct
 
 
 class Panel:
-    """The panel at the right of a window; `say` shows a line to the person, choose_strength: of the hand."""
+    """The panel at the right of a window; `say` shows a line to the person.
+
+    choose: what is done with a strength of the "hand", and with a "view" that is shown or no longer.
+    """
 
     def __init__(
-        self, ui: Ui, playback: Playback, say: Callable[[str], None], choose_strength: Callable[[str], None],
+        self, ui: Ui, playback: Playback, say: Callable[[str], None], choose: Mapping[str, Callable[[str], None]],
         top: float, height: float,
     ) -> None:  # fmt: skip
-        self._ui, self.playback, self._say, self._choose_strength = ui, playback, say, choose_strength
+        self._ui, self.playback, self._say, self._choose = ui, playback, say, choose
         self.material: int | None = None
         self._gesture: int | None = None
         self._limits: CoefficientLimits | None = None
@@ -142,9 +146,7 @@ class Panel:
             ("Gravity x [m/s²]", "Gravity y [m/s²]"),
             (lambda text: self._type_gravity(text, 0), lambda text: self._type_gravity(text, 1)),
         )
-        self._row(4)
-        self._heading("Solver")
-        options = [(name, SOLVER_LABELS.get(name, name), "") for name in SOLVERS]
+        options = [(name, SOLVER_LABELS.get(name, name), "Solver") for name in SOLVERS]
         self.solver = ui.choice(self._row(ROW, 8), options, self._choose_solver, self.back)
         ui.label(self._row(18, 2), "Substeps", self.back, "@muted")
         counts = [(str(count), str(count), "") for count in SUBSTEPS]
@@ -156,10 +158,14 @@ class Panel:
         ui.label(self._place(MARGIN, 0, HAND_LABEL, ROW - 2), "Hand", self.back, "@muted")
         options = [(name, name.capitalize(), _strength_tip(strength)) for name, strength in STRENGTHS.items()]
         place = self._row(ROW - 2, 8, MARGIN + HAND_LABEL, INSIDE - HAND_LABEL)
-        self.hand = ui.choice(place, options, self._choose_strength, self.back)
-        self._heading("Energy [J]")
+        self.hand = ui.choice(place, options, self._choose["hand"], self.back)
+        ui.label(self._place(MARGIN, 0, HAND_LABEL, ROW - 2), "Show", self.back, "@muted")
+        self.views = ViewRow(
+            ui, self._row(ROW - 2, 8, MARGIN + HAND_LABEL, INSIDE - HAND_LABEL), self._choose["view"], self.back
+        )
         columns = (self._place(MARGIN, 0, INSIDE / 2, 34), self._place(MARGIN + INSIDE / 2, 0, INSIDE / 2, 34))
         self.energies = [TextBlock(ui, place, "", self.back) for place in columns]
+        self._row(40)
 
     def _material_names(self) -> list[str]:
         return list(self.playback.session.world.material_names)
@@ -195,8 +201,8 @@ class Panel:
         world = self.playback.session.world
         kinetic, springs, gravity = kinetic_energy(world), spring_energy(world), gravity_energy(world)
         dissipated = self.playback.dissipation.energy
-        self.energies[0].show_text(f"kinetic {kinetic:.4g}\nsprings {springs:.4g}")
-        self.energies[1].show_text(f"gravity {gravity:.4g}\ndissipated {dissipated:.4g}")
+        self.energies[0].show_text(f"kinetic {kinetic:.4g} J\nsprings {springs:.4g} J")
+        self.energies[1].show_text(f"gravity {gravity:.4g} J\ndissipated {dissipated:.4g} J")
 
     def _chosen(self) -> np.ndarray:
         world = self.playback.session.world

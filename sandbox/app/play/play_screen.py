@@ -1,6 +1,7 @@
 """PlayScreen: a run on the screen, with the bar of its tools at the top and the panel at the right."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pygame
@@ -8,10 +9,12 @@ import pygame
 from sandbox.app.application import Application
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colour
+from sandbox.app.draw.views.overlays import NAMES as OVERLAYS
 from sandbox.app.edit.bake_choice import ask_to_keep
 from sandbox.app.loop import SPEEDS
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.hand_labels import draw_labels
+from sandbox.app.play.legend import Legend
 from sandbox.app.play.palette import NAMES, Palette, PaletteState
 from sandbox.app.play.panel import PANEL_WIDTH, Panel
 from sandbox.app.play.playback import Playback
@@ -21,6 +24,7 @@ from sandbox.app.play.stuck import NOTICE, StuckBodies
 from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Pixel, Pointer
+from sandbox.app.share.film import Film
 from sandbox.app.shortcuts import Mode, tip_of
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
@@ -59,6 +63,7 @@ class PlayScreen:
             self.stage.drag.strength = kept
         self._keys = DriveKeys(playback)
         self.stuck = StuckBodies()
+        self._legend = Legend()
         self.actions = self._actions()
         app.follow(playback)
 
@@ -100,7 +105,8 @@ class PlayScreen:
         before, self.panel = self.panel, None
         if self.show_panel:
             height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
-            self.panel = Panel(ui, self.playback, self._app.say, self.choose_strength, BAR_HEIGHT, height)
+            choices = {"hand": self.choose_strength, "view": self._app.act}
+            self.panel = Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height)
             if before is not None and before.playback is self.playback:
                 self.panel.choose_material(before.material)
 
@@ -115,7 +121,7 @@ class PlayScreen:
             **{f"tool_{name}": lambda name=name: self._take_up(name) for name in NAMES},  # type: ignore[misc]
             "palette": self._toggle_palette,
             "let_go": stage.let_go,
-            "lattice": stage.toggle_lattice,
+            **{name: partial(stage.toggle_view, name) for name in OVERLAYS},
             "hand": self._next_strength,
             "free": self._free,
             "undo": lambda: self.playback.submit_undo(),
@@ -222,6 +228,10 @@ class PlayScreen:
         if path is not None:
             self._app.say(f"Saved as {path}")
 
+    def film(self, seconds: float) -> Film:
+        """The last seconds [s] of the run, as it is seen now."""
+        return Film(self.playback.session, self.camera, self.stage.renderer, seconds)
+
     # Pointer and keys.
 
     def contains(self, pixel: Pixel) -> bool:
@@ -264,6 +274,8 @@ class PlayScreen:
             self.panel.hand.show(self.stage.drag.strength)
         if self.palette is not None:
             self.palette.show(PaletteState(self.stage.tool_name, ready))
+        if self.panel is not None:
+            self.panel.views.show(self.stage.renderer.overlays.shown)
         self.toolbar.show(
             BarState(
                 self.playback.level.name,
@@ -293,6 +305,9 @@ class PlayScreen:
         surface.set_clip(self.viewport)
         self.stuck.draw(surface, self._ui, self.camera, self.playback.current)
         draw_labels(surface, self._ui, self.camera, self.playback.current, self.stage.pulls())
+        renderer, (left, top, width, _) = self.stage.renderer, self.viewport
+        solver = self.playback.current.settings.solver
+        self._legend.draw(surface, self._ui, renderer.overlays, renderer.theme, solver, (left + width, top))
         surface.set_clip(None)
 
     def status(self, ticks: float, frame: float) -> list[tuple[str, Colour]]:

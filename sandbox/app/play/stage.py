@@ -7,9 +7,11 @@ import numpy as np
 import pygame
 
 from sandbox.app.draw.camera import Box, Camera, bounds
+from sandbox.app.draw.detail import Detail
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Overlay, Renderer
 from sandbox.app.play.playback import Playback
+from sandbox.app.play.stability_paint import StabilityPaint
 from sandbox.app.profile import Profile
 from sandbox.physics.joints.pulls import Pull, pulls_of
 from sandbox.physics.query import nearest_particle, shown_particles
@@ -45,6 +47,8 @@ class Stage:
         self._hovered: int | None = None
         # What the wheel made of the parts and the ring [m]; 0: nothing yet.
         self.size = 0.0
+        self._paint = StabilityPaint()
+        self.detail = Detail()
         self._make_tools("normal")
         self._first_box = view_of(playback.level, playback.current)
         self._fit(self._first_box)
@@ -151,9 +155,9 @@ class Stage:
         )
         self.playback.respond(self.tool.handle(event, self.playback.current))
 
-    def toggle_lattice(self) -> None:
-        """Show springs by their strain, or things as they look."""
-        self.renderer.lattice = not self.renderer.lattice
+    def toggle_view(self, name: str) -> None:
+        """Show an overlay, or no longer: one of views.overlays.NAMES."""
+        self.renderer.overlays.shown ^= {name}
 
     def let_go(self) -> None:
         """Give up what the tools do and hold."""
@@ -208,6 +212,9 @@ class Stage:
 
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
         """Apply what is due and let time pass; pointer: where the mouse is over the world, if it is."""
+        if frame_time > 0.0:
+            self.detail.note(frame_time)
+            self.renderer.detail = self.detail.level
         with profile.part("commands"):
             self.playback.apply_pending()
             for tool in self.tools.values():
@@ -228,8 +235,10 @@ class Stage:
         """Draw the world into the viewport."""
         surface.set_clip(self.camera.viewport)
         playback = self.playback
-        ghost = getattr(self.tool, "ghost", [])
-        overlay = Overlay(self._hovered, self.cut.trail, self.cursor, self.pulls(), ghost)
+        overlay = Overlay(self._hovered, self.cut.trail, self.cursor, self.pulls())
+        overlay.ghost = getattr(self.tool, "ghost", [])
+        if "stability" in self.renderer.overlays.shown:
+            overlay.stability = self._paint.shares(playback)
         alpha = playback.clock.alpha(playback.session.world.settings.tick_rate)
         self.renderer.draw(surface, self.camera, playback.previous, playback.current, alpha, overlay, profile)
         surface.set_clip(None)

@@ -1,15 +1,12 @@
-"""StatusLine: what is on the screen in figures, the legend of the colours, and notices that come and go."""
+"""StatusLine: what is on the screen in figures, and notices that come and go."""
 
 import math
 from collections import deque
 from dataclasses import dataclass
 
-import numpy as np
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, SURFACE, TEXT, WARNING, Colour
-from sandbox.app.draw.strain_colours import FULL_STRAIN, SLIGHT_STRAIN, strain_tones
-from sandbox.app.draw.themes import DARK
 from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.joints.readings import MotorReading
@@ -19,7 +16,6 @@ STATUS_HEIGHT = 30.0
 NOTICE_SECONDS = 6.0
 SECONDS_A_LETTER = 0.06
 NOTICES = 4
-LEGEND_WIDTH = 96.0
 # Motors that are named one by one; of more the line says how many are at their limit.
 NAMED_MOTORS = 2
 NOTICE_COLOUR: Colour = (33, 39, 49)
@@ -39,7 +35,6 @@ class StatusLine:
     def __init__(self, ui: Ui, notices: deque[Notice]) -> None:
         self.ui = ui
         self.notices = notices
-        self._legend: pygame.Surface | None = None
         self._texts: dict[tuple[str, Colour], pygame.Surface] = {}
 
     def say(self, text: str) -> None:
@@ -69,14 +64,13 @@ class StatusLine:
         parts: list[tuple[str, Colour]],
         right: float,
         notices_left: float | None,
-        legend: bool = True,
     ) -> None:
-        """Draw parts of text from the left, the legend up to `right`, notices from a left edge; in layout units."""
+        """Draw parts of text from the left up to `right`, notices from a left edge; in layout units."""
         ui = self.ui
         height = ui.px(STATUS_HEIGHT)
         top = surface.get_height() - height
         pygame.draw.rect(surface, SURFACE, (0, top, surface.get_width(), height))
-        parts_end = ui.px(right - (LEGEND_WIDTH + 150 if legend else 0))
+        parts_end = ui.px(right)
         x = ui.px(16)
         for text, colour in parts:
             picture = self._text(text, colour)
@@ -84,32 +78,12 @@ class StatusLine:
                 break
             surface.blit(picture, (x, top + (height - picture.get_height()) // 2))
             x += picture.get_width() + ui.px(18)
-        if legend:
-            self._draw_legend(surface, ui.px(right), top, height)
         if notices_left is not None:
             self._draw_notices_above(surface, top, notices_left)
 
     def draw_notices(self, surface: pygame.Surface, left: float) -> None:
         """Draw the notices alone, over a page that covers the line."""
         self._draw_notices_above(surface, surface.get_height(), left)
-
-    def _draw_legend(self, surface: pygame.Surface, right: int, top: int, height: int) -> None:
-        ui = self.ui
-        width = ui.px(LEGEND_WIDTH)
-        if self._legend is None:
-            place = np.linspace(-1.0, 1.0, width)
-            full = np.log1p(FULL_STRAIN / SLIGHT_STRAIN)
-            colours = strain_tones(np.sign(place) * np.expm1(np.abs(place) * full) * SLIGHT_STRAIN, DARK.strain)
-            self._legend = pygame.Surface((width, ui.px(6)), 0, 32)
-            pixels = pygame.surfarray.pixels2d(self._legend)
-            pixels[:] = colours[:, None]
-            del pixels
-        after, before = self._text("stretched", MUTED), self._text("compressed", MUTED)
-        x = right - ui.px(16) - after.get_width()
-        surface.blit(after, (x, top + (height - after.get_height()) // 2))
-        x -= width + ui.px(8)
-        surface.blit(self._legend, (x, top + (height - self._legend.get_height()) // 2))
-        surface.blit(before, (x - ui.px(8) - before.get_width(), top + (height - before.get_height()) // 2))
 
     def _draw_notices_above(self, surface: pygame.Surface, bottom: int, left: float) -> None:
         ui = self.ui

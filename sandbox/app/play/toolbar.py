@@ -17,6 +17,7 @@ BUTTON = 34.0
 GAP = 6.0
 ICON = 18.0
 SLOW_WIDTH = 46.0
+SHARE_WIDTH = 68.0
 # Narrower windows leave the level's name out, and the wider gaps between the groups.
 ROOM_FOR_NAME = 1000.0
 
@@ -65,11 +66,16 @@ class Toolbar:
         self.record = self._button("record", "record")
         self.save = self._button("save", "save")
         title_left = self._x + 10
-        self._x = width - 14 - 4 * BUTTON - 3 * GAP
+        named = width >= ROOM_FOR_NAME
+        self._x = width - 14 - 4 * BUTTON - 4 * GAP - (SHARE_WIDTH if named else BUTTON)
         self.title = None
-        if width >= ROOM_FOR_NAME:
+        if named:
             place = ui.rect(title_left, 0, self._x - title_left - 14, BAR_HEIGHT)
             self.title = ui.label(place, "", self.back, "@title")
+        if named:
+            self._text_button("share", "Share", SHARE_WIDTH, "")
+        else:
+            self._button("share", "share")
         self._button("gallery", "levels")
         self._button("fit", "fit")
         self.panel = self._button("panel", "panel")
@@ -118,8 +124,8 @@ class Toolbar:
             style="@quiet",
         )
 
-    def _text_button(self, action: str, text: str, width: float) -> Any:
+    def _text_button(self, action: str, text: str, width: float, style: str = "@quiet") -> Any:
         place = self._place(width)
         return self._ui.button(
-            place, text, lambda: self._press(action), self.back, tip=tip_of(action, "play"), style="@quiet"
+            place, text, lambda: self._press(action), self.back, tip=tip_of(action, "play"), style=style
         )

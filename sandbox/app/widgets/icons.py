@@ -104,10 +104,51 @@ def _parts(pen: IconPen) -> None:
     pen.line((8.5, 17.5), (15.5, 17.5))
 
 
+def _share(pen: IconPen) -> None:
+    for x, y in ((6, 12), (17.5, 5.5), (17.5, 18.5)):
+        pen.disc(x, y, 3.2)
+    pen.line((6, 12), (17.5, 5.5), width=1.8)
+    pen.line((6, 12), (17.5, 18.5), width=1.8)
+
+
+def _lattice(pen: IconPen) -> None:
+    pen.line((4, 6), (20, 6), (20, 18), (4, 18), (4, 6), width=1.6)
+    pen.line((4, 18), (12, 6), (20, 18), width=1.6)
+
+
+def _particles(pen: IconPen) -> None:
+    for x, y in ((6, 6), (18, 7), (11, 13), (6, 19), (19, 18)):
+        pen.disc(x, y, 2.4)
+
+
+def _contacts(pen: IconPen) -> None:
+    pen.line((3, 18), (21, 18))
+    pen.disc(12, 18, 3.4)
+    pen.line((12, 17), (12, 5), width=1.6)
+
+
+def _forces(pen: IconPen) -> None:
+    pen.line((12, 21), (12, 5), width=3.4)
+    pen.shape((6, 10), (12, 2.5), (18, 10))
+
+
+def _velocities(pen: IconPen) -> None:
+    pen.line((3, 12), (20, 12))
+    pen.line((14.5, 6.5), (20.5, 12), (14.5, 17.5))
+
+
+def _stability(pen: IconPen) -> None:
+    pen.arc(12, 16, 8.5, 0, 180)
+    pen.line((12, 16), (17, 9.5))
+    pen.disc(12, 16, 2.2)
+
+
 ICONS: dict[str, Icon] = {
     "drag": _drag, "pin": draw_pin, "cut": _cut, "play": _play, "pause": _pause, "step": _step, "reset": _reset,
     "undo": _undo, "redo": _redo, "record": _record, "stop": _stop, "levels": _levels, "fit": _fit,
-    "panel": _panel, "save": _save, "edit": _edit, "keep": _keep, "parts": _parts, "spring": draw_spring,
+    "panel": _panel, "save": _save, "edit": _edit, "keep": _keep, "share": _share, "spring": draw_spring,
+    "lattice": _lattice, "particles": _particles, "contacts": _contacts, "forces": _forces,
+    "velocities": _velocities, "stability": _stability, "parts": _parts,
 }  # fmt: skip
 
 

@@ -2,7 +2,8 @@
 
 import pygame
 
-from sandbox.app.widgets.theme import Manager, plain_font, scaled_theme
+from sandbox.app.widgets.fonts import plain_font
+from sandbox.app.widgets.theme import Manager, scaled_theme
 
 
 class WindowLayout:

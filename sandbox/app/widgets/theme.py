@@ -1,16 +1,14 @@
-"""Theme: the look of the widgets in assets/theme.json, at a scale, and their font."""
+"""Theme: the look of the widgets in assets/theme.json, at a scale."""
 
-import io
 import json
-from importlib.resources import files
 from typing import Any
 
-import pygame
 import pygame_gui
 from pygame_gui.core import gui_font_pygame
 from pygame_gui.core.ui_appearance_theme import UIAppearanceTheme
 
-from sandbox.level.format.files import shipped_folder
+from sandbox.app.widgets.fonts import FONT, SafeFont, font_file
+from sandbox.level.format.shipped import shipped_folder
 
 # Theme entries that are pixels at scale 1.
 _SCALED = {
@@ -19,40 +17,8 @@ _SCALED = {
 }  # fmt: skip
 
 
-class _Font(pygame.font.Font):
-    # pygame raises errors for texts that it cannot show, and names in files that people open may be such texts.
-    def render(self, text: Any, *arguments: Any, **named: Any) -> pygame.Surface:
-        try:
-            return super().render(_clean(text), *arguments, **named)
-        except pygame.error:  # nothing but characters without a width
-            return super().render("", *arguments, **named)
-
-    def size(self, text: Any) -> tuple[int, int]:
-        return super().size(_clean(text))
-
-    def metrics(self, text: Any) -> list[Any]:
-        return super().metrics(_clean(text))
-
-
-def _clean(text: Any) -> Any:
-    """A text without halves of surrogate pairs and null characters."""
-    if not isinstance(text, str) or text.isprintable():
-        return text
-    return text.encode("utf-8", "replace").decode().replace("\0", "?")
-
-
 # The library has no way to be told which fonts it makes.
-gui_font_pygame.Font = _Font  # type: ignore[misc]
-_FONTS: dict[tuple[int, bool], _Font] = {}
-
-
-def plain_font(size: int, bold: bool) -> pygame.font.Font:
-    """The widgets' font in a size of pixels, for what is painted."""
-    if (size, bold) not in _FONTS:
-        name = "NotoSans-Bold.ttf" if bold else "NotoSans-Regular.ttf"
-        data = files("pygame_gui").joinpath("data", name).read_bytes()
-        _FONTS[size, bold] = _Font(io.BytesIO(data), size)
-    return _FONTS[size, bold]
+gui_font_pygame.Font = SafeFont  # type: ignore[assignment, misc]
 
 
 def scaled_theme(scale: float) -> dict[str, Any]:
@@ -74,6 +40,7 @@ class Manager(pygame_gui.UIManager):
     def create_new_theme(self, theme_path: Any = None) -> UIAppearanceTheme:
         """A theme that the manager looks widgets up in."""
         theme = _Theme(self.resource_loader, self._locale)
+        theme.get_font_dictionary().add_font_path(FONT, str(font_file(False)), str(font_file(True)))
         if theme_path is not None:
             theme.load_theme(theme_path)
         return theme

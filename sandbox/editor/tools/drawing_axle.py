@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from sandbox.editor.document import Document, EditError, checked, select
+from sandbox.editor.edits.additions import first_torque
 from sandbox.editor.edits.placing import add_spring
 from sandbox.editor.kinds.wheel import RimDrawing, RimOptions
-from sandbox.editor.panel.typed import significant
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.tools.drawing_bodies import known_material, length
 from sandbox.editor.tools.drawing_options import OptionInfo, flag_option, option
@@ -16,12 +16,10 @@ from sandbox.editor.tools.drawing_tool import staged
 from sandbox.editor.tools.editor_tool import EditorTool
 from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
-from sandbox.level.build.axles import mount_of
 from sandbox.level.format.actuator_defs import MotorDef
 from sandbox.level.format.limits import TORQUE_LIMIT, TURN_LIMIT
 from sandbox.level.format.model import Level
 from sandbox.level.format.quantities import Point, replaced
-from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.wheel import WheelDef
 
 # A wheel beside a body hangs on this many of its particles, none farther from the axle than so many radii.
@@ -29,13 +27,7 @@ STRUTS, STRUT_REACH = 3, 3.0
 STRUT_MATERIAL = "steel"
 # Two struts hold an axle where the sine of the angle between them is this large; smaller: it gives way across them.
 APART = 0.35
-# A motor has this share of the torque that lifts the whole vehicle straight up at its rim. One wheel alone climbs from
-# corner to corner of 16 with 0.2 of it, and 10 degrees with another 0.17.
-SHARE = 0.75
-WEIGHT = 9.81  # [N/kg]
 FORWARD, BACKWARD = "d", "a"
-# Digits of a torque; a person reads it.
-DIGITS = 3
 
 
 @dataclass(frozen=True)
@@ -100,19 +92,16 @@ class AxleDrawing(RimDrawing[AxleOptions]):
             assert strut.name is not None
             document = add_spring(document, f"{wheel.id}.hub", strut.name, known_material(document, STRUT_MATERIAL))
         if self.options.motor:
-            motor = self._motor(document.level, length(points))
+            motor = self._motor(document.level)
             level = replaced(document.level, bodies=(*document.level.bodies[:-1], replaced(wheel, motor=motor)))
             document = replace(document, level=checked(level))
         return select(document, chosen)
 
-    def _motor(self, level: Level, radius: float) -> MotorDef:
+    def _motor(self, level: Level) -> MotorDef:
         options = self.options
-        vehicle = {len(level.bodies) - 1, *mount_of(level, len(level.bodies) - 1)}
-        mass = sum(float(np.sum(expansion(body).mass)) for index, body in enumerate(level.bodies) if index in vehicle)
-        mass += sum(part.mass for index, part in enumerate(level.particles, len(level.bodies)) if index in vehicle)
         torque = options.torque
         if torque is None:
-            torque = min(significant(SHARE * WEIGHT * mass * radius, DIGITS), TORQUE_LIMIT)
+            torque = first_torque(level, len(level.bodies) - 1)
         keys = {"key": FORWARD, "reverse_key": BACKWARD} if options.keys else {}
         # To the right is clockwise.
         return MotorDef(speed=-options.speed + 0.0, torque=torque, **keys)

@@ -3,9 +3,11 @@
 import difflib
 import itertools
 import json
+import unicodedata
 from collections.abc import Collection, Iterable
 from typing import Any
 
+from sandbox.level.faults.look_alikes import skeleton
 from sandbox.level.format.limits import FAULT_LIMIT
 
 # Where a fault is (a JSON path such as materials.steel.stiffness, or "line 3, column 5"; "" = the whole) and what.
@@ -49,11 +51,22 @@ def shown(value: Any) -> str:
 
 
 def suggestion(word: str, choices: Collection[str]) -> str:
-    """`; did you mean "..."?` where one of few choices resembles the word, else nothing."""
+    """`; did you mean "..."?` where one of few choices resembles the word, else nothing.
+
+    One that looks the same is told with the character that differs.
+    """
     if len(choices) > _CHOICES or len(word) > _SHOWN:
         return ""
+    same = next((choice for choice in choices if skeleton(choice) == skeleton(word)), None)
+    if same is not None:
+        return f"; it only looks like {shown(same)}{_odd_one(word, same)}"
     close = difflib.get_close_matches(word, choices, n=1)
     return f"; did you mean {shown(close[0])}?" if close else ""
+
+
+def _odd_one(word: str, choice: str) -> str:
+    at, char = next(((at, char) for at, char in enumerate(word) if char != choice[at : at + 1]), (0, ""))
+    return f": its character {at + 1} is {unicodedata.name(char, f'U+{ord(char):04X}')}" if char else ""
 
 
 def json_path(parts: Iterable[Any]) -> str:

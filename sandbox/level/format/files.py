@@ -10,6 +10,7 @@ from sandbox.level.format.canonical import level_data, level_text
 from sandbox.level.format.limits import FILE_LIMIT
 from sandbox.level.format.model import Level
 from sandbox.level.format.parse import parse_level
+from sandbox.level.format.shipped import shipped_folder
 from sandbox.level.format.writing import refusal_of, write_over
 
 __all__ = [
@@ -23,8 +24,6 @@ __all__ = [
     "shipped_levels",
     "write_level",
 ]
-
-_PACKAGE = Path(__file__).resolve().parents[2]
 
 
 def read_level(path: str | os.PathLike[str]) -> Level:
@@ -78,14 +77,6 @@ def write_level(level: Level, path: str | os.PathLike[str], backups: Path | None
         return write_over(Path(os.path.realpath(source)), data, backups)
     except (OSError, ValueError) as error:
         raise LevelError(source, [("", f"cannot be written: {refusal_of(error)}")]) from None
-
-
-def shipped_folder(kind: str) -> Path:
-    """Folder of the shipped "levels" or "assets": the checkout's own where there is one, else the wheel's."""
-    checkout = _PACKAGE.parent
-    if (checkout / "pyproject.toml").is_file() and (checkout / kind).is_dir():
-        return checkout / kind
-    return _PACKAGE / "_shipped" / kind
 
 
 def shipped_levels() -> list[Path]:

@@ -15,6 +15,7 @@ from sandbox.physics.collision.overlaps import OVERLAPS, Overlaps, give_way
 from sandbox.physics.collision.types import Colliders, Flags
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import Floats
+from sandbox.physics.world import BANK_UNOPENED
 
 # Bodies that overlap part at this speed [m/s]. Faster frees no more of them, slower takes longer.
 PARTING_SPEED = 1.0
@@ -206,7 +207,7 @@ def _saved(s: int, outline: Outline, particles: MovedParticles) -> tuple[float, 
         p = outline.member[i]
         if particles.inverse_mass[p] > 0.0:
             total += particles.parting_reserve[p]
-            fresh = fresh and particles.energy_bank[p] < 0.0
+            fresh = fresh and particles.energy_bank[p] == BANK_UNOPENED
     return total, fresh
 
 

@@ -3,41 +3,46 @@
 Kernels are compiled with a disk cache, uncached where none can be written, and interpreted where numba is missing or
 does not work with this Python or numpy, where NUMBA_DISABLE_JIT is set, and after `start_interpreted` until
 `switch_to_compiled`. Which it is, COMPILED says; modules that hold it by name see it change.
+
+A kernel costs nothing until it is called: before the first call of one, or the first question for COMPILED, nothing is
+made of any, and numba is not imported.
 """
 
 import importlib
 import os
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
-from sandbox.physics.jit.interpreted import Unsigned
+from sandbox.physics.jit import interpreted
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 COMPILED: bool
 # Turns an index that is never negative into one that loops are vectorised for: of a signed one numba first asks whether
 # it counts from the end. Never mix the two in one sum: that makes a float.
-unsigned: Any
+unsigned: Any = interpreted.unsigned
 # In kernels: the items of a bundle, as they were given to it.
-contents: Any
+contents: Any = interpreted.contents
 
-_CHOSEN = ("COMPILED", "unsigned", "contents")
-_ENTRIES = ("kernel", "waiting_kernel", "scalar_kernel")
+_ENTRIES = ("kernel", "waiting_kernel")
 # How kernels are made: the module `interpreted` or `compiled`.
 _way: Any = None
 _recording: str | None = None
+_making = threading.RLock()
 
 
 @dataclass(eq=False)
 class Kernel:
     """One kernel of this process.
 
-    held: what modules hold of it. signatures: types of arguments, by their text, that calls were noted with, of an
-    interpreted one. group: under which name they were noted first.
+    held: what modules hold of it: an `Entry`, or what runs it; of what only kernels call, the function itself.
+    signatures: types of arguments, by their text, that calls were noted with, of an interpreted one. group: under which
+    name they were noted first. part: what other kernels are compiled with, once one is that calls it.
     """
 
     role: str
@@ -45,6 +50,7 @@ class Kernel:
     held: Any = None
     group: str = ""
     signatures: dict[str, tuple[Any, ...]] = field(default_factory=dict)
+    part: Any = None
 
     @property
     def name(self) -> str:
@@ -58,10 +64,42 @@ class Kernel:
             self.group = self.group or _recording
             self.signatures[str(types)] = types
 
+    def ready(self) -> Any:
+        """What runs it, made where nobody has called it yet; modules that hold it by its name have that from now on."""
+        with _making:
+            if isinstance(self.held, Entry):
+                made = _chosen().make(self)
+                for module in _modules(self.function.__module__):
+                    if vars(module).get(self.function.__name__) is self.held:
+                        setattr(module, self.function.__name__, made)
+                self.held = made
+        return self.held
+
+
+class Entry:
+    """What modules hold of a kernel that Python calls, until its first call."""
+
+    def __init__(self, kernel: Kernel) -> None:
+        self._kernel = kernel
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self._kernel.ready()(*arguments)
+
 
 KERNELS: list[Kernel] = []
-# Functions of the interpreter that kernels call, and what modules hold of them.
-_INTERPRETER_FUNCTIONS: list[tuple[Any, tuple[str, ...]]] = []
+_BY_FUNCTION: dict[Any, Kernel] = {}
+
+
+def kernel_of(held: Any) -> Kernel | None:
+    """The kernel that this is, or what runs it; None for anything else."""
+    return _BY_FUNCTION.get(held) if type(held) is FunctionType else getattr(held, "_kernel", None)
+
+
+def _modules(*homes: str) -> list[ModuleType]:
+    """Those of this package that are imported, or being imported, and others by name."""
+    package = __name__.partition(".")[0]
+    names = [name for name in list(sys.modules) if name.startswith(package) and name.partition(".")[0] == package]
+    return [one for one in map(sys.modules.get, {*names, *homes}) if type(one) is ModuleType]
 
 
 def _can_compile() -> bool:
@@ -75,9 +113,9 @@ def _can_compile() -> bool:
 
 
 def _choose(compiled: bool) -> Any:
-    global _way
+    global _way, COMPILED
     _way = importlib.import_module(f"{__name__}.{'compiled' if compiled else 'interpreted'}")
-    globals().update({name: getattr(_way, name) for name in _CHOSEN})
+    COMPILED = compiled
     return _way
 
 
@@ -86,13 +124,13 @@ def _chosen() -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    if name in _CHOSEN:
-        return getattr(_chosen(), name)
+    if name == "COMPILED":
+        return _chosen().COMPILED
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def start_interpreted() -> None:
-    """Interpret kernels, and import no numba, until `switch_to_compiled`; before any kernel is imported.
+    """Interpret kernels, and import no numba, until `switch_to_compiled`.
 
     Raises:
         RuntimeError: where kernels are compiled already.
@@ -111,34 +149,27 @@ def switch_to_compiled() -> bool:
         return True
     if not _can_compile():
         return False
-    given_contents = _way.contents
-    way = _choose(True)
-    new: dict[int, Any] = {id(given_contents): way.contents}
-    for k, (held, named) in enumerate(_INTERPRETER_FUNCTIONS):
-        _INTERPRETER_FUNCTIONS[k] = (way.interpreter_function(*named), named)
-        new[id(held)] = _INTERPRETER_FUNCTIONS[k][0]
-    old = [kernel.held for kernel in KERNELS]  # so that no new one has the identity of one before
-    for kernel in KERNELS:
-        given = kernel.held
-        kernel.held = new[id(given)] = way.make(kernel.role, kernel.function, kernel.note)
-    package = __name__.partition(".")[0]
-    for module in list(sys.modules.values()):
-        if isinstance(module, ModuleType) and module.__name__.partition(".")[0] == package:
+    with _making:
+        _choose(True)
+        new: dict[int, Any] = {}
+        old = [kernel.held for kernel in KERNELS]  # so that no new one has the identity of one before
+        for kernel in entries():
+            new[id(kernel.held)] = Entry(kernel)
+            kernel.held = new[id(kernel.held)]
+        for module in _modules(*(kernel.function.__module__ for kernel in KERNELS)):
             _rebind(module, new)
-    del old
+        del old
     return True
 
 
 def _rebind(module: ModuleType, new: dict[int, Any]) -> None:
-    if module.__name__ == __name__ or module.__name__.startswith(f"{__name__}."):
+    if module.__name__.startswith(f"{__name__}."):
         return
     for name, value in list(vars(module).items()):
         if id(value) in new:
             setattr(module, name, new[id(value)])
-        elif name in ("COMPILED", "unsigned"):
-            setattr(module, name, getattr(_way, name))
-        elif type(value) is Unsigned:
-            setattr(module, name, _way.unsigned(value))
+        elif name == "COMPILED":
+            setattr(module, name, True)
 
 
 @contextmanager
@@ -159,35 +190,28 @@ def entries() -> list[Kernel]:
 
 def expect(held: Any, *arguments: Any) -> None:
     """Compile a kernel for such arguments, or load it, as a call would, which is not made."""
+    kernel = cast(Kernel, kernel_of(held))
     if _chosen().COMPILED:
-        held.compile(_way.types_of(arguments))
+        kernel.ready().compile(_way.types_of(arguments))
     else:
-        next(kernel for kernel in KERNELS if kernel.held is held).note(*arguments)
+        kernel.note(*arguments)
 
 
 def compile_entry(kernel: Kernel, signature: tuple[Any, ...]) -> None:
     """Compile an entry for some types of arguments and keep it, or load it; after `switch_to_compiled`."""
-    kernel.held.compile(signature)
-
-
-def load_kept() -> Iterator[str]:
-    """Load what is kept on disk of all entries, one at each step, whose name it gives; after `switch_to_compiled`."""
-    for kernel in entries() if _chosen().COMPILED else ():
-        for _ in _way.load_kept(kernel.held):
-            yield kernel.name
+    kernel.ready().compile(signature)
 
 
 def interpreter_function(name: str, result: str, *arguments: str) -> Any:
     """A function of Python's own C interface for compiled kernels, given the numba names of its types."""
-    named = (name, result, *arguments)
-    _INTERPRETER_FUNCTIONS.append((_chosen().interpreter_function(*named), named))
-    return _INTERPRETER_FUNCTIONS[-1][0]
+    return interpreted.InterpreterFunction(name, result, arguments)
 
 
 def _made(role: str, function: Function) -> Function:
     kernel = Kernel(role, function)
-    kernel.held = _chosen().make(role, function, kernel.note)
+    kernel.held = Entry(kernel) if role in _ENTRIES else function
     KERNELS.append(kernel)
+    _BY_FUNCTION[function] = kernel
     return cast(Function, kernel.held)
 
 
@@ -197,7 +221,7 @@ def kernel(function: Function) -> Function:
 
 
 def inner_kernel(function: Function) -> Function:
-    """Make `function` a part of kernels, which alone may call it: compiled sooner, with no entry for Python."""
+    """Make `function` a part of kernels, compiled with each that calls it: sooner, with no entry for Python."""
     return _made("inner_kernel", function)
 
 
@@ -207,7 +231,7 @@ def inlined_kernel(function: Function) -> Function:
 
 
 def scalar_kernel(function: Function) -> Function:
-    """Make `function` a kernel that takes and gives scalars alone, to be called from other kernels."""
+    """Make `function`, which takes and gives scalars alone, a part of kernels that Python calls too, interpreted."""
     return _made("scalar_kernel", function)
 
 

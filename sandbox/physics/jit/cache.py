@@ -15,8 +15,9 @@ import shutil
 import sys
 import time
 import warnings
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from types import FunctionType
 from typing import Any
 
 import numba
@@ -76,40 +77,30 @@ def _unsealed(sealed: bytes) -> bytes | None:
 
 
 class KernelCache(caching.NullCache):
-    """Loads and saves what is compiled of one kernel."""
+    """Loads and saves what is compiled of a function; before: called with its dispatcher, where that has to compile."""
 
-    def __init__(self, kernel: Any) -> None:
-        self._kernel = kernel
+    def __init__(self, dispatcher: Any, function: FunctionType, before: Callable[[Any], object]) -> None:
+        self._dispatcher, self._function, self._before = dispatcher, function, before
 
     def _file_names(self, signature: Any, processor: tuple[Any, ...]) -> tuple[str, str]:
         """How the files of all versions of this kernel begin here, and the rest of this one's name."""
         arguments = _short(*map(_type_text, getattr(signature, "args", signature)))
-        return f"{self._begin(processor)}{arguments}-", f"{digest_of_needs(self._kernel)}{_SUFFIX}"
+        return f"{self._begin(processor)}{arguments}-", f"{digest_of_needs(self._function)}{_SUFFIX}"
 
     def _begin(self, processor: tuple[Any, ...]) -> str:
-        function = self._kernel.py_func
+        function = self._function
         name = f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}".replace("<", "").replace(">", "")
         versions = sys.implementation.cache_tag, numba.__version__, np.__version__
         return f"{name}-{_short(function.__module__, *versions, *processor)}-"
 
-    def signatures(self, target_context: Any) -> list[tuple[Any, ...]]:
-        """The types of arguments for which this kernel is kept, as it is now."""
-        target_context.refresh()
-        end, found = f"-{digest_of_needs(self._kernel)}{_SUFFIX}", {}
-        for processor in _processors(target_context):
-            for folder in cache_folders():
-                for file in sorted(folder.glob(f"{glob.escape(self._begin(processor))}*{end}")):
-                    content = _read(file)
-                    if content is not None:
-                        found[file.name.removesuffix(end).rpartition("-")[2]] = pickle.loads(content)[3].args
-        return list(found.values())
-
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """What was compiled for these types of arguments, by any process; None where nothing of it can be used."""
-        try:
-            return self._find(sig, target_context)
-        except Exception:  # inner parts of numba are others than those below
-            return None
+        with contextlib.suppress(Exception):  # inner parts of numba are others than those below
+            found = self._find(sig, target_context)
+            if found is not None:
+                return found
+        self._before(self._dispatcher)
+        return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep what was compiled in the first folder that takes it; where none does, say so once."""
@@ -140,10 +131,15 @@ def _processors(target_context: Any) -> list[tuple[Any, ...]]:
     return list(dict.fromkeys((own, (own[0], "generic", ""))))
 
 
-def keep(kernel: Any) -> None:
-    """Let a dispatcher of numba load and save what is compiled of it."""
-    if hasattr(kernel, "_cache"):
-        kernel._cache = KernelCache(kernel)
+def keep(dispatcher: Any, function: FunctionType, before: Callable[[Any], object]) -> bool:
+    """Let a dispatcher of numba load and save what is compiled of a function; whether it can.
+
+    before: called with the dispatcher where it has to compile.
+    """
+    can = hasattr(dispatcher, "_cache")
+    if can:
+        dispatcher._cache = KernelCache(dispatcher, function, before)
+    return can
 
 
 _said: list[str] = []

@@ -1,16 +1,17 @@
 """Kernels that numba compiles, with what of its inner parts can be used in the version that is installed."""
 
 import importlib
-from collections.abc import Callable, Iterator
+from types import CellType, FunctionType, ModuleType
 from typing import Any
 
 import numba
 import numpy as np
 
+from sandbox.physics import jit
 from sandbox.physics.jit import interpreted
+from sandbox.physics.jit.needs import is_own, named, names_in
 
 COMPILED = True
-unsigned: Any = np.uint64
 
 
 def _using_numba(name: str) -> Any:
@@ -26,33 +27,92 @@ _cache, _lending, _linking = map(_using_numba, ("cache", "lending", "linking"))
 # Kernels hold no array longer than their call, so numba need not count who holds which: some 800 counts, 4 us, in a
 # step of the direct solver. One that makes an array, or keeps one, does not compile with this.
 _UNCOUNTED = {"_nrt": False}
+_PART = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 _OPTIONS: dict[str, dict[str, Any]] = {
     "kernel": _UNCOUNTED,
     "waiting_kernel": _UNCOUNTED | {"nogil": True},
-    "scalar_kernel": {},
+    "scalar_kernel": _UNCOUNTED,
     "inner_kernel": _UNCOUNTED,
     "inlined_kernel": _UNCOUNTED | {"inline": "always"},
 }
 
 
-def make(role: str, function: Callable[..., Any], note: Callable[..., None] | None = None) -> Any:
-    """A dispatcher for a kernel: of an entry, whose machine code is kept on disk, or of a part of entries.
+def make(kernel: Any) -> Any:
+    """A dispatcher for a kernel that Python calls, whose machine code is kept on disk.
 
-    note: is told nothing; what a call is compiled for, the dispatcher knows.
+    It costs little until it has to compile: what the kernel calls is made then.
     """
-    # Determinism: never fastmath, never parallel. Kernels guard every divisor, so the error model decides nothing.
-    options = {"error_model": "numpy", **_OPTIONS[role]}
-    is_part = role in ("inner_kernel", "inlined_kernel")
-    if is_part:
-        options |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    if _linking is not None:
-        options["pipeline_class"] = _linking.PartCompiler if is_part else _linking.EntryCompiler
-    dispatcher = numba.njit(**options)(function)
-    if not is_part and _cache is not None:
-        _cache.keep(dispatcher)
-    if role == "inner_kernel" and _lending is not None:
-        _lending.lend_to(dispatcher)
+    options = {} if _linking is None else {"pipeline_class": _linking.EntryCompiler}
+    dispatcher = _dispatcher(kernel, _OPTIONS[kernel.role] | options)
+    if _cache is None or not _cache.keep(dispatcher, kernel.function, _name_parts):
+        _name_parts(dispatcher)
     return dispatcher
+
+
+def _part(kernel: Any) -> Any:
+    """A dispatcher for a kernel that other kernels call, which links it into each of them."""
+    if kernel.part is None:
+        options = {} if _linking is None else {"pipeline_class": _linking.PartCompiler}
+        kernel.part = _dispatcher(kernel, _PART | _OPTIONS[kernel.role] | options)
+        if kernel.role != "inlined_kernel" and _lending is not None:
+            _lending.lend_to(kernel.part)
+    return kernel.part
+
+
+def _dispatcher(kernel: Any, options: dict[str, Any]) -> Any:
+    # Determinism: never fastmath, never parallel. Kernels guard every divisor, so the error model decides nothing.
+    dispatcher = numba.njit(error_model="numpy", **options)(_twin(kernel.function))
+    dispatcher._kernel = kernel
+    return dispatcher
+
+
+def _twin(function: FunctionType) -> FunctionType:
+    """A function for numba alone, with names of its own: `function` keeps those that the interpreter needs."""
+    closure = tuple(CellType() for _ in function.__code__.co_freevars)
+    twin = FunctionType(function.__code__, {}, function.__name__, function.__defaults__, closure)
+    twin.__module__, twin.__qualname__, twin.__doc__ = function.__module__, function.__qualname__, function.__doc__
+    return twin
+
+
+def _name_parts(dispatcher: Any) -> None:
+    """Give a kernel that numba is to compile, and all that it calls, what they find by name, as numba knows it."""
+    waiting, seen = [dispatcher], set()
+    while waiting:
+        one = waiting.pop()
+        if one in seen:
+            continue
+        seen.add(one)
+        function, twin = one._kernel.function, one.py_func
+        cells = dict(zip(function.__code__.co_freevars, twin.__closure__ or (), strict=True))
+        for name, value in named(function):
+            known = _known(value, function)
+            if name in cells:
+                cells[name].cell_contents = known
+            else:
+                twin.__globals__[name] = known
+            held = vars(known).values() if isinstance(known, ModuleType) and known is not value else (known,)
+            waiting += [part for part in held if getattr(part, "_kernel", None) is not None]
+
+
+def _known(value: Any, function: FunctionType) -> Any:
+    """What a name of the interpreter is to numba."""
+    kernel = jit.kernel_of(value)
+    if kernel is not None:
+        return _part(kernel)
+    if value is interpreted.unsigned or type(value) is interpreted.Unsigned:
+        return np.uint64 if value is interpreted.unsigned else np.uint64(value)
+    if value is interpreted.contents:
+        return contents
+    if isinstance(value, interpreted.InterpreterFunction):
+        # By name, so that a cached kernel finds it again in the next process; its address would not last.
+        kinds = numba.types
+        arguments = [getattr(kinds, kind) for kind in value.arguments]
+        return kinds.ExternalFunction(value.name, getattr(kinds, value.result)(*arguments))
+    if isinstance(value, ModuleType) and is_own(value):
+        known = ModuleType(value.__name__)
+        vars(known).update({name: _known(item, function) for name, item in names_in(value, function)})
+        return known
+    return value
 
 
 def bundle(items: tuple[Any, ...]) -> Any:
@@ -64,27 +124,12 @@ def _contents(bundle: Any) -> Any:
     return bundle
 
 
-contents: Any = make("inner_kernel", _contents) if _lending is None else _lending.contents
-
-
-def interpreter_function(name: str, result: str, *arguments: str) -> Any:
-    """A function of Python's own C interface, given the numba names of its types."""
-    # By name, so that a cached kernel finds it again in the next process; its address would not last.
-    kinds = numba.types
-    return kinds.ExternalFunction(name, getattr(kinds, result)(*(getattr(kinds, kind) for kind in arguments)))
+contents: Any = numba.njit(_contents) if _lending is None else _lending.contents
 
 
 def types_of(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
     """The types for which a kernel is compiled that is called with such arguments, those of interpreted ones too."""
     return tuple(
-        numba.typeof(bundle(argument.given) if isinstance(argument, interpreted._Bundle) else argument)
+        numba.typeof(bundle(argument.given) if isinstance(argument, interpreted.Bundle) else argument)
         for argument in arguments
     )
-
-
-def load_kept(dispatcher: Any) -> Iterator[Any]:
-    """Load what is kept of a kernel, for one signature after the other."""
-    kept: Any = getattr(dispatcher, "_cache", None)
-    for signature in kept.signatures(dispatcher.targetctx) if hasattr(kept, "signatures") else ():
-        dispatcher.compile(signature)
-        yield signature

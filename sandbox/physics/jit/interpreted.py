@@ -2,6 +2,7 @@
 
 import functools
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, cast
 
 import numpy as np
@@ -16,7 +17,7 @@ class Unsigned(int):
 unsigned: Any = Unsigned
 
 
-class _Bundle:
+class Bundle:
     """What kernels get of a bundle, and what went into it."""
 
     def __init__(self, items: tuple[Any, ...]) -> None:
@@ -24,8 +25,13 @@ class _Bundle:
         self.items = tuple(map(_viewed, items)) if not hasattr(items, "_make") else _viewed(items)
 
 
-class _InterpreterFunction:
-    """What only compiled kernels can call."""
+@dataclass(frozen=True)
+class InterpreterFunction:
+    """A function of Python's own C interface, which only compiled kernels can call; types by their numba names."""
+
+    name: str
+    result: str
+    arguments: tuple[str, ...]
 
 
 def _viewed(item: Any) -> Any:
@@ -51,21 +57,18 @@ def interpreted(function: Callable[..., Any], note: Callable[..., None] | None =
     return call
 
 
-def make(role: str, function: Callable[..., Any], note: Callable[..., None]) -> Callable[..., Any]:
-    """What modules hold of a kernel; parts of kernels get views already, and are left as they are."""
-    return interpreted(function, note) if role in ("kernel", "waiting_kernel") else function
+def make(kernel: Any) -> Callable[..., Any]:
+    """What modules hold of a kernel that Python calls; parts of kernels get views already, and are left as they are."""
+    made: Any = interpreted(kernel.function, kernel.note)
+    made._kernel = kernel
+    return cast(Callable[..., Any], made)
 
 
 def bundle(items: tuple[Any, ...]) -> Any:
     """Arrays and named tuples as one argument, viewed once."""
-    return _Bundle(items)
+    return Bundle(items)
 
 
 def contents(bundle: Any) -> Any:
     """The items of a bundle."""
     return bundle.items
-
-
-def interpreter_function(name: str, result: str, *arguments: str) -> Any:
-    """A place for a function that nobody calls here."""
-    return _InterpreterFunction()

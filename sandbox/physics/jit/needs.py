@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from sandbox.physics.jit import kernel_of
+
 # Files of this folder that no machine code follows from.
 _ASIDE = ("__init__.py", "cache.py", "interpreted.py", "needs.py")
 
@@ -56,33 +58,44 @@ def _text(code: CodeType, documentation: str | None) -> str:
     return repr((code.co_code, code.co_exceptiontable, code.co_names, shape, constants))
 
 
-def _named(function: FunctionType) -> Iterator[tuple[str, Any]]:
-    # What a function finds by name outside itself. Builtins follow from the version of Python.
+def is_own(module: ModuleType) -> bool:
+    """Whether a module is one of this package."""
+    return module.__name__.partition(".")[0] == __name__.partition(".")[0]
+
+
+def named(function: FunctionType) -> Iterator[tuple[str, Any]]:
+    """What a function finds by name outside itself. Builtins follow from the version of Python."""
     cells = zip(function.__code__.co_freevars, function.__closure__ or (), strict=True)
     yield from ((name, cell.cell_contents) for name, cell in cells)
-    package = __name__.partition(".")[0]
     for code in _codes(function.__code__):
         for name in code.co_names:
-            if name not in function.__globals__:
-                continue
-            value = function.__globals__[name]
-            yield name, value
-            if isinstance(value, ModuleType) and value.__name__.partition(".")[0] == package:
-                yield from ((other, getattr(value, other)) for other in code.co_names if hasattr(value, other))
+            if name in function.__globals__:
+                yield name, function.__globals__[name]
 
 
-def _read(held: Any) -> tuple[str, list[Any]]:
-    """What one kernel says itself, and the kernels that it names."""
-    function = getattr(held, "py_func", held)
+def names_in(module: ModuleType, function: FunctionType) -> Iterator[tuple[str, Any]]:
+    """What a function may read of a module."""
+    for code in _codes(function.__code__):
+        yield from ((name, getattr(module, name)) for name in code.co_names if hasattr(module, name))
+
+
+def _read(function: Any) -> tuple[str, list[Any]]:
+    """What one kernel says itself, and the functions that it names."""
+    kernel = kernel_of(function)
     lines = [f"{function.__module__}.{function.__qualname__}", _plain(function.__defaults__)]
-    lines.append(repr(sorted(getattr(held, "targetoptions", {}).items())))
+    lines.append("" if kernel is None else kernel.role)
     lines += [_text(code, function.__doc__) for code in _codes(function.__code__)]
     others = []
-    for name, value in _named(function):
-        if isinstance(getattr(value, "py_func", value), FunctionType):
-            others.append(value)
-            described = getattr(value, "py_func", value)
-            lines.append(f"{name} = {described.__module__}.{described.__qualname__}")
+    found = list(named(function))
+    for _, value in list(found):
+        if isinstance(value, ModuleType) and is_own(value):
+            found += names_in(value, function)
+    for name, value in found:
+        kernel = kernel_of(value)
+        one = value if kernel is None else kernel.function
+        if isinstance(one, FunctionType):
+            others.append(one)
+            lines.append(f"{name} = {one.__module__}.{one.__qualname__}")
         elif isinstance(value, ModuleType):
             lines.append(f"{name} = {value.__name__}")
         elif isinstance(value, type):
@@ -92,17 +105,17 @@ def _read(held: Any) -> tuple[str, list[Any]]:
     return "\n".join(lines), others
 
 
-def digest_of_needs(kernel: Any) -> str:
+def digest_of_needs(function: Any) -> str:
     """A digest of all that the machine code of one kernel follows from, but for versions and the types of arguments.
 
     Computed when it is asked for, from the values that names have then, as compiling does.
     """
-    texts: dict[int, str] = {}
-    open_ones = [kernel]
+    texts: dict[Any, str] = {}
+    open_ones = [function]
     while open_ones:
         one = open_ones.pop()
-        if id(one) not in texts:
-            texts[id(one)], others = _read(one)
+        if one not in texts:
+            texts[one], others = _read(one)
             open_ones += others
     digest = hashlib.blake2b(_own_sources(), digest_size=8)
     for text in sorted(texts.values()):

@@ -1,11 +1,11 @@
 """Hands (mouse joints): each two rows that draw a point of a body to the hand's cursor, with a force that is bounded.
 
-    F = -K (u' - w),  |F| <= a M h        w = v_c + n min(x / APPROACH, sqrt(a x), FASTEST_HAND),  |w| <= FASTEST_HAND
+    F = -K (u' - w),  |F| <= a M h        w = v_c + n min(x / APPROACH, sqrt(2 b x), FASTEST_HAND),  |w| <= FASTEST_HAND
 
 u' = velocity of the point after the step; x, n = distance and direction from there to the cursor, which moves at v_c;
 a = strength of the hand, M = mass of what can move of the body, K = M h / YIELDING: the article's spring of length 0
-(equation.py), of Cs 0.37 and Cd 0.67 at 60 Hz. It comes in no faster than half of its force can brake it, so that it
-does not overshoot.
+(equation.py), of Cs 0.37 and Cd 0.67 at 60 Hz. It comes in no faster than a part of its force can brake it, at b, so
+that it does not overshoot.
 
 The point is a particle; or, of a body that would tear there, the place of that particle in a frame that goes along with
 many (an interpolation constraint): their mean, turned to fit as shape matching does it (Mueller and others 2005). Each
@@ -30,6 +30,10 @@ from sandbox.physics.world import GRAB_COUNT, GRAB_MATERIAL, Floats, Slots, Worl
 FASTEST_HAND = 30.0
 # Near the cursor a hand wants what it holds to be there in this time [s]; more lags behind.
 APPROACH = 0.03
+# It brakes with this part of its force, and no harder than [m/s^2]. More lets soft bodies swing past the cursor, since
+# what is held stops before the rest does; less makes hands slow.
+BRAKE_SHARE = 0.4
+HARDEST_BRAKE = 25.0
 # In about this time [s] a hand brings a body that is free to the speed that it wants. With a quarter of APPROACH
 # nothing swings past the cursor by more than a few hundredths of its way; less is harder on what tears.
 YIELDING = 1.0 / 120.0
@@ -193,7 +197,8 @@ def _wanted(hands: HandRows, i: int, h: float) -> tuple[float, float]:
     dy = hands.position[cursor, 1] - hands.point[i, 1]
     away = math.sqrt(dx * dx + dy * dy)
     if away > 0.0:
-        speed = min(away / max(APPROACH, h), math.sqrt(hands.strength[hands.grips.hand[i]] * away))
+        brake = min(BRAKE_SHARE * hands.strength[hands.grips.hand[i]], HARDEST_BRAKE)
+        speed = min(away / max(APPROACH, h), math.sqrt(2.0 * brake * away))
         share = min(speed, FASTEST_HAND) / away
         wx += share * dx
         wy += share * dy

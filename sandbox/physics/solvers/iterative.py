@@ -70,6 +70,18 @@ class Pulling(NamedTuple):
     accumulated: Floats
 
 
+class Rounds(NamedTuple):
+    """How a step is iterated: how often, with what share of the last step's pulls, and in what order.
+
+    alternates: every other iteration goes through the springs backwards. In small steps what one order has not carried
+    through a wheel throws it off the ground; in one step a tick light wheels would sink in under heavy loads.
+    """
+
+    iterations: int
+    warm_start: float
+    alternates: bool
+
+
 @inner_kernel
 def _prepare_constraints(particles: Particles, constraints: ConstraintArrays, h: float, wanted: Wanted) -> None:
     # wanted = -(Cs C / h + Cd dC/dt) m
@@ -163,10 +175,11 @@ def _prepare_springs(
 
 
 @inner_kernel
-def _iterate_springs(count: int, inverse_mass: Floats, ends: Ends, pulling: Pulling) -> None:
+def _iterate_springs(count: int, inverse_mass: Floats, ends: Ends, pulling: Pulling, backwards: bool) -> None:
     # j = -(n . (dv_b - dv_a) - r) m_r, applied at once to the velocity change dv.
     change, accumulated = pulling.change, pulling.accumulated
-    for c in range(count):
+    for i in range(count):
+        c = count - 1 - i if backwards else i
         s = pulling.slot[c]
         a = ends.particle_a[s]
         b = ends.particle_b[s]
@@ -188,18 +201,18 @@ def _iterate_springs(count: int, inverse_mass: Floats, ends: Ends, pulling: Pull
 @kernel
 def _iterate(
     particles: Particles, ends: Ends, active: Flags, pulling: Pulling, constraints: ConstraintArrays, wanted: Wanted,
-    contacts: Contacts, terms: ContactTerms, lent_masses: Any, iterations: int, warm_start: float, h: float,
+    contacts: Contacts, terms: ContactTerms, lent_masses: Any, rounds: Rounds, h: float,
 ) -> None:  # fmt: skip
     (delassus,) = contents(lent_masses)
     velocity, inverse_mass, change = particles.velocity, particles.inverse_mass, pulling.change
-    count = _prepare_springs(particles, ends, active, warm_start, h, pulling)
+    count = _prepare_springs(particles, ends, active, rounds.warm_start, h, pulling)
     _prepare_constraints(particles, constraints, h, wanted)
     load_biases(contacts, terms, h)
     load_responses(contacts, terms, inverse_mass, delassus)
     start_impulses(contacts, terms, change, inverse_mass, delassus)
     start_masses(delassus.joints, change, inverse_mass)
-    for _ in range(iterations):
-        _iterate_springs(count, inverse_mass, ends, pulling)
+    for k in range(rounds.iterations):
+        _iterate_springs(count, inverse_mass, ends, pulling, rounds.alternates and k % 2 == 1)
         _iterate_constraints(inverse_mass, constraints, wanted, change)
         iterate_joints(delassus.joints, velocity, change, inverse_mass)
         sweep(contacts, terms, velocity, change, inverse_mass, delassus)
@@ -231,6 +244,7 @@ def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
     terms = terms_of(world, contacts)
     _iterate(
         particles_of(world), ends_of(world, substep.springs), unlimited_active(world), pulling, world.constraints,
-        wanted, contacts, terms, world.derived(_lent_masses), settings.iterations, settings.warm_start, substep.h,
+        wanted, contacts, terms, world.derived(_lent_masses),
+        Rounds(settings.iterations, settings.warm_start, substep.substeps > 1), substep.h,
     )  # fmt: skip
     store_spins(world, terms)

@@ -6,6 +6,7 @@ from typing import Annotated, Any, get_args
 
 from pydantic import Field
 
+from sandbox.level.faults.level_error import suggestion
 from sandbox.physics.world import World
 from sandbox.session.commands.command import CommandError
 
@@ -25,7 +26,8 @@ class Named:
         try:
             return self.find(world, name)
         except (KeyError, ValueError):
-            raise CommandError(f"there is no {self.noun} {name!r:.80}") from None
+            near = suggestion(name, self.names(world))
+            raise CommandError(f"there is no {self.noun} {name!r:.80}{near}") from None
 
 
 def _listed(names: Callable[[World], Sequence[str]]) -> Callable[[World, str], int]:

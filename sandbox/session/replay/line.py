@@ -57,8 +57,10 @@ def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def checked(where: str, kind: type[AnyLine], line: bytes) -> AnyLine:
-    """A line's fields, checked. Raises ReplayError."""
+    """A line's fields, checked; of a command no key may stand twice anywhere. Raises ReplayError."""
     try:
+        if issubclass(kind, CommandLine):
+            return kind.model_validate(json_object(where, line))
         return kind.model_validate_json(line)
     except ValidationError as error:
         raise ReplayError(f"{where}: {plain_fault(error)}") from None

@@ -242,6 +242,4 @@ def _parse(where: str, line: bytes) -> _SealedLine:
     kind = _KINDS.get(kind_of(line))
     if kind is None:
         raise ReplayError(f"{where}: neither a command, a tick, a state nor the end")
-    if kind is _SealedCommand:
-        json_object(where, line)
     return checked(where, kind, line)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.replay.line import CommandLine, checked, json_object
+from sandbox.session.replay.line import CommandLine, checked
 from sandbox.session.replay.lines import COMMAND_LIMIT
 from sandbox.session.replay.recording import ReplayError
 
@@ -42,7 +42,6 @@ def _read(source: str, path: Path) -> tuple[ScriptLine, ...]:
         try:
             if len(line) > COMMAND_LIMIT:
                 raise ReplayError(f"{where}: longer than {COMMAND_LIMIT} bytes")
-            json_object(where, line)
             parsed = checked(where, CommandLine, line)
         except ReplayError as error:
             faults.extend(error.faults)

@@ -72,11 +72,15 @@ class Faces:
         load = np.add.reduceat(strain, self._spring_start[:-1]) / np.maximum(np.diff(self._spring_start), 1)
         velocity = np.add.reduceat(frame.state.velocity[self._slots], begins, axis=0) / self._size[:, None]
         velocity = np.nan_to_num(velocity * np.array([1.0, -1.0]))
-        beat = BLINK_EVERY + 0.77 * (np.arange(self._count) % 4)
-        blinks = (frame.seconds + 1.7 * np.arange(self._count)) % beat > beat - BLINK
         pen = _Pen(centre[shown], turn[shown], size[shown])
-        pen.draw(load[shown], velocity[shown], blinks[shown])
+        pen.draw(load[shown], velocity[shown], self.blinks(frame.seconds)[shown])
         pen.into(marks)
+
+    def blinks(self, seconds: float) -> NDArray[np.bool_]:
+        """Which of them have their eyes shut at a time [s]."""
+        number = np.arange(self._count)
+        beat = BLINK_EVERY + 0.77 * (number % 4)
+        return (seconds + 1.7 * number) % beat > beat - BLINK
 
 
 class _Pen:

@@ -4,7 +4,7 @@ from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.families import potential, potential_excess, start_excess, start_potential
 from sandbox.physics.solvers.direct.motion import kinetic
 from sandbox.physics.solvers.direct.system import Span, State, System
-from sandbox.physics.world import Floats
+from sandbox.physics.world import BANK_UNOPENED, Floats
 
 # A body's bank holds at most this share of its energy: where every spring has Cs <= Cd, and where one has not (its
 # energy in this norm swings by up to 3 within a period). 0 would reject most steps at Cs = Cd = 1.
@@ -43,7 +43,7 @@ def is_new(span: Span, system: System, bank: Floats) -> bool:
     """Whether a body's bank is begun for all of it: at its start, not where a hand has let go of a part."""
     new = True
     for r in range(span.first_row, span.last_row):
-        new = new and bank[system.rows.particle[r]] < 0.0
+        new = new and bank[system.rows.particle[r]] == BANK_UNOPENED
     return new
 
 

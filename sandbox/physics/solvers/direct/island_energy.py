@@ -5,6 +5,8 @@ forces in the step is that of their impulses at the mean of the velocities v and
 is stored, up to a limit, in the energy banks of bodies and particles; to push apart what penetrates is paid from there.
 """
 
+import math
+
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.terrain_clamp import STOPS, stopped
 from sandbox.physics.collision.turning import SURFACE_WEIGHT
@@ -25,10 +27,13 @@ from sandbox.physics.solvers.direct.families import find_tension
 from sandbox.physics.solvers.direct.joint_response import work_of_joints
 from sandbox.physics.solvers.direct.motion import copy, hold_triangles, scale
 from sandbox.physics.solvers.direct.system import Rows, Span, State, System, span_of
-from sandbox.physics.world import Floats
+from sandbox.physics.world import BANK_UNOPENED, Floats
 
 # Halvings of what moves within bodies that fail the test, before all that moves is slowed down.
 INNER_HALVINGS = 3
+# What banks save for pushing apart what penetrates lets a body have this speed [m/s] as a whole. More lets what a crash
+# has lost come back, less leaves what lies deep in terrain there for longer.
+PAID_PUSH = 0.5
 
 
 @inner_kernel
@@ -100,7 +105,13 @@ def open_free(islands: BodyIslands, state: State) -> None:
         surface = state.spin[p] * state.radius[p]
         islands.before[k] = 0.5 * state.mass[p] * (ux * ux + uy * uy + surface * surface / SURFACE_WEIGHT)
         islands.held[k] = max(0.0, state.energy_bank[p])
-        islands.fresh[k] = state.energy_bank[p] < 0.0
+        islands.fresh[k] = state.energy_bank[p] == BANK_UNOPENED
+
+
+@inner_kernel
+def _part_speed(gap: float, h: float) -> float:
+    # At what speed what penetrates is to part [m/s].
+    return min(max(0.0, -PENETRATION_SHARE * gap / h), FASTEST_PUSH)
 
 
 @inner_kernel
@@ -108,7 +119,7 @@ def _stored(c: int, contacts: Contacts, terms: ContactTerms, h: float) -> float:
     # What it costs to bring what penetrates to the velocity at which it is to part [J].
     if not (contacts.gap[c] < 0.0 and terms.normal[c] > 0.0):
         return 0.0
-    speed = min(-PENETRATION_SHARE * contacts.gap[c] / h, FASTEST_PUSH)
+    speed = _part_speed(contacts.gap[c], h)
     return 0.5 * speed * speed / terms.normal[c]
 
 
@@ -163,14 +174,30 @@ def _member_of(c: int, contacts: Contacts, islands: BodyIslands, inverse_mass: F
 
 
 @inner_kernel
-def only_hold(contacts: Contacts, touch: Touch, inverse_mass: Floats, h: float) -> None:
-    """Let contacts of islands that fail begin with no impulse, and neither push apart nor bounce."""
+def only_hold(contacts: Contacts, touch: Touch, inverse_mass: Floats, parts: bool, h: float) -> None:
+    """Let contacts of islands that fail begin with no impulse and not bounce, and push apart as banks can pay or not.
+
+    parts: whether they push apart at all.
+    """
     # From there each sweep that is not hastened takes energy: it lowers 1/2 J.W J + J.u, which is what contacts add.
     islands = touch.islands
+    for island in range(islands.counts[ISLANDS]):
+        islands.total[island] = 0.0
+        islands.allowed[island] = 0.0
+    for k in range(islands.counts[MEMBERS]):
+        islands.allowed[islands.island[k]] += islands.held[k]
+    for c in range(contacts.particle.shape[0]):
+        k = _member_of(c, contacts, islands, inverse_mass)
+        if k >= 0:
+            islands.total[islands.island[k]] += _stored(c, contacts, touch.terms, h)
     for c in range(contacts.particle.shape[0]):
         k = _member_of(c, contacts, islands, inverse_mass)
         if k >= 0 and islands.fails[islands.island[k]]:
-            touch.terms.bias[c] = max(touch.terms.bias[c], max(0.0, contacts.gap[c]) / h)
+            cost, saved = islands.total[islands.island[k]], islands.allowed[islands.island[k]]
+            pushed = 0.0
+            if parts and cost > 0.0:
+                pushed = _part_speed(contacts.gap[c], h) * math.sqrt(min(1.0, saved / cost))
+            touch.terms.bias[c] = max(0.0, contacts.gap[c]) / h - pushed
             contacts.impulse[c, 0] = 0.0
             contacts.impulse[c, 1] = 0.0
 
@@ -245,26 +272,34 @@ def damp_islands(touch: Touch, system: System, state: State, start: Floats, h: f
 
 
 @inner_kernel
-def _load_limits(contacts: Contacts, touch: Touch, system: System, inverse_mass: Floats, h: float) -> None:
-    # The most that each bank may hold: a share of the member's energy, and what penetrations store.
-    islands = touch.islands
+def _load_limits(contacts: Contacts, touch: Touch, system: System, state: State, h: float) -> None:
+    # The most that each bank may hold: a share of the member's energy, or what penetrations cost.
+    islands, bodies = touch.islands, touch.islands.counts[BODIES]
     for k in range(islands.counts[MEMBERS]):
-        if k < islands.counts[BODIES]:
-            body = islands.body[k]
-            islands.limit[k] = bank_limit(body, span_of(system, body), system, h)
-        else:
-            islands.limit[k] = BANK_SHARE * islands.before[k]
+        islands.limit[k] = 0.0
     for c in range(contacts.particle.shape[0]):
-        k = _member_of(c, contacts, islands, inverse_mass)
+        k = _member_of(c, contacts, islands, state.inverse_mass)
         if k >= 0:
             islands.limit[k] += _stored(c, contacts, touch.terms, h)
+    for k in range(islands.counts[MEMBERS]):
+        mass = 0.0
+        share = 0.0
+        if k < bodies:
+            span = span_of(system, islands.body[k])
+            share = bank_limit(islands.body[k], span, system, h)
+            for r in range(span.first_row, span.last_row):
+                mass += system.rows.mass[r]
+        else:
+            share = BANK_SHARE * islands.before[k]
+            mass = state.mass[islands.free[k - bodies]]
+        islands.limit[k] = max(share, min(islands.limit[k], 0.5 * mass * PAID_PUSH * PAID_PUSH))
 
 
 @inner_kernel
 def store_energies(contacts: Contacts, touch: Touch, system: System, state: State, h: float) -> None:
     """Store what each island has left of what it was allowed, up to the limits of its banks."""
     islands, bodies = touch.islands, system.bodies
-    _load_limits(contacts, touch, system, state.inverse_mass, h)
+    _load_limits(contacts, touch, system, state, h)
     for k in range(islands.counts[MEMBERS]):
         island = islands.island[k]
         limit = islands.limit[k]

@@ -269,7 +269,7 @@ def _solve_islands(
         if stage < LINEAR_SOLVES:
             _solve_due(touch, system, h, AHEAD, AHEAD)
         else:
-            only_hold(contacts, touch, state.inverse_mass, h)
+            only_hold(contacts, touch, state.inverse_mass, stage == LINEAR_SOLVES, h)
             release_joints(touch)
             _begin_again(islands, system, 1.0 if stage == LINEAR_SOLVES else 0.0)
             _solve_due(touch, system, h, 1.0, 0.0)

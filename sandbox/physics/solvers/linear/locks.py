@@ -2,7 +2,8 @@
 
 import ctypes
 
-from sandbox.physics.jit import COMPILED, inner_kernel, interpreter_function
+from sandbox.physics import jit
+from sandbox.physics.jit import inner_kernel, interpreter_function
 
 _NAMES = ("allocate_lock", "free_lock", "acquire_lock", "release_lock")
 _acquire = interpreter_function("PyThread_acquire_lock", "intc", "voidptr", "intc")
@@ -11,7 +12,7 @@ _release = interpreter_function("PyThread_release_lock", "void", "voidptr")
 
 def has_locks() -> bool:
     """Whether there are any: interpreted kernels never wait for one another."""
-    return COMPILED and all(hasattr(ctypes.pythonapi, f"PyThread_{name}") for name in _NAMES)
+    return jit.COMPILED and all(hasattr(ctypes.pythonapi, f"PyThread_{name}") for name in _NAMES)
 
 
 @inner_kernel

@@ -1,0 +1,40 @@
+"""ViewRow: a row of small buttons that show overlays over the world, or no longer, each with its key in its tip."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import pygame
+
+from sandbox.app.draw.colours import ACCENT, TEXT
+from sandbox.app.draw.views.overlays import NAMES
+from sandbox.app.shortcuts import tip_of
+from sandbox.app.widgets.icons import ICONS, painted_icon
+from sandbox.app.widgets.ui import Ui, set_icon
+
+ICON = 17.0
+GAP = 3.0
+
+
+class ViewRow:
+    """The buttons; toggle: what a press does with the name of an overlay."""
+
+    def __init__(self, ui: Ui, rect: pygame.Rect, toggle: Callable[[str], None], container: Any) -> None:
+        self._ui, self._shown = ui, frozenset[str]()
+        self.buttons = {}
+        step = (rect.width + ui.px(GAP)) / len(NAMES)
+        for index, name in enumerate(NAMES):
+            left, right = round(index * step), round((index + 1) * step - ui.px(GAP))
+            place = pygame.Rect(rect.left + left, rect.top, right - left, rect.height)
+            icon = painted_icon(ICONS[name], ui.px(ICON), TEXT)
+            self.buttons[name] = ui.button(
+                place, "", partial(toggle, name), container, style="@segment", icon=icon, tip=tip_of(name, "play")
+            )
+
+    def show(self, shown: set[str]) -> None:
+        """Mark those that are shown."""
+        for name in self._shown ^ shown:
+            is_on = name in shown
+            set_icon(self.buttons[name], painted_icon(ICONS[name], self._ui.px(ICON), ACCENT if is_on else TEXT))
+            (self.buttons[name].select if is_on else self.buttons[name].unselect)()
+        self._shown = frozenset(shown)

@@ -1,0 +1,130 @@
+"""Film: the past of a run drawn again as pictures, from its keyframes and commands; the run itself is not touched."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import pygame
+
+from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.picture import view_of
+from sandbox.app.draw.renderer import Renderer
+from sandbox.app.share.kinds import Size
+from sandbox.app.widgets.fonts import plain_font
+from sandbox.physics.snapshot import Snapshot
+from sandbox.session.session import Session
+
+# Lines are never drawn thinner than at this scale [pixels per layout unit].
+SMALLEST_SCALE = 0.5
+# Pictures that show the colours of a whole film.
+SAMPLES = 12
+# The name in the corner, at a height of 360 pixels: size of its letters, and how far it is from the edges.
+TEXT_HEIGHT, EDGE = 13.0, 12.0
+SHADE = (0, 0, 0, 96)
+
+
+class Film:
+    """What `session` has done in its last `seconds`, as a camera shows it and a renderer draws it now.
+
+    What becomes of the three after that does not change the film. first, last: its ticks.
+    """
+
+    def __init__(self, session: Session, camera: Camera, renderer: Renderer, seconds: float) -> None:
+        self.level = session.level
+        self.rate = session.world.settings.tick_rate
+        self.last = session.tick
+        self._past = session.retold(max(0, self.last - round(seconds * self.rate)))
+        self.first = max(self._past.tick, self.last - round(seconds * self.rate))
+        self._end = session.snapshot()
+        self._centre, self._zoom = camera.centre, camera.zoom
+        self._shown = camera.viewport[2:]
+        self._renderer = renderer.alike(renderer.scale)
+        self._running: Session | None = None
+
+    @property
+    def seconds(self) -> float:
+        """How long it is [s]."""
+        return (self.last - self.first) / self.rate
+
+    def drop_caches(self) -> None:
+        """Forget what worlds have derived, where kernels are interpreted no more."""
+        self._past.world.drop_caches()
+        if self._running is not None:
+            self._running.world.drop_caches()
+
+    def pictures(
+        self, start: float, end: float, fps: float, size: Size, name: str = ""
+    ) -> Iterator[pygame.Surface | None]:
+        """Pictures of start..end [s from its beginning], fps of them a second; between them None, for each tick made.
+
+        Each is drawn on the same surface. name: a text in the corner.
+        """
+        stage = _FilmStage(self, size, name)
+        twin = self._running = self._past.retold(self.first + math.floor(start * self.rate))
+        before = now = twin.snapshot()
+        for picture in range(picture_count(start, end, fps)):
+            at = min(self.first + (start + picture / fps) * self.rate, self.last)
+            tick = math.ceil(at - 1e-6)
+            while twin.tick < tick:
+                if twin.tick == tick - 1:
+                    before = twin.snapshot()
+                with np.errstate(over="ignore", invalid="ignore"):
+                    twin.advance()
+                if twin.tick < tick:
+                    yield None
+            if now.tick < tick:
+                now = twin.snapshot()
+                if len(now.mass) != len(before.mass) or before.tick != now.tick - 1:
+                    before = now
+            yield stage.draw(before, now, 1.0 - (tick - at) if before is not now else 1.0)
+
+    def samples(self, start: float, end: float, size: Size, name: str = "") -> list[pygame.Surface]:
+        """A few pictures from start to end [s from its beginning], of states that are kept: what colours there are."""
+        first, last = (self.first + round(at * self.rate) for at in (start, end))
+        kept = [self._past.snapshot(), *self._past.keyframes(first, last), self._end]
+        chosen = [kept[round(k)] for k in np.linspace(0, len(kept) - 1, min(len(kept), SAMPLES))]
+        stage = _FilmStage(self, size, name)
+        return [stage.draw(state, state, 1.0).copy() for state in chosen]
+
+
+class _FilmStage:
+    """What the pictures of one pass through a film are drawn on."""
+
+    def __init__(self, film: Film, size: Size, name: str) -> None:
+        zoom = film._zoom * min(size[0] / film._shown[0], size[1] / film._shown[1])
+        self._camera = Camera(film._centre, zoom, (0, 0, *size))
+        self._renderer = film._renderer.alike(max(SMALLEST_SCALE, film._renderer.scale * zoom / film._zoom))
+        self._surface = pygame.Surface(size, 0, 32)
+        self._tag = _name_tag(name, size[1] / 360.0) if name else None
+        self._edge = round(EDGE * size[1] / 360.0)
+
+    def draw(self, before: Snapshot, now: Snapshot, alpha: float) -> pygame.Surface:
+        """Draw what lies between two ticks."""
+        surface = self._surface
+        self._renderer.draw(surface, self._camera, before, now, alpha)
+        if self._tag is not None:
+            surface.blit(self._tag, (self._edge, surface.get_height() - self._edge - self._tag.get_height()))
+        return surface
+
+
+def picture_count(start: float, end: float, fps: float) -> int:
+    """How many pictures a film of start..end [s] has."""
+    return max(1, round((end - start) * fps))
+
+
+def _name_tag(name: str, scale: float) -> pygame.Surface:
+    pygame.font.init()
+    text = plain_font(max(9, round(TEXT_HEIGHT * scale)), True).render(name, True, (255, 255, 255))
+    side, above = round(9 * scale), round(3 * scale)
+    tag = pygame.Surface((text.get_width() + 2 * side, text.get_height() + 2 * above), pygame.SRCALPHA)
+    pygame.draw.rect(tag, SHADE, tag.get_rect(), border_radius=round(8 * scale))
+    tag.blit(text, (side, above))
+    return tag
+
+
+def film_of_view(session: Session, size: Size, seconds: float) -> Film:
+    """The last seconds [s] of a run as its level's view shows them, in the lines that a picture of a size has."""
+    camera = Camera(viewport=(0, 0, *size))
+    camera.fit(view_of(session.level, session.keyframes(0, session.tick)[0]))
+    scale = max(SMALLEST_SCALE, min(size[0] / 1280, size[1] / 720))
+    return Film(session, camera, Renderer(scale, session.level), seconds)

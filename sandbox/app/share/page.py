@@ -1,0 +1,272 @@
+"""SharePage: what of the last seconds is kept, and as what; how far it is; what has become of it."""
+
+from typing import Any
+
+import pygame
+
+from sandbox.app.application import Application
+from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, TEXT
+from sandbox.app.share.range_slider import RangeSlider
+from sandbox.app.share.sharing import SHORTEST_FILM, SIZES, Sharing
+from sandbox.app.widgets.painted import Painted, TextBlock
+from sandbox.app.widgets.ui import Ui
+
+# Sizes in layout units.
+WIDTH, HEIGHT = 740.0, 424.0
+MARGIN, TOP, GAP = 22.0, 56.0, 22.0
+ROW, LABEL, AFTER_ROW = 32.0, 19.0, 7.0
+BUTTON_WIDTH, BUTTON = 124.0, 36.0
+SLIDER, CAPTION = 32.0, 18.0
+# The part of the width that the preview has, and its shape.
+PREVIEW_PART, SHAPE = 0.55, 9 / 16
+KINDS = (
+    ("gif", "GIF", "Plays everywhere, over and over"),
+    ("mp4", "MP4", "A film: sharper and smaller, for chats and players"),
+    ("png", "PNG", "One picture, of the moment that you choose"),
+)
+SIZE_NAMES = [(f"{width}x{height}", f"{width} x {height}", "") for width, height in SIZES]
+NAMED = (("yes", "Shown", "Small, in the corner"), ("no", "Hidden", "Nothing but the run"))
+
+
+class SharePage:
+    """The page, open or not; it follows what becomes of `sharing`."""
+
+    def __init__(self, app: Application, sharing: Sharing) -> None:
+        self._app, self._sharing = app, sharing
+        self._sheet: Any = None
+        self._seen: tuple[object, ...] = ()
+
+    def open(self) -> None:
+        """Show the page, where there is something to share."""
+        if self._sheet is None and self._sharing.begin():
+            self._build(self._app.ui)
+
+    def leave(self) -> None:
+        """Back to the run; what is being written goes on."""
+        self._close()
+        self._sharing.leave()
+
+    def _close(self) -> None:
+        self._app.ui.close_sheet(self._sheet)
+        self._sheet = None
+
+    def _again(self, ui: Ui) -> None:
+        self._build(ui)
+
+    def update(self) -> None:
+        """Show what has changed."""
+        if self._sheet is None:
+            return
+        if not self._sheet.alive():
+            # The screen under it was left, and the page with it.
+            self._sheet = None
+            self._sharing.leave()
+            return
+        sharing = self._sharing
+        if self.step != sharing.step:
+            self._close()
+            self._build(self._app.ui)
+        seen = (sharing.wanted, sharing.note)
+        if seen != self._seen:
+            self._seen = seen
+            self._refresh()
+        self.preview.show_picture(sharing.shown_picture())
+        if self.step == "work":
+            self.bar.show_share(sharing.done)
+
+    # Building.
+
+    def _build(self, ui: Ui) -> None:
+        self._ui = ui
+        self.step = self._sharing.step
+        self._seen = ()
+        width, height = (min(most, room - 16) for most, room in zip((WIDTH, HEIGHT), ui.units, strict=True))
+        self._width, self._height = width, height
+        self._sheet = ui.open_sheet(self.leave, again=self._again)
+        left, top = ((room - side) / 2 for room, side in zip(ui.units, (width, height), strict=True))
+        self._box = ui.panel(ui.rect(left, top, width, height), self._sheet, "@dialog")
+        film = self._sharing.film
+        title = f"Share the last {film.seconds:.0f} seconds" if film and film.seconds >= 2.0 else "Share"
+        ui.label(ui.rect(MARGIN, 16, width - 2 * MARGIN, 28), title, self._box, "@title")
+        self._build_preview()
+        {"choose": self._build_choices, "work": self._build_work, "done": self._build_outcome}[self.step]()
+
+    def _build_preview(self) -> None:
+        ui = self._ui
+        room = self._width - 2 * MARGIN - GAP
+        wide = room * PREVIEW_PART
+        tall = min(wide * SHAPE, self._height - TOP - SLIDER - CAPTION - BUTTON - MARGIN - 14)
+        self._right, self._side = MARGIN + wide + GAP, room - wide
+        self.preview = FilmPreview(ui, ui.rect(MARGIN, TOP, wide, tall), self._box)
+        self._below = TOP + tall
+        self.slider: RangeSlider | None = None
+
+    def _row(self, text: str, top: float) -> pygame.Rect:
+        self._ui.label(self._ui.rect(self._right, top, self._side, LABEL), text, self._box, "@muted")
+        return self._ui.rect(self._right, top + LABEL, self._side, ROW)
+
+    def _build_choices(self) -> None:
+        ui, sharing, step = self._ui, self._sharing, LABEL + ROW + AFTER_ROW
+        film = sharing.film
+        assert film is not None
+        place = ui.rect(MARGIN, self._below + 6 + CAPTION, self._preview_width, SLIDER)
+        self.caption = ui.label(
+            ui.rect(MARGIN, self._below + 6, self._preview_width, CAPTION), "", self._box, "@muted"
+        )  # fmt: skip
+        self.kinds = ui.choice(
+            self._row("Format", TOP - 4), KINDS, lambda kind: sharing.choose(kind=kind), self._box
+        )  # fmt: skip
+        self.sizes = ui.choice(self._row("Size", TOP - 4 + step), SIZE_NAMES, self._choose_size, self._box)
+        self.named = ui.choice(
+            self._row("The level's name in the picture", TOP - 4 + 2 * step), NAMED,
+            lambda value: sharing.choose(named=value == "yes"), self._box,
+        )  # fmt: skip
+        if not sharing.level_name:
+            for button in self.named.buttons.values():
+                button.disable()
+        row = self._row("File name", TOP - 4 + 3 * step)
+        row.width -= ui.px(44)
+        self.field = ui.field(row, sharing.wanted.name, self._type_name, self._box, 120)
+        self.field.enter = self._save_as
+        self.suffix = ui.label(pygame.Rect(row.right + ui.px(6), row.top, ui.px(40), row.height), "", self._box)
+        if film.seconds >= SHORTEST_FILM:
+            self.slider = RangeSlider(ui, place, film.seconds, self._choose_range, self._box)
+        else:
+            for kind in ("gif", "mp4"):
+                self.kinds.buttons[kind].disable()
+        self._build_note(TOP + 4 * step)
+        self._add_button("Save", self._save, 0, "@primary")
+        self._add_button("Close", self.leave, 1)
+
+    @property
+    def _preview_width(self) -> float:
+        return self._right - GAP - MARGIN
+
+    def _build_note(self, top: float) -> None:
+        # Beside the buttons on the left, where there is nothing else, up to the end of the page.
+        bottom = self._height - MARGIN - BUTTON - 8
+        place = self._ui.rect(self._right, top, self._side, max(bottom - top, 18))
+        if self.step == "choose":
+            place = self._ui.rect(MARGIN, self._height - MARGIN - BUTTON, self._preview_width, BUTTON + 6)
+        self.note = TextBlock(self._ui, place, "", self._box, 12.0, TEXT)
+
+    def _build_work(self) -> None:
+        ui, sharing = self._ui, self._sharing
+        kind = sharing.wanted.kind
+        name = f"Writing {sharing.wanted.name}.{kind}"
+        ui.label(ui.rect(self._right, TOP - 4, self._side, 26), name, self._box)
+        self.bar = ProgressBar(ui, ui.rect(self._right, TOP + 30, self._side, 10), self._box)
+        self._build_note(TOP + 54)
+        self._add_button("Cancel", sharing.cancel, 0)
+        self._add_button("Play on", self.leave, 1, tip="It is written while you play")
+
+    def _build_outcome(self) -> None:
+        sharing, ui = self._sharing, self._ui
+        self._build_note(TOP - 2)
+        top = self._height - MARGIN - 2 * BUTTON - 14
+        half = (self._side - 10) / 2
+        actions = ("Open folder", sharing.open_folder), ("Copy path", sharing.copy_path)
+        for index, (text, action) in enumerate(actions):
+            ui.button(ui.rect(self._right + index * (half + 10), top, half, BUTTON), text, action, self._box)
+        self.note.set_dimensions((ui.px(self._side), ui.px(top - TOP - 8)))
+        self.note.repaint()
+        self._add_button("Close", self.leave, 0, "@primary")
+        self._add_button("Another", sharing.another, 1, tip="Of the same seconds")
+
+    def _add_button(self, text: str, action: Any, place: int, style: str = "", tip: str = "") -> None:
+        x = self._width - MARGIN - (place + 1) * BUTTON_WIDTH - place * 10
+        rect = self._ui.rect(x, self._height - MARGIN - BUTTON, BUTTON_WIDTH, BUTTON)
+        button = self._ui.button(rect, text, action, self._box, style=style, tip=tip)
+        if place == 0:
+            self._ui.focus_on(button)
+
+    # What the person does.
+
+    def _choose_size(self, text: str) -> None:
+        width, height = text.split("x")
+        self._sharing.choose(size=(int(width), int(height)))
+
+    def _choose_range(self, start: float, end: float) -> None:
+        self._sharing.choose(start=start, end=end)
+
+    def _type_name(self, text: str) -> bool:
+        self._sharing.choose(name=text.strip(), own_name=True)
+        return True
+
+    def _save_as(self, text: str) -> None:
+        self._type_name(text)
+        self._sharing.save()
+
+    def _save(self) -> None:
+        self.field.finish()
+        self._sharing.save()
+
+    def _refresh(self) -> None:
+        sharing, wanted = self._sharing, self._sharing.wanted
+        self.note.show_text(sharing.note)
+        if self.step != "choose":
+            return
+        self.kinds.show(wanted.kind)
+        self.sizes.show(f"{wanted.size[0]}x{wanted.size[1]}")
+        self.named.show("yes" if wanted.named and self._sharing.level_name else "no")
+        self.field.show(wanted.name)
+        self.suffix.set_text(f".{wanted.kind}")
+        film = sharing.film
+        if self.slider is not None and film is not None:
+            is_still = wanted.kind == "png"
+            self.slider.show_range(wanted.start, wanted.end, is_still)
+            ago = film.seconds - wanted.end
+            when = "the last moment" if ago < 0.05 else f"{ago:.1f} s before the last moment"
+            text = f"The picture: {when}" if is_still else f"{wanted.end - wanted.start:.1f} s, to {when}"
+            self.caption.set_text(text)
+
+
+class FilmPreview(Painted):
+    """What will be kept, moving; nothing but a frame at first."""
+
+    def __init__(self, ui: Ui, rect: pygame.Rect, container: Any) -> None:
+        super().__init__(ui, rect, container)
+        self.picture: pygame.Surface | None = None
+        self.repaint()
+
+    def show_picture(self, picture: pygame.Surface | None) -> None:
+        """Show another picture, which may have been drawn on anew."""
+        if picture is not None:
+            self.picture = picture
+            self.repaint()
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface:
+        """The picture, as large as it fits, in a line."""
+        surface = pygame.Surface(size, pygame.SRCALPHA)
+        surface.fill(BACKGROUND)
+        if self.picture is not None:
+            wide, tall = self.picture.get_size()
+            part = min(size[0] / wide, size[1] / tall)
+            scaled = pygame.transform.smoothscale(self.picture, (round(wide * part), round(tall * part)))
+            surface.blit(scaled, scaled.get_rect(center=surface.get_rect().center))
+        pygame.draw.rect(surface, LINE, surface.get_rect(), 1)
+        return surface
+
+
+class ProgressBar(Painted):
+    """How much is done, 0..1."""
+
+    def __init__(self, ui: Ui, rect: pygame.Rect, container: Any) -> None:
+        super().__init__(ui, rect, container)
+        self.share = 0.0
+        self.repaint()
+
+    def show_share(self, share: float) -> None:
+        """Show how much."""
+        if share != self.share:
+            self.share = share
+            self.repaint()
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface:
+        """A bar that fills from the left."""
+        surface = pygame.Surface(size, pygame.SRCALPHA)
+        round_by = size[1] // 2
+        pygame.draw.rect(surface, LINE, surface.get_rect(), border_radius=round_by)
+        filled = pygame.Rect(0, 0, max(size[1], round(size[0] * min(self.share, 1.0))), size[1])
+        pygame.draw.rect(surface, ACCENT, filled, border_radius=round_by)
+        return surface

@@ -1,0 +1,308 @@
+"""Sharing: keeps the last seconds of a run as a file: what is wanted, the film it is made of, the work, the outcome."""
+
+import contextlib
+import tempfile
+import time
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
+
+import pygame
+
+from sandbox.app.application import Application
+from sandbox.app.draw.colours import ACCENT, Colour
+from sandbox.app.draw.picture import write_png
+from sandbox.app.recordings import chosen_path, free_path, move_new, pictures_folder, plain_name
+from sandbox.app.share.desktop import copy_text, copying_picture, open_folder
+from sandbox.app.share.export import Excerpt, Export, Slices
+from sandbox.app.share.film import Film
+from sandbox.app.share.kinds import KINDS, Missing, Size, require
+from sandbox.editor.document import empty_level
+from sandbox.editor.storage.preferences import preference, set_preference
+from sandbox.level.faults.level_error import one_line
+
+# How much of a run can be kept [s].
+REMEMBERED = 10.0
+# A film shorter than this [s] is a picture.
+SHORTEST_FILM = 0.1
+SIZES: tuple[Size, ...] = ((640, 360), (1280, 720))
+# The moving preview: its pictures a second, and their size.
+PREVIEW_FPS, PREVIEW_SIZE = 15.0, (380, 214)
+# Wall time [s] that a frame may take for the preview, for the work while its page is open, and beside a run.
+PREVIEW_BUDGET, OPEN_BUDGET, PLAY_BUDGET = 0.02, 0.1, 0.006
+# What files of a level without a name are called.
+NAMELESS = "My toy"
+# Under what choices are remembered.
+KIND, SIZE, NAMED = "share_kind", "share_size", "share_named"
+
+Step = Literal["choose", "work", "done"]
+
+
+@dataclass(frozen=True)
+class Choices:
+    """What the person has chosen: kind, start..end [s of the film], size, whether the level is named, the file's name.
+
+    own_name: whether the name was typed.
+    """
+
+    kind: str
+    start: float
+    end: float
+    size: Size
+    named: bool
+    name: str
+    own_name: bool = False
+
+
+class Sharing:
+    """What the app shares, one thing at a time; `update` goes on with it a slice a frame.
+
+    is_open: whether its page is. film: the run's last seconds, when that was opened. pictures: of the preview, as far
+    as there are any. note: what there is to say. done: how much is written, 0..1. saved: the file, once it is there.
+    """
+
+    def __init__(self, app: Application) -> None:
+        self._app = app
+        self.is_open = False
+        self.film: Film | None = None
+        self.wanted = Choices("gif", 0.0, 0.0, SIZES[0], True, "")
+        self.pictures: list[pygame.Surface] = []
+        self.note = ""
+        self.done = 0.0
+        self.saved: Path | None = None
+        self._export: Export | None = None
+        self._slices: Slices | None = None
+        self._filming: Iterator[pygame.Surface | None] | None = None
+        self._copying: Generator[None, None, bool] | None = None
+        self._shown_at = 0.0
+
+    @property
+    def step(self) -> Step:
+        """What the page shows."""
+        return "work" if self._slices is not None else "choose" if self.saved is None else "done"
+
+    # What the person does.
+
+    def begin(self) -> bool:
+        """Take the run's last seconds, where nothing is written at the moment; whether there is anything to share."""
+        if self._slices is None:
+            play = self._app.play
+            if play is None or not self._app.ready:
+                self._app.say("There is nothing to share yet: play a level first.")
+                return False
+            self.saved, self.note = None, ""
+            self._take(play.film(REMEMBERED))
+        self.is_open = True
+        return True
+
+    def _take(self, film: Film) -> None:
+        self.film = film
+        kind, size = preference(KIND), preference(SIZE)
+        self.wanted = Choices(
+            kind if isinstance(kind, str) and kind in KINDS else "gif", 0.0, film.seconds,
+            SIZES[1] if size == "large" else SIZES[0], preference(NAMED) is not False, "",
+        )  # fmt: skip
+        self._say_where()
+        if film.seconds < SHORTEST_FILM:
+            self.wanted = replace(self.wanted, kind="png")
+            self.note = "Nothing has moved yet: there is this picture alone. Let it play for some seconds first."
+        self._suggest_name()
+        self.pictures = []
+        self._filming = film.pictures(0.0, film.seconds, PREVIEW_FPS, PREVIEW_SIZE)
+
+    def leave(self) -> None:
+        """Back to the run; what is being written goes on."""
+        self.is_open = False
+        self.pictures, self._filming = [], None
+        if self._slices is not None:
+            self._app.say("It is written while you play on. Share (F12) shows how far it is, and can cancel it.")
+
+    def choose(self, **changes: object) -> None:
+        """Change what is wanted."""
+        self.wanted = replace(self.wanted, **changes)  # type: ignore[arg-type]
+        self._say_where()
+        if "kind" in changes:
+            set_preference(KIND, self.wanted.kind)
+            self._suggest_name()
+        if "size" in changes:
+            set_preference(SIZE, "large" if self.wanted.size == SIZES[1] else "small")
+        if "named" in changes:
+            set_preference(NAMED, self.wanted.named)
+
+    @property
+    def level_name(self) -> str:
+        """The level's name, "" where nobody has given it one."""
+        name = "" if self.film is None else one_line(self.film.level.name)
+        return "" if name == empty_level().name else name
+
+    def _say_where(self) -> None:
+        with contextlib.suppress(OSError):
+            self.note = f"Goes to {_shown(pictures_folder())}"
+
+    def _suggest_name(self) -> None:
+        if self.wanted.own_name or self.film is None:
+            return
+        try:
+            name = plain_name(self.level_name or NAMELESS)
+            path = free_path(pictures_folder(), name, f".{self.wanted.kind}")
+        except OSError as error:
+            self.note = f"The folder for pictures cannot be made: {error.strerror or error}."
+            return
+        self.wanted = replace(self.wanted, name=path.stem)
+
+    def save(self) -> None:
+        """Begin to write what is wanted."""
+        film, wanted = self.film, self.wanted
+        if film is None or self._slices is not None:
+            return
+        try:
+            require(wanted.kind)
+            path = chosen_path(pictures_folder(), wanted.name, f".{wanted.kind}")
+        except (Missing, ValueError) as error:
+            self._tell(str(error))
+            return
+        except OSError as error:
+            self._tell(f"The folder for pictures cannot be made: {error.strerror or error}.")
+            return
+        name = self.level_name if wanted.named else ""
+        excerpt = Excerpt(wanted.kind, wanted.start, wanted.end, KINDS[wanted.kind].usual_fps, wanted.size, name)
+        self._export, self.done, self.saved = Export(film, excerpt, path, move_new), 0.0, None
+        self.note = "Play on closes this page: it is written while you play."
+        self._slices = self._export.slices()
+
+    def cancel(self) -> None:
+        """Give up what is being written; nothing of it stays."""
+        if self._slices is None:
+            return
+        self._slices.close()
+        self._slices, self._export, self.note = None, None, "Cancelled: no file was kept."
+
+    def another(self) -> None:
+        """Choose again, of the same seconds."""
+        self.saved = None
+        self._say_where()
+        self.wanted = replace(self.wanted, own_name=False)
+        self._suggest_name()
+
+    def open_folder(self) -> None:
+        """Show the file in its folder."""
+        if self.saved is not None and not open_folder(self.saved.parent):
+            self._tell(f"No file manager was found. The folder is {_shown(self.saved.parent)}")
+
+    def copy_path(self) -> None:
+        """Put the file's path on the clipboard."""
+        if self.saved is not None:
+            self._tell(
+                "The file's path is on the clipboard." if copy_text(str(self.saved)) else "No clipboard was found."
+            )
+
+    def _tell(self, text: str) -> None:
+        self.note = text
+        if not self.is_open:
+            self._app.say(text)
+
+    # A frame.
+
+    def update(self, frame_time: float) -> None:
+        """Let frame_time [s] pass, and go on with the work for a part of it."""
+        if self._slices is not None:
+            self._work(OPEN_BUDGET if self.is_open else PLAY_BUDGET)
+        elif self._copying is not None:
+            self._go_on_copying()
+        elif self.is_open and self._filming is not None:
+            self._go_on_filming()
+        self._shown_at += frame_time
+
+    def shown_picture(self) -> pygame.Surface | None:
+        """What the preview shows at the moment: the film from start to end, over and over."""
+        if self._export is not None and self._slices is not None:
+            return self._export.picture
+        if not self.pictures:
+            return None
+        wanted = self.wanted
+        at = wanted.end
+        if wanted.kind != "png" and wanted.end > wanted.start:
+            at = wanted.start + self._shown_at % (wanted.end - wanted.start)
+        return self.pictures[min(int(at * PREVIEW_FPS), len(self.pictures) - 1)]
+
+    def status(self) -> list[tuple[str, Colour]]:
+        """What the status line says of work that goes on beside a run."""
+        if self._slices is None or self._export is None or self.is_open:
+            return []
+        return [(f"writing {self._export.path.name}: {100.0 * self.done:.0f} %", ACCENT)]
+
+    def _go_on_filming(self) -> None:
+        assert self._filming is not None
+        end = time.perf_counter() + PREVIEW_BUDGET
+        for picture in self._filming:
+            if picture is not None:
+                self.pictures.append(picture.copy())
+            if time.perf_counter() > end:
+                return
+        self._filming = None
+
+    def _work(self, budget: float) -> None:
+        assert self._slices is not None and self._export is not None
+        end = time.perf_counter() + budget
+        try:
+            for done in self._slices:
+                self.done = done
+                if time.perf_counter() > end:
+                    return
+        except OSError as error:
+            self._slices = None
+            self._tell(f"{self._export.path.name} cannot be written: {error.strerror or error}.")
+            return
+        self._slices, self.saved = None, self._export.path
+        size = self.saved.stat().st_size / 1e6
+        self._tell(f"Saved as {self.saved.name}, {size:.1f} MB, in {_shown(self.saved.parent)}.")
+        self._copying = self._put_on_clipboard(self._export)
+
+    def _put_on_clipboard(self, export: Export) -> Generator[None, None, bool]:
+        """The last picture, as a file where the system's tool can read it; else the path."""
+        with tempfile.TemporaryDirectory() as folder:
+            png = Path(folder) / "picture.png"
+            if export.excerpt.kind == "png":
+                png = export.path
+            elif export.picture is not None:
+                write_png(export.picture, png)
+            copied = yield from copying_picture(png)
+        if copied:
+            what = "The picture" if export.excerpt.kind == "png" else "Its last picture"
+            self._tell_more(f"{what} is on the clipboard.")
+        elif copy_text(str(export.path)):
+            self._tell_more("Its path is on the clipboard; there is no tool here that puts pictures there.")
+        return copied
+
+    def _tell_more(self, text: str) -> None:
+        self._tell(f"{self.note}\n{text}" if self.is_open else text)
+
+    def _go_on_copying(self) -> None:
+        assert self._copying is not None
+        try:
+            next(self._copying)
+        except StopIteration:
+            self._copying = None
+        except OSError as error:
+            self._copying = None
+            self._tell_more(f"The clipboard has nothing of it: {error.strerror or error}.")
+
+    # With the app.
+
+    def drop_caches(self) -> None:
+        """Forget what worlds have derived, where kernels are interpreted no more."""
+        if self.film is not None:
+            self.film.drop_caches()
+
+    def close(self) -> None:
+        """Give everything up, as the app ends."""
+        self.cancel()
+        if self._copying is not None:
+            self._copying.close()
+
+
+def _shown(folder: Path) -> str:
+    """A folder's path as people write it."""
+    home = Path.home()
+    return str(Path("~") / folder.relative_to(home)) if folder.is_relative_to(home) else str(folder)

@@ -1,0 +1,87 @@
+"""Contact points of a state, for who looks on: where they are, which way they push and how much; no tick reads it."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.physics.collision.filter import LINE, SOLID_RIGHT
+from sandbox.physics.collision.narrow_phase import DISC, EDGE
+from sandbox.physics.snapshot import Snapshot
+from sandbox.physics.state import Floats, Slots
+from sandbox.physics.substeps import substep_time
+from sandbox.physics.world import World
+
+
+class ContactPoints(NamedTuple):
+    """Contacts of the last step: slot of the particle (k,), point [m], normal towards it and force on it [N] (k, 2)."""
+
+    particle: Slots
+    point: Floats
+    normal: Floats
+    force: Floats
+
+
+@np.errstate(over="ignore", invalid="ignore")
+def contact_points(state: World | Snapshot, position: Floats | None = None) -> ContactPoints:
+    """The contacts that a state keeps of its last step; position (n, 2) [m]: where particles are, None = as they are.
+
+    Of contacts with what is not there any more nothing is said. force is the mean one of the step.
+    """
+    position = state.position if position is None else position
+    kind, number = state.contact_feature % 3, state.contact_feature // 3
+    chosen = (state.contact_particle >= 0) & (state.contact_particle < len(position))
+    chosen &= number < np.where(kind == DISC, len(position), np.where(kind == EDGE, len(state.edge), _edges(state)))
+    kind, number, particle = kind[chosen], number[chosen], state.contact_particle[chosen].astype(np.int64)
+    impulse = state.contact_impulse[chosen]
+    start, along, is_solid = _features(state, position, kind, number)
+    centre = position[particle]
+    squared = np.sum(along * along, axis=1)
+    share = np.divide(np.sum((centre - start) * along, axis=1), squared, out=np.zeros(len(start)), where=squared > 0.0)
+    nearest = start + np.clip(share, 0.0, 1.0)[:, None] * along
+    away = centre - nearest
+    # Right of the way along an edge is outside of what is solid.
+    outward = np.stack([along[:, 1], -along[:, 0]], axis=1)
+    beside = (share > 0.0) & (share < 1.0)
+    side = np.where(is_solid | (np.sum(outward * away, axis=1) >= 0.0), 1.0, -1.0)
+    normal = _unit(np.where(beside[:, None], side[:, None] * outward, away))
+    radius = np.where(kind == DISC, state.radius[particle], np.minimum(state.radius[particle], _length(away)))
+    along_normal, across = impulse[:, :1], impulse[:, 1:]
+    tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
+    force = (along_normal * normal + across * tangent) / substep_time(state.settings)
+    return ContactPoints(particle, centre - radius[:, None] * normal, normal, force)
+
+
+def _edges(state: World | Snapshot) -> int:
+    return len(state.terrain.edge_a)
+
+
+def _features(
+    state: World | Snapshot, position: Floats, kind: Slots, number: Slots
+) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    """Start [m] and way along it (k, 2) of what contacts are with, and whether it is solid on the left (k,)."""
+    start, end = np.zeros((2, len(kind), 2))
+    is_solid = np.zeros(len(kind), dtype=np.bool_)
+    discs, edges, ground = (np.flatnonzero(kind == each) for each in range(3))
+    start[discs] = end[discs] = position[number[discs]]
+    springs, swapped = number[edges], state.edge[number[edges]] == SOLID_RIGHT
+    first, last = state.particle_a[springs], state.particle_b[springs]
+    start[edges] = position[np.where(swapped, last, first)]
+    end[edges] = position[np.where(swapped, first, last)]
+    is_solid[edges] = state.edge[springs] > LINE
+    terrain = state.terrain
+    start[ground] = terrain.vertex[terrain.edge_a[number[ground]]]
+    end[ground] = terrain.vertex[terrain.edge_b[number[ground]]]
+    is_solid[ground] = terrain.solid[number[ground]]
+    return start, end - start, is_solid
+
+
+def _length(vectors: Floats) -> Floats:
+    return np.asarray(np.sqrt(np.sum(vectors * vectors, axis=1)))
+
+
+def _unit(vectors: Floats) -> Floats:
+    """Vectors (k, 2) of length 1; upward where they have none."""
+    length = _length(vectors)[:, None]
+    up = np.broadcast_to(np.array([0.0, 1.0]), vectors.shape)
+    return np.where(length > 0.0, np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0.0), up)

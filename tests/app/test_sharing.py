@@ -1,0 +1,276 @@
+"""Sharing the last seconds of a run, by the page: what is kept, what is left untouched, what is said."""
+
+import errno
+import os
+import stat
+from itertools import pairwise
+from pathlib import Path
+
+import imageio_ffmpeg
+import numpy as np
+import pygame
+import pytest
+from PIL import Image, ImageSequence
+
+from sandbox.app.share import desktop
+from sandbox.app.share.gif import GifWriter
+from sandbox.physics.snapshot import state_hash
+from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.verify import verify
+from sandbox.session.session import Session
+from tests.app.conftest import small_level
+
+FALLING = {"settings": {"solver": "single_pass", "gravity": [0.0, -9.81]}}
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Where shared files go; the pictures in them are small, and no tool of the system's is there."""
+    monkeypatch.setattr("sandbox.app.share.sharing.SIZES", ((160, 90), (320, 180)))
+    monkeypatch.setattr("sandbox.app.share.page.SIZE_NAMES", [("160x90", "Small", ""), ("320x180", "Large", "")])
+    monkeypatch.setattr("sandbox.app.share.sharing.PREVIEW_SIZE", (32, 18))
+    # A slice a frame, so that there is time to do something.
+    monkeypatch.setattr("sandbox.app.share.sharing.OPEN_BUDGET", 0.0)
+    monkeypatch.setattr(desktop, "_clipboard_tool", lambda: None)
+    COPIED.clear()
+    monkeypatch.setattr(desktop.pygame.scrap, "put_text", COPIED.append)
+    return tmp_path / "pictures" / "Spring Sandbox"
+
+
+# What was put on the clipboard as text.
+COPIED: list[str] = []
+
+
+@pytest.fixture
+def driver(open_app, folder):
+    """Half a second of a rope that falls, with the page open."""
+    driver = open_app(small_level(**FALLING))
+    play_on(driver)
+    driver.app.act("share")
+    driver.frames()
+    return driver
+
+
+def play_on(driver):
+    """Let half a second pass, unseen."""
+    for _ in range(6):
+        driver.playback.advance(0.08)
+
+
+def finish(driver):
+    """Let it be written, and the clipboard be filled, unseen."""
+    sharing = driver.app.sharing
+    while sharing.step == "work" or sharing._copying is not None:
+        sharing.update(0.0)
+    driver.frames(2)
+
+
+def files(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def gif_frames(path):
+    with Image.open(path) as gif:
+        return gif.size, [
+            (np.asarray(one.convert("RGB")).copy(), one.info["duration"]) for one in ImageSequence.Iterator(gif)
+        ]
+
+
+def test_a_gif_has_the_seconds_that_were_played_and_moves_and_its_path_is_on_the_clipboard(driver, folder):
+    seconds = driver.app.sharing.film.seconds
+    assert 0.4 < seconds < 0.7
+    driver.choose("Save")
+    finish(driver)
+    assert files(folder) == ["small.gif"]
+    size, frames = gif_frames(folder / "small.gif")
+    assert size == (160, 90)
+    assert len(frames) == round(20 * seconds)
+    assert sum(duration for _, duration in frames) == pytest.approx(1000 * seconds, abs=50)
+    assert all((one[0] != other[0]).any() for one, other in pairwise(frames))
+    assert [str(folder / "small.gif")] == COPIED
+    assert "Its path is on the clipboard" in driver.app.sharing.note
+
+
+def test_an_mp4_of_a_part_in_the_other_size_without_the_name(driver, folder):
+    driver.choose("MP4")
+    driver.choose("Large")
+    driver.choose("Hidden")
+    slider, film = driver.app.share_page.slider, driver.app.sharing.film
+    driver.press((slider.pixel_of(0.0), slider.rect.centery - 3))
+    driver.release((slider.pixel_of(0.0), slider.rect.centery - 3))
+    driver.app.ui.focus_on(slider)
+    driver.app.sharing.choose(start=0.2)
+    driver.frames(2)
+    driver.fill(driver.app.share_page.field, "my own toy")
+    finish(driver)
+    assert files(folder) == ["my own toy.mp4"]
+    path = str(folder / "my own toy.mp4")
+    assert next(imageio_ffmpeg.read_frames(path))["source_size"] == (320, 180)
+    frames, seconds = imageio_ffmpeg.count_frames_and_secs(path)
+    assert frames == round(30 * (film.seconds - 0.2)) and seconds == pytest.approx(frames / 30, abs=0.01)
+    # A player can begin before it has all of it.
+    data = (folder / "my own toy.mp4").read_bytes()
+    assert 0 < data.index(b"moov") < data.index(b"mdat")
+
+
+def test_a_png_is_the_moment_of_the_knob(driver, folder):
+    driver.choose("PNG")
+    driver.choose("Hidden")
+    driver.choose("Save")
+    finish(driver)
+    driver.choose("Another")
+    slider = driver.app.share_page.slider
+    driver.press((slider.pixel_of(slider.end), slider.rect.centery - 3))
+    driver.move((slider.pixel_of(0.1), slider.rect.centery - 3))
+    driver.release((slider.pixel_of(0.1), slider.rect.centery - 3))
+    assert driver.app.sharing.wanted.end == pytest.approx(0.1, abs=0.02)
+    driver.choose("Save")
+    finish(driver)
+    assert files(folder) == ["small-2.png", "small.png"]
+    first, second = (pygame.surfarray.array3d(pygame.image.load(folder / name)) for name in files(folder))
+    assert (first != second).any()
+
+
+def test_cancel_leaves_no_file_and_says_so(driver, folder):
+    for kind in ("GIF", "MP4"):
+        driver.choose(kind)
+        driver.choose("Save")
+        assert len(files(folder)) == 1 and files(folder)[0].startswith(".")
+        driver.choose("Cancel")
+        assert files(folder) == []
+        assert driver.app.sharing.note == "Cancelled: no file was kept."
+
+
+def test_the_work_goes_on_beside_the_run_once_the_page_is_left(driver, folder):
+    driver.choose("Save")
+    before = driver.playback.session.tick
+    driver.choose("Play on")
+    driver.frames(2)
+    finish(driver)
+    assert files(folder) == ["small.gif"]
+    assert driver.playback.session.tick > before
+    assert any(text.startswith("Saved as small.gif") for text in driver.notices)
+
+
+def test_closing_the_app_leaves_no_file_that_is_not_whole(driver, folder):
+    driver.choose("Save")
+    driver.app.sharing.close()
+    assert files(folder) == []
+
+
+def test_nothing_is_written_over(driver, folder):
+    driver.app.sharing.save()
+    (folder / "small.gif").write_bytes(b"another's")
+    finish(driver)
+    assert "small.gif cannot be written: File exists" in driver.app.sharing.note
+    driver.choose("Save")
+    assert "exists already" in driver.app.sharing.note
+    assert (folder / "small.gif").read_bytes() == b"another's" and files(folder) == ["small.gif"]
+
+
+def test_a_full_disk_is_a_line_and_leaves_nothing(driver, folder, monkeypatch):
+    def refuse(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(GifWriter, "add", refuse)
+    driver.choose("Save")
+    finish(driver)
+    assert driver.app.sharing.note == "small.gif cannot be written: No space left on device."
+    assert files(folder) == []
+    assert driver.app.sharing.step == "choose"
+
+
+def test_what_is_not_installed_is_named_and_a_picture_can_still_be_kept(driver, folder, monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    driver.choose("Save")
+    assert driver.app.sharing.note == 'GIF needs Pillow: pip install "spring-sandbox[export]"'
+    driver.choose("PNG")
+    driver.choose("Save")
+    finish(driver)
+    assert files(folder) == ["small.png"]
+
+
+def test_before_anything_has_moved_there_is_a_picture(open_app, folder):
+    driver = open_app(small_level(**FALLING))
+    driver.app.start(driver.playback.reset())
+    driver.app.act("share")
+    assert not driver.app.share_page.kinds.buttons["gif"].is_enabled
+    driver.choose("Save")
+    finish(driver)
+    assert files(folder) == ["small.png"]
+
+
+def test_the_page_shows_the_film_and_outlives_a_new_size_of_the_window(driver, folder):
+    while driver.app.sharing._filming is not None:
+        driver.app.sharing.update(0.0)
+    film = driver.app.sharing.film
+    assert len(driver.app.sharing.pictures) == round(15 * film.seconds)
+    driver.app.display.window.size = (640, 440)
+    driver.frames(3)
+    page = driver.app.share_page
+    assert page.preview.picture is not None
+    everything = [*driver.app.ui.buttons(), page.preview, page.slider, page.field.entry, page.note]
+    assert all(driver.app.display.surface.get_rect().contains(widget.rect) for widget in everything)
+    driver.key(pygame.K_ESCAPE)
+    driver.key(pygame.K_ESCAPE)
+    assert not driver.app.sharing.is_open and not driver.app.sharing.pictures
+
+
+def test_a_run_has_the_same_bits_whether_it_is_shared_or_not_and_its_recording_verifies(open_app, folder, documents):
+    driver = open_app(small_level(**FALLING))
+    driver.key(pygame.K_r, pygame.KMOD_CTRL)
+    driver.press(driver.pixel_of("rope.4"))
+    driver.move((600, 300))
+    driver.release((600, 300))
+    play_on(driver)
+    driver.key(pygame.K_F12)
+    driver.choose("Save")
+    driver.choose("Play on")
+    play_on(driver)
+    finish(driver)
+    play_on(driver)
+    path = driver.playback.stop_recording()
+    replay = read_replay(path)
+    assert verify(replay) is None
+    plain = Session(replay.level, replay.script)
+    while plain.tick < replay.ticks:
+        plain.advance()
+    assert state_hash(plain.world) == state_hash(driver.world)
+    # A recording that is watched can be shared too, and goes on to its end.
+    watching = open_app(replay=replay)
+    play_on(watching)
+    watching.app.act("share")
+    watching.choose("Save")
+    finish(watching)
+    watching.choose("Close")
+    while not watching.playback.verdict:
+        play_on(watching)
+    assert "every tick equal" in watching.playback.verdict
+    assert len(files(folder)) == 2
+
+
+@pytest.mark.skipif(os.name != "posix", reason="the tool of the test is a shell script")
+def test_the_last_picture_goes_to_the_clipboard_where_a_tool_takes_it(driver, folder, tmp_path, monkeypatch):
+    tool, taken = tmp_path / "tool", tmp_path / "taken.png"
+    tool.write_text(f'#!/bin/sh\ncat > "{taken}"\n')
+    tool.chmod(tool.stat().st_mode | stat.S_IEXEC)
+    monkeypatch.setattr(desktop, "_clipboard_tool", lambda: ([str(tool)], True))
+    driver.choose("Save")
+    finish(driver)
+    assert driver.app.sharing.note.endswith("Its last picture is on the clipboard.")
+    with Image.open(taken) as picture:
+        assert picture.format == "PNG" and picture.size == (160, 90)
+
+
+def test_the_path_is_copied_and_the_folder_opened_on_request(driver, folder, monkeypatch):
+    opened = []
+    monkeypatch.setattr("sandbox.app.share.sharing.open_folder", lambda path: opened.append(path) or True)
+    driver.choose("PNG")
+    driver.choose("Save")
+    finish(driver)
+    COPIED.clear()
+    driver.choose("Open folder")
+    driver.choose("Copy path")
+    assert opened == [folder]
+    assert driver.app.sharing.note == "The file's path is on the clipboard."
+    assert Path(folder / "small.png").is_file()
