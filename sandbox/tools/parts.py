@@ -26,7 +26,7 @@ COLOURS = tuple(PALETTE)
 
 
 @dataclass(frozen=True)
-class Part:
+class Droppable:
     """A part: its name, the command that adds it, and its ghost, for a size of 1 m about the origin.
 
     solid: whether the ghost is of closed loops.
@@ -120,14 +120,14 @@ def _cart(size: float, place: Point, velocity: Point, colour: str) -> Command:
 
 
 _SQUARE = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
-PARTS: dict[str, Part] = {
+PARTS: dict[str, Droppable] = {
     part.name: part
     for part in (
-        Part("ball", _ball, (_circle(0.5),)),
-        Part("box", _box, (_SQUARE,)),
-        Part("jelly", _jelly, (_SQUARE,)),
-        Part("rope", _rope, ([(-1.0, 0.0), (1.0, 0.0)],), solid=False),
-        Part("balloon", _balloon, (_circle(0.5),)),
-        Part("cart", _cart, (list(_FRAME), *(_circle(_WHEEL, *_FRAME[corner]) for corner in _AXLES))),
+        Droppable("ball", _ball, (_circle(0.5),)),
+        Droppable("box", _box, (_SQUARE,)),
+        Droppable("jelly", _jelly, (_SQUARE,)),
+        Droppable("rope", _rope, ([(-1.0, 0.0), (1.0, 0.0)],), solid=False),
+        Droppable("balloon", _balloon, (_circle(0.5),)),
+        Droppable("cart", _cart, (list(_FRAME), *(_circle(_WHEEL, *_FRAME[corner]) for corner in _AXLES))),
     )
 }

@@ -88,7 +88,7 @@ def picture_of(part: str, size: int) -> pygame.Surface:
     return pygame.transform.smoothscale(mask, (size, size))
 
 
-class Palette:
+class PartsPalette:
     """Buttons that take up what they show; `press` starts an action by its name."""
 
     def __init__(self, ui: Ui, press: Callable[[str], None], top: float, height: float) -> None:

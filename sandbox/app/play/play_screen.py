@@ -15,7 +15,7 @@ from sandbox.app.loop import SPEEDS
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.hand_labels import draw_labels
 from sandbox.app.play.legend import Legend
-from sandbox.app.play.palette import NAMES, Palette, PaletteState
+from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
 from sandbox.app.play.panel import PANEL_WIDTH, Panel
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.stage import Stage
@@ -55,7 +55,7 @@ class PlayScreen:
         self.source, self.of_document = source, of_document
         self.show_panel = True
         self.show_palette = False
-        self.palette: Palette | None = None
+        self.palette: PartsPalette | None = None
         self.panel: Panel | None = None
         self.stage = Stage(playback, self.viewport, app.scale)
         kept = preference(HAND)
@@ -97,7 +97,7 @@ class PlayScreen:
         self.stage.place(self.viewport, ui.scale)
         self.palette = None
         if self.show_palette:
-            self.palette = Palette(ui, self._app.act, BAR_HEIGHT, ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT)
+            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT)
         left = FREE_PLACE[0] if self.palette is None else self.palette.right + FREE_PLACE[1]
         place = ui.rect(left, BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
         self.free = ui.button(place, "Free it", self._free, tip=tip_of("free", "play"))
