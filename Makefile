@@ -24,6 +24,7 @@ lint: $(VENV)/installed-dev
 
 pictures: $(VENV)/installed-dev
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.picture_cache
+	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.draw.app_icon
 	$(BIN)/python -m tests.pictures.sharing
 
 bench: $(VENV)/installed-dev

@@ -331,7 +331,7 @@ def _run_with_bar(
 
 
 def _probe(options: argparse.Namespace, world: "World") -> Any:
-    from sandbox.session.probe import Probe
+    from sandbox.session.probe import Probe, near_names
 
     if bool(options.probe) != bool(options.output):
         raise Refused("--probe names the particles and -o the file: give both")
@@ -339,7 +339,9 @@ def _probe(options: argparse.Namespace, world: "World") -> Any:
     try:
         return Probe(world, names, options.every)
     except KeyError as error:
-        raise Refused(f"--probe: there is no particle {error.args[0]!r}") from None
+        near = near_names(world, str(error.args[0]))
+        hint = f"; near names: {', '.join(near)}" if near else ""
+        raise Refused(f"--probe: there is no particle {error.args[0]!r}{hint}") from None
 
 
 def _write_text(path: Path, text: str) -> None:

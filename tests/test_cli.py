@@ -95,6 +95,14 @@ def test_a_script_that_names_nothing_is_refused_with_its_line(rope, tmp_path, ca
     assert err == [f"{moves}: tick 5: line 1: there is no particle 'rope.99'"]
 
 
+def test_a_probe_of_nothing_lists_names_that_are_near(rope, tmp_path, capsys):
+    assert main(["run", rope, "--ticks", "1", "--probe", "rpoe.4", "-o", str(tmp_path / "out.csv")]) == 2
+    (line,) = _lines(capsys)[1]
+    assert line.startswith("--probe: there is no particle 'rpoe.4'; near names: rope.4, rope.")
+    assert main(["run", rope, "--ticks", "1", "--probe", "moon", "-o", str(tmp_path / "out.csv")]) == 2
+    assert _lines(capsys)[1] == ["--probe: there is no particle 'moon'"]
+
+
 def test_probe_and_dump_write_what_happened(rope, tmp_path, capsys):
     table, last = tmp_path / "out.csv", tmp_path / "last.json"
     arguments = ["--probe", "rope.4, rope.0", "--every", "10", "-o", str(table), "--dump", str(last)]

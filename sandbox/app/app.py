@@ -23,7 +23,7 @@ from sandbox.app.play.status import NOTICES, Notice, StatusLine, draw_bar, draw_
 from sandbox.app.preparing import Preparation
 from sandbox.app.profile import Profile
 from sandbox.app.progress import RunProgress
-from sandbox.app.screen import Screen
+from sandbox.app.screen import Figures, Screen
 from sandbox.app.share.page import SharePage
 from sandbox.app.share.sharing import Sharing
 from sandbox.app.shortcuts import Mode
@@ -60,7 +60,7 @@ class App:
         self.share_page = SharePage(self, self.sharing)
         self._progress = RunProgress(self)
         self._own_actions = self._actions()
-        self._figures = (0.0, 0.0)
+        self._figures = Figures()
         self._counted = [0.0, 0, 0, 0.0]
         self._seconds = 0.0
         self._build_ui()
@@ -271,7 +271,7 @@ class App:
         with self.profile.part("ui"):
             if self.screen is not None:
                 left = None if self.ui.has_sheet else self.screen.notices_left
-                parts = self.sharing.status() + self.screen.status(*self._figures)
+                parts = self.sharing.status() + self.screen.status(self._figures)
                 if not self.ready and self.mode == "edit":
                     parts.append(("preparing the physics", WARNING))
                 self.status.draw(surface, parts, self.ui.units[0], left)
@@ -300,7 +300,7 @@ class App:
             return
         tick = self._tick
         ticks = max(0.0, tick - counted[2])
-        self._figures = (ticks / counted[0], 1e3 * counted[3] / counted[1])
+        self._figures = Figures(ticks / counted[0], counted[1] / counted[0], 1e3 * counted[3] / counted[1])
         self._counted = [0.0, 0, tick, 0.0]
         self.display.window.title = self.title()
 

@@ -10,13 +10,11 @@ os.environ.setdefault("SDL_VIDEO_X11_WMCLASS", "spring-sandbox")
 
 import pygame
 
-from sandbox.app.draw.colours import ACCENT
-from sandbox.app.widgets.icons import ICONS, painted_icon
+from sandbox.level.format.shipped import shipped_folder
 
 # Window at scale 1, and the smallest that everything fits in.
 WINDOW_SIZE = (1280, 720)
 SMALLEST_WINDOW = (640, 440)
-ICON_SIZE = 128
 INVISIBLE_DRIVERS = ("dummy", "offscreen", "evdev")
 SCALE_RANGE = (0.5, 4.0)
 # Desktops higher than this [pixels] have small pixels, unless told otherwise.
@@ -52,7 +50,7 @@ class Display:
             os.environ.setdefault("SDL_FRAMEBUFFER_ACCELERATION", "0")
         self.window = pygame.Window("Spring Sandbox", size, resizable=True, allow_high_dpi=True)
         self.window.minimum_size = SMALLEST_WINDOW
-        self.window.set_icon(painted_icon(ICONS["spring"], ICON_SIZE, ACCENT))
+        self.window.set_icon(pygame.image.load(shipped_folder("assets") / "icon.png"))
         self.surface = self.window.get_surface()
         self._shown_size = self.size
         self.fullscreen = False

@@ -1,7 +1,7 @@
 """Screen: what fills the window under its pages: the run that is played, or the level that is edited."""
 
 from collections.abc import Callable
-from typing import Literal, Protocol
+from typing import Literal, NamedTuple, Protocol
 
 import pygame
 
@@ -13,6 +13,14 @@ from sandbox.app.widgets.ui import Ui
 
 Pixel = tuple[float, float]
 Pointer = Literal["down", "move", "up"]
+
+
+class Figures(NamedTuple):
+    """Figures of the loop: ticks and frames [1/s], and the work of a frame [ms], without waiting for the next."""
+
+    ticks: float = 0.0
+    frames: float = 0.0
+    work: float = 0.0
 
 
 class Screen(Protocol):
@@ -64,8 +72,8 @@ class Screen(Protocol):
         """Draw everything but the widgets."""
         ...
 
-    def status(self, ticks: float, frame: float) -> list[tuple[str, Colour]]:
-        """The status line's parts; ticks [1/s] and frame [ms] are the figures of the loop."""
+    def status(self, figures: Figures) -> list[tuple[str, Colour]]:
+        """The status line's parts."""
         ...
 
     def title(self) -> list[str]:

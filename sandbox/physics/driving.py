@@ -85,12 +85,14 @@ def drive_muscles(world: World, tick: int) -> None:
     world.set_rest_lengths(muscles.spring, lengths)
 
 
+def drives_springs(world: World) -> bool:
+    """Whether a world has muscles or hydraulics."""
+    return bool(len(world.actuators.muscles.spring) or len(world.actuators.hydraulics.spring))
+
+
 def drive_springs(world: World) -> Floats:
     """Give driven springs the rest lengths of the coming tick's end; the rest lengths (m,) before, for their work."""
-    before, hydraulics = world.rest_length, world.actuators.hydraulics
-    if not len(world.actuators.muscles.spring) and not len(hydraulics.spring):
-        return before
-    before = before.copy()
+    before, hydraulics = world.rest_length.copy(), world.actuators.hydraulics
     drive_muscles(world, world.tick + 1)
     lengths = np.zeros(len(hydraulics.spring))
     _extend(

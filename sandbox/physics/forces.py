@@ -90,11 +90,6 @@ def _make_forces(world: World) -> Forces:
     return Forces(particles, bundle((particles,)))
 
 
-def apply_forces(world: World, h: float) -> Forces:
-    """Bring the velocities of free particles from the start of a step of h [s] to where its springs begin.
-
-    The forces that are returned keep the velocities before.
-    """
-    forces = forces_of(world)
+def apply_forces(forces: Forces, h: float) -> None:
+    """Bring the velocities of free particles from the start of a step of h [s] to where its springs begin."""
     _add_gravity_and_air(forces.items, h)
-    return forces

@@ -20,6 +20,9 @@ from sandbox.physics.world import World
 # Larger than anything that a level or a command can ask for (1e6 m, 1e9 m/s, 1e9 kg, 1e15 N/m), and small enough that
 # energies stay finite; a mistuned spring that passes it is frozen there.
 ABSURD = 1e18
+# What a kernel returns that looks at this itself, in place of a number: something that a tick begins with is not sound,
+# so that nothing is done; something that it has moved is not.
+UNSOUND, LOST = -2, -3
 # What a tick moves, in the order of the arrays below, and what is guarded of springs and constraints.
 _MOTION = ("position", "velocity", "angle", "spin")
 _CONSTANTS = [column for column in GUARDED if column.family is not Family.PARTICLE]
@@ -98,12 +101,14 @@ def _sound_elements(arrays: CheckedArrays) -> bool:
     return True
 
 
-@kernel
-def _are_sound(items: Any) -> bool:
-    # Whether every value that a tick reads is one that physics can give; NaN is in no range.
-    arrays = contents(items)[0]
+@inner_kernel
+def are_sound(arrays: CheckedArrays, impulse: Floats, count: int) -> bool:
+    """Whether all that a tick reads is what physics can give, the impulses of `count` contacts too; NaN is not."""
     if not _sound_motion(arrays) or not _sound_elements(arrays):
         return False
+    for c in range(count):
+        if not (-ABSURD <= impulse[c, 0] <= ABSURD and -ABSURD <= impulse[c, 1] <= ABSURD):
+            return False
     for p in range(arrays.mass.shape[0]):
         if not (
             0.0 < arrays.mass[p] <= ABSURD
@@ -128,10 +133,9 @@ def _are_sound(items: Any) -> bool:
     return True
 
 
-@kernel
-def _keep_if_sound(items: Any) -> bool:
-    # Keep what a tick moves as good, if all of it is; else keep nothing and say so.
-    arrays = contents(items)[0]
+@inner_kernel
+def keep_if_sound(arrays: CheckedArrays) -> bool:
+    """Keep what a tick moves as good, if all of it is; else keep nothing and say so."""
     if not _sound_motion(arrays):
         return False
     for p in range(arrays.position.shape[0]):
@@ -143,29 +147,37 @@ def _keep_if_sound(items: Any) -> bool:
     return True
 
 
-def _checked_arrays(world: World) -> Any:
-    good = [world.good[name] for name in _MOTION]
-    own = [getattr(world, name) for name in CheckedArrays._fields[: -len(good)]]
-    return bundle((CheckedArrays._make([*own, *good]),))
+@kernel
+def _are_sound(items: Any, impulse: Floats) -> bool:
+    (arrays,) = contents(items)
+    return are_sound(arrays, impulse, impulse.shape[0])
 
 
 @kernel
-def _are_bounded(impulse: Floats) -> bool:
-    for c in range(impulse.shape[0]):
-        if not (-ABSURD <= impulse[c, 0] <= ABSURD and -ABSURD <= impulse[c, 1] <= ABSURD):
-            return False
-    return True
+def _keep_if_sound(items: Any) -> bool:
+    (arrays,) = contents(items)
+    return keep_if_sound(arrays)
+
+
+def checked_arrays(world: World) -> CheckedArrays:
+    """The arrays of a world that are looked at."""
+    good = [world.good[name] for name in _MOTION]
+    own = [getattr(world, name) for name in CheckedArrays._fields[: -len(good)]]
+    return CheckedArrays._make([*own, *good])
+
+
+def _lent_arrays(world: World) -> Any:
+    return bundle((checked_arrays(world),))
 
 
 def contain_inputs(world: World) -> None:
     """Before a tick: take back whatever something outside the physics has put there."""
-    if not _are_bounded(world.contact_impulse):
-        for slot in np.flatnonzero(_outside(world.contact_impulse, -ABSURD)).tolist():
-            world.contact_impulse[slot] = 0.0
-            owner = slot_name(world, "contact_impulse", slot)
-            world.contained.append(Containment(world.tick, "contact_impulse", owner, frozen=False))
-    if _are_sound(world.derived(_checked_arrays)):
+    if _are_sound(world.derived(_lent_arrays), world.contact_impulse):
         return
+    for slot in np.flatnonzero(_outside(world.contact_impulse, -ABSURD)).tolist():
+        world.contact_impulse[slot] = 0.0
+        owner = slot_name(world, "contact_impulse", slot)
+        world.contained.append(Containment(world.tick, "contact_impulse", owner, frozen=False))
     for name in ("mass", *_MOTION, "inverse_mass", *_CONSTANTS_OF_PARTICLES):
         values = getattr(world, name)
         lowest = -ABSURD if name in (*_MOTION, "gravity_scale") else 0.0
@@ -184,11 +196,11 @@ def contain_inputs(world: World) -> None:
 
 def contain_outcome(world: World) -> None:
     """After a tick: take back what the tick itself has blown up, and keep the rest as good."""
-    if _keep_if_sound(world.derived(_checked_arrays)):
+    if _keep_if_sound(world.derived(_lent_arrays)):
         return
     for name in _MOTION:
         _freeze(world, _outside(getattr(world, name), -ABSURD), name)
-    _keep_if_sound(world.derived(_checked_arrays))
+    _keep_if_sound(world.derived(_lent_arrays))
 
 
 def _outside(values: NDArray[np.float64], lowest: float, highest: float = ABSURD) -> NDArray[np.bool_]:

@@ -1,6 +1,7 @@
 """step(world): one tick on one screen. The order of its parts is part of the replay contract."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,14 +10,15 @@ from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles, St
 from sandbox.physics.breaking import yield_and_break
 from sandbox.physics.collision.triangle_clamp import clamp_world, has_triangles
 from sandbox.physics.constraints import AREA
-from sandbox.physics.driving import drive_springs
+from sandbox.physics.driving import drive_springs, drives_springs
 from sandbox.physics.forces import Before, apply_forces, forces_of
 from sandbox.physics.integrate import integrate
-from sandbox.physics.joints.joint_set import joints_of, keep_joints, load_joints
-from sandbox.physics.sanitise import contain_inputs, contain_outcome
+from sandbox.physics.joints.joint_set import JointSet, joints_of, keep_joints, load_joints
+from sandbox.physics.sanitise import LOST, UNSOUND, contain_inputs, contain_outcome
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import (
+    Pair,
     Substep,
     constraint_coefficients,
     substep_coefficients,
@@ -33,60 +35,108 @@ if TYPE_CHECKING:
 PHYSICS_VERSION = 2
 
 
-def _collisions(world: World) -> "Collisions | None":
-    if not world.has_contacts:
-        return None
-    # Half of the physics, which a world in which nothing touches does without.
-    from sandbox.physics.collision.collide import collisions_of
+@dataclass(frozen=True, eq=False)
+class TickPlan:
+    """What topology decides of a tick. folds: there are triangles, which may not turn over; drives: springs are driven.
 
-    return collisions_of(world)
+    free: its collisions, where no spring, constraint or joint holds anything. springs, constraints: room for their Cs
+    and Cd in a substep.
+    """
+
+    collisions: "Collisions | None"
+    joints: JointSet | None
+    folds: bool
+    drives: bool
+    free: "Collisions | None"
+    springs: Pair
+    constraints: Pair
+
+
+def _plan(world: World) -> TickPlan:
+    collisions, joints, drives = None, joints_of(world), drives_springs(world)
+    if world.has_contacts:
+        # Half of the physics, which a world in which nothing touches does without.
+        from sandbox.physics.collision.collide import collisions_of
+
+        collisions = collisions_of(world)
+    free = collisions if collisions is not None and collisions.is_free and joints is None and not drives else None
+    springs, constraints = np.zeros((2, world.spring_count)), np.zeros((2, world.constraint_count))
+    return TickPlan(
+        collisions, joints, has_triangles(world), drives, free, (springs[0], springs[1]),
+        (constraints[0], constraints[1]),
+    )  # fmt: skip
 
 
 def step(world: World) -> None:
     """Advance the world by one tick of 1 / tick_rate seconds."""
+    plan = world.derived(_plan)
+    if plan.free is None or not _step_free(world, plan.free):
+        _step_held(world)
+    yield_and_break(world)
+
+
+def _step_free(world: World, collisions: "Collisions") -> bool:
+    # All of a tick in one entry; False: something is to be taken back before.
+    settings = world.settings
+    substeps = settings.fewest_substeps
+    if collisions.forces.settings is not settings:
+        forces_of(world)
+    collisions.begin(world)
+    h = substep_time(settings, substeps)
+    count = collisions.step_free(substeps, SOLVERS[settings.solver].follows, world.tick, h)
+    if count == UNSOUND:
+        return False
+    collisions.end(world)
+    world.rest_grabs()
+    world.tick += 1
+    if count == LOST:
+        contain_outcome(world)
+    return True
+
+
+def _step_held(world: World) -> None:
     settings = world.settings
     solver = SOLVERS[settings.solver]
     contain_inputs(world)
-    rest_length = drive_springs(world)
+    plan = world.derived(_plan)
+    collisions, joints = plan.collisions, plan.joints
+    rest_length = drive_springs(world) if plan.drives else world.rest_length
     count = substep_count(world)
     h = substep_time(settings, count)
     # Solvers only read them, so a tick of one substep needs no copies.
     springs, constraints = (world.stiffness, world.damping), world.constraint_coefficients
     if count > 1:
-        springs, constraints = substep_coefficients(world, count), constraint_coefficients(world, count)
+        springs = substep_coefficients(world, count, plan.springs)
+        constraints = constraint_coefficients(world, count, plan.constraints)
     # What a solver keeps is an impulse of one substep: exact, as their number is a power of two.
     scale = settings.fewest_substeps / count
     world.scale_impulses(scale)
-    collisions, folds = world.derived(_collisions), has_triangles(world)
     if collisions is not None:
         collisions.begin(world)
-    joints = joints_of(world)
-    if collisions is not None and collisions.is_free and joints is None:
-        collisions.step_free(forces_of(world), count, solver.follows, world.tick, h)
-    else:
-        for _ in range(count):
-            forces = apply_forces(world, h)
-            if joints is not None:
-                load_joints(joints, world, springs, h)
-            before = Before(forces.particles.before, rest_length)
-            contacts = None if collisions is None else collisions.collide(forces, world.tick, h)
-            solver.solve(world, Substep(h, count, springs, constraints, before), contacts)
-            if joints is not None:
-                keep_joints(joints, world, h)
-            if collisions is not None:
-                collisions.finish(h, not folds)
-            if folds:
-                clamp_world(world, solver.follows, h)
-            if folds or collisions is None:
-                integrate(world.position, world.velocity, world.particle_active, world.angle, world.spin, h)
-            rest_length = world.rest_length
+    forces = forces_of(world)
+    before = forces.particles.before
+    for _ in range(count):
+        if collisions is None or joints is not None:
+            apply_forces(forces, h)
+        if joints is not None:
+            load_joints(joints, world, springs, h)
+        contacts = None if collisions is None else collisions.collide(joints is not None, world.tick, h)
+        solver.solve(world, Substep(h, count, springs, constraints, Before(before, rest_length)), contacts)
+        if joints is not None:
+            keep_joints(joints, world, h)
+        if collisions is not None:
+            collisions.finish(h, not plan.folds)
+        if plan.folds:
+            clamp_world(world, solver.follows, h)
+        if plan.folds or collisions is None:
+            integrate(world.position, world.velocity, world.particle_active, world.angle, world.spin, h)
+        rest_length = world.rest_length
     if collisions is not None:
         collisions.end(world)
     world.scale_impulses(1.0 / scale)
     world.rest_grabs()
     world.tick += 1
     contain_outcome(world)
-    yield_and_break(world)
 
 
 def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> None:
@@ -100,6 +150,8 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
         world.add_springs(["s", "t"], [0, 0], [1, 1], law=[0, 1])
         world.add_constraints(AREA, [[0, 1, 2]])
         world.limits = StrainLimits(np.ones(1), np.ones(1), np.ones(1), np.zeros(1))
+        # Nothing acts on bodies from outside, then a motor does.
+        step(world)
         one = np.zeros(1, dtype=np.int64)
         muscles = Muscles(one, np.zeros(1), one + 2, np.zeros(1))
         hydraulics = Hydraulics(one + 1, np.ones(1), np.ones(1), np.zeros(1), one)

@@ -43,26 +43,28 @@ def substep_time(settings: WorldSettings, count: int | None = None) -> float:
     return 1.0 / (settings.tick_rate * (count or settings.fewest_substeps))
 
 
-def substep_coefficients(world: World, count: int | None = None) -> Pair:
+def substep_coefficients(world: World, count: int | None = None, into: Pair | None = None) -> Pair:
     """Cs and Cd (m,) of one substep, which leave every spring's motion from tick to tick as its Cs and Cd say.
 
-    count: substeps in the tick (None: the fewest that the settings give it).
+    count: substeps in the tick (None: the fewest that the settings give it). into: the arrays that are filled in and
+    returned (None: new ones).
     """
     springs = world.stiffness, world.damping
-    return _halved(springs, world.lowest_mode, count or world.settings.fewest_substeps)
+    return _halved(springs, world.lowest_mode, count or world.settings.fewest_substeps, into)
 
 
-def constraint_coefficients(world: World, count: int | None = None) -> Pair:
+def constraint_coefficients(world: World, count: int | None = None, into: Pair | None = None) -> Pair:
     """Cs and Cd (t,) of constraints, as `substep_coefficients` gives those of springs."""
     modes = world.constraint_lowest_mode
-    return _halved(world.constraint_coefficients, modes, count or world.settings.fewest_substeps)
+    return _halved(world.constraint_coefficients, modes, count or world.settings.fewest_substeps, into)
 
 
-def _halved(coefficients: Pair, lowest_mode: Floats, count: int) -> Pair:
+def _halved(coefficients: Pair, lowest_mode: Floats, count: int, into: Pair | None) -> Pair:
     # Of nothing there is nothing to copy, which takes a fifth of the tick of a few discs.
     if not len(coefficients[0]):
         return coefficients
-    stiffness, damping = (values.copy() for values in coefficients)
+    stiffness, damping = into or (np.empty_like(coefficients[0]), np.empty_like(coefficients[1]))
+    stiffness[:], damping[:] = coefficients
     halve(stiffness, damping, lowest_mode, count)
     return stiffness, damping
 

@@ -1,5 +1,6 @@
 """Probe and dump: positions and velocities of particles and what motors give, by name, as text for other programs."""
 
+import difflib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,6 +13,8 @@ from sandbox.physics.world import World
 
 # How names begin of what commands add.
 ADDED = "+"
+# Names that are listed as near to one that there is not, and those that it is compared with, at most.
+MOST_NEAR, MOST_COMPARED = 5, 2_000
 
 
 class Probe:
@@ -81,6 +84,16 @@ def _exists(world: World, name: str) -> bool:
         return bool(world.particle_active[world.particle_slot(name)])
     except KeyError:
         return False
+
+
+def near_names(world: World, name: str) -> list[str]:
+    """Names of particles and motors that resemble one that there is not, the nearest first."""
+    named = [each for each, shown in zip(world.particle_names, shown_particles(world), strict=True) if shown]
+    known = list(dict.fromkeys([*named, *(reading.name for reading in motor_readings(world))]))
+    first = name.partition(".")[0].casefold()
+    # Of many only those that begin alike are compared, which takes long.
+    alike = known if len(known) <= MOST_COMPARED else [each for each in known if each.casefold().startswith(first)]
+    return difflib.get_close_matches(name, alike[:MOST_COMPARED], n=MOST_NEAR)
 
 
 def _turning(world: World, slot: int, loose: bool) -> list[float]:

@@ -182,7 +182,7 @@ class Session:
         self._step(self._next_order)
         self._last_tick = self.tick
         self.messages.extend(str(hit) for hit in self.world.contained)
-        self.messages.extend(_break_lines(self.world))
+        self.messages.extend(break_lines(self.world))
         if self._recorder is not None:
             self._record(self._recorder.write_tick, self.world)
 
@@ -461,7 +461,7 @@ def _order(entry: LogEntry) -> int:
     return entry.order
 
 
-def _break_lines(world: World) -> list[str]:
+def break_lines(world: World) -> list[str]:
     """One line about the springs that broke in the last tick, or none."""
     broken = world.broken.tolist()
     if not broken:

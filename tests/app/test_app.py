@@ -14,6 +14,7 @@ from sandbox.app.display import has_display
 from sandbox.app.opening import open_app
 from sandbox.app.play.playback import Playback
 from sandbox.app.preparing import Preparation
+from sandbox.app.screen import Figures
 from sandbox.app.shortcuts import action_of, shortcuts
 from sandbox.app.start_request import StartRequest
 from sandbox.editor.storage.recent import remember
@@ -399,7 +400,7 @@ def test_particles_that_are_no_longer_finite_are_left_out_and_counted(driver):
     driver.playback.current = driver.playback.previous = driver.playback.session.snapshot()
     driver.frames()
     assert driver.stage.renderer.non_finite == 1
-    assert any("no longer finite" in text for text, _ in driver.app.screen.status(0.0, 0.0))
+    assert any("no longer finite" in text for text, _ in driver.app.screen.status(Figures()))
 
 
 def test_the_app_closes_after_the_given_time_and_prints_where_the_time_went(capsys, documents):

@@ -4,6 +4,7 @@ import numpy as np
 import pygame
 import pytest
 
+from sandbox.app.screen import Figures
 from sandbox.session.commands import CutSprings, SetSolver
 from tests.app.conftest import small_level
 
@@ -60,7 +61,7 @@ def test_undo_takes_a_whole_press_back(driving):
 
 def told(driving):
     """What the status line says."""
-    return [text for text, _ in driving.app.play.status(60.0, 1.0)]
+    return [text for text, _ in driving.app.play.status(Figures(60.0, 60.0, 1.0))]
 
 
 def test_the_status_line_says_what_a_motor_gives_and_what_the_single_pass_cannot_carry(driving):

@@ -25,7 +25,7 @@ def picture(step, still=False):
 
 def written(pictures, fps):
     file = io.BytesIO()
-    writer = GifWriter(file, SIZE, fps, pictures[:: max(1, len(pictures) // 4)])
+    writer = GifWriter(file, SIZE, fps, pictures[:: max(1, len(pictures) // 4)], len(pictures))
     for one in pictures:
         writer.add(one)
     writer.close()
@@ -70,3 +70,18 @@ def test_what_stands_still_takes_one_picture_and_next_to_no_bytes():
     still, moving = written([picture(0)] * 40, 20), written([picture(step % 13) for step in range(40)], 20)
     assert [duration for _, duration in frames(still)] == [2000]
     assert len(still) < len(moving) / 3
+
+
+def test_what_moves_everywhere_is_kept_small_by_leaving_slight_changes_out(monkeypatch):
+    rng = np.random.default_rng(1)
+    shade = rng.integers(60, 120, (SIZE[0] + 120, SIZE[1], 3))
+    drawn = []
+    for step in range(120):
+        drawn.append(picture(step % 13))
+        pygame.surfarray.pixels3d(drawn[-1])[:, 30:] = shade[step : step + SIZE[0], 30:]
+    free = written(drawn, 20)
+    monkeypatch.setattr("sandbox.app.share.gif.MOST_BYTES", 0.6 * len(free) / (SIZE[0] * SIZE[1]))
+    bounded = written(drawn, 20)
+    assert len(bounded) < 0.8 * len(free)
+    last = frames(bounded)[-1][0]
+    assert np.abs(last - pixels(drawn[-1])).mean() < 20.0

@@ -49,6 +49,7 @@ def test_a_chosen_material_alone_is_changed(driver):
 
 def test_the_menu_shows_the_material_that_the_keyboard_chose(driver):
     menu = driver.panel.menu
+    driver.panel.choose_material(None)
     driver.app.ui.focus_on(menu)
     for wanted in ("default", "steel", "rubber"):
         driver.key(pygame.K_DOWN)
@@ -68,6 +69,8 @@ def test_the_chosen_material_stays_chosen_in_a_window_of_another_size(driver):
 
 def test_all_springs_show_mixed_values_and_take_a_common_one(driver):
     panel = driver.panel
+    panel.choose_material(None)
+    driver.frames(1)
     assert panel.stiffness_field.text == "mixed" and panel.stiffness.mixed
     driver.fill(panel.stiffness_field, "0.07")
     assert coefficients(driver)[0] == coefficients(driver)[2] == 0.07

@@ -4,7 +4,7 @@ import errno
 import os
 import stat
 from itertools import pairwise
-from pathlib import Path
+from types import SimpleNamespace
 
 import imageio_ffmpeg
 import numpy as np
@@ -13,7 +13,9 @@ import pytest
 from PIL import Image, ImageSequence
 
 from sandbox.app.share import desktop
+from sandbox.app.share.film import film_of_view
 from sandbox.app.share.gif import GifWriter
+from sandbox.app.share.sharing import Sharing
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
@@ -24,7 +26,7 @@ FALLING = {"settings": {"solver": "single_pass", "gravity": [0.0, -9.81]}}
 
 
 @pytest.fixture
-def folder(tmp_path, monkeypatch):
+def folder(tmp_path, documents, monkeypatch):
     """Where shared files go; the pictures in them are small, and no tool of the system's is there."""
     monkeypatch.setattr("sandbox.app.share.sharing.SIZES", ((160, 90), (320, 180)))
     monkeypatch.setattr("sandbox.app.share.page.SIZE_NAMES", [("160x90", "Small", ""), ("320x180", "Large", "")])
@@ -51,6 +53,24 @@ def driver(open_app, folder):
     return driver
 
 
+@pytest.fixture
+def sharing(folder):
+    """Half a second of a rope that falls, ready to be shared, without a window."""
+    session, said = Session(small_level(**FALLING)), []
+    for _ in range(30):
+        session.advance()
+    play = SimpleNamespace(film=lambda seconds: film_of_view(session, (160, 90), seconds))
+    sharing = Sharing(SimpleNamespace(play=play, ready=True, say=said.append))
+    assert sharing.begin()
+    return sharing
+
+
+def work_off(sharing):
+    """Let it be written, and the clipboard be filled."""
+    while sharing.step == "work" or sharing._copying is not None:
+        sharing.update(0.0)
+
+
 def play_on(driver):
     """Let half a second pass, unseen."""
     for _ in range(6):
@@ -59,9 +79,7 @@ def play_on(driver):
 
 def finish(driver):
     """Let it be written, and the clipboard be filled, unseen."""
-    sharing = driver.app.sharing
-    while sharing.step == "work" or sharing._copying is not None:
-        sharing.update(0.0)
+    work_off(driver.app.sharing)
     driver.frames(2)
 
 
@@ -152,41 +170,42 @@ def test_the_work_goes_on_beside_the_run_once_the_page_is_left(driver, folder):
     assert any(text.startswith("Saved as small.gif") for text in driver.notices)
 
 
-def test_closing_the_app_leaves_no_file_that_is_not_whole(driver, folder):
-    driver.choose("Save")
-    driver.app.sharing.close()
+def test_closing_the_app_leaves_no_file_that_is_not_whole(sharing, folder):
+    sharing.save()
+    sharing.update(0.0)
+    assert len(files(folder)) == 1
+    sharing.close()
     assert files(folder) == []
 
 
-def test_nothing_is_written_over(driver, folder):
-    driver.app.sharing.save()
+def test_nothing_is_written_over(sharing, folder):
+    sharing.save()
     (folder / "small.gif").write_bytes(b"another's")
-    finish(driver)
-    assert "small.gif cannot be written: File exists" in driver.app.sharing.note
-    driver.choose("Save")
-    assert "exists already" in driver.app.sharing.note
+    work_off(sharing)
+    assert "small.gif cannot be written: File exists" in sharing.note
+    sharing.save()
+    assert "exists already" in sharing.note
     assert (folder / "small.gif").read_bytes() == b"another's" and files(folder) == ["small.gif"]
 
 
-def test_a_full_disk_is_a_line_and_leaves_nothing(driver, folder, monkeypatch):
+def test_a_full_disk_is_a_line_and_leaves_nothing(sharing, folder, monkeypatch):
     def refuse(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(GifWriter, "add", refuse)
-    driver.choose("Save")
-    finish(driver)
-    assert driver.app.sharing.note == "small.gif cannot be written: No space left on device."
-    assert files(folder) == []
-    assert driver.app.sharing.step == "choose"
+    sharing.save()
+    work_off(sharing)
+    assert sharing.note == "small.gif cannot be written: No space left on device."
+    assert (sharing.step, files(folder)) == ("choose", [])
 
 
-def test_what_is_not_installed_is_named_and_a_picture_can_still_be_kept(driver, folder, monkeypatch):
+def test_what_is_not_installed_is_named_and_a_picture_can_still_be_kept(sharing, folder, monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    driver.choose("Save")
-    assert driver.app.sharing.note == 'GIF needs Pillow: pip install "spring-sandbox[export]"'
-    driver.choose("PNG")
-    driver.choose("Save")
-    finish(driver)
+    sharing.save()
+    assert sharing.note == 'GIF needs Pillow: pip install "spring-sandbox[export]"'
+    sharing.choose(kind="png")
+    sharing.save()
+    work_off(sharing)
     assert files(folder) == ["small.png"]
 
 
@@ -250,27 +269,26 @@ def test_a_run_has_the_same_bits_whether_it_is_shared_or_not_and_its_recording_v
 
 
 @pytest.mark.skipif(os.name != "posix", reason="the tool of the test is a shell script")
-def test_the_last_picture_goes_to_the_clipboard_where_a_tool_takes_it(driver, folder, tmp_path, monkeypatch):
+def test_the_last_picture_goes_to_the_clipboard_where_a_tool_takes_it(sharing, folder, tmp_path, monkeypatch):
     tool, taken = tmp_path / "tool", tmp_path / "taken.png"
     tool.write_text(f'#!/bin/sh\ncat > "{taken}"\n')
     tool.chmod(tool.stat().st_mode | stat.S_IEXEC)
     monkeypatch.setattr(desktop, "_clipboard_tool", lambda: ([str(tool)], True))
-    driver.choose("Save")
-    finish(driver)
-    assert driver.app.sharing.note.endswith("Its last picture is on the clipboard.")
+    sharing.save()
+    work_off(sharing)
+    assert sharing.note.endswith("Its last picture is on the clipboard.")
     with Image.open(taken) as picture:
         assert picture.format == "PNG" and picture.size == (160, 90)
 
 
-def test_the_path_is_copied_and_the_folder_opened_on_request(driver, folder, monkeypatch):
+def test_the_path_is_copied_and_the_folder_opened_on_request(sharing, folder, monkeypatch):
     opened = []
     monkeypatch.setattr("sandbox.app.share.sharing.open_folder", lambda path: opened.append(path) or True)
-    driver.choose("PNG")
-    driver.choose("Save")
-    finish(driver)
+    sharing.choose(kind="png")
+    sharing.save()
+    work_off(sharing)
     COPIED.clear()
-    driver.choose("Open folder")
-    driver.choose("Copy path")
-    assert opened == [folder]
-    assert driver.app.sharing.note == "The file's path is on the clipboard."
-    assert Path(folder / "small.png").is_file()
+    sharing.open_folder()
+    sharing.copy_path()
+    assert (opened, COPIED) == ([folder], [str(folder / "small.png")])
+    assert sharing.note == "The file's path is on the clipboard."

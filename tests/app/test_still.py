@@ -176,3 +176,12 @@ def test_a_window_that_nobody_sees_is_not_drawn_while_the_run_goes_on(driver, mo
     driver.post(pygame.WINDOWRESTORED)
     driver.frames(2)
     assert len(drawn) > before
+
+
+def test_a_run_with_terrain_is_drawn_again_from_its_beginning(open_app):
+    ground = {"id": "ground", "polygon": [[-3, -3], [7, -3], [7, -2], [-3, -2]]}
+    driver = open_app(small_level(terrain=[ground]))
+    driver.frames(3)
+    driver.key(pygame.K_r)
+    driver.frames(3)
+    assert driver.playback.session.tick < 10

@@ -389,3 +389,13 @@ def test_words_survive_being_typed(words):
 @given(st.lists(st.tuples(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6)), max_size=3))
 def test_points_survive_being_typed(points):
     assert read_pairs("Corners", list_text(points)) == [list(point) for point in points]
+
+
+def test_a_muscles_period_is_shown_in_seconds_beside_ticks_and_its_phase_is_of_a_period():
+    document = Document(parse_level(json.dumps(LEVEL).encode(), "test"), frozenset([Item("body", "driven")]))
+    shown = {made.field: made for section in properties(document) for made in section.properties}
+    names = list(shown)
+    assert names.index("drive.period.seconds") == names.index("drive.period") + 1
+    seconds = shown["drive.period.seconds"]
+    assert seconds.texts == ("0.5",) and seconds.about.unit == "s" and not seconds.editable
+    assert shown["drive.phase"].about.title == "Phase, of a period"

@@ -44,9 +44,9 @@ def test_in_random_scenes_of_the_softest_springs_no_energy_appears(seed):
     assert found.growth <= 0.05
 
 
-@pytest.mark.parametrize(("stiffness", "damping"), [(0.1, 0.5), (0.5, 0.9)])
-def test_a_stirred_heap_lies_in_no_knots_five_seconds_later(stiffness, damping):
-    found = stir(heap(stiffness, damping, seed=0), 20.0, seed=0)
+@pytest.mark.parametrize(("stiffness", "damping", "seed"), [(0.1, 0.5, 0), (0.9, 0.99, 1)])
+def test_a_stirred_heap_lies_in_no_knots_five_seconds_later(stiffness, damping, seed):
+    found = stir(heap(stiffness, damping, seed), 20.0, seed)
     assert found.deepest <= 1.5
     assert found.lines == 0
     assert found.springs <= 2.0

@@ -69,6 +69,17 @@ def test_a_tick_of_a_heap_at_rest_makes_no_array():
     assert all(one is other for one, other in zip(before, after, strict=True))
 
 
+def test_a_tick_of_free_discs_is_one_call_of_a_kernel(monkeypatch):
+    w = heap(jelly=False, substeps=4)
+    run(w, 20)
+    calls, entry = [], collide._collide
+    monkeypatch.setattr(collide, "_collide", lambda *arguments: calls.append(arguments) or entry(*arguments))
+    for other in ("sanitise._are_sound", "sanitise._keep_if_sound", "forces._add_gravity_and_air", "step.integrate"):
+        monkeypatch.setattr(f"sandbox.physics.{other}", None)
+    run(w, 5)
+    assert len(calls) == 5
+
+
 def test_a_run_goes_on_with_the_same_bits_after_slots_were_added_and_taken_back_while_things_touch():
     w = heap()
     run(w, scaled(60, 25))

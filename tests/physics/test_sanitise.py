@@ -162,3 +162,29 @@ def test_what_levels_set_of_a_surface_is_guarded_and_only_what_was_hit_freezes(s
     _steps(w, 30)
     assert len(w.contained) == 1
     assert np.abs(w.velocity[jelly]).max() < 1.0
+
+
+@pytest.mark.parametrize("substeps", [1, 4])
+def test_of_free_discs_as_well_only_what_was_hit_freezes(substeps):
+    w = contact_world(FLOOR, substeps=substeps)
+    hit, left = add_discs(w, [(0.0, 0.1)]), add_discs(w, [(3.0, 1.0)])
+    _steps(w, 5)
+    place, height = w.position[hit].copy(), w.position[left, 1]
+    w.velocity[hit, 0] = math.nan
+    _steps(w, 5)
+    assert [taken.array for taken in w.contained] == ["velocity"]
+    assert np.flatnonzero(w.inverse_mass == 0.0).tolist() == [hit]
+    assert np.array_equal(w.position[hit], place)
+    assert w.position[left, 1] < height
+
+
+def test_what_a_tick_of_free_discs_itself_blows_up_is_taken_back_at_its_end():
+    w = contact_world(FLOOR)
+    hit, left = add_discs(w, [(0.0, 5.0)], gravity_scale=1e18), add_discs(w, [(3.0, 5.0)])
+    w.settings = WorldSettings(gravity=(0.0, -1e6))
+    step(w)
+    assert {taken.name for taken in w.contained} == {w.particle_names[hit]}
+    assert w.position[hit].tolist() == [0.0, 5.0]
+    assert w.inverse_mass[hit] == 0.0
+    assert w.inverse_mass[left] > 0.0
+    assert w.tick == 1

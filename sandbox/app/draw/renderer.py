@@ -29,6 +29,7 @@ from sandbox.physics.changing.equipment import Joined
 from sandbox.physics.joints.pulls import Pull
 from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.snapshot import Snapshot
+from sandbox.physics.terrain import Terrain
 
 # Sizes [pixels at scale 1]: springs, the smallest particle that can still be seen, and pins; what the editor draws.
 SPRING_WIDTH = 2.2
@@ -88,6 +89,9 @@ class Renderer:
         self._painter = Painter()
         self._backdrop = Backdrop()
         self._still = Still()
+        # The terrain that was drawn last, and how many there have been: arrays cannot be compared as a key is.
+        self._ground: Terrain | None = None
+        self._grounds = 0
         self._cast: Cast | None = None
         self._level_cast: Cast | None = None
         self._joined: tuple[Joined, ...] = ()
@@ -165,11 +169,13 @@ class Renderer:
     def _follow(self, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
         """Note what this picture is drawn from, so that one of the same need not be drawn again."""
         shown, moves = self.overlays.shown, not self.effects.is_still
+        if current.terrain is not self._ground:
+            self._ground, self._grounds = current.terrain, self._grounds + 1
         key = (
             (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail),
             (overlay.hovered, tuple(overlay.trail), overlay.cursor, tuple(map(tuple, overlay.ghost))),
             tuple(pull.cursor for pull in overlay.pulls if pull.at_limit), frozenset(shown),
-            current.terrain, (frame.seconds if moves else 0.0), (current.tick if shown & CHANGING else 0),
+            self._grounds, (frame.seconds if moves else 0.0), (current.tick if shown & CHANGING else 0),
             current.particle_active.tobytes(), current.spring_active.tobytes(), (current.inverse_mass == 0.0).tobytes(),
             self._ensemble.faces.blinks(frame.seconds).tobytes() if self._ensemble is not None else b"",
         )  # fmt: skip

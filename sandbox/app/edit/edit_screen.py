@@ -27,7 +27,7 @@ from sandbox.app.play.stage import PICK_RADIUS
 from sandbox.app.play.status import STATUS_HEIGHT
 from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.profile import Profile
-from sandbox.app.screen import Pixel, Pointer
+from sandbox.app.screen import Figures, Pixel, Pointer
 from sandbox.app.shortcuts import Mode
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import Document, EditError
@@ -375,7 +375,7 @@ class EditScreen:
         """Mark what the pointer snaps to, with a word."""
         draw_snap(surface, self.ui, self.camera.to_pixels(snapped.point), snapped)
 
-    def status(self, ticks: float, frame: float) -> list[tuple[str, Colour]]:
+    def status(self, figures: Figures) -> list[tuple[str, Colour]]:
         """What to do next, where the pointer is, and what the level has."""
         scene, selection = self.scene, self.document.selection
         parts: list[tuple[str, Colour]] = [

@@ -54,7 +54,7 @@ class Panel:
         top: float, height: float,
     ) -> None:  # fmt: skip
         self._ui, self.playback, self._say, self._choose = ui, playback, say, choose
-        self.material: int | None = None
+        self.material = self._first_material()
         self._gesture: int | None = None
         self._limits: CoefficientLimits | None = None
         self._limits_of: tuple[object, ...] = ()
@@ -104,7 +104,8 @@ class Panel:
         ui = self._ui
         self._heading("Springs")
         names = [ALL_MATERIALS, *self._material_names()]
-        self.menu = ui.menu(self._row(30, 10), names, ALL_MATERIALS, self._choose_material, self.back)
+        chosen = ALL_MATERIALS if self.material is None else self._material_names()[self.material]
+        self.menu = ui.menu(self._row(30, 10), names, chosen, self._choose_material, self.back)
         self.stiffness_limit = self._limit_label()
         self.stiffness_field = self._named_field("Cs  stiffness", lambda text: self._type_coefficient(text, True))
         self.stiffness = self._slider(lambda value: self._slide(value, True))
@@ -166,6 +167,12 @@ class Panel:
         columns = (self._place(MARGIN, 0, INSIDE / 2, 34), self._place(MARGIN + INSIDE / 2, 0, INSIDE / 2, 34))
         self.energies = [TextBlock(ui, place, "", self.back) for place in columns]
         self._row(40)
+
+    def _first_material(self) -> int | None:
+        """The material of the most springs, so that a slider does not change all at once; None: there is none."""
+        world = self.playback.session.world
+        counts = np.bincount(world.material[world.spring_active & (world.material >= 0) & (world.law != LAW_HOOKE)])
+        return int(np.argmax(counts)) if len(counts) else None
 
     def _material_names(self) -> list[str]:
         return list(self.playback.session.world.material_names)
@@ -290,6 +297,13 @@ class Panel:
             material=self.material,
         )
         self._submit(command, gesture)
+        self._tell_of_all()
+
+    def _tell_of_all(self) -> None:
+        """Say how a change of all springs is taken back, where there are several materials."""
+        count = len(np.unique(self.playback.session.world.material[self._chosen()]))
+        if self.material is None and count > 1:
+            self._say(f"This changes the springs of all {count} materials; Ctrl+Z takes it back.")
 
     def _end_gesture(self) -> None:
         self._gesture = None

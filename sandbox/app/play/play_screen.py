@@ -23,7 +23,7 @@ from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
 from sandbox.app.play.stuck import NOTICE, StuckBodies
 from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.profile import Profile
-from sandbox.app.screen import Pixel, Pointer
+from sandbox.app.screen import Figures, Pixel, Pointer
 from sandbox.app.share.film import Film
 from sandbox.app.shortcuts import Mode, tip_of
 from sandbox.app.widgets.ui import Ui
@@ -64,6 +64,7 @@ class PlayScreen:
         self._keys = DriveKeys(playback)
         self.stuck = StuckBodies()
         self._legend = Legend()
+        self._told = ""
         self.actions = self._actions()
         app.follow(playback)
 
@@ -230,7 +231,8 @@ class PlayScreen:
 
     def film(self, seconds: float) -> Film:
         """The last seconds [s] of the run, as it is seen now."""
-        return Film(self.playback.session, self.camera, self.stage.renderer, seconds)
+        stage = self.stage
+        return Film(self.playback.session, stage.camera, stage.renderer, seconds, stage.fitted_box)
 
     # Pointer and keys.
 
@@ -269,6 +271,7 @@ class PlayScreen:
         for message in self.playback.messages:
             self._app.say(message)
         self.playback.messages.clear()
+        self._tell_breaks()
         if self.panel is not None and ready:
             self.panel.refresh()
             self.panel.hand.show(self.stage.drag.strength)
@@ -290,6 +293,15 @@ class PlayScreen:
             )
         )
 
+    def _tell_breaks(self) -> None:
+        """Say what broke; a line that has grown takes the place of what it was."""
+        text = self.playback.breaks.text
+        if text != self._told:
+            self._app.take_back(self._told)
+            self._told = text
+            if text:
+                self._app.say(text)
+
     def _show_stuck(self) -> None:
         before = len(self.stuck.particles)
         self.stuck.update(self.playback.session.world)
@@ -310,7 +322,7 @@ class PlayScreen:
         self._legend.draw(surface, self._ui, renderer.overlays, renderer.theme, solver, (left + width, top))
         surface.set_clip(None)
 
-    def status(self, ticks: float, frame: float) -> list[tuple[str, Colour]]:
+    def status(self, figures: Figures) -> list[tuple[str, Colour]]:
         """State, recording, tick and figures of the run."""
         playback, current = self.playback, self.playback.current
         parts: list[tuple[str, Colour]] = [(self._state(), ACCENT if not playback.clock.paused else WARNING)]
@@ -322,7 +334,7 @@ class PlayScreen:
         counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
         world = playback.session.world
         parts += motor_parts(motor_readings(world), SOLVERS[world.settings.solver].carries)
-        return parts + status_parts(*counts, ticks, frame, self.stage.renderer.non_finite, playback.behind)
+        return parts + status_parts(*counts, figures, self.stage.renderer.non_finite, playback.behind)
 
     def _state(self) -> str:
         """The state of the run in a word, as status line and window title show it."""

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from sandbox.app.loop import TickClock
+from sandbox.app.play.breaks import Breaks
 from sandbox.level.format.model import Level
 from sandbox.physics.energy import Dissipation
 from sandbox.physics.snapshot import Snapshot, state_hash
 from sandbox.session.commands import Command, CommandError, Redo, Undo
 from sandbox.session.replay.recording import Replay
-from sandbox.session.session import Session
+from sandbox.session.session import Session, break_lines
 from sandbox.tools.tool import Response
 
 # Wall time [s] that the ticks of one frame may take; the ticks beyond it are lost and the run falls behind real time,
@@ -29,6 +30,7 @@ class Playback:
         self.replay = replay
         self.clock = TickClock()
         self.dissipation = Dissipation()
+        self.breaks = Breaks()
         self.behind = False
         self.verdict = ""
         self.messages: list[str] = []
@@ -147,12 +149,20 @@ class Playback:
                 self.dissipation.before(self.session.world)
                 self.session.advance()
                 self.dissipation.after(self.session.world)
+                self._note_breaks()
         except CommandError as error:
             self._end_watching(f"the recording holds a command that cannot be carried out: {error}")
             return False
         if self.watching:
             self._compare()
         return True
+
+    def _note_breaks(self) -> None:
+        """Tell what broke in words of its own, in place of the session's."""
+        world = self.session.world
+        for line in break_lines(world):
+            self.session.messages.remove(line)
+        self.breaks.note(world)
 
     def _compare(self) -> None:
         assert self.replay is not None

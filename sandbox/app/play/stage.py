@@ -121,6 +121,11 @@ class Stage:
         self._box, self._fitted_at = box, (self.camera.centre, self.camera.zoom)
 
     @property
+    def fitted_box(self) -> Box | None:
+        """What the last fit was of, while the camera is as it left it."""
+        return self._box if self._is_fitted else None
+
+    @property
     def _is_fitted(self) -> bool:
         """Whether the camera is as the last fit left it."""
         return self._fitted_at == (self.camera.centre, self.camera.zoom)

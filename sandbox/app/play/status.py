@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, SURFACE, TEXT, WARNING, Colour
+from sandbox.app.screen import Figures
 from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.joints.readings import MotorReading
@@ -146,7 +147,7 @@ def draw_bar(surface: pygame.Surface, ui: Ui, share: float, text: str) -> None:
 
 
 def status_parts(
-    particles: int, springs: int, ticks: float, frame: float, non_finite: int, behind: bool
+    particles: int, springs: int, figures: Figures, non_finite: int, behind: bool
 ) -> list[tuple[str, Colour]]:
     """The figures of the status line, warnings first in warning colours."""
     parts: list[tuple[str, Colour]] = []
@@ -158,8 +159,9 @@ def status_parts(
     parts += [
         (f"{particles:,} particles", MUTED),
         (f"{springs:,} springs", MUTED),
-        (f"{ticks:.0f} ticks/s", MUTED),
-        (f"{frame:.1f} ms/frame", MUTED),
+        (f"{figures.ticks:.0f} ticks/s", MUTED),
+        (f"{figures.frames:.0f} frames/s", MUTED),
+        (f"{figures.work:.1f} ms of work a frame", MUTED),
     ]
     return parts
 

@@ -42,6 +42,7 @@ class Export:
     ) -> None:
         self.film, self.excerpt, self.path = film, excerpt, path
         self.picture: pygame.Surface | None = None
+        self._count = 1 if excerpt.kind == "png" else picture_count(excerpt.start, excerpt.end, excerpt.fps)
         self._keep = keep
 
     def slices(self) -> Slices:
@@ -67,7 +68,7 @@ class Export:
         with path.open("wb") as file:
             yield 0.0
             samples = self.film.samples(excerpt.start, excerpt.end, excerpt.size, excerpt.name)
-            writer = GifWriter(file, excerpt.size, excerpt.fps, samples)
+            writer = GifWriter(file, excerpt.size, excerpt.fps, samples, self._count)
             yield from self._pictures(writer.add)
             writer.close()
 
@@ -90,10 +91,9 @@ class Export:
     def _pictures(self, write: Callable[[pygame.Surface], object]) -> Slices:
         excerpt, done = self.excerpt, 0
         start = excerpt.end if excerpt.kind == "png" else excerpt.start
-        count = picture_count(start, excerpt.end, excerpt.fps)
         for picture in self.film.pictures(start, excerpt.end, excerpt.fps, excerpt.size, excerpt.name):
             if picture is not None:
                 write(picture)
                 self.picture = picture
                 done += 1
-            yield done / count
+            yield done / self._count

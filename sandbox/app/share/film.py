@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Iterator
+from weakref import WeakSet
 
 import numpy as np
 import pygame
 
-from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.camera import Box, Camera
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Renderer
 from sandbox.app.share.kinds import Size
@@ -26,10 +27,13 @@ SHADE = (0, 0, 0, 96)
 class Film:
     """What `session` has done in its last `seconds`, as a camera shows it and a renderer draws it now.
 
-    What becomes of the three after that does not change the film. first, last: its ticks.
+    What becomes of the three after that does not change the film. box [m]: what is shown instead, as large as it goes,
+    whatever shape the pictures have. first, last: its ticks.
     """
 
-    def __init__(self, session: Session, camera: Camera, renderer: Renderer, seconds: float) -> None:
+    def __init__(
+        self, session: Session, camera: Camera, renderer: Renderer, seconds: float, box: Box | None = None
+    ) -> None:
         self.level = session.level
         self.rate = session.world.settings.tick_rate
         self.last = session.tick
@@ -37,9 +41,10 @@ class Film:
         self.first = max(self._past.tick, self.last - round(seconds * self.rate))
         self._end = session.snapshot()
         self._centre, self._zoom = camera.centre, camera.zoom
-        self._shown = camera.viewport[2:]
+        self._shown, self._box = camera.viewport[2:], box
         self._renderer = renderer.alike(renderer.scale)
-        self._running: Session | None = None
+        # Those that pictures are drawn from at the moment.
+        self._running: WeakSet[Session] = WeakSet()
 
     @property
     def seconds(self) -> float:
@@ -48,9 +53,8 @@ class Film:
 
     def drop_caches(self) -> None:
         """Forget what worlds have derived, where kernels are interpreted no more."""
-        self._past.world.drop_caches()
-        if self._running is not None:
-            self._running.world.drop_caches()
+        for session in (self._past, *self._running):
+            session.world.drop_caches()
 
     def pictures(
         self, start: float, end: float, fps: float, size: Size, name: str = ""
@@ -60,7 +64,8 @@ class Film:
         Each is drawn on the same surface. name: a text in the corner.
         """
         stage = _FilmStage(self, size, name)
-        twin = self._running = self._past.retold(self.first + math.floor(start * self.rate))
+        twin = self._past.retold(self.first + math.floor(start * self.rate))
+        self._running.add(twin)
         before = now = twin.snapshot()
         for picture in range(picture_count(start, end, fps)):
             at = min(self.first + (start + picture / fps) * self.rate, self.last)
@@ -91,9 +96,12 @@ class _FilmStage:
     """What the pictures of one pass through a film are drawn on."""
 
     def __init__(self, film: Film, size: Size, name: str) -> None:
-        zoom = film._zoom * min(size[0] / film._shown[0], size[1] / film._shown[1])
-        self._camera = Camera(film._centre, zoom, (0, 0, *size))
-        self._renderer = film._renderer.alike(max(SMALLEST_SCALE, film._renderer.scale * zoom / film._zoom))
+        part = min(size[0] / film._shown[0], size[1] / film._shown[1])
+        self._camera = Camera(film._centre, film._zoom * part, (0, 0, *size))
+        if film._box is not None:
+            self._camera.fit(film._box)
+        scale = film._renderer.scale * self._camera.zoom / film._zoom
+        self._renderer = film._renderer.alike(max(SMALLEST_SCALE, scale))
         self._surface = pygame.Surface(size, 0, 32)
         self._tag = _name_tag(name, size[1] / 360.0) if name else None
         self._edge = round(EDGE * size[1] / 360.0)

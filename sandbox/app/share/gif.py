@@ -28,18 +28,33 @@ BAYER = np.array(
      [60, 28, 52, 20, 62, 30, 54, 22], [3, 35, 11, 43, 1, 33, 9, 41], [51, 19, 59, 27, 49, 17, 57, 25],
      [15, 47, 7, 39, 13, 45, 5, 37], [63, 31, 55, 23, 61, 29, 53, 21]], dtype=np.uint32,
 )  # fmt: skip
+# What a file may take [bytes] for each pixel of its pictures: 4 MB at 640x360, for up to so long [s]; longer ones more.
+MOST_BYTES, MOST_SECONDS = 4e6 / (640 * 360), 10.0
+# A file on its way beyond that leaves colours as they were that differ by less: so much more or less each picture. It
+# is looked at once the first picture, of which all is new, weighs little among the others.
+TOLERANCE_STEP, MOST_TOLERANCE, FIRST = 4.0, 80.0, 10
 # Longest time that a picture can stay [1/100 s].
 LONGEST_DELAY = 65_535
 
 
 class GifWriter:
-    """Writes pictures of a size into a file, fps of them a second, for ever over again; samples: what it will show."""
+    """Writes `count` pictures of a size into a file, fps of them a second, for ever over again.
 
-    def __init__(self, file: BinaryIO, size: tuple[int, int], fps: float, samples: Sequence[pygame.Surface]) -> None:
+    samples: pictures with the colours that they will have.
+    """
+
+    def __init__(
+        self, file: BinaryIO, size: tuple[int, int], fps: float, samples: Sequence[pygame.Surface], count: int
+    ) -> None:
         self._file, self._fps = file, fps
         width, height = size
+        self._share = MOST_BYTES * width * height * max(1.0, count / fps / MOST_SECONDS) / count
+        self._written, self._tolerance = 0, 0.0
         palette = _palette([_pixels(sample) for sample in samples])
         self._colours = palette.astype(np.float32) * WEIGHTS
+        self._apart = np.zeros((COLOURS + 1, COLOURS + 1), dtype=np.float32)
+        for place, colour in enumerate(self._colours):
+            self._apart[place, : len(palette)] = np.sqrt(((self._colours - colour) ** 2).sum(axis=1))
         # For each colour of BITS bits a channel the place of the nearest in the palette; UNCHANGED: nobody has asked.
         self._table = np.full(1 << 3 * BITS, UNCHANGED, dtype=np.uint8)
         # A part of what is cut off, for each channel of 0xRRGGBB.
@@ -57,12 +72,21 @@ class GifWriter:
     def add(self, surface: pygame.Surface) -> None:
         """Write the next picture."""
         indices = self._indices(_pixels(surface))
-        before, self._shown = self._shown, indices
-        changed = np.ones(indices.shape, dtype=np.bool_) if before is None else indices != before
-        if self._waiting is None or changed.any():
+        if self._shown is None:
+            self._shown, changed = indices, np.ones(indices.shape, dtype=np.bool_)
+        else:
+            changed = indices != self._shown
+            if self._tolerance > 0.0:
+                changed &= self._apart[self._shown, indices] > self._tolerance
+            np.copyto(self._shown, indices, where=changed)
+        if changed.any():
             self._flush()
-            self._waiting = _patch(indices, changed), self._count
+            data = _patch(indices, changed)
+            self._waiting = data, self._count
+            self._written += len(data)
         self._count += 1
+        step = TOLERANCE_STEP if self._written > self._share * self._count else -TOLERANCE_STEP
+        self._tolerance = min(max(self._tolerance + step, 0.0), MOST_TOLERANCE) if self._count > FIRST else 0.0
 
     def close(self) -> None:
         """Write what is left and the end; the file is whole then."""

@@ -82,7 +82,7 @@ class SharePage:
         self._seen = ()
         width, height = (min(most, room - 16) for most, room in zip((WIDTH, HEIGHT), ui.units, strict=True))
         self._width, self._height = width, height
-        self._sheet = ui.open_sheet(self.leave, again=self._again)
+        self._sheet = ui.open_sheet(self.leave, is_page=True, again=self._again)
         left, top = ((room - side) / 2 for room, side in zip(ui.units, (width, height), strict=True))
         self._box = ui.panel(ui.rect(left, top, width, height), self._sheet, "@dialog")
         film = self._sharing.film

@@ -5,7 +5,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.draw.colours import ACCENT, LINE, TEXT
+from sandbox.app.draw.colours import ACCENT, DISABLED, LINE, TEXT
 from sandbox.app.widgets.painted import Painted
 from sandbox.app.widgets.ui import Ui
 
@@ -100,7 +100,7 @@ class RangeSlider(Painted):
         second = self.length
         while second >= 0.0:
             x = x_of(second)
-            pygame.draw.line(surface, LINE, (x, middle + 8 * scale), (x, middle + 12 * scale), round(1.5 * scale))
+            pygame.draw.line(surface, DISABLED, (x, middle + 8 * scale), (x, middle + 12 * scale), round(1.5 * scale))
             second -= 1.0
         bar(0.0, self.length, LINE)
         if not self.moment:

@@ -93,6 +93,8 @@ class Sharing:
                 return False
             self.saved, self.note = None, ""
             self._take(play.film(REMEMBERED))
+        if self.film is not None:
+            self._filming = self.film.pictures(0.0, self.film.seconds, PREVIEW_FPS, PREVIEW_SIZE)
         self.is_open = True
         return True
 
@@ -108,14 +110,14 @@ class Sharing:
             self.wanted = replace(self.wanted, kind="png")
             self.note = "Nothing has moved yet: there is this picture alone. Let it play for some seconds first."
         self._suggest_name()
-        self.pictures = []
-        self._filming = film.pictures(0.0, film.seconds, PREVIEW_FPS, PREVIEW_SIZE)
 
     def leave(self) -> None:
         """Back to the run; what is being written goes on."""
         self.is_open = False
         self.pictures, self._filming = [], None
-        if self._slices is not None:
+        if self._slices is None:
+            self._let_go()
+        else:
             self._app.say("It is written while you play on. Share (F12) shows how far it is, and can cancel it.")
 
     def choose(self, **changes: object) -> None:
@@ -253,11 +255,19 @@ class Sharing:
         except OSError as error:
             self._slices = None
             self._tell(f"{self._export.path.name} cannot be written: {error.strerror or error}.")
+            self._let_go()
             return
         self._slices, self.saved = None, self._export.path
         size = self.saved.stat().st_size / 1e6
         self._tell(f"Saved as {self.saved.name}, {size:.1f} MB, in {_shown(self.saved.parent)}.")
         self._copying = self._put_on_clipboard(self._export)
+        self._let_go()
+
+    def _let_go(self) -> None:
+        """Keep no film that nobody can see or use any more: it holds the states of seconds."""
+        self._export = None
+        if not self.is_open:
+            self.film = None
 
     def _put_on_clipboard(self, export: Export) -> Generator[None, None, bool]:
         """The last picture, as a file where the system's tool can read it; else the path."""

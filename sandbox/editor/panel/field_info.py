@@ -8,6 +8,7 @@ from typing import Any, Literal, get_args
 from pydantic import BaseModel
 
 from sandbox.editor.panel.typed import number_text
+from sandbox.level.format.look import BALLS, LINES, PALETTE, SKINS
 
 Kind = Literal[
     "number",
@@ -25,6 +26,7 @@ Kind = Literal[
     "form",
     "part",
     "key",
+    "colour",
     "touches",
     "extras",
 ]
@@ -39,7 +41,12 @@ _SHORTER = {
 }
 _KEYS = ("key", "reverse_key")
 # Fields that are shown as nothing else is.
-_OWN_KINDS: dict[str, Kind] = {"material": "material", "shape": "form", "holes": "outlines", "extras": "extras"}
+_OWN_KINDS: dict[str, Kind] = {
+    "material": "material", "shape": "form", "holes": "outlines", "extras": "extras", "skin": "choice",
+    "line": "choice", "ball": "choice", "colour": "colour", "panel": "colour",
+}  # fmt: skip
+# Names to choose from that the format takes as text, since one that it does not know counts as automatic.
+_NAMES = {"skin": SKINS, "line": LINES, "ball": BALLS, "colour": tuple(PALETTE), "panel": tuple(PALETTE)}
 _TITLES = {
     "a": "End a",
     "b": "End b",
@@ -47,6 +54,7 @@ _TITLES = {
     "pin": "Held ends",
     "pinned": "Held",
     "cut": "Cut springs",
+    "phase": "Phase, of a period",
     "drive": "Muscle",
     "area": "Keeps area",
     "collision_group": "In group",
@@ -116,12 +124,18 @@ def _about(name: str, schema: dict[str, Any], part: type[BaseModel] | None) -> F
         low=low,
         high=numbers.get("maximum"),
         above="exclusiveMinimum" in numbers,
-        choices=tuple(map(str, value.get("enum", value.get("items", {}).get("enum", _constant(value))))),
+        choices=_choices(name, kind, value),
         optional=optional,
         empty=_SHORTER.get(empty[1], empty[1].replace("_", " ")) if empty and optional else "",
         model=part,
     )
     return FieldInfo(**{**about.__dict__, "tooltip": _tooltip(about, text)})
+
+
+def _choices(name: str, kind: Kind, value: dict[str, Any]) -> tuple[str, ...]:
+    if kind in ("choice", "colour") and name in _NAMES:
+        return _NAMES[name]
+    return tuple(map(str, value.get("enum", value.get("items", {}).get("enum", _constant(value)))))
 
 
 def _constant(value: dict[str, Any]) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from sandbox.editor.items import Definition, Item, Selection, chosen_definitions
 from sandbox.editor.panel.field_info import FieldInfo, abouts
 from sandbox.editor.panel.firmness import firmness_properties
 from sandbox.editor.panel.property import MIXED, Property, Section, part_properties, same, with_axes
+from sandbox.editor.panel.typed import number_text
 from sandbox.level.format.model import Level, ParticleDef, SpringDef, TerrainDef
 from sandbox.level.format.quantities import Point
 from sandbox.level.format.schema import TITLES
@@ -122,7 +123,17 @@ def _object_properties(level: Level, items: dict[Item, Definition], name: str, a
     def add(document: Document) -> Document:
         return add_object(document, chosen, name)
 
-    return part_properties(name, about, [part.__dict__[name] for part in holders.values()], change, add)
+    found = part_properties(name, about, [part.__dict__[name] for part in holders.values()], change, add)
+    return [each for made in found for each in (made, *_in_seconds(level, made))]
+
+
+def _in_seconds(level: Level, made: Property) -> list[Property]:
+    """A time in ticks in seconds as well, to be read."""
+    if made.about.unit != "ticks" or not isinstance(made.value, int):
+        return []
+    text = number_text(float(f"{made.value / level.settings.tick_rate:.4g}"))
+    tip = f"The same at the level's {level.settings.tick_rate:g} ticks a second."
+    return [Property(f"{made.field}.seconds", FieldInfo("text", made.about.title, "s", tooltip=tip), text)]
 
 
 def _alike(one: FieldInfo, other: FieldInfo) -> bool:

@@ -14,6 +14,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from sandbox.level.build.plan import keep_plan
+from sandbox.level.faults.early_end import early_end
 from sandbox.level.faults.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.faults.validate import check_level
 from sandbox.level.format.gc_pause import collector_paused
@@ -106,10 +107,11 @@ def _load(data: bytes, source: str) -> Any:
             repeated.extend((result, key) for key, number in counts.items() if number > 1)
         return result
 
+    decoded = data.decode()
     try:
-        raw = json.loads(data.decode(), object_pairs_hook=collect)
+        raw = json.loads(decoded, object_pairs_hook=collect)
     except json.JSONDecodeError as error:
-        text = error.msg[:1].lower() + error.msg[1:]
+        text = early_end(decoded, error) or error.msg[:1].lower() + error.msg[1:]
         raise LevelError(source, [(f"line {error.lineno}, column {error.colno}", f"not JSON: {text}")]) from None
     except ValueError:  # Python's own limit of digits
         raise LevelError(source, [("", "an integer has thousands of digits; write a smaller number")]) from None

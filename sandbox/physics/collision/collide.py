@@ -1,11 +1,12 @@
 """Collisions of a step, in two entries: `_collide` before a solver moves bodies, `_finish` after it.
 
 The first finds what touches and solves what no spring holds; the second keeps the contacts for the next step, holds
-particles out of terrain and moves them. Their arrays are made when the topology changes. Those whose length a step
-decides have room for more than there is; a kernel that finds too little says so, and is called again with more.
+particles out of terrain and moves them. Where no spring holds anything, the first is the whole tick. Their arrays are
+made when the topology changes. Those whose length a step decides have room for more than there is; a kernel that finds
+too little says so, and is called again with more.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -43,14 +44,16 @@ from sandbox.physics.collision.types import (
     Contacts,
     Flags,
     KeptContacts,
+    LentContacts,
     Near,
     room_for,
     room_near,
     room_to_keep,
 )
-from sandbox.physics.forces import Forces, add_gravity_and_air
+from sandbox.physics.forces import Forces, add_gravity_and_air, forces_of
 from sandbox.physics.integrate import advance, follow, turn
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
+from sandbox.physics.sanitise import LOST, UNSOUND, CheckedArrays, are_sound, checked_arrays, keep_if_sound
 from sandbox.physics.solvers.contact.free_contacts import Work, new_work, solve_free_contacts
 from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, new_islands, sort_free_contacts
 from sandbox.physics.state import Floats, Slots
@@ -61,9 +64,9 @@ from sandbox.physics.world import World
 LEAST_ROOM = 64
 MORE_ROOM = 2
 # Places in `counts`: contacts of the present step and of the last, entries of the grid, pairs by boxes, with terrain,
-# crossings of outlines, pairs of shapes that overlap.
-CONTACTS, KEPT, ENTRIES, PAIRS, TERRAIN_PAIRS, CROSSED, OVERLAPPING = range(7)
-# What `_collide` returns where there is too little room.
+# crossings of outlines, pairs of shapes that overlap; substeps that are done of a tick of free particles.
+CONTACTS, KEPT, ENTRIES, PAIRS, TERRAIN_PAIRS, CROSSED, OVERLAPPING, DONE = range(8)
+# What `_collide` returns in place of a number of contacts where there is too little room.
 NO_ROOM = -1
 
 
@@ -135,7 +138,7 @@ def _load_particles(particles: CollidingParticles, held: Flags, colliders: Colli
 @kernel
 def _bound_terrain(items: Any) -> None:
     # What is solid of terrain stays where it is.
-    _, outline, _, _, colliders, room = contents(items)
+    _, outline, _, _, colliders, room, _, _ = contents(items)
     bound_solids(colliders, outline, outline.dynamic[1], outline.solid.shape[0], room.bounds)
 
 
@@ -266,14 +269,16 @@ def _after_solver(
 
 
 @kernel
-def _collide(items: Any, forces: Any, first: int, last: int, follows: bool, tick: int, h: float) -> int:
-    # last 0: what comes before the solver of a substep on which forces have acted; how many contacts are left to it, or
-    # NO_ROOM. Else, of a world in which nothing is held, substeps first..last; the first that is not done.
-    particles, outline, terrain, triangles, colliders, room = contents(items)
-    (forced,) = contents(forces)
+def _collide(items: Any, first: int, last: int, follows: bool, tick: int, h: float) -> int:
+    # last 0: what comes before the solver of a substep, forces included if first is 0; how many contacts are left to
+    # it. Else substeps first..last of a tick in which nothing is held, and what is to come before and after them; how
+    # many contacts there are.
+    particles, outline, terrain, triangles, colliders, room, forced, checked = contents(items)
+    if last > 0 and first == 0 and not are_sound(checked, room.kept.impulse, room.counts[KEPT]):
+        return UNSOUND
     substep = first
     while True:
-        if last > 0:
+        if last > 0 or first == 0:
             add_gravity_and_air(forced, h)
         bound = _before_solver(particles, outline, terrain, triangles, colliders, room, forced.before, tick, h)
         if last == 0:
@@ -282,18 +287,19 @@ def _collide(items: Any, forces: Any, first: int, last: int, follows: bool, tick
             for p in range(forced.before.shape[0]):
                 particles.velocity[p, 0] = forced.before[p, 0]
                 particles.velocity[p, 1] = forced.before[p, 1]
-            return substep
+            room.counts[DONE] = substep
+            return NO_ROOM
         if follows:
             follow(particles.velocity, particles.slow_velocity, particles.particle_active)
-        _after_solver(particles, terrain, room, True, h)
+        count = _after_solver(particles, terrain, room, True, h)
         substep += 1
         if substep == last:
-            return substep
+            return count if keep_if_sound(checked) else LOST
 
 
 @kernel
 def _finish(items: Any, moves: bool, h: float) -> int:
-    particles, _, terrain, _, _, room = contents(items)
+    particles, _, terrain, _, _, room, _, _ = contents(items)
     return _after_solver(particles, terrain, room, moves, h)
 
 
@@ -301,8 +307,8 @@ def _finish(items: Any, moves: bool, h: float) -> int:
 class Collisions:
     """The scratch of a world's collisions: what topology decides, what a step fills in, and all as one argument.
 
-    is_free: whether no spring or constraint holds anything. wanted: the largest counts so far. solved: the contacts
-    that the last step left to a solver. kept: the contacts of the last tick, the first of those in room; they are the
+    is_free: whether no spring or constraint holds anything. wanted: the largest counts so far. solved: those
+    left to a solver, by their number. kept: the contacts of the last tick, the first of those in room; they are the
     world's own, which so has them without a copy.
     """
 
@@ -312,10 +318,12 @@ class Collisions:
     triangles: Triangles
     colliders: Colliders
     room: CollisionRoom
+    forces: Forces
+    checked: CheckedArrays
     is_free: bool
     wanted: Slots
-    items: Any
-    solved: Contacts = NO_CONTACTS
+    items: Any = None
+    solved: dict[int, LentContacts] = field(default_factory=dict)
     kept: KeptContacts = NOTHING_KEPT
     count: int = 0
 
@@ -332,29 +340,32 @@ class Collisions:
         room.impulse[: self.count] = world.contact_impulse
         _share_kept(world, self)
 
-    def collide(self, forces: Forces, tick: int, h: float) -> Contacts:
+    def collide(self, has_begun: bool, tick: int, h: float) -> LentContacts | None:
         """Find the contacts of a step of h [s] and solve those of free particles; the others, returned, are a solver's.
 
-        forces: those that have acted.
+        None: there are no others.         has_begun: forces have acted; otherwise they do now.
         """
-        count = _collide(self.items, forces.items, 0, 0, False, tick, h)
+        count = _collide(self.items, 1 if has_begun else 0, 0, False, tick, h)
         while count == NO_ROOM:
             _grow(self)
-            count = _collide(self.items, forces.items, 0, 0, False, tick, h)
-        if count != len(self.solved.particle):
-            self.solved = Contacts._make([array[:count] for array in self.room.bound]) if count else NO_CONTACTS
-        return self.solved
+            count = _collide(self.items, 1, 0, False, tick, h)
+        if count and count not in self.solved:
+            arrays = Contacts._make([array[:count] for array in self.room.bound])
+            self.solved[count] = LentContacts(arrays, bundle((arrays,)))
+        return self.solved[count] if count else None
 
-    def step_free(self, forces: Forces, substeps: int, follows: bool, tick: int, h: float) -> None:
-        """All substeps of h [s] of a tick, forces included, of a world in which no spring or constraint holds anything.
+    def step_free(self, substeps: int, follows: bool, tick: int, h: float) -> int:
+        """A tick of substeps of h [s], forces included, of a world in which no spring or constraint holds anything.
 
-        follows: whether the solver keeps the slow part of velocities, the only thing that is left to it.
+        What it begins with is looked at, and what it ends with kept as good: UNSOUND, LOST, or how many contacts there
+        are. follows: whether the solver keeps the slow part of velocities, the only thing that is left to it.
         """
-        done = _collide(self.items, forces.items, 0, substeps, follows, tick, h)
-        while done < substeps:
+        count = _collide(self.items, 0, substeps, follows, tick, h)
+        while count == NO_ROOM:
             _grow(self)
-            done = _collide(self.items, forces.items, done, substeps, follows, tick, h)
-        self.count = int(self.room.counts[KEPT])
+            count = _collide(self.items, int(self.room.counts[DONE]), substeps, follows, tick, h)
+        self.count = count if count >= 0 else int(self.room.counts[KEPT])
+        return count
 
     def finish(self, h: float, moves: bool) -> None:
         """Keep a step's contacts with their impulses, stop what would cross terrain, and move particles over h [s].
@@ -379,12 +390,12 @@ def _make_collisions(world: World) -> Collisions | None:
         return None
     outline, triangles = outline_of(world), world.derived(triangles_of)
     particles = CollidingParticles._make([getattr(world, name) for name in CollidingParticles._fields])
-    wanted = np.full(7, len(world.contact_particle))
+    wanted = np.full(DONE, len(world.contact_particle))
     wanted[[CROSSED, OVERLAPPING]] = 0
     wanted[ENTRIES] = world.particle_count
     made = Collisions(
         particles, outline, world.terrain, triangles, colliders_of(world, outline, _room(wanted)[OVERLAPPING]),
-        _make_room(outline, triangles, wanted), not outline.held.any(), wanted, None,
+        _make_room(outline, triangles, wanted), forces_of(world), checked_arrays(world), not outline.held.any(), wanted,
     )  # fmt: skip
     _bundle_up(made)
     return made
@@ -404,19 +415,22 @@ def _make_room(outline: Outline, triangles: Triangles, wanted: Slots) -> Collisi
         new_pairs(particles, terrain_pairs), np.zeros((len(outline.solid), 5)), room_near(), room_for(contacts),
         room_for(contacts), room_to_keep(contacts), new_islands(particles, contacts), new_work(particles, contacts),
         new_inversions(triangles), new_overlaps(len(outline.solid_of), crossings, overlaps),
-        np.zeros(particles, np.bool_), np.zeros(7, np.int64),
+        np.zeros(particles, np.bool_), np.zeros(DONE + 1, np.int64),
     )  # fmt: skip
 
 
 def _bundle_up(made: Collisions) -> None:
-    made.items = bundle((made.particles, made.outline, made.terrain, made.triangles, made.colliders, made.room))
+    made.items = bundle((
+        made.particles, made.outline, made.terrain, made.triangles, made.colliders, made.room, made.forces.particles,
+        made.checked,
+    ))  # fmt: skip
     _bound_terrain(made.items)
 
 
 def _grow(collisions: Collisions) -> None:
     """Give a step the room that it has found to be too little; the contacts kept of the last step stay."""
     old = collisions.room
-    collisions.wanted = np.maximum(collisions.wanted, old.counts)
+    collisions.wanted = np.maximum(collisions.wanted, old.counts[:DONE])
     collisions.room = _make_room(collisions.outline, collisions.triangles, collisions.wanted)
     parted = np.zeros_like(collisions.room.overlaps.shape)
     collisions.colliders = collisions.colliders._replace(parted=parted)
@@ -424,7 +438,7 @@ def _grow(collisions: Collisions) -> None:
     count = len(old.kept.particle)
     new = collisions.room.kept
     new.particle[:count], new.feature[:count], new.impulse[:count] = old.kept
-    collisions.solved, collisions.kept = NO_CONTACTS, NOTHING_KEPT
+    collisions.solved, collisions.kept = {}, NOTHING_KEPT
     _bundle_up(collisions)
 
 

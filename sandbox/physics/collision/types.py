@@ -1,6 +1,7 @@
 """What contacts are found among, and what is found: arrays for the kernels of a step."""
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,6 +93,14 @@ class Contacts(NamedTuple):
     ratio: Floats
     rolling: Floats
     couple: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class LentContacts:
+    """The contacts of a step that are left to a solver; lent: the same as one argument for kernels."""
+
+    arrays: Contacts
+    lent: Any
 
 
 class KeptContacts(NamedTuple):

@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sandbox.physics.collision.types import Contacts
+    from sandbox.physics.collision.types import LentContacts
     from sandbox.physics.substeps import Substep
     from sandbox.physics.world import Floats, World
 
@@ -33,10 +33,10 @@ class Solver:
     has_floors: bool = False
 
     @cached_property
-    def solve(self) -> "Callable[[World, Substep, Contacts | None], None]":
+    def solve(self) -> "Callable[[World, Substep, LentContacts | None], None]":
         """solve(world, substep, contacts): brings world.velocity from after the forces to the end of a substep.
 
-        contacts: what touches, with the impulses that it brings along and then has; None: nothing can.
+        contacts: what touches, with the impulses that it brings along and then has; None: nothing does.
         """
         return self._schedule.solve
 

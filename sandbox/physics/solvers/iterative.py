@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sandbox.physics.collision.types import NO_CONTACTS, Contacts, Flags
+from sandbox.physics.collision.types import NO_CONTACTS, Contacts, Flags, LentContacts
 from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, constraint_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
@@ -227,12 +227,12 @@ def _lent_masses(world: World) -> Any:
 spring_constant = explicit_spring_constant
 
 
-def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
+def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None:
     """Bring the velocities to the end of a substep; world.impulse keeps the sums for the next warm start."""
     hooke = world.spring_active & (world.law == LAW_HOOKE)
     if hooke.any():
         apply_explicit(world, hooke, substep.springs, substep.h)
-    contacts = NO_CONTACTS if contacts is None else contacts
+    touching = NO_CONTACTS if contacts is None else contacts.arrays
     count, settings = world.spring_count, world.settings
     change = np.zeros((world.particle_count, 2))
     pulling = Pulling(
@@ -241,10 +241,10 @@ def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
     wanted = Wanted(
         *substep.constraints, *np.zeros((2, len(world.corner_particle), 2)), *np.zeros((5, world.constraint_count))
     )
-    terms = terms_of(world, contacts)
+    terms = terms_of(world, touching)
     _iterate(
         particles_of(world), ends_of(world, substep.springs), unlimited_active(world), pulling, world.constraints,
-        wanted, contacts, terms, world.derived(_lent_masses),
+        wanted, touching, terms, world.derived(_lent_masses),
         Rounds(settings.iterations, settings.warm_start, substep.substeps > 1), substep.h,
     )  # fmt: skip
     store_spins(world, terms)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.collision.types import Contacts
+from sandbox.physics.collision.types import LentContacts
 from sandbox.physics.constraints import ConstraintArrays, constraint_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
 from sandbox.physics.jit import bundle, contents, kernel
@@ -198,7 +198,7 @@ def _lent_joints(world: World) -> Any:
 spring_constant = explicit_spring_constant
 
 
-def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
+def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None:
     """Bring the velocities to the end of a substep; contacts are swept after springs, constraints and joints."""
     joints = world.derived(_lent_joints)
     if joints is not None:
@@ -210,9 +210,9 @@ def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
     if contacts is not None:
         from sandbox.physics.solvers.contact.gauss_seidel import lent_masses, store_spins, sweep_masses, terms_of
 
-        terms = terms_of(world, contacts)
+        terms = terms_of(world, contacts.arrays)
         sweep_masses(
-            contacts, terms, world.velocity, np.zeros((world.particle_count, 2)),
+            contacts.arrays, terms, world.velocity, np.zeros((world.particle_count, 2)),
             world.inverse_mass, world.derived(lent_masses), world.settings.iterations, substep.h,
         )  # fmt: skip
         store_spins(world, terms)

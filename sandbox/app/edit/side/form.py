@@ -1,5 +1,6 @@
 """Form: a scrolling page of properties, a row each, that shows their values and takes new ones."""
 
+import re
 from collections.abc import Sequence
 from functools import partial
 from html import escape
@@ -8,18 +9,20 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import MUTED, material_colours
+from sandbox.app.draw.themes import rgb_of
 from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.boxes import CheckBox, KeyBox, Scrub
 from sandbox.app.edit.side.rows import Picker, Row
 from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.shortcuts import action_of, tip_of
-from sandbox.app.widgets.dialogs import choose
+from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.fields import Field
 from sandbox.app.widgets.painted import TextBlock, wrapped
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.collision_groups import collision_groups
 from sandbox.editor.panel.property import MIXED, Property, Section
 from sandbox.editor.panel.typed import EVERYTHING, NOTHING
+from sandbox.level.format.look import COLOUR_PATTERN, colour_of
 
 # Sizes in layout units.
 ROW = 28.0
@@ -39,9 +42,21 @@ SQUARED = {"m/s^2": "m/s²"}
 OBJECT_TEXTS = {True: "Remove", False: "Add", MIXED: "Add to the others"}
 
 
+# What a menu says of null, of a colour that is typed, and of a box that may be neither ticked nor not.
+NONE, OTHER_COLOUR = "automatic", "Another colour..."
+YES_NO = {"yes": True, "no": False}
+
+
 def sentence(text: str) -> str:
     """A fault as a sentence."""
     return f"{text[:1].upper()}{text[1:]}" + ("" if text.endswith((".", "?")) else ".")
+
+
+def _choice_text(each: Property) -> str:
+    """What a menu shows of a value."""
+    if each.value is None:
+        return each.about.empty or NONE
+    return next((text for text, value in YES_NO.items() if value is each.value), str(each.value))
 
 
 def _listed(collides: Any) -> Sequence[str]:
@@ -172,9 +187,9 @@ class Form:
             self.fields[each.field] = (
                 self._entry(each, LABEL_WIDTH, half, 0), self._entry(each, LABEL_WIDTH + half + GAP, half, 1),
             )  # fmt: skip
-        elif about.kind in ("flags", "yes_no"):
+        elif about.kind == "flags" or (about.kind == "yes_no" and not about.optional):
             self._add_boxes(each, width)
-        elif about.kind in ("choice", "material", "touches"):
+        elif about.kind in ("choice", "material", "touches", "colour", "yes_no"):
             self._add_choice(each, width)
         elif about.kind == "part":
             press = partial(self._press_object, each.field)
@@ -234,7 +249,8 @@ class Form:
     def _add_choice(self, each: Property, width: float) -> None:
         assert self.area is not None
         about, content = each.about, self.area.content
-        if len(about.choices) in range(1, MOST_SIDE_BY_SIDE + 1) and sum(map(len, about.choices)) <= SIDE_BY_SIDE:
+        few = len(about.choices) in range(1, MOST_SIDE_BY_SIDE + 1) and not about.optional
+        if few and sum(map(len, about.choices)) <= SIDE_BY_SIDE:
             options = [(value, value, about.tooltip) for value in about.choices]
             row = self._ui.choice(self._rect(LABEL_WIDTH, width), options, partial(self._choose, each.field), content)
             self.choices[each.field] = row
@@ -267,15 +283,21 @@ class Form:
         if name in self.pickers:
             rows = self._rows(each)
             mixed_row = Row(MIXED.value, colour=MUTED)
-            text = each.texts[0] if each.about.kind == "touches" else str(each.value)
-            shown = mixed_row if is_mixed else next((row for row in rows if row.text == text), Row(text))
+            text = each.texts[0] if each.about.kind == "touches" else _choice_text(each)
+            other = Row(text, swatch=rgb_of(colour_of(text)) if text.startswith("#") else None)
+            shown = mixed_row if is_mixed else next((row for row in rows if row.text == text), other)
             self.pickers[name].show_value(rows, shown)
 
     def _rows(self, each: Property) -> list[Row]:
         if each.about.kind == "touches":
             return [Row(EVERYTHING), Row(NOTHING), *(Row(name, self._toggle_of(each, name)) for name in self._groups)]
-        if each.about.kind != "material":
-            return [Row(value) for value in each.about.choices]
+        about = each.about
+        if about.kind != "material":
+            first = [Row(about.empty or NONE, colour=MUTED)] if about.optional else []
+            if about.kind == "colour":
+                palette = [Row(name, swatch=rgb_of(colour_of(name))) for name in about.choices]
+                return [*first, *palette, Row(OTHER_COLOUR)]
+            return first + [Row(value) for value in (YES_NO if about.kind == "yes_no" else about.choices)]
         colours = material_colours(self._screen.document.level.materials)
         return [Row(name, swatch=colour) for name, colour in colours.items()]
 
@@ -345,13 +367,33 @@ class Form:
 
     def _pick(self, name: str, index: int) -> None:
         text, each = self.pickers[name].rows[index].text, self.properties[name]
-        if each.about.kind != "touches":
+        if each.about.optional and index == 0:
+            self._set(name, None)
+        elif text == OTHER_COLOUR:
+            self._ask_for_colour(name)
+        elif each.about.kind == "yes_no":
+            self._set(name, YES_NO[text])
+        elif each.about.kind != "touches":
             self._set(name, text)
         elif index < 2:
             self._set(name, text == EVERYTHING)
         else:
             kept = [group for group in _listed(each.value) if group != text]
             self._set(name, kept if len(kept) < len(_listed(each.value)) else [*kept, text])
+
+    def _ask_for_colour(self, name: str) -> None:
+        each = self.properties[name]
+
+        def take(text: str) -> str | None:
+            typed = text.strip()
+            wanted = typed if typed.startswith("#") else f"#{typed}"
+            if re.fullmatch(COLOUR_PATTERN, wanted) is None:
+                return "A colour is # and six digits 0 to 9 or a to f: red, green, blue."
+            self._set(name, wanted)
+            return None
+
+        before = each.value if isinstance(each.value, str) and each.value.startswith("#") else "#"
+        ask(self._ui, each.about.title, "Red, green and blue, such as #F2557B", before, "Take it", take)
 
     def _offer_text(self, name: str) -> None:
         """A list too long to type: it can be taken out and put in as text."""

@@ -173,20 +173,15 @@ def _fill_constraints(
         work.end[k, 1] = q
         mass = work.weight[p] + work.weight[q]
         smaller = radius[contacts.particle[c]]
-        row[k, WEIGHT_P] = work.weight[p]
-        row[k, WEIGHT_Q] = work.weight[q]
-        row[k, APART_X] = 0.0
-        row[k, APART_Y] = 0.0
-        row[k, TURN_P] = work.turning[p]
-        row[k, TURN_Q] = work.turning[q]
+        row[k, WEIGHT_P], row[k, WEIGHT_Q] = work.weight[p], work.weight[q]
+        row[k, APART_X], row[k, APART_Y] = 0.0, 0.0
+        row[k, TURN_P], row[k, TURN_Q] = work.turning[p], work.turning[q]
         row[k, ARM] = 1.0
         row[k, PER_REACH] = 0.0
         row[k, WAY] = STANDS
         row[k, GAP] = contacts.gap[c]
-        row[k, NX] = contacts.normal[c, 0]
-        row[k, NY] = contacts.normal[c, 1]
-        row[k, ALONG] = contacts.impulse[c, 0]
-        row[k, ACROSS] = contacts.impulse[c, 1]
+        row[k, NX], row[k, NY] = contacts.normal[c, 0], contacts.normal[c, 1]
+        row[k, ALONG], row[k, ACROSS] = contacts.impulse[c, 0], contacts.impulse[c, 1]
         disc = contacts.end_a[c] if contacts.end_b[c] < 0 else -1
         if disc >= 0:
             smaller = min(smaller, radius[disc])
@@ -338,24 +333,33 @@ def _follow(row: Floats, i: int, dx: float, dy: float) -> tuple[float, float, fl
 
 
 @inlined_kernel
-def _apply(work: Work, i: int, jx: float, jy: float, torque: float, late: float) -> None:
-    # v += J / m, and what it does to the surfaces.
-    row = work.constraint
-    motion = work.motion
-    p = unsigned(work.end[i, 0])
-    q = unsigned(work.end[i, 1])
-    motion[p, VX] += jx * row[i, WEIGHT_P]
-    motion[p, VY] += jy * row[i, WEIGHT_P]
-    motion[p, SURFACE] -= torque * row[i, TURN_P]
-    motion[q, VX] -= jx * row[i, WEIGHT_Q]
-    motion[q, VY] -= jy * row[i, WEIGHT_Q]
-    motion[q, SURFACE] -= torque * row[i, TURN_Q]
+def _apply(
+    work: Work, i: int, nx: float, ny: float, jn: float, jt: float, arm: float, late: float, rolls: bool
+) -> None:  # fmt: skip
+    # v += J / m, and what it does to the surfaces. rolls: against their turn on each other acts a torque as well, as an
+    # impulse at the smaller radius of at most ROLLING times that along the normal.
+    row, motion = work.constraint, work.motion
+    p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
+    jx, jy, torque = jn * nx - jt * ny, jn * ny + jt * nx, arm * jt
+    weight_p, weight_q, turn_p, turn_q = row[i, WEIGHT_P], row[i, WEIGHT_Q], row[i, TURN_P], row[i, TURN_Q]
+    surface_p, surface_q = motion[p, SURFACE] - torque * turn_p, motion[q, SURFACE] - torque * turn_q
+    if rolls and row[i, ROLLING] > 0.0:
+        most = row[i, ROLLING] * row[i, ALONG]
+        turn = row[i, RATIO_P] * surface_p - row[i, RATIO_Q] * surface_q
+        j = min(most, max(-most, -turn * row[i, ROLLING_MASS]))
+        surface_p += j * row[i, RATIO_P] * turn_p
+        surface_q -= j * row[i, RATIO_Q] * turn_q
+    motion[p, VX] += jx * weight_p
+    motion[p, VY] += jy * weight_p
+    motion[q, VX] -= jx * weight_q
+    motion[q, VY] -= jy * weight_q
+    motion[p, SURFACE], motion[q, SURFACE] = surface_p, surface_q
     if late > 0.0:
         # It acts where discs meet that are coming: what it changes of their ways until then is taken off.
-        motion[p, WX] -= late * jx * row[i, WEIGHT_P]
-        motion[p, WY] -= late * jy * row[i, WEIGHT_P]
-        motion[q, WX] += late * jx * row[i, WEIGHT_Q]
-        motion[q, WY] += late * jy * row[i, WEIGHT_Q]
+        motion[p, WX] -= late * jx * weight_p
+        motion[p, WY] -= late * jy * weight_p
+        motion[q, WX] += late * jx * weight_q
+        motion[q, WY] += late * jy * weight_q
 
 
 @inlined_kernel
@@ -410,26 +414,10 @@ def _iterate(work: Work, first: int, last: int, small: float, softness: float, p
         across = min(most, max(-most, held - slip * row[i, MASS_ACROSS]))
         row[i, ALONG] = new
         row[i, ACROSS] = across
-        jn, jt = new - old, across - held
-        _apply(work, i, jn * nx - jt * ny, jn * ny + jt * nx, arm * jt, late)
+        _apply(work, i, nx, ny, new - old, across - held, arm, late, not pushes and new > 0.0)
         if not pushes and new > 0.0:
             row[i, ARM] = arm
-            if row[i, ROLLING] > 0.0:
-                _resist_rolling(work, i, row[i, ROLLING] * new)
             _push(work, i, nx, ny, new, across, arm)
-
-
-@inlined_kernel
-def _resist_rolling(work: Work, i: int, most: float) -> None:
-    # A torque against the turn of two surfaces on each other, as an impulse at the smaller radius of at most `most`.
-    row = work.constraint
-    motion = work.motion
-    p = unsigned(work.end[i, 0])
-    q = unsigned(work.end[i, 1])
-    turn = row[i, RATIO_P] * motion[p, SURFACE] - row[i, RATIO_Q] * motion[q, SURFACE]
-    j = min(most, max(-most, -turn * row[i, ROLLING_MASS]))
-    motion[p, SURFACE] += j * row[i, RATIO_P] * row[i, TURN_P]
-    motion[q, SURFACE] -= j * row[i, RATIO_Q] * row[i, TURN_Q]
 
 
 @inner_kernel

@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.collision.types import NO_CONTACTS, Contacts, weight_of
 from sandbox.physics.components import root_of, united
-from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
+from sandbox.physics.jit import bundle, inner_kernel
 from sandbox.physics.joints.joint_sweep import Joints, new_joints, no_joints
 from sandbox.physics.joints.rows import JointRows
 from sandbox.physics.solvers.contact.gauss_seidel import ContactTerms, Delassus, new_terms
@@ -70,28 +70,23 @@ class Touch(NamedTuple):
 class IslandRoom:
     """The scratch of a world's islands: made when its topology changes, with more room where a step wants it.
 
-    lent: the same as one argument for kernels.
+    lent: the same as one argument for kernels; no_contacts: what only joints act on is solved with.
     """
 
     touch: Touch
     lent: Any
+    no_contacts: Any
 
-    def fit(self, contacts: Contacts) -> None:
-        """Make room for what the islands want that were found, and for their contacts."""
+    def grow(self, contacts: int) -> None:
+        """Make room for what the islands want that were found, and for so many contacts."""
         islands, delassus, terms = self.touch
         numbers, columns = int(islands.counts[NUMBERS]), int(islands.counts[COLUMNS])
-        if (
-            numbers <= len(delassus.numbers)
-            and columns <= len(delassus.columns)
-            and len(contacts.particle) <= len(terms.bias)
-        ):
-            return
         if numbers > len(delassus.numbers):
             delassus = delassus._replace(numbers=np.zeros(SPARE * numbers))
         if columns > len(delassus.columns):
             delassus = delassus._replace(columns=np.zeros(SPARE * columns))
-        if len(contacts.particle) > len(terms.bias):
-            terms = new_terms(SPARE * len(contacts.particle), terms.surface)
+        if contacts > len(terms.bias):
+            terms = new_terms(SPARE * contacts, terms.surface)
         self.touch = Touch(islands, delassus, terms)
         self.lent = bundle((self.touch,))
 
@@ -122,7 +117,7 @@ def new_islands(system: System, particle_count: int, rows: JointRows | None) -> 
         joints,
     )  # fmt: skip
     touch = Touch(islands, delassus, new_terms(0, np.zeros(particle_count)))
-    return IslandRoom(touch, bundle((touch,)))
+    return IslandRoom(touch, bundle((touch,)), bundle((NO_CONTACTS,)))
 
 
 @inner_kernel
@@ -270,12 +265,15 @@ def _find_room(system: System, touch: Touch) -> None:
     islands.counts[COLUMNS] = columns
 
 
-@kernel
-def find_body_islands(contacts: Contacts, lent_state: Any, lent_system: Any, lent_room: Any) -> None:
-    """Find the bodies and free particles that contacts touch, their islands, and the room that they want."""
-    (state,) = contents(lent_state)
-    (system,) = contents(lent_system)
-    (touch,) = contents(lent_room)
-    _find_members(contacts, system, state.inverse_mass, touch)
-    _number_islands(contacts, state.inverse_mass, touch)
+@inner_kernel
+def find_body_islands(contacts: Contacts, inverse_mass: Floats, system: System, touch: Touch) -> bool:
+    """Find the bodies and free particles that contacts touch, and their islands; whether there is room for them."""
+    _find_members(contacts, system, inverse_mass, touch)
+    _number_islands(contacts, inverse_mass, touch)
     _find_room(system, touch)
+    counts, delassus = touch.islands.counts, touch.delassus
+    return (
+        counts[NUMBERS] <= delassus.numbers.shape[0]
+        and counts[COLUMNS] <= delassus.columns.shape[0]
+        and contacts.particle.shape[0] <= touch.terms.bias.shape[0]
+    )

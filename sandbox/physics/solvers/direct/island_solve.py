@@ -10,7 +10,7 @@ from typing import Any
 
 from sandbox.physics.collision.triangle_clamp import AS_IT_WAS
 from sandbox.physics.collision.turning import spin_of
-from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.collision.types import Contacts, LentContacts, weight_of
 from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.joints.joint_set import joints_of
 from sandbox.physics.joints.joint_sweep import gather_push
@@ -54,12 +54,12 @@ from sandbox.physics.solvers.direct.joint_response import (
     prepare_joints,
     release_joints,
 )
-from sandbox.physics.solvers.direct.layout import SystemLayout, layout_of
+from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.physics.solvers.direct.motion import copy, hold_spin, hold_triangles, kinetic, scale
 from sandbox.physics.solvers.direct.response import load_block
 from sandbox.physics.solvers.direct.shape_matching import release_shape
-from sandbox.physics.solvers.direct.step_body import AHEAD, LINEAR_SOLVES, MISFIT_RATE, open_body
-from sandbox.physics.solvers.direct.system import InputArrays, Inputs, Rows, Span, State, System, span_of
+from sandbox.physics.solvers.direct.step_body import AHEAD, LINEAR_SOLVES, MISFIT_RATE, open_body, step_bodies
+from sandbox.physics.solvers.direct.system import Inputs, Rows, Span, State, System, span_of
 from sandbox.physics.world import Floats, World
 
 # Sweeps over the contacts for each linear solve. More costs time, fewer leaves piles soft and restless.
@@ -245,17 +245,33 @@ def _begin_again(islands: BodyIslands, system: System, share: float) -> None:
 
 
 @kernel
-def _solve_islands(
-    contacts: Contacts, lent_room: Any, lent_system: Any, lent_state: Any, stiffness: Floats, damping: Floats,
-    constraint_stiffness: Floats, constraint_damping: Floats, start: Floats, start_length: Floats, parts: int, h: float,
-) -> None:  # fmt: skip
-    # Load all rows, and bring what contacts touch to the end of a step of h [s].
+def _solve_touched(
+    lent_contacts: Any, lent_room: Any, lent_system: Any, lent_state: Any, lent_inputs: Any, start_length: Floats,
+    parts: int, h: float,
+) -> bool:  # fmt: skip
+    # Bring islands, and then all other bodies, to the end of a step of h [s]; False: there is too little room.
+    (contacts,) = contents(lent_contacts)
     (system,) = contents(lent_system)
     (state,) = contents(lent_state)
     (touch,) = contents(lent_room)
-    inputs = Inputs(stiffness, damping, constraint_stiffness, constraint_damping, start, start_length)
-    islands, terms, delassus = touch.islands, touch.terms, touch.delassus
+    (given,) = contents(lent_inputs)
+    inputs = Inputs(
+        given.stiffness, given.damping, given.constraint_stiffness, given.constraint_damping, given.start, start_length
+    )  # fmt: skip
+    if not find_body_islands(contacts, state.inverse_mass, system, touch):
+        return False
     load_rows(system, state, inputs, h)
+    _solve_islands(contacts, touch, system, state, inputs, parts, h)
+    step_bodies(system, state, inputs, True, parts, h)
+    return True
+
+
+@inner_kernel
+def _solve_islands(
+    contacts: Contacts, touch: Touch, system: System, state: State, inputs: Inputs, parts: int, h: float
+) -> None:
+    # Bring what contacts touch to the end of a step of h [s]; rows are loaded.
+    islands, terms, delassus = touch.islands, touch.terms, touch.delassus
     load_biases(contacts, terms, h)
     _open(touch, system, state, inputs, parts, h)
     open_joints(touch, state.inverse_mass)
@@ -309,10 +325,14 @@ def _islands_of(world: World) -> IslandRoom:
 
 
 def solve_touched(
-    contacts: Contacts, world: World, layout: SystemLayout, state: Any, inputs: InputArrays, parts: int, h: float
-) -> None:
-    """Solve the islands of what contacts touch, and mark their bodies as touched; see `solve`."""
+    contacts: LentContacts | None, world: World, system: Any, state: Any, inputs: Any, start_length: Floats,
+    parts: int, h: float,
+) -> None:  # fmt: skip
+    """Solve the islands of what contacts touch or joints act on, and all other bodies; arguments as `solve` has them.
+
+    contacts: None: joints alone act.
+    """
     room = world.derived(_islands_of)
-    find_body_islands(contacts, state, layout.lent, room.lent)
-    room.fit(contacts)
-    _solve_islands(contacts, room.lent, layout.lent, state, *inputs, parts, h)
+    count, lent = (0, room.no_contacts) if contacts is None else (len(contacts.arrays.particle), contacts.lent)
+    while not _solve_touched(lent, room.lent, system, state, inputs, start_length, parts, h):
+        room.grow(count)

@@ -4,19 +4,19 @@ spring_terms.py states what is solved. What contacts touch or joints act on is s
 (island_solve.py), all else body by body (step_body.py): such a body is an island without contacts.
 """
 
+from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
-from sandbox.physics.collision.types import NO_CONTACTS, Contacts
+from sandbox.physics.collision.types import LentContacts
 from sandbox.physics.equation import implicit_spring_constant
-from sandbox.physics.integrate import follow
 from sandbox.physics.jit import bundle, contents, kernel
 from sandbox.physics.joints.joint_set import joints_of
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.direct.families import load_rows
 from sandbox.physics.solvers.direct.layout import layout_of
-from sandbox.physics.solvers.direct.step_body import open_body, step_body
-from sandbox.physics.solvers.direct.system import Inputs, State, span_of
+from sandbox.physics.solvers.direct.step_body import step_bodies
+from sandbox.physics.solvers.direct.system import Inputs, State, SubstepArrays
 from sandbox.physics.solvers.single_pass import apply_explicit
 from sandbox.physics.substeps import Substep
 from sandbox.physics.world import Floats, World
@@ -26,52 +26,64 @@ _STATE = attrgetter(*State._fields)
 
 @kernel
 def _solve_bodies(
-    lent_system: Any, lent_state: Any, stiffness: Floats, damping: Floats, constraint_stiffness: Floats,
-    constraint_damping: Floats, start: Floats, start_length: Floats, touched: bool, parts: int, h: float,
+    lent_system: Any, lent_state: Any, lent_inputs: Any, start_length: Floats, parts: int, h: float
 ) -> None:  # fmt: skip
-    # What nothing touches, and s += 0.3 (v' - s) of all; touched: some bodies are, and rows are loaded.
+    # Bring all bodies to the end of a step of h [s], where nothing touches any.
     (system,) = contents(lent_system)
     (state,) = contents(lent_state)
-    inputs = Inputs(stiffness, damping, constraint_stiffness, constraint_damping, start, start_length)
-    bodies, rows, springs = system.bodies, system.rows, system.springs
-    if not touched:
-        load_rows(system, state, inputs, h)
-    for body in range(bodies.lowest.shape[0]):
-        if touched and bodies.touched[body]:
-            continue
-        span = span_of(system, body)
-        open_body(body, span, system, state, inputs, parts, h)
-        step_body(body, span, system, state, h)
-        for r in range(span.first_row, span.last_row):
-            state.velocity[rows.particle[r], 0] = rows.trial[r, 0]
-            state.velocity[rows.particle[r], 1] = rows.trial[r, 1]
-        for k in range(span.first_spring, span.last_spring):
-            state.tension[springs.slot[k]] = springs.tension[k]
-    follow(state.velocity, state.slow_velocity, state.particle_active)
+    (given,) = contents(lent_inputs)
+    inputs = Inputs(
+        given.stiffness, given.damping, given.constraint_stiffness, given.constraint_damping, given.start, start_length
+    )  # fmt: skip
+    load_rows(system, state, inputs, h)
+    step_bodies(system, state, inputs, False, parts, h)
 
 
-def _lent_state(world: World) -> Any:
-    return bundle((State._make(_STATE(world)),))
+@dataclass(eq=False)
+class LentArrays:
+    """The arrays of a world, and those of its substeps, each as one argument for kernels."""
+
+    state: Any
+    arrays: SubstepArrays | None = None
+    inputs: Any = None
+
+    def lend(self, substep: Substep) -> Any:
+        """The arrays of a substep, lent anew where they are others than those of the last."""
+        (stiffness, damping), (more_stiffness, more_damping) = substep.springs, substep.constraints
+        arrays = self.arrays
+        if (
+            arrays is None
+            or arrays.stiffness is not stiffness
+            or arrays.damping is not damping
+            or arrays.constraint_stiffness is not more_stiffness
+            or arrays.constraint_damping is not more_damping
+            or arrays.start is not substep.before.velocity
+        ):
+            self.arrays = SubstepArrays(stiffness, damping, more_stiffness, more_damping, substep.before.velocity)
+            self.inputs = bundle((self.arrays,))
+        return self.inputs
+
+
+def _lent(world: World) -> LentArrays:
+    return LentArrays(bundle((State._make(_STATE(world)),)))
 
 
 spring_constant = implicit_spring_constant
 
 
-def solve(world: World, substep: Substep, contacts: Contacts | None) -> None:
+def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None:
     """Bring the velocities to the end of a substep; slow_velocity, energy_bank and tension go with them.
 
-    contacts: what touches, with the impulses that it brings along and then has; None: nothing can.
+    contacts: what touches, with the impulses that it brings along and then has; None: nothing does.
     """
-    layout = layout_of(world)
+    layout, lent, joints = layout_of(world), world.derived(_lent), joints_of(world)
     if layout.has_hooke:
         apply_explicit(world, layout.hooke, substep.springs, substep.h)
-    state = world.derived(_lent_state)
-    joints = joints_of(world)
-    touched = (contacts is not None and len(contacts.particle) > 0) or (joints is not None and joints.on)
-    inputs = (*substep.springs, *substep.constraints, *substep.before)
+    inputs, start_length = lent.lend(substep), substep.before.rest_length
     parts = substep.substeps if world.settings.substeps == AUTO else 0
-    if touched:
+    if contacts is not None or (joints is not None and joints.on):
         from sandbox.physics.solvers.direct.island_solve import solve_touched
 
-        solve_touched(NO_CONTACTS if contacts is None else contacts, world, layout, state, inputs, parts, substep.h)
-    _solve_bodies(layout.lent, state, *inputs, touched, parts, substep.h)
+        solve_touched(contacts, world, layout.lent, lent.state, inputs, start_length, parts, substep.h)
+    else:
+        _solve_bodies(layout.lent, lent.state, inputs, start_length, parts, substep.h)

@@ -8,6 +8,7 @@ what it had plus what its bank holds of earlier losses; else f itself is minimis
 import math
 
 from sandbox.physics.collision.triangle_clamp import AS_IT_WAS, JOINED
+from sandbox.physics.integrate import follow
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.energy_bank import (
     ENERGY_ROUNDING,
@@ -22,7 +23,7 @@ from sandbox.physics.solvers.direct.families import find_tension, keep_tension, 
 from sandbox.physics.solvers.direct.motion import copy, hold_spin, hold_triangles, kinetic, scale
 from sandbox.physics.solvers.direct.newton import minimise
 from sandbox.physics.solvers.direct.shape_matching import find_inverted, match_shape, release_shape
-from sandbox.physics.solvers.direct.system import Inputs, Span, State, System
+from sandbox.physics.solvers.direct.system import Inputs, Span, State, System, span_of
 
 # Directions are those at x + h AHEAD (v' - s). Lower explodes taut ropes, higher gains nothing.
 AHEAD = 0.75
@@ -153,3 +154,24 @@ def _damp(span: Span, system: System, allowed: float, h: float) -> float:
         after = body_energy(span, system, h)
     find_tension(span, system, h)
     return after
+
+
+@inner_kernel
+def step_bodies(system: System, state: State, inputs: Inputs, touched: bool, parts: int, h: float) -> None:
+    """Bring what nothing touches to the end of a step of h [s], and s += 0.3 (v' - s) of all; rows are loaded.
+
+    touched: some bodies are, and at that end already.
+    """
+    bodies, rows, springs = system.bodies, system.rows, system.springs
+    for body in range(bodies.lowest.shape[0]):
+        if touched and bodies.touched[body]:
+            continue
+        span = span_of(system, body)
+        open_body(body, span, system, state, inputs, parts, h)
+        step_body(body, span, system, state, h)
+        for r in range(span.first_row, span.last_row):
+            state.velocity[rows.particle[r], 0] = rows.trial[r, 0]
+            state.velocity[rows.particle[r], 1] = rows.trial[r, 1]
+        for k in range(span.first_spring, span.last_spring):
+            state.tension[springs.slot[k]] = springs.tension[k]
+    follow(state.velocity, state.slow_velocity, state.particle_active)

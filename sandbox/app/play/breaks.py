@@ -1,0 +1,52 @@
+"""What broke in a run, in plain words: one line for all that breaks shortly after each other."""
+
+from collections import Counter
+
+from sandbox.physics.world import World
+
+# After so long [s] without a break a new line begins.
+QUIET = 4.0
+# Things that the line names.
+NAMED = 2
+
+
+class Breaks:
+    """Counts what breaks, by the thing that it is a part of."""
+
+    def __init__(self) -> None:
+        self._counts: Counter[str] = Counter()
+        self._last = -1
+
+    def note(self, world: World) -> None:
+        """Take in the springs that broke in the last tick."""
+        broken = world.broken.tolist()
+        if not broken:
+            return
+        if not self._last <= world.tick <= self._last + QUIET * world.settings.tick_rate:
+            self._counts.clear()
+        self._last = world.tick
+        self._counts.update(_thing(world, spring) for spring in broken)
+
+    @property
+    def text(self) -> str:
+        """The line, "" where nothing broke."""
+        things = self._counts.most_common()
+        parts = [_told(name, count) for name, count in things[:NAMED]]
+        others = len(things) - NAMED
+        if others > 0:
+            parts.append(f"{others} more {'thing' if others == 1 else 'things'} broke")
+        text = "; ".join(parts)
+        return f"{text[:1].upper()}{text[1:]}." if text else ""
+
+
+def _thing(world: World, spring: int) -> str:
+    """The body that a spring is a part of, or else what it is made of."""
+    body = world.spring_names[spring].rpartition(":")[0]
+    if body:
+        return f"the {body}"
+    material = world.material_names[int(world.material[spring])]
+    return "a spring" if material == "default" else f"the {material}"
+
+
+def _told(name: str, count: int) -> str:
+    return f"{name} broke" if count == 1 else f"{name} broke in {count:,} places"
