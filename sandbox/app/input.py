@@ -98,7 +98,7 @@ class Input:
         elif event.type == pygame.MOUSEWHEEL:
             pixel = self.pointer_over_world()
             if pixel is not None:
-                self.app.screen.camera.turn_wheel(pixel, event.precise_y or event.y)
+                self.app.screen.turn_wheel(pixel, event.precise_y or event.y)
 
     def _key(self, event: pygame.event.Event) -> None:
         app = self.app

@@ -48,6 +48,10 @@ class Screen(Protocol):
         """React to the pointer; clicks: 2 for the second press of a double click."""
         ...
 
+    def turn_wheel(self, pixel: Pixel, steps: float) -> None:
+        """React to the wheel over the world."""
+        ...
+
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
         """React to an arrow key; dy is upward."""
         ...

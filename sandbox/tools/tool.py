@@ -11,7 +11,10 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True)
 class PointerEvent:
-    """A pointer pressed, moved or released at position [m]; pick_radius [m]: how far off still counts as a hit."""
+    """A pointer pressed, moved or released at position [m]; pick_radius [m]: how far off still counts as a hit.
+
+    seconds: when, by any clock.
+    """
 
     kind: Literal["down", "move", "up"]
     position: Point
@@ -19,6 +22,7 @@ class PointerEvent:
     button: int = 1
     shift: bool = False
     ctrl: bool = False
+    seconds: float = 0.0
 
 
 class Submission(NamedTuple):

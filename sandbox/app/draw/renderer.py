@@ -18,13 +18,14 @@ from sandbox.app.draw.still import UNSEEN, UNSEEN_STRAIN, UNSEEN_TURN, Still
 from sandbox.app.draw.strain_colours import strain_place, strain_tones
 from sandbox.app.draw.textures import Tiles
 from sandbox.app.draw.themes import THEMES, Theme, theme_now
-from sandbox.app.draw.things.cast import Cast, cast_of
+from sandbox.app.draw.things.cast import Cast, cast_of, joined_cast
 from sandbox.app.draw.things.ensemble import Ensemble
 from sandbox.app.draw.things.frame import Frame, strain_of
 from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
 from sandbox.app.play.playback import interpolated
 from sandbox.app.profile import Profile
 from sandbox.level.format.model import Level
+from sandbox.physics.changing.equipment import Joined
 from sandbox.physics.joints.pulls import Pull
 from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.snapshot import Snapshot
@@ -54,6 +55,7 @@ CHANGING = frozenset({"contacts", "forces", "velocities", "stability"})
 class Overlay:
     """What a person is doing, drawn over the world: the particle under the pointer, a cut [m], a cursor [m], pulls.
 
+    ghost: lines [m] of what a click would do.
     stability (m,): how near springs are to the limit of what is proven stable, 1 = at it; None = not known.
     """
 
@@ -61,6 +63,7 @@ class Overlay:
     trail: list[tuple[float, float]] = field(default_factory=list)
     cursor: tuple[float, float] | None = None
     pulls: list[Pull] = field(default_factory=list)
+    ghost: list[list[tuple[float, float]]] = field(default_factory=list)
     stability: NDArray[np.float64] | None = None
 
 
@@ -89,6 +92,8 @@ class Renderer:
         self._ground: Terrain | None = None
         self._grounds = 0
         self._cast: Cast | None = None
+        self._level_cast: Cast | None = None
+        self._joined: tuple[Joined, ...] = ()
         self._ensemble: Ensemble | None = None
         self._key: tuple[NDArray[np.bool_], ...] = ()
         self._tiles: tuple[str, Tiles] | None = None
@@ -139,7 +144,7 @@ class Renderer:
             particles, springs = shown_particles(current), shown_springs(current)
             self.non_finite = int(np.count_nonzero(particles & ~np.isfinite(pixels).all(axis=1)))
             if self.level is not None:
-                self._cast = self._cast or cast_of(self.level)
+                self._cast = self._cast_now(self.level, current.equipment.joined)
                 self.effects.see(current, frame.seconds, self._cast.strikes)
             place = pygame.Rect(camera.viewport)
             self._follow(frame, current, camera, overlay)
@@ -151,7 +156,8 @@ class Renderer:
                 )  # fmt: skip
             with profile.part("things"):
                 if self.level is not None:
-                    self._draw_things(self.level, frame, particles, springs, camera)
+                    ensemble = self._ensemble_of(frame, particles, springs)
+                    self._draw_things(ensemble, frame, camera)
             with profile.part("marks"):
                 if self.lattice or self.level is None:
                     self._draw_lattice(frame, current, particles, springs)
@@ -172,7 +178,7 @@ class Renderer:
         key = (
             (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail,
              self.has_effects),
-            (overlay.hovered, tuple(overlay.trail), overlay.cursor),
+            (overlay.hovered, tuple(overlay.trail), overlay.cursor, tuple(map(tuple, overlay.ghost))),
             tuple(pull.cursor for pull in overlay.pulls if pull.at_limit), frozenset(shown),
             self._grounds, (frame.seconds if moves else 0.0), (current.tick if shown & CHANGING else 0),
             current.particle_active.tobytes(), current.spring_active.tobytes(), (current.inverse_mass == 0.0).tobytes(),
@@ -186,11 +192,8 @@ class Renderer:
             self._tiles = self.theme.name, Tiles(self.theme)
         return self._tiles[1]
 
-    def _draw_things(
-        self, level: Level, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_], camera: Camera
-    ) -> None:
+    def _draw_things(self, ensemble: Ensemble, frame: Frame, camera: Camera) -> None:
         painter = self._painter
-        ensemble = self._ensemble_of(level, frame, particles, springs)
         ensemble.soft.trace(painter, frame)
         thrown, shapes = ensemble.thrown(frame)
         offset = (SHADOW[0] * self.scale, SHADOW[1] * self.scale)
@@ -202,9 +205,18 @@ class Renderer:
             painter.marks(dust, frame.tiles.array)
         ensemble.draw(painter, frame, self.lattice)
 
-    def _ensemble_of(
-        self, level: Level, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_]
-    ) -> Ensemble:
+    def _cast_now(self, level: Level, joined: tuple[Joined, ...]) -> Cast:
+        """The cast of the level and of what has joined it."""
+        if self._cast is None or self._joined is not joined:
+            # Bodies that were there go on as they are.
+            goes_on = self._cast is not None and joined[: len(self._joined)] == self._joined
+            self._level_cast = self._level_cast or cast_of(level)
+            present = self._cast if goes_on and self._cast is not None else self._level_cast
+            self._cast = joined_cast(present, joined[len(self._joined) if goes_on else 0 :])
+            self._joined, self._ensemble = joined, None
+        return self._cast
+
+    def _ensemble_of(self, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_]) -> Ensemble:
         held = frame.state.inverse_mass == 0.0
         key = particles, springs, held
         is_same = len(self._key) == 3 and all(map(np.array_equal, key, self._key))
@@ -281,6 +293,10 @@ class Renderer:
             points = camera.project(np.array(overlay.trail))
             ends = np.concatenate([points[:-1], points[1:]], axis=1)
             canvas.lines(np.ascontiguousarray(ends), np.full(len(ends), packed(DANGER)), 2.4 * scale)
+        for line in overlay.ghost:
+            points = camera.project(np.array(line))
+            ends = np.ascontiguousarray(np.concatenate([points[:-1], points[1:]], axis=1))
+            canvas.lines(ends, np.full(len(ends), packed(ACCENT)), 2.0 * scale)
         if overlay.cursor is not None:
             self._draw_cursor(canvas, camera.to_pixels(overlay.cursor))
 

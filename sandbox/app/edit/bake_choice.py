@@ -6,6 +6,7 @@ from sandbox.app.application import Application
 from sandbox.app.widgets.dialogs import choose
 from sandbox.editor.document import Document
 from sandbox.editor.edits.bake import keep_coefficients, keep_cuts, keep_pins, keep_pose
+from sandbox.editor.edits.keeping import keep_added
 from sandbox.physics.world import World
 
 Keeper = Callable[[Document, World], Document]
@@ -13,8 +14,10 @@ KEEPERS: tuple[tuple[str, Keeper], ...] = (
     ("Cs and Cd of the materials", keep_coefficients),
     ("Pose: where everything is now", keep_pose),
     ("Pins", keep_pins),
-    # Last, as the springs have other numbers then.
+    # Late, as the springs have other numbers then.
     ("Cuts", keep_cuts),
+    # Last, as there are more bodies then than the run began with.
+    ("Added: what was dropped into it", keep_added),
 )
 
 

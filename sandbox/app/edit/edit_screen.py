@@ -308,6 +308,10 @@ class EditScreen:
     def release_key(self, key: int) -> None:
         """Nothing was held."""
 
+    def turn_wheel(self, pixel: Pixel, steps: float) -> None:
+        """Zoom about the pointer."""
+        self.camera.turn_wheel(pixel, steps)
+
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
         """Nudge the selection by a step of the grid, ten with Shift; without one, move the keyboard cursor."""
         step = self.grid * (NUDGE_LEAP if modifiers & pygame.KMOD_SHIFT else 1)

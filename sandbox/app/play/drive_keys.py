@@ -19,9 +19,9 @@ class DriveKeys:
 
     def __init__(self, playback: Playback) -> None:
         self.playback = playback
-        driving = driving_keys(playback.level)
-        self._keys = {code_of(key): parts for key, parts in driving.items()}
-        self._names = {code_of(key): key for key in driving}
+        self._joined: object = None
+        self._all: dict[int, list[tuple[int, float]]] = {}
+        self._names: dict[int, str] = {}
         # The gesture of each key that is held, in the order of pressing.
         self._held: dict[int, int] = {}
 
@@ -32,7 +32,19 @@ class DriveKeys:
 
     def shown(self) -> list[tuple[str, bool]]:
         """The keys that drive something, by name, each with whether it is held."""
-        return [(name, code in self._held) for code, name in sorted(self._names.items())]
+        return [(self._names[code], code in self._held) for code in sorted(self._keys)]
+
+    @property
+    def _keys(self) -> dict[int, list[tuple[int, float]]]:
+        """What each key drives: parts of the level, and of what has joined it."""
+        joined = self.playback.session.world.joined
+        if self._joined is not joined:
+            self._joined, self._all = joined, {}
+            for level, first in [(self.playback.level, 0), *((each.source, each.first_part) for each in joined)]:
+                for key, parts in driving_keys(level).items():
+                    self._names[code_of(key)] = key
+                    self._all.setdefault(code_of(key), []).extend((first + part, value) for part, value in parts)
+        return self._all
 
     def press(self, key: int, modifiers: int) -> bool:
         """Drive what the key drives; whether it drives anything."""
@@ -52,6 +64,6 @@ class DriveKeys:
         gesture = self._held.pop(key, None)
         if gesture is None:
             return
-        for part, _ in self._keys[key]:
-            still = [value for held in self._held for other, value in self._keys[held] if other == part]
+        for part, _ in self._keys.get(key, []):
+            still = [value for held in self._held for other, value in self._keys.get(held, []) if other == part]
             self.playback.submit(SetDrive(part, still[-1] if still else 0.0), gesture)

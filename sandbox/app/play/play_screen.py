@@ -19,6 +19,7 @@ from sandbox.app.play.key_caps import draw_key_caps
 from sandbox.app.play.legend import Legend
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.out_of_view import OutOfView
+from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
 from sandbox.app.play.panel import PANEL_WIDTH, Panel
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.stage import Stage
@@ -36,6 +37,7 @@ from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.solvers import SOLVERS
 from sandbox.session.commands import Free
 from sandbox.tools.drag import STRENGTHS
+from sandbox.tools.parts import PARTS
 
 # Where the button is that frees what is stuck, below the bar, and its size [layout units].
 FREE_PLACE, FREE_SIZE = (16.0, 12.0), (110.0, 34.0)
@@ -62,6 +64,8 @@ class PlayScreen:
         # Whether the person wants the panel; None: it is shown where there is room.
         self._wants_panel: bool | None = None
         self.show_panel = app.ui.units[0] >= ROOM_FOR_PANEL
+        self.show_palette = False
+        self.palette: PartsPalette | None = None
         self.panel: Panel | None = None
         self.stage = Stage(playback, self.viewport, app.scale)
         kept = preference(HAND)
@@ -104,7 +108,11 @@ class PlayScreen:
         self.show_panel = ui.units[0] >= ROOM_FOR_PANEL if self._wants_panel is None else self._wants_panel
         self.toolbar = Toolbar(ui, self._app.act, self.of_document)
         self.stage.place(self.viewport, ui.scale)
-        place = ui.rect(FREE_PLACE[0], BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
+        self.palette = None
+        if self.show_palette:
+            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT)
+        left = FREE_PLACE[0] if self.palette is None else self.palette.right + FREE_PLACE[1]
+        place = ui.rect(left, BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
         self.free = ui.button(place, "Free it", self._free, tip=tip_of("free", "play"))
         self.free.hide()
         left = (self.viewport[0] + self.viewport[2] / 2) / ui.scale - AGAIN_SIZE[0] / 2
@@ -128,6 +136,8 @@ class PlayScreen:
             "tool_drag": lambda: stage.choose_tool("drag"),
             "tool_pin": lambda: stage.choose_tool("pin"),
             "tool_cut": lambda: stage.choose_tool("cut"),
+            **{f"tool_{name}": lambda name=name: self._take_up(name) for name in NAMES},  # type: ignore[misc]
+            "palette": self._toggle_palette,
             "let_go": stage.let_go,
             **{name: partial(stage.toggle_view, name) for name in OVERLAYS},
             "hand": self._next_strength,
@@ -138,8 +148,8 @@ class PlayScreen:
             "step": lambda: self.playback.clock.step_once(),
             "slow": self._slower,
             "reset": self._reset,
-            "zoom_in": lambda: stage.camera.zoom_at(stage.cursor, 2),
-            "zoom_out": lambda: stage.camera.zoom_at(stage.cursor, -2),
+            "zoom_in": lambda: self._zoom(2),
+            "zoom_out": lambda: self._zoom(-2),
             "fit": stage.fit,
             "record": files.toggle_recording,
             "save": files.save_run,
@@ -163,6 +173,33 @@ class PlayScreen:
             documents.open(self.source)
         else:
             documents.edit_level(self.playback.level)
+
+    def _toggle_palette(self) -> None:
+        self.show_palette = not self.show_palette
+        if self.stage.tool_name in NAMES:
+            self.stage.choose_tool("drag")
+        self._app.rebuild()
+
+    def _take_up(self, name: str) -> None:
+        """Take up a part or a deed of the palette; again: back to the hand."""
+        if self.stage.tool_name == name:
+            self.stage.choose_tool("drag")
+            return
+        self.stage.choose_tool(name)
+        if not self.show_palette:
+            self.show_palette = True
+            self._app.rebuild()
+        if name in PARTS and not self.has_contacts:
+            self._app.say("Nothing touches anything in this level: what you drop passes through all else.")
+
+    def _zoom(self, steps: int) -> None:
+        if not self.stage.resize(steps):
+            self.camera.zoom_at(self.stage.cursor, steps)
+
+    def turn_wheel(self, pixel: Pixel, steps: float) -> None:
+        """Make what is dropped larger, or zoom."""
+        if not self.stage.resize(steps):
+            self.camera.turn_wheel(pixel, steps)
 
     def choose_strength(self, name: str) -> None:
         """Let the hand be gentle, normal or strong from its next hold on, in later runs too."""
@@ -259,6 +296,8 @@ class PlayScreen:
         if self.panel is not None and ready:
             self.panel.refresh()
             self.panel.hand.show(self.stage.drag.strength)
+        if self.palette is not None:
+            self.palette.show(PaletteState(self.stage.tool_name, ready))
         if self.panel is not None:
             self.panel.views.show(self.stage.renderer.overlays.shown)
         self.toolbar.show(
@@ -271,6 +310,7 @@ class PlayScreen:
                 self.playback.session.can_undo,
                 self.playback.session.can_redo,
                 self.show_panel,
+                self.show_palette,
             )
         )
 

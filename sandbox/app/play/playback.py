@@ -37,6 +37,7 @@ class Playback:
         self.current = self.previous = self.session.snapshot()
         self._equal = True
         self._submitted = False
+        self._has_grown = False
         # Grows with every command of the person's that was applied.
         self.revision = 0
 
@@ -96,10 +97,12 @@ class Playback:
     def apply_pending(self) -> None:
         """Apply what was submitted, also while paused, and show it at once."""
         submitted, self._submitted = self._submitted, False
+        joined = self.session.world.joined
         try:
             self.session.apply_pending()
         except CommandError as error:
             self._end_watching(f"the recording holds a command that cannot be carried out: {error}")
+        self._has_grown = len(self.session.world.joined) > len(joined)
         if submitted:
             self.revision += 1
             self.current = self.session.snapshot()
@@ -114,6 +117,10 @@ class Playback:
 
     def advance(self, frame_time: float) -> int:
         """Let frame_time [s] of wall time pass; returns the ticks that were made."""
+        if self._has_grown and not self.clock.paused:
+            # What joined has taken its time already, and so will drawing it: its first tick waits for the next frame.
+            self._has_grown, self.clock.accumulator = False, self.clock.accumulator + frame_time * self.clock.speed
+            return 0
         due = self.clock.ticks(frame_time, self.session.world.settings.tick_rate)
         started, done = time.perf_counter(), 0
         self.behind = False

@@ -15,14 +15,22 @@ from sandbox.app.play.stability_paint import StabilityPaint
 from sandbox.app.profile import Profile
 from sandbox.physics.joints.pulls import Pull, pulls_of
 from sandbox.physics.query import nearest_particle, shown_particles
+from sandbox.tools.blowing import PushTool, WindTool
 from sandbox.tools.cut import CutTool
 from sandbox.tools.drag import DragTool
+from sandbox.tools.dropping import DropTool
+from sandbox.tools.parts import PARTS
 from sandbox.tools.pin import PinTool
+from sandbox.tools.taking import DeleteTool, FreezeTool
 from sandbox.tools.tool import PointerEvent, Tool
 
 # How far off a particle a press still hits it, and a step of the keyboard cursor [layout units].
 PICK_RADIUS = 14.0
 CURSOR_STEP, CURSOR_LEAP = 4.0, 24.0
+
+# How large what is dropped is at first, as a share of the height that is seen; and the wind [m/s] of a drag over all
+# of that height.
+SIZE_SHARE, WIND_SPEED = 0.12, 40.0
 
 Pixel = tuple[float, float]
 
@@ -37,6 +45,8 @@ class Stage:
         self.cursor: tuple[float, float] | None = None
         self.pressed_by_key = False
         self._hovered: int | None = None
+        # What the wheel made of the parts and the ring [m]; 0: nothing yet.
+        self.size = 0.0
         self._paint = StabilityPaint()
         self.detail = Detail()
         # What is drawn however long frames take; None: as `detail` has it.
@@ -48,7 +58,11 @@ class Stage:
     def _make_tools(self, strength: str) -> None:
         new_gesture = self.playback.session.new_gesture
         self.drag, self.cut, self.pin = DragTool(new_gesture, strength), CutTool(new_gesture), PinTool(new_gesture)
-        self.tools: dict[str, Tool] = {"drag": self.drag, "pin": self.pin, "cut": self.cut}
+        self.tools: dict[str, Tool] = {
+            "drag": self.drag, "pin": self.pin, "cut": self.cut, "push": PushTool(new_gesture),
+            "wind": WindTool(new_gesture), "delete": DeleteTool(new_gesture), "freeze": FreezeTool(new_gesture),
+            **{part: DropTool(new_gesture, part) for part in PARTS},
+        }  # fmt: skip
         self.tool_name = "drag"
 
     @property
@@ -57,11 +71,30 @@ class Stage:
         return self.tools[self.tool_name]
 
     def choose_tool(self, name: str) -> None:
-        """Take another tool up; what is held stays held."""
-        if self.cut.trail:
-            self.cut.cancel()
+        """Take another tool up; what is held stays held. What has a size begins with one that the view has room for."""
+        if self.tool is not self.drag:
+            self.playback.respond(self.tool.cancel())
         self.tool_name = name
         self.pressed_by_key = False
+        tool = self.tool
+        if isinstance(tool, (DropTool, PushTool)):
+            tool.size = self._usual_size
+        if isinstance(tool, WindTool):
+            tool.strength = WIND_SPEED / (self.camera.viewport[3] / self.camera.zoom)
+
+    @property
+    def _usual_size(self) -> float:
+        """A size [m] that the view has room for, the same until a wheel has turned."""
+        return self.size or float(f"{SIZE_SHARE * self.camera.viewport[3] / self.camera.zoom:.2g}")
+
+    def resize(self, steps: float) -> bool:
+        """Make larger what the tool drops or reaches; whether it has a size."""
+        tool = self.tool
+        if not isinstance(tool, (DropTool, PushTool)):
+            return False
+        tool.resize(steps)
+        self.size = tool.size
+        return True
 
     def replace_playback(self, playback: Playback) -> None:
         """Show another run of the same level, with the same camera and tool."""
@@ -69,7 +102,7 @@ class Stage:
         self.playback = playback
         self.pressed_by_key = False
         self._make_tools(self.drag.strength)
-        self.tool_name = name
+        self.choose_tool(name)
 
     def fit(self) -> None:
         """Show the level's view, or all of its particles; asked for again, all particles wherever they are.
@@ -125,6 +158,7 @@ class Stage:
             button,
             bool(modifiers & pygame.KMOD_SHIFT),
             bool(modifiers & pygame.KMOD_CTRL),
+            pygame.time.get_ticks() / 1000.0,
         )
         self.playback.respond(self.tool.handle(event, self.playback.current))
 
@@ -136,6 +170,7 @@ class Stage:
         """Give up what the tools do and hold."""
         for tool in self.tools.values():
             self.playback.respond(tool.cancel())
+        self.tool_name = "drag"
         self.pressed_by_key = False
         self.cursor = None
 
@@ -194,7 +229,12 @@ class Stage:
         with profile.part("ticks"):
             self.playback.advance(frame_time)
         self._hovered = None
-        if pointer is not None and self.tool_name != "cut" and not self.drag.dragging:
+        tool = self.tool
+        if isinstance(tool, (DropTool, PushTool)):
+            # A ghost follows the mouse before anything is pressed.
+            at = self.cursor if self.cursor is not None else None if pointer is None else self.camera.to_world(pointer)
+            tool.place = at
+        elif pointer is not None and self.tool_name not in ("cut", "wind") and not self.drag.dragging:
             within = PICK_RADIUS * self.renderer.scale / self.camera.zoom
             self._hovered = nearest_particle(self.playback.current, self.camera.to_world(pointer), within)
 
@@ -203,6 +243,7 @@ class Stage:
         surface.set_clip(self.camera.viewport)
         playback = self.playback
         overlay = Overlay(self._hovered, self.cut.trail, self.cursor, self.pulls())
+        overlay.ghost = getattr(self.tool, "ghost", [])
         if "stability" in self.renderer.overlays.shown:
             overlay.stability = self._paint.shares(playback)
         alpha = playback.clock.alpha(playback.session.world.settings.tick_rate)

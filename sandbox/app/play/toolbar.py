@@ -27,7 +27,7 @@ WIDE_GAP, NARROW_GAP = 16.0, 4.0
 # Groups of actions from the left, and those at the right end, with their pictures.
 LEFT = (
     (("edit", "edit"),),
-    (("tool_drag", "drag"), ("tool_pin", "pin"), ("tool_cut", "cut")),
+    (("tool_drag", "drag"), ("tool_pin", "pin"), ("tool_cut", "cut"), ("palette", "parts")),
     (("undo", "undo"), ("redo", "redo")),
     (("reset", "reset"), ("pause", "pause"), ("step", "step"), ("slow", ""), ("keep", "keep")),
     (("record", "record"), ("save", "save")),
@@ -56,6 +56,7 @@ LEAVING = (
     "keep",
     "share",
     "panel",
+    "palette",
     "tool_pin",
     "edit",
 )
@@ -73,6 +74,7 @@ class BarState:
     can_undo: bool
     can_redo: bool
     panel: bool
+    palette: bool
 
 
 def fitting(actions: Sequence[str], width: float) -> list[str]:
@@ -143,6 +145,7 @@ class Toolbar:
         self._mark("pause", ACCENT if state.paused else TEXT, False, "play" if state.paused else "pause")
         self._mark("record", DANGER, state.recording, "stop" if state.recording else "record")
         self._mark("panel", TEXT, state.panel)
+        self._mark("palette", TEXT, state.palette)
         for name, on in (("undo", state.can_undo), ("redo", state.can_redo)):
             self._mark(name, TEXT if on else DISABLED, False)
             if name in self.buttons:

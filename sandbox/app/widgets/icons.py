@@ -111,6 +111,13 @@ def _more(pen: IconPen) -> None:
         pen.disc(12, y, 1.9)
 
 
+def _parts(pen: IconPen) -> None:
+    pen.disc(7.5, 7.5, 4.2, 2)
+    pen.line((13.5, 4), (20, 4), (20, 10.5), (13.5, 10.5), (13.5, 4))
+    pen.line((12, 14), (12, 21))
+    pen.line((8.5, 17.5), (15.5, 17.5))
+
+
 def _share(pen: IconPen) -> None:
     for x, y in ((6, 12), (17.5, 5.5), (17.5, 18.5)):
         pen.disc(x, y, 3.2)
@@ -156,7 +163,7 @@ ICONS: dict[str, Icon] = {
     "undo": _undo, "redo": _redo, "record": _record, "stop": _stop, "levels": _levels, "fit": _fit,
     "panel": _panel, "save": _save, "edit": _edit, "keep": _keep, "share": _share, "spring": draw_spring,
     "lattice": _lattice, "particles": _particles, "contacts": _contacts, "forces": _forces,
-    "velocities": _velocities, "stability": _stability,
+    "velocities": _velocities, "stability": _stability, "parts": _parts,
 }  # fmt: skip
 
 

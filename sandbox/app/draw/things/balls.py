@@ -9,6 +9,7 @@ from sandbox.app.draw.themes import SANDS
 from sandbox.app.draw.things.cast import Ball, Cast
 from sandbox.app.draw.things.frame import Frame, Seen
 from sandbox.level.format.limits import BODY_RADIUS
+from sandbox.level.format.look import PALETTE
 
 Slots = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -29,7 +30,11 @@ class Balls:
             ball for ball in there
             if state.inverse_mass[ball.slot] > 0.0 or state.radius[ball.slot] > 2.0 * BODY_RADIUS
         ]  # fmt: skip
-        shown += [Ball(slot, "marble", 0xF2557B) for slot in strangers.tolist()]
+        colours = list(PALETTE.values())
+        shown += [
+            Ball(slot, "stripe" if state.radius[slot] > 2.0 * BODY_RADIUS else "marble", colours[k % len(colours)])
+            for k, slot in enumerate(strangers.tolist())
+        ]
         self.slots = np.array([ball.slot for ball in shown], dtype=np.int64)
         self._style = np.array([_STYLES[ball.kind] for ball in shown], dtype=np.int64)
         own = [_colour(k, ball) for k, ball in enumerate(shown)]
@@ -39,8 +44,8 @@ class Balls:
         balls = set(self.slots.tolist())
         bumpers = {ball.slot for ball in shown if ball.kind == "bumper"}
         held = np.flatnonzero(state.particle_active & (state.inverse_mass == 0.0))
-        limit = cast.particles
-        self.pins = np.array([slot for slot in held.tolist() if slot not in balls and slot < limit], dtype=np.int64)
+        self.pins = np.array([slot for slot in held.tolist() if slot not in balls], dtype=np.int64)
+        self.pins = self.pins[np.isin(self.pins, cast.particles)]
         self._held = np.array([slot for slot in held.tolist() if slot in balls - bumpers], dtype=np.int64)
 
     def radii(self, frame: Frame) -> Floats:

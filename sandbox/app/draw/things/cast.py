@@ -1,18 +1,21 @@
 """Cast: which slots of a world each body, ball and loose spring of a level has, and what it looks like; made once."""
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.draw.looks import GRAINS, Look, ball_look, body_looks, spring_look
+from sandbox.app.draw.things.borders import sides_of, traced
 from sandbox.level.build.plan import Plan, kept_plan
 from sandbox.level.format.model import Level
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.level.kinds.jelly import JellyDef
+from sandbox.physics.changing.equipment import Joined
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
@@ -21,9 +24,24 @@ Mask = NDArray[np.bool_]
 METALS = ("steel", "paint", "brass", "chain", "cable", "piston")
 
 
+class Filling(NamedTuple):
+    """What of a filled body is left: triangles (t, 3) by index, loops of slots round them, springs (m,) inside.
+
+    key: which springs were there, as bytes.
+    """
+
+    key: bytes
+    left: Slots
+    loops: list[Slots]
+    inside: Mask
+
+
 @dataclass(eq=False)
 class Actor:
-    """A body. slots (n,) of its particles; springs (m,) slots, pairs (m, 2) their ends by index, ends by slot."""
+    """A body. slots (n,) of its particles; springs (m,) slots, pairs (m, 2) their ends by index, ends by slot.
+
+    What it takes long to find of it is kept, as all bodies are gone through anew where one is torn or another is added.
+    """
 
     body: BodyDef
     look: Look
@@ -31,6 +49,8 @@ class Actor:
     slots: Slots
     springs: Slots
     pairs: Slots
+    _filling: Filling | None = field(default=None, init=False)
+    _spot: tuple[bytes, tuple[Floats, float]] | None = field(default=None, init=False)
 
     @property
     def ends(self) -> Slots:
@@ -41,6 +61,26 @@ class Actor:
     def cell(self) -> float:
         """A usual length [m] of its springs."""
         return float(np.median(self.made.rest_length)) if len(self.pairs) else 1.0
+
+    def filling(self, there: Mask) -> Filling:
+        """What is left of it, where these springs (m,) are there: a triangle while those along all its sides are."""
+        key = there.tobytes()
+        if self._filling is None or self._filling.key != key:
+            triangles = self.triangles()
+            sides = sides_of(triangles, self.pairs)
+            left = triangles[((sides >= 0) & np.append(there, False)[sides]).all(axis=1)]
+            filled = np.zeros(len(self.slots), dtype=np.bool_)
+            filled[left] = True
+            loops = [self.slots[loop] for loop in traced(left)] if len(left) else []
+            self._filling = Filling(key, left, loops, np.asarray(filled[self.pairs].all(axis=1)))
+        return self._filling
+
+    def spot(self, loop: Slots, find: Callable[["Actor", Slots], tuple[Floats, float]]) -> tuple[Floats, float]:
+        """What `find` finds of it inside a loop of slots."""
+        key = loop.tobytes()
+        if self._spot is None or self._spot[0] != key:
+            self._spot = key, find(self, loop)
+        return self._spot[1]
 
     def triangles(self) -> Slots:
         """Triangles (t, 3) of particles by index, that a jelly is filled with, whether or not they keep their area."""
@@ -72,17 +112,17 @@ class Join:
 
 @dataclass(eq=False)
 class Cast:
-    """Everything in a level that can be seen; particles and springs: how many slots are the level's own.
+    """Everything in a level that can be seen; particles and springs: the slots that belong to its bodies and parts.
 
-    strikes (springs,): those that spark when they tear.
+    strikes: by the spring's slot, as far as there are any, those that spark when they tear.
     """
 
     level: Level
     actors: list[Actor]
     balls: list[Ball]
     joins: list[Join]
-    particles: int
-    springs: int
+    particles: Slots
+    springs: Slots
     strikes: Mask
 
 
@@ -113,4 +153,21 @@ def cast_of(level: Level, is_welded: bool = True) -> Cast:
     kinds = [(actor.look, len(actor.springs)) for actor in actors] + [(join.look, 1) for join in joins]
     sparks = [look.line in METALS and look.skin in ("", "steel wheel") for look, _ in kinds]
     strikes = np.repeat(np.array(sparks, dtype=np.bool_), [count for _, count in kinds])
-    return Cast(level, actors, balls, joins, int(slots.max(initial=-1)) + 1, spring + len(joins), strikes)
+    return Cast(level, actors, balls, joins, np.unique(slots), np.arange(spring + len(joins)), strikes)
+
+
+def joined_cast(cast: Cast, joined: Sequence[Joined]) -> Cast:
+    """The cast of a level, or of one that bodies have joined while it ran, once these bodies have joined it as well."""
+    actors, joins = list(cast.actors), list(cast.joins)
+    particles, springs = [cast.particles], [cast.springs]
+    for each in joined:
+        own, first, spring = cast_of(each.source), each.first_particle, each.first_spring
+        actors += [replace(actor, slots=actor.slots + first, springs=actor.springs + spring) for actor in own.actors]
+        joins += [
+            Join(join.spring + spring, (join.ends[0] + first, join.ends[1] + first), join.look) for join in own.joins
+        ]
+        particles.append(own.particles + first)
+        springs.append(own.springs + spring)
+    return replace(
+        cast, actors=actors, joins=joins, particles=np.concatenate(particles), springs=np.concatenate(springs)
+    )

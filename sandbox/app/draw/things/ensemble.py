@@ -9,7 +9,7 @@ from sandbox.app.draw.raster.painter import MarkList, Painter
 from sandbox.app.draw.raster.shadows import Thrown
 from sandbox.app.draw.themes import outline_of
 from sandbox.app.draw.things.balls import Balls
-from sandbox.app.draw.things.borders import hull_of, sides_of, traced
+from sandbox.app.draw.things.borders import hull_of
 from sandbox.app.draw.things.cast import Actor, Cast, Join
 from sandbox.app.draw.things.faces import Faces
 from sandbox.app.draw.things.frame import Frame, Seen
@@ -48,11 +48,11 @@ class Ensemble:
         for actor in cast.actors:
             there = springs[actor.springs]
             joins += self._add(actor, there)
-        strangers = np.flatnonzero(springs[cast.springs :]) + cast.springs
+        strangers = np.setdiff1d(np.flatnonzero(springs), cast.springs)
         ends = np.stack([state.particle_a, state.particle_b], axis=1).astype(np.int64)
         self._add_joins(joins, ends)
         self.members.add_strangers(ends[strangers], strangers, state.rest_length)
-        self.balls = Balls(cast, state, np.flatnonzero(particles[cast.particles :]) + cast.particles)
+        self.balls = Balls(cast, state, np.setdiff1d(np.flatnonzero(particles), cast.particles))
         self.faces = Faces(self._faces)
         self._hems = [Shape([loop], CLOTH, 0, -1, rounds=0, line=False) for loop in self.sheets.outlines()]
         self.soft = Soft(self._shapes + self._hems)
@@ -103,22 +103,15 @@ class Ensemble:
         return []
 
     def _add_filled(self, actor: Actor, there: Mask) -> list[Join]:
-        triangles = actor.triangles()
-        sides = sides_of(triangles, actor.pairs)
-        # A triangle is there while the springs along all its sides are.
-        left = triangles[((sides >= 0) & np.append(there, False)[sides]).all(axis=1)]
-        filled = np.zeros(len(actor.slots), dtype=np.bool_)
-        filled[left] = True
+        _, left, loops, inside = actor.filling(there)
         if len(left):
-            loops = [actor.slots[loop] for loop in traced(left)]
             if actor.look.skin != CLOTH:
-                held = there & filled[actor.pairs].all(axis=1)
-                self._shapes.append(shape_of(actor, loops, held, self._radius(actor)))
+                self._shapes.append(shape_of(actor, loops, there & inside, self._radius(actor)))
             if actor.look.skin == CLOTH or actor.look.skin in CRATES:
                 self.sheets.add(actor, left, loops, there)
             if actor.look.face and actor.look.skin in SOFT_SKINS:
                 self._faces.append((actor, max(loops, key=len)))
-        bare = there & ~filled[actor.pairs].all(axis=1)
+        bare = there & ~inside
         return self._add_lines(actor, bare) if bare.any() else []
 
     def _add_joins(self, joins: list[Join], ends: Slots) -> None:

@@ -37,7 +37,7 @@ class Faces:
         forms = [actor.made.form - actor.made.form.mean(axis=0) for actor, _ in rows]
         # As seen: pixels count downwards.
         self._form = np.concatenate(forms) * np.array([1.0, -1.0])
-        spots = [_spot(form, actor, loop) for form, (actor, loop) in zip(forms, rows, strict=True)]
+        spots = [actor.spot(loop, _spot) for actor, loop in rows]
         self._spot = np.array([place for place, _ in spots]) * np.array([1.0, -1.0])
         self._inner = np.array([radius for _, radius in spots])
         angle = np.array([float(actor.body.__dict__.get("angle", 0.0)) for actor, _ in rows])
@@ -160,8 +160,9 @@ class _Pen:
             )
 
 
-def _spot(form: Floats, actor: Actor, loop: Slots) -> tuple[Floats, float]:
+def _spot(actor: Actor, loop: Slots) -> tuple[Floats, float]:
     """Where a face sits, about the middle of the form, and how much room there is [m]."""
+    form = actor.made.form - actor.made.form.mean(axis=0)
     index = {slot: k for k, slot in enumerate(actor.slots.tolist())}
     ring = form[[index[slot] for slot in loop.tolist()]]
     ring = np.concatenate([ring + (np.roll(ring, -1, axis=0) - ring) * k / 4 for k in range(4)])

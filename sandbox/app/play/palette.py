@@ -1,0 +1,132 @@
+"""Palette: a strip at the left of the world with parts to drop and deeds to do while it runs."""
+
+import functools
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import pygame
+
+from sandbox.app.draw.colours import ACCENT, TEXT, Colour
+from sandbox.app.draw.picture import draw_picture
+from sandbox.app.shortcuts import tip_of
+from sandbox.app.widgets.icons import painted_icon
+from sandbox.app.widgets.ui import Ui, set_icon
+from sandbox.editor.tools.icons import Icon, IconPen
+from sandbox.level.format.limits import FORMAT, VERSION
+from sandbox.level.format.parse import parse_level
+from sandbox.session.session import Session
+from sandbox.tools.parts import COLOURS, PARTS
+
+# Sizes in layout units.
+LEFT, TOP, BUTTON, GAP, EDGE = 10.0, 10.0, 34.0, 3.0, 5.0
+WIDTH = BUTTON + 2 * EDGE
+ICON, PICTURE = 18.0, 30.0
+# Half of what a part's picture shows [m], of a part of 1 m.
+SHOWN = {"rope": 1.1}
+USUALLY_SHOWN = 0.62
+# Where the window has less height for a button, there are two columns.
+LEAST_STEP = BUTTON + GAP
+
+
+def _push(pen: IconPen) -> None:
+    pen.disc(12, 12, 3.2)
+    for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        pen.line((12 + 6 * dx, 12 + 6 * dy), (12 + 10 * dx, 12 + 10 * dy))
+
+
+def _wind(pen: IconPen) -> None:
+    pen.line((3, 8), (14, 8))
+    pen.arc(14, 5.5, 2.5, 270, 520)
+    pen.line((3, 13), (18, 13))
+    pen.line((3, 18), (12, 18))
+    pen.arc(18, 15.5, 2.5, 200, 450)
+
+
+def _delete(pen: IconPen) -> None:
+    pen.line((4, 6.5), (20, 6.5))
+    pen.line((9.5, 6), (9.5, 3.5), (14.5, 3.5), (14.5, 6))
+    pen.line((6, 7), (7, 20.5), (17, 20.5), (18, 7))
+    pen.line((10.2, 10.5), (10.5, 17))
+    pen.line((13.8, 10.5), (13.5, 17))
+
+
+def _freeze(pen: IconPen) -> None:
+    for ends in (((12, 3), (12, 21)), ((4.2, 7.5), (19.8, 16.5)), ((4.2, 16.5), (19.8, 7.5))):
+        pen.line(*ends)
+    for x, y in ((12, 6), (12, 18)):
+        pen.line((9.5, y - 2.5 if y < 12 else y + 2.5), (x, y), (14.5, y - 2.5 if y < 12 else y + 2.5))
+
+
+DEEDS: dict[str, Icon] = {"push": _push, "wind": _wind, "delete": _delete, "freeze": _freeze}
+NAMES = (*PARTS, *DEEDS)
+
+
+@dataclass(frozen=True)
+class PaletteState:
+    """What the strip shows: the tool in use, and whether pictures may be drawn as things are."""
+
+    tool: str
+    compiled: bool
+
+
+def picture_of(part: str, size: int) -> pygame.Surface:
+    """What a part looks like, on a square of size [pixels]."""
+    level = parse_level(
+        json.dumps({"format": FORMAT, "version": VERSION, "name": part, "contacts": {}}).encode(), part
+    )  # fmt: skip
+    session = Session(level)
+    session.submit(PARTS[part].make(1.0, (0.0, 0.0), (0.0, 0.0), COLOURS[0]))
+    session.apply_pending()
+    half, times = SHOWN.get(part, USUALLY_SHOWN), 3
+    large = draw_picture(level, session.snapshot(), (times * size, times * size), (-half, -half, half, half), 1.0)
+    # Round corners, as buttons have.
+    mask = pygame.Surface(large.get_size(), pygame.SRCALPHA)
+    pygame.draw.rect(mask, (255, 255, 255, 255), mask.get_rect(), border_radius=times * size // 6)
+    mask.blit(large, (0, 0), special_flags=pygame.BLEND_RGB_MULT)
+    return pygame.transform.smoothscale(mask, (size, size))
+
+
+class PartsPalette:
+    """Buttons that take up what they show; `press` starts an action by its name."""
+
+    def __init__(self, ui: Ui, press: Callable[[str], None], top: float, height: float) -> None:
+        self._ui = ui
+        self._state: PaletteState | None = None
+        self._pictures: dict[str, pygame.Surface] = {}
+        rows = max(1, min(len(NAMES), int((height - 2 * TOP - 2 * EDGE) // LEAST_STEP)))
+        columns = -(-len(NAMES) // rows)
+        rows = -(-len(NAMES) // columns)
+        width, tall = columns * (BUTTON + GAP) - GAP + 2 * EDGE, rows * LEAST_STEP - GAP + 2 * EDGE
+        # Its right edge [layout units].
+        self.right = LEFT + width
+        self.back = ui.panel(ui.rect(LEFT, top + TOP, width, tall))
+        self.buttons: dict[str, Any] = {}
+        for number, name in enumerate(NAMES):
+            column, row = divmod(number, rows)
+            place = ui.rect(EDGE + column * (BUTTON + GAP), EDGE + row * LEAST_STEP, BUTTON, BUTTON)
+            action = f"tool_{name}"
+            self.buttons[name] = ui.button(
+                place, "", functools.partial(press, action), self.back, tip=tip_of(action, "play"), style="@quiet"
+            )
+
+    def show(self, state: PaletteState) -> None:
+        """Show a state, changing what differs."""
+        before, self._state = self._state, state
+        if state == before:
+            return
+        if before is None or before.compiled != state.compiled:
+            self._pictures = {part: picture_of(part, self._ui.px(PICTURE)) for part in PARTS}
+        for name, button in self.buttons.items():
+            is_chosen = name == state.tool
+            set_icon(button, self._icon(name, ACCENT if is_chosen else TEXT))
+            (button.select if is_chosen else button.unselect)()
+
+    def _icon(self, name: str, colour: Colour) -> pygame.Surface:
+        if name not in DEEDS:
+            return self._pictures[name]
+        key = f"{name} {colour}"
+        if key not in self._pictures:
+            self._pictures[key] = painted_icon(DEEDS[name], self._ui.px(ICON), colour)
+        return self._pictures[key]

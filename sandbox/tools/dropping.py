@@ -1,0 +1,80 @@
+"""DropTool: a click drops a part under the pointer, a drag throws it."""
+
+from collections.abc import Callable
+
+from sandbox.physics.snapshot import Snapshot
+from sandbox.tools.parts import COLOURS, PARTS, Loop, Point
+from sandbox.tools.tool import NOTHING, PointerEvent, Response, Submission
+
+# What the pointer did in this last part of a drag decides how fast the part flies [s]; longer makes throws sluggish.
+THROW_SECONDS = 0.08
+# The fastest throw [m/s]: beyond it a part passes through walls of other parts.
+FASTEST_THROW = 25.0
+# A press that moves less than this share of the pick radius is a click.
+CLICK_SHARE = 0.35
+# A step of the wheel makes a part so many times larger; sizes [m] that it may have.
+SIZE_STEP, SMALLEST, LARGEST = 1.1, 0.02, 100.0
+
+
+class DropTool:
+    """Drop the part of that name; size [m]; place [m]: where its ghost is, None = nowhere.
+
+    Each drop is a gesture; parts take the toys' colours in turn.
+    """
+
+    def __init__(self, new_gesture: Callable[[], int], part: str) -> None:
+        self.part, self.size = PARTS[part], 1.0
+        self.place: Point | None = None
+        self.count = 0
+        self._new_gesture = new_gesture
+        self._pressed_at: Point | None = None
+        self._trail: list[tuple[float, Point]] = []
+
+    def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
+        """Follow the pointer; drop on the release."""
+        self.place = event.position
+        if event.kind == "down" and event.button == 1:
+            self._pressed_at, self._trail = event.position, []
+        if self._pressed_at is None:
+            return NOTHING
+        self._trail.append((event.seconds, event.position))
+        if event.kind != "up" or event.button != 1:
+            return NOTHING
+        velocity = self._thrown(event)
+        self._pressed_at = None
+        command = self.part.make(self.size, event.position, velocity, COLOURS[self.count % len(COLOURS)])
+        self.count += 1
+        return Response((Submission(command, self._new_gesture()),))
+
+    def _thrown(self, event: PointerEvent) -> Point:
+        """The velocity [m/s] of the pointer in the last moment."""
+        assert self._pressed_at is not None
+        dx, dy = event.position[0] - self._pressed_at[0], event.position[1] - self._pressed_at[1]
+        recent = [(when, at) for when, at in self._trail if when >= event.seconds - THROW_SECONDS]
+        began, start = recent[0]
+        if dx * dx + dy * dy <= (CLICK_SHARE * event.pick_radius) ** 2 or event.seconds <= began:
+            return 0.0, 0.0
+        vx, vy = ((event.position[axis] - start[axis]) / (event.seconds - began) for axis in range(2))
+        share = min(1.0, FASTEST_THROW / max((vx * vx + vy * vy) ** 0.5, 1e-9))
+        return share * vx, share * vy
+
+    def resize(self, steps: float) -> None:
+        """Make what is dropped larger, by so many steps of the wheel."""
+        self.size = min(max(self.size * SIZE_STEP**steps, SMALLEST), LARGEST)
+
+    @property
+    def ghost(self) -> list[Loop]:
+        """Lines [m] of what would be dropped; closed ones end where they begin."""
+        if self.place is None:
+            return []
+        x, y = self.place
+        loops = [[(x + self.size * px, y + self.size * py) for px, py in loop] for loop in self.part.ghost]
+        return [[*loop, loop[0]] if self.part.solid else loop for loop in loops]
+
+    def cancel(self) -> Response:
+        """Drop nothing."""
+        self._pressed_at = self.place = None
+        return NOTHING
+
+    def reconcile(self, snapshot: Snapshot) -> None:
+        """Nothing is remembered."""

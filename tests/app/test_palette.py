@@ -1,0 +1,157 @@
+"""Play with parts, by mouse and keys: the strip, ghosts, drops and throws, sizes, carts, deeds, undo, and keeping."""
+
+import pygame
+import pytest
+
+from sandbox.app.draw.colours import ACCENT
+from sandbox.app.play.palette import NAMES
+from sandbox.session.commands import AddBody, AddParticle, Push, Remove, SetAir
+from tests.support.parts import furnished
+
+KEYS = dict(zip(NAMES, "4567890vxi", strict=True))
+
+
+@pytest.fixture
+def player(open_app):
+    driver = open_app(furnished())
+    driver.key(pygame.K_b)
+    return driver
+
+
+def at(driver, x, y):
+    return driver.stage.camera.to_pixels((x, y))
+
+
+def drop(driver, *points):
+    pixels = [at(driver, *point) for point in points]
+    driver.move(pixels[0])
+    driver.press(pixels[0])
+    for pixel in pixels[1:]:
+        driver.move(pixel)
+    driver.release(pixels[-1])
+    driver.frames(1)
+
+
+def commands(driver):
+    return [entry.command for entry in driver.playback.session._timeline]
+
+
+def test_the_strip_folds_out_and_every_part_and_deed_has_a_key_a_button_and_a_picture(player):
+    palette = player.app.play.palette
+    assert list(palette.buttons) == list(NAMES)
+    for name, key in KEYS.items():
+        player.key(ord(key))
+        assert player.stage.tool_name == name
+    player.key(pygame.K_ESCAPE)
+    assert player.stage.tool_name == "drag"
+    player.click_widget(palette.buttons["jelly"])
+    assert player.stage.tool_name == "jelly"
+    player.click_widget(palette.buttons["jelly"])
+    assert player.stage.tool_name == "drag"
+    player.key(pygame.K_b)
+    assert player.app.play.palette is None
+    player.key(pygame.K_6)
+    assert player.app.play.palette is not None
+
+
+def test_a_ghost_goes_before_a_click_drops_and_the_run_goes_on(player):
+    player.key(pygame.K_6)
+    player.move(at(player, 0.0, 3.0))
+    player.frames(1)
+    (ghost,) = player.stage.tool.ghost
+    x, y = at(player, *ghost[0])
+    found = [
+        player.app.display.surface.get_at((round(x) + i, round(y) + j))[:3] for i in (-1, 0, 1) for j in (-1, 0, 1)
+    ]
+    assert any(abs(colour[1] - ACCENT[1]) < 40 and colour[1] > colour[0] + 40 for colour in found)
+    drop(player, (0.0, 3.0))
+    tick = player.playback.session.tick
+    assert [joined.names for joined in player.world.joined] == [("+1",)]
+    player.frames(3)
+    assert player.playback.session.tick > tick
+    player.key(pygame.K_z, pygame.KMOD_CTRL)
+    player.frames(1)
+    assert not player.world.joined
+    player.key(pygame.K_y, pygame.KMOD_CTRL)
+    player.frames(1)
+    assert player.world.joined
+
+
+def test_the_wheel_and_keys_size_a_part_and_zoom_with_the_hand(player):
+    player.key(pygame.K_4)
+    size, zoom = player.stage.tool.size, player.stage.camera.zoom
+    player.move(at(player, 0.0, 3.0))
+    player.post(pygame.MOUSEWHEEL, x=0, y=2, precise_y=2.0, which=0, flipped=False)
+    player.frames(1)
+    assert player.stage.tool.size == pytest.approx(size * 1.21) and player.stage.camera.zoom == zoom
+    player.key(pygame.K_MINUS)
+    assert player.stage.tool.size == pytest.approx(size)
+    drop(player, (0.0, 3.0))
+    (ball,) = commands(player)
+    assert isinstance(ball, AddParticle) and ball.radius == pytest.approx(size / 2)
+    player.key(pygame.K_ESCAPE)
+    player.post(pygame.MOUSEWHEEL, x=0, y=2, precise_y=2.0, which=0, flipped=False)
+    player.frames(1)
+    assert player.stage.camera.zoom > zoom
+
+
+def test_a_dropped_cart_is_driven_by_its_keys_and_a_watched_run_is_taken_over(player):
+    player.key(pygame.K_9)
+    drop(player, (0.0, 1.0))
+    player.key(pygame.K_ESCAPE)
+    names = player.world.actuators.names
+    assert names == ("mill", "+2", "+3")
+    player.post(pygame.KEYDOWN, key=pygame.K_w, mod=0, unicode="w")
+    player.frames(1)
+    assert player.world.actuator_value.tolist() == [1.0, 1.0, 1.0]
+    player.post(pygame.KEYUP, key=pygame.K_w, mod=0)
+    player.frames(1)
+    assert player.world.actuator_value.tolist() == [1.0, 0.0, 0.0]
+    player.key(pygame.K_z, pygame.KMOD_CTRL)
+    player.key(pygame.K_z, pygame.KMOD_CTRL)
+    player.frames(1)
+    assert player.world.actuators.names == ("mill",)
+
+
+def test_push_wind_and_delete_by_mouse(player):
+    player.key(pygame.K_0)
+    drop(player, (-2.0, 0.5), (-2.0, 1.5))
+    player.key(pygame.K_v)
+    drop(player, (0.0, 3.0), (1.0, 3.0), (2.0, 3.0))
+    player.key(pygame.K_x)
+    x, y = player.world.position[player.world.particle_slot("ball")]
+    drop(player, (x, y))
+    made = commands(player)
+    assert isinstance(made[0], Push) and made[0].impulse[1] > 0.0
+    assert isinstance(made[1], SetAir) and made[-2] == SetAir((0.0, 0.0), 0.0)
+    assert isinstance(made[-1], Remove)
+    assert not player.world.particle_active[player.world.particle_slot("ball")]
+
+
+def test_a_level_without_contacts_says_what_holds(open_app, driver):
+    driver.key(pygame.K_4)
+    assert any("Nothing touches anything" in notice for notice in driver.notices)
+
+
+def test_what_was_dropped_is_kept_in_the_document_and_undone_there(edit):
+    driver = edit(furnished())
+    driver.key(pygame.K_e)
+    driver.frames(2)
+    session = driver.playback.session
+    for key, x in ((pygame.K_9, 0.0), (pygame.K_4, 1.5), (pygame.K_6, -0.5)):
+        driver.key(key)
+        drop(driver, (x, 4.0 if key == pygame.K_6 else 1.0))
+    driver.key(pygame.K_ESCAPE)
+    session.submit(Remove(body="+3"))
+    driver.frames(2)
+    driver.key(pygame.K_k, pygame.KMOD_CTRL)
+    driver.choose("Added: what was dropped into it")
+    kept = driver.editor.document.level
+    assert [body.id for body in kept.bodies] == ["cube", "rope", "mill", "frame", "rear", "jelly"]
+    assert [particle.id for particle in kept.particles] == ["ball", "ball 2"]
+    assert kept.welds == (("frame.0", "rear.hub"),) and set(kept.materials) == {"dropped steel", "dropped tyre"}
+    assert isinstance(AddBody, type) and kept.bodies[-1].position[1] == pytest.approx(4.0, abs=0.6)
+    driver.key(pygame.K_e)
+    driver.frames(1)
+    driver.key(pygame.K_z, pygame.KMOD_CTRL)
+    assert len(driver.editor.document.level.bodies) == 3

@@ -1,0 +1,103 @@
+"""The tools of the palette: what pointer gestures become, for the part, the push, the wind and what is taken out."""
+
+import numpy as np
+import pytest
+
+from sandbox.session.commands import AddBody, AddParticle, Pin, Push, Remove, SetAir, Unpin
+from sandbox.session.session import Session
+from sandbox.tools.blowing import PushTool, WindTool
+from sandbox.tools.dropping import FASTEST_THROW, DropTool
+from sandbox.tools.parts import PARTS
+from sandbox.tools.taking import DeleteTool, FreezeTool
+from sandbox.tools.tool import PointerEvent
+from tests.support.parts import furnished, room
+
+
+def gesture(tool, session, *points, seconds=0.02):
+    """Press, move and release along points; the commands of the gesture."""
+    kinds = ["down", *["move"] * (len(points) - 2), "up"]
+    found = []
+    for k, (kind, point) in enumerate(zip(kinds, points, strict=True)):
+        event = PointerEvent(kind, point, 0.1, seconds=k * seconds)
+        response = tool.handle(event, session.snapshot())
+        for command, number in response.submissions:
+            session.submit(command, number)
+            found.append(command)
+        session.apply_pending()
+    return found
+
+
+@pytest.fixture(params=PARTS)
+def tool(request):
+    return request.param
+
+
+def test_every_part_drops_where_it_is_clicked_settles_and_flies_where_it_is_thrown(tool):
+    session = Session(room())
+    drop = DropTool(session.new_gesture, tool)
+    gesture(drop, session, (0.0, 2.0), (0.0, 2.0))
+    world = session.world
+    new = world.particle_active.copy()
+    assert np.abs(world.position[new].mean(axis=0) - (0.0, 2.0)).max() < 0.3
+    assert not world.velocity[new].any()
+    for _ in range(90):
+        session.advance()
+    assert not session.messages
+    speed = np.linalg.norm(world.velocity[new], axis=1)
+    assert speed.max() < 5.0 and world.position[new, 1].min() > 0.0
+    before = world.particle_count
+    (thrown,) = gesture(drop, session, (-2.0, 3.0), (-1.9, 3.0), (-1.8, 3.1), (-1.7, 3.2))
+    velocity = world.velocity[before:][world.inverse_mass[before:] > 0.0]
+    assert isinstance(thrown, AddBody | AddParticle)
+    assert velocity == pytest.approx(np.broadcast_to((5.0, 10.0 / 3.0), velocity.shape))
+    for _ in range(30):
+        session.advance()
+    assert np.isfinite(world.position).all()
+
+
+def test_throws_have_a_limit_and_the_wheel_makes_parts_larger():
+    session = Session(room())
+    drop = DropTool(session.new_gesture, "ball")
+    drop.resize(3)
+    (ball,) = gesture(drop, session, (-3.0, 3.0), (3.0, 3.0))
+    assert ball.velocity == pytest.approx((FASTEST_THROW, 0.0)) and ball.radius == pytest.approx(0.5 * 1.1**3)
+    assert len(drop.ghost) == 1 and drop.ghost[0][0] == drop.ghost[0][-1]
+    drop.cancel()
+    assert drop.ghost == []
+
+
+def test_a_click_bursts_an_arrow_pushes_and_where_nothing_is_nothing_happens():
+    session = Session(furnished())
+    push = PushTool(session.new_gesture)
+    (burst,) = gesture(push, session, (-2.0, 0.5), (-2.0, 0.5))
+    assert isinstance(burst, Push) and burst.outward > 0.0 and burst.impulse == (0.0, 0.0)
+    (pushed,) = gesture(push, session, (-2.0, 0.5), (-2.0, 1.0), (-2.0, 1.5))
+    assert pushed.impulse[0] == 0.0 and pushed.impulse[1] > 0.0 and pushed.position == (-2.0, 0.5)
+    assert gesture(push, session, (0.0, 20.0), (0.0, 20.0)) == []
+
+
+def test_the_wind_blows_while_it_is_held_and_undo_takes_it_back_whole():
+    session = Session(furnished())
+    wind = WindTool(session.new_gesture)
+    before = session.world.settings
+    commands = gesture(wind, session, (0.0, 0.0), (1.0, 0.5), (2.0, 0.0))
+    assert [type(command) for command in commands] == [SetAir] * 3
+    assert commands[1].wind == (4.0, 2.0) and commands[1].drag > 0.0
+    assert session.world.settings == before
+    session.undo()
+    session.apply_pending()
+    assert not session.can_undo
+
+
+def test_a_click_takes_out_or_freezes_what_is_under_it_and_thaws_it_again():
+    session = Session(furnished())
+    world = session.world
+    freeze, delete = FreezeTool(session.new_gesture), DeleteTool(session.new_gesture)
+    cube = [world.particle_slot(f"cube.{k}") for k in range(9)]
+    commands = gesture(freeze, session, (-2.0, 0.5), (-2.0, 0.5))
+    assert [type(command) for command in commands] == [Pin] * 9 and not world.inverse_mass[cube].any()
+    commands = gesture(freeze, session, (-2.0, 0.5), (-2.0, 0.5))
+    assert [type(command) for command in commands] == [Unpin] * 9
+    (removed,) = gesture(delete, session, (-2.0, 0.5), (-2.0, 0.5))
+    assert isinstance(removed, Remove) and not world.particle_active[cube].any()
+    assert gesture(delete, session, (0.0, 2.0), (0.0, 2.0)) == []
