@@ -185,7 +185,7 @@ def test_a_level_setting_is_three_files(package):
     )
     put(
         package / "physics/forces.py",
-        "    world.velocity[world.inverse_mass > 0.0, 1] += world.settings.lift * h\n",
+        "    forces.particles.velocity[forces.particles.inverse_mass > 0.0, 1] += forces.settings.lift * h\n",
         before="    _add_gravity_and_air(forces.items, h)",
     )
     script = """

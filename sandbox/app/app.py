@@ -194,17 +194,19 @@ class App:
             "larger": lambda: self._rescale(1.125),
             "smaller": lambda: self._rescale(1 / 1.125),
             "settings": self._open_settings,
-            "hint": self._show_hint,
             "help": lambda: show_help(self.ui, self.mode, self.guide.begin),
             "tour": self.guide.begin,
-            "share": self.share_page.open,
             "quit": self.quit,
         }
+
+    def _play_actions(self) -> dict[str, Callable[[], object]]:
+        return {"hint": self._show_hint, "share": self.share_page.open}
 
     @property
     def actions(self) -> dict[str, Callable[[], object]]:
         """What can be done now, by the names of the table of shortcuts."""
-        return self._own_actions | (self.screen.actions if self.screen is not None else {})
+        of_play = self._play_actions() if self.mode == "play" else {}
+        return self._own_actions | of_play | (self.screen.actions if self.screen is not None else {})
 
     def act(self, action: str) -> None:
         """Do what a key or button asks for, where the screen knows it."""

@@ -11,6 +11,7 @@ import pygame
 import pytest
 
 from sandbox.app.display import has_display
+from sandbox.app.edit.side.scroll import BAR_WIDTH
 from sandbox.app.opening import open_app
 from sandbox.app.play.playback import Playback
 from sandbox.app.preparing import Preparation
@@ -355,7 +356,7 @@ def test_the_window_can_be_resized_and_rescaled(driver):
     driver.app.display.window.size = (900, 600)
     driver.frames(2)
     assert driver.stage.camera.viewport[2] < 900
-    assert driver.panel.back.rect.right == 900
+    assert driver.panel.area.view.rect.right + driver.app.ui.px(BAR_WIDTH) == 900
     driver.key(pygame.K_EQUALS, CTRL)
     assert driver.app.ui.scale == pytest.approx(1.125)
     driver.app.act("panel")

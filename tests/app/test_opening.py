@@ -31,7 +31,7 @@ def test_words_are_in_the_window_before_anything_is_looked_for(pictures, capsys)
         return StartRequest(small_level())
 
     assert open_app(find, profile=True, seconds=0.0) == 0
-    assert {BACKGROUND, TEXT} <= found[0]
+    assert {tuple(BACKGROUND), tuple(TEXT)} <= found[0]
     assert "words in the window: after" in capsys.readouterr().out
 
 

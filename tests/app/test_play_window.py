@@ -25,7 +25,7 @@ def test_buttons_that_do_not_fit_are_in_the_menu(width):
     actions = [action for group in (*LEFT, RIGHT) for action, _ in group]
     shown = fitting(actions, width)
     assert set(shown) <= set(actions) and {"pause", "reset", "undo", "gallery"} <= set(shown)
-    assert (shown == actions) == (width >= 800)
+    assert (shown == actions) == (width >= 1280)
 
 
 @pytest.mark.parametrize("size", [(640, 480), (800, 600), (1280, 720)])
@@ -36,7 +36,7 @@ def test_the_bar_lies_inside_the_window_nothing_over_another_and_all_can_be_reac
     rects = [button.rect for button in bar.buttons.values()]
     assert all(pygame.Rect((0, 0), size).contains(rect) for rect in rects)
     assert all(rect.collidelist(rects[:index]) < 0 for index, rect in enumerate(rects))
-    assert bool(bar.left_out) == (size[0] < 800)
+    assert bool(bar.left_out) == (size[0] < 1280)
     assert driver.app.play.show_panel == (size[0] >= 800)
 
 

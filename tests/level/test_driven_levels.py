@@ -126,7 +126,7 @@ FAULTS = [
     ),
     (
         {"bodies": [{**WHEEL, "motor": {"speed": 1, "torque": 1, "key": "Space"}}]},
-        "bodies.0.motor.key: has 5 characters; at most 1",
+        'bodies.0.motor.key: "Space" is no key; use a small letter, a digit, or one of left, right, up, down',
     ),
     ({"bodies": [{**WHEEL, "motor": {"speed": 1, "torque": 1, "key": "A"}}]}, 'bodies.0.motor.key: "A" is no key; use'),
     ({"bodies": [{**ROPE, "motor": {"speed": 1, "torque": 1}}]}, "bodies.0.motor: unknown key"),

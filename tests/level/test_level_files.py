@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sandbox.level.build.build_world import build_world
-from sandbox.level.format import files
+from sandbox.level.format import files, shipped
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import (
     LevelError,
@@ -203,7 +203,7 @@ def test_the_wheel_s_folder_is_used_where_there_is_no_checkout(tmp_path, monkeyp
     (package / "_shipped" / "levels").mkdir(parents=True)
     (tmp_path / "site-packages" / "levels").mkdir()
     (package / "_shipped" / "levels" / "only.json").write_text(level_text(good()))
-    monkeypatch.setattr(files, "_PACKAGE", package)
+    monkeypatch.setattr(shipped, "_PACKAGE", package)
     assert [path.stem for path in shipped_levels()] == ["only"]
     assert load_level("only") == good()
 

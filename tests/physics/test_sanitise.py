@@ -178,13 +178,13 @@ def test_of_free_discs_as_well_only_what_was_hit_freezes(substeps):
     assert w.position[left, 1] < height
 
 
-def test_what_a_tick_of_free_discs_itself_blows_up_is_taken_back_at_its_end():
+def test_what_a_tick_of_free_discs_itself_blows_up_stays_where_it_was_and_alone():
     w = contact_world(FLOOR)
     hit, left = add_discs(w, [(0.0, 5.0)], gravity_scale=1e18), add_discs(w, [(3.0, 5.0)])
     w.settings = WorldSettings(gravity=(0.0, -1e6))
-    step(w)
-    assert {taken.name for taken in w.contained} == {w.particle_names[hit]}
+    _steps(w, 2)
+    assert {taken.name for taken in w.contained} == {f"contact of {w.particle_names[hit]}"}
     assert w.position[hit].tolist() == [0.0, 5.0]
-    assert w.inverse_mass[hit] == 0.0
+    assert np.isfinite(w.velocity).all()
+    assert 0.0 < w.position[left, 1] < 5.0
     assert w.inverse_mass[left] > 0.0
-    assert w.tick == 1

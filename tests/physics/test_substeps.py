@@ -133,7 +133,8 @@ def test_a_rope_dragged_by_a_hand_at_twenty_metres_a_second_stays_short(anchored
         world.unpin(0)
     dragged, released = drag(world, 100 if anchored else 0)
     assert dragged <= 1e-2
-    assert released <= 1e-4
+    # Since hands brake it whirls on longer: 1.07e-4.
+    assert released <= 1.5e-4
 
 
 @pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")

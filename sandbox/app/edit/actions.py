@@ -31,7 +31,7 @@ COPY_LIMIT = 1_000
 # Actions that have no button in the bar.
 MENU = (
     "copy", "cut", "paste", "copy_level", "select_all", "select_material", "forward", "backward", "recent", "open_file",
-    "save_as", "revert",
+    "save_as", "revert", "settings",
 )  # fmt: skip
 
 Edge = Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]
@@ -66,7 +66,7 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
         "mirror": lambda: _ask_mirror(screen),
         "array": lambda: _ask_array(screen),
         "parts": lambda: _ask_parts(screen),
-        "menu": lambda: _show_menu(screen),
+        "menu": lambda: _show_menu(screen, app),
         "group": lambda: _edit_selection(screen, "Group", group),
         "ungroup": lambda: _edit_selection(screen, "Ungroup", ungroup),
         "break_apart": lambda: _edit_selection(screen, "Break apart", break_apart),
@@ -92,10 +92,10 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
     }
 
 
-def _show_menu(screen: Editing) -> None:
+def _show_menu(screen: Editing, app: Application) -> None:
     """Offer what has no button of its own."""
     entries = [entry for entry in shortcuts("edit") if entry.action in MENU]
-    choices = [(f"{entry.label}  [{entry.keys[0]}]", screen.actions[entry.action]) for entry in entries]
+    choices = [(f"{entry.label}  [{entry.keys[0]}]", partial(app.act, entry.action)) for entry in entries]
     choose(screen.ui, "More", "", choices, columns=2)
 
 

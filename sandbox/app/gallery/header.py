@@ -40,8 +40,10 @@ class Header:
         right = self._buttons(app, right)
         second = 72.0
         if self._is_wide:
-            pages = ui.rect(MARGIN + 250, 24, PAGES_WIDTH, BUTTON)
-            search = ui.rect(right - SEARCH_WIDTH - GAP, 24, SEARCH_WIDTH, BUTTON)
+            left = MARGIN + 250
+            pages = ui.rect(left, 24, PAGES_WIDTH, BUTTON)
+            left = max(right - GAP - SEARCH_WIDTH, left + PAGES_WIDTH + 2 * GAP)
+            search = ui.rect(left, 24, right - GAP - left, BUTTON)
             self.height = second + (34 if section == "levels" else 4)
         else:
             pages = ui.rect(MARGIN, second, PAGES_WIDTH, BUTTON)

@@ -23,8 +23,8 @@ _SCALED = {
 
 # The library has no way to be told which fonts it makes.
 gui_font_pygame.Font = SafeFont  # type: ignore[assignment, misc]
-# The theme of the last window, by its scale: it takes 30 ms to read, and the next window has mostly the same.
-_THEMES: dict[float, UIAppearanceTheme] = {}
+# The theme of the last window, by scale and colours: it takes 30 ms to read, and the next window has mostly the same.
+_THEMES: dict[tuple[float, str], UIAppearanceTheme] = {}
 # Pictures of buttons and the like that are kept; most have 10 kB, none has more than 160.
 MOST_SHAPES = 500
 
@@ -58,14 +58,15 @@ class Manager(pygame_gui.UIManager):
         super().__init__(size, enable_live_theme_updates=False)
 
     def create_new_theme(self, theme_path: Any = None) -> UIAppearanceTheme:
-        """The theme that the manager looks widgets up in: that of the window before, where the scale is the same."""
-        theme = _THEMES.get(self._scale)
+        """The theme that the manager looks widgets up in: that of the window before, if it is the same."""
+        key = self._scale, shown_theme()
+        theme = _THEMES.get(key)
         if theme is None:
             theme = _Theme(self.resource_loader, self._locale)
             theme.get_font_dictionary().add_font_path(FONT, str(font_file(False)), str(font_file(True)))
             theme.load_theme(scaled_theme(self._scale))
             _THEMES.clear()
-            _THEMES[self._scale] = theme
+            _THEMES[key] = theme
         return theme
 
 

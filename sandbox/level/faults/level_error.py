@@ -60,8 +60,13 @@ def suggestion(word: str, choices: Collection[str]) -> str:
     same = next((choice for choice in choices if skeleton(choice) == skeleton(word)), None)
     if same is not None:
         return f"; it only looks like {shown(same)}{_odd_one(word, same)}"
-    close = difflib.get_close_matches(word, choices, n=1)
+    # Of names that are counted, another number is no help.
+    close = [each for each in difflib.get_close_matches(word, choices) if _uncounted(each) != _uncounted(word)]
     return f"; did you mean {shown(close[0])}?" if close else ""
+
+
+def _uncounted(name: str) -> str:
+    return name.rstrip("0123456789")
 
 
 def _odd_one(word: str, choice: str) -> str:

@@ -35,6 +35,8 @@ class Recorder:
         # Of the last tick, and of the last stored state: hashes by array, and there the rows of each too.
         self._hashes: dict[str, str] = {}
         self._stored: dict[str, tuple[str | None, int]] = {}
+        # Whether the state is still the one whose hashes were written last, and not stored.
+        self._is_storable = False
         raw = self._raw = io.FileIO(self.path, "wb")
         # No name and no time in the compressed header, so that the same run gives the same bytes.
         self._file: BinaryIO | gzip.GzipFile = (
@@ -52,6 +54,7 @@ class Recorder:
 
     def write_command(self, tick: int, gesture: int, record: dict[str, Any]) -> None:
         """Write a command that was applied at a tick, before its step."""
+        self._is_storable = False
         self._write({"tick": tick, "gesture": gesture, "command": record})
 
     def write_tick(self, world: World) -> None:
@@ -62,6 +65,7 @@ class Recorder:
         arrays = {name: hashes[name][:ARRAY_DIGITS] if name in hashes else None for name in told}
         self._hashes = hashes
         self._write({"tick": world.tick, "hash": state_hash(world, hashes), "arrays": arrays})
+        self._is_storable = not storing
         if storing:
             self._write_state(world, hashes)
         if world.tick % FLUSH_TICKS == 0 and isinstance(self._file, gzip.GzipFile):
@@ -76,7 +80,7 @@ class Recorder:
     def finish(self, world: World) -> None:
         """Write the last state and the last line, and close the file."""
         try:
-            if world.tick % self._state_ticks:
+            if self._is_storable:
                 self._write_state(world, self._hashes)
             self._write({"end": True, "tick": world.tick, "hash": state_hash(world)})
             self._file.close()
