@@ -14,7 +14,7 @@ from PIL import Image
 from tests.app.conftest import Driver
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "sharing"
-SIZE, COLOURS = (720, 405), 255
+SIZE, COLOURS = (720, 506), 255
 # What is drawn on the sheet: a tool, and from where to where it is dragged [m].
 DRAWN = (
     ("tool_walls", (-6.5, -4.0), (6.5, 4.5)),
