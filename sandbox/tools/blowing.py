@@ -7,12 +7,11 @@ from sandbox.physics.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Push, SetAir
 from sandbox.tools.parts import ROUND, Loop, Point
-from sandbox.tools.tool import NOTHING, PointerEvent, Response, Submission
+from sandbox.tools.sizing import resized
+from sandbox.tools.tool import CLICK_SHARE, NOTHING, PointerEvent, Response, Submission
 
 # Speed [m/s] that a click gives what is near, on the average, and a push for each radius that its arrow is long.
 BURST_SPEED, ARROW_SPEED = 4.0, 4.0
-CLICK_SHARE = 0.35
-SIZE_STEP, SMALLEST, LARGEST = 1.1, 0.02, 100.0
 # The least drag [1/s] of an air that moves things.
 LEAST_DRAG = 0.8
 # The head of an arrow: its length as a share of the arrow's, and its half angle [rad].
@@ -65,7 +64,7 @@ class PushTool:
 
     def resize(self, steps: float) -> None:
         """Make the ring larger, by so many steps of the wheel."""
-        self.size = min(max(self.size * SIZE_STEP**steps, SMALLEST), LARGEST)
+        self.size = resized(self.size, steps)
 
     @property
     def ghost(self) -> list[Loop]:

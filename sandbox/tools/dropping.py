@@ -4,16 +4,13 @@ from collections.abc import Callable
 
 from sandbox.physics.snapshot import Snapshot
 from sandbox.tools.parts import COLOURS, PARTS, Loop, Point
-from sandbox.tools.tool import NOTHING, PointerEvent, Response, Submission
+from sandbox.tools.sizing import resized
+from sandbox.tools.tool import CLICK_SHARE, NOTHING, PointerEvent, Response, Submission
 
 # What the pointer did in this last part of a drag decides how fast the part flies [s]; longer makes throws sluggish.
 THROW_SECONDS = 0.08
 # The fastest throw [m/s]: beyond it a part passes through walls of other parts.
 FASTEST_THROW = 25.0
-# A press that moves less than this share of the pick radius is a click.
-CLICK_SHARE = 0.35
-# A step of the wheel makes a part so many times larger; sizes [m] that it may have.
-SIZE_STEP, SMALLEST, LARGEST = 1.1, 0.02, 100.0
 
 
 class DropTool:
@@ -60,7 +57,7 @@ class DropTool:
 
     def resize(self, steps: float) -> None:
         """Make what is dropped larger, by so many steps of the wheel."""
-        self.size = min(max(self.size * SIZE_STEP**steps, SMALLEST), LARGEST)
+        self.size = resized(self.size, steps)
 
     @property
     def ghost(self) -> list[Loop]:

@@ -8,6 +8,9 @@ from sandbox.session.commands import Command
 
 Point = tuple[float, float]
 
+# A press that moves less than this share of the pick radius is a click.
+CLICK_SHARE = 0.35
+
 
 @dataclass(frozen=True)
 class PointerEvent:
