@@ -42,9 +42,14 @@ def small_level(**changes):
 class Driver:
     """A person at the app: moves, clicks, types, and lets frames pass."""
 
-    def __init__(self, level=None, replay=None):
+    def __init__(self, level=None, replay=None, edit=False):
         self.app = App(Display(1.0))
-        self.app.open(StartRequest(level, replay))
+        if edit and level is None:
+            self.app.documents.new()
+        elif edit:
+            self.app.documents.edit_level(level)
+        else:
+            self.app.open(StartRequest(level, replay))
         self.frames(2)
 
     @property
@@ -182,11 +187,11 @@ def documents(tmp_path, monkeypatch):
 
 @pytest.fixture
 def open_app(documents):
-    """Open the app on a level, a replay, or (None) its gallery."""
+    """Open the app on a level, a replay, or (None) its gallery; edit: in the editor, None = an empty sheet."""
     drivers = []
 
-    def open_(level=None, replay=None):
-        drivers.append(Driver(level, replay))
+    def open_(level=None, replay=None, edit=False):
+        drivers.append(Driver(level, replay, edit))
         return drivers[-1]
 
     yield open_
@@ -200,16 +205,7 @@ def open_app(documents):
 def edit(open_app):
     """Open the editor on a level, or (None) an empty sheet."""
 
-    def open_(level=None):
-        driver = open_app(level or small_level())
-        if level is None:
-            driver.app.documents.new()
-        else:
-            driver.app.documents.edit_level(level)
-        driver.frames(2)
-        return driver
-
-    return open_
+    return lambda level=None: open_app(level, edit=True)
 
 
 @pytest.fixture
