@@ -77,9 +77,22 @@ class Driver:
         return [notice.text for notice in self.app.status.notices]
 
     def frames(self, count=1):
-        for _ in range(count):
-            self.app.preparation.finish(self.app.play is not None and self.app.play.has_contacts)
-            self.app.frame(FRAME)
+        """Let frames pass, of which the last is drawn."""
+        self.pass_unseen(count - 1)
+        self._frame()
+
+    def pass_unseen(self, count=1):
+        """Let frames pass that nobody looks at."""
+        self.app._draw = lambda: None
+        try:
+            for _ in range(count):
+                self._frame()
+        finally:
+            del self.app._draw
+
+    def _frame(self):
+        self.app.preparation.finish(self.app.play is not None and self.app.play.has_contacts)
+        self.app.frame(FRAME)
 
     def rest(self):
         """Do nothing for long enough that the app finds what it needs no more."""
@@ -90,15 +103,19 @@ class Driver:
         pygame.event.post(pygame.event.Event(kind, **data))
 
     def move(self, pixel):
+        self._point_at(pixel)
+        self.frames()
+
+    def _point_at(self, pixel):
         at = tuple(round(value) for value in pixel)
         before = pygame.mouse.get_pos()
         pygame.mouse.set_pos(at)
         pygame.event.get(pygame.MOUSEMOTION)
         self.post(pygame.MOUSEMOTION, pos=at, rel=(at[0] - before[0], at[1] - before[1]), buttons=(0, 0, 0))
-        self.frames()
 
     def press(self, pixel, button=1):
-        self.move(pixel)
+        self._point_at(pixel)
+        self.pass_unseen()
         self.post(pygame.MOUSEBUTTONDOWN, pos=tuple(round(value) for value in pixel), button=button)
         self.frames()
 
@@ -115,7 +132,7 @@ class Driver:
 
     def key(self, key, mod=0):
         self.post(pygame.KEYDOWN, key=key, mod=mod, unicode="", scancode=0)
-        self.frames()
+        self.pass_unseen()
         self.post(pygame.KEYUP, key=key, mod=mod, unicode="", scancode=0)
         self.frames(2)
 
