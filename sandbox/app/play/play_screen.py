@@ -20,7 +20,7 @@ from sandbox.app.play.legend import Legend
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.out_of_view import OutOfView
 from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
-from sandbox.app.play.panel import PANEL_WIDTH, Panel
+from sandbox.app.play.panel import PANEL_WIDTH, Panel, PanelShape
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import Stage
@@ -49,6 +49,8 @@ ROOM_FOR_PANEL = 800.0
 AGAIN_TOP, AGAIN_SIZE = 16.0, (150.0, 40.0)
 # Under what the strength of the hand is remembered.
 HAND = "hand"
+# And how springs are set: "pad" or "sliders".
+SPRINGS = "springs"
 
 
 class PlayScreen:
@@ -71,6 +73,8 @@ class PlayScreen:
         self.stage = Stage(playback, (0, 0, *app.ui.size), app.scale)
         self.time = TimeBar(app, lambda: self.playback)
         self.stage.place(self.viewport, app.scale)
+        kept = preference(SPRINGS)
+        self.shape = PanelShape(kept if kept in ("pad", "sliders") else None)
         kept = preference(HAND)
         if isinstance(kept, str) and kept in STRENGTHS:
             self.stage.drag.strength = kept
@@ -132,10 +136,22 @@ class PlayScreen:
         before, self.panel = self.panel, None
         if self.show_panel:
             height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
-            choices = {"hand": self.choose_strength, "view": self._app.act}
-            self.panel = Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height)
+            choices = {
+                "hand": self.choose_strength, "view": self._app.act, "springs": self._set_by, "fold": self._fold,
+            }  # fmt: skip
+            self.panel = Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape)
             if before is not None and before.playback is self.playback:
                 self.panel.choose_material(before.material)
+
+    def _set_by(self, way: str) -> None:
+        """Show the pad or the sliders from now on, in later runs too."""
+        self.shape.springs = way
+        set_preference(SPRINGS, way)
+        self._app.rebuild()
+
+    def _fold(self, how: str) -> None:
+        self.shape.world = how == "open"
+        self._app.rebuild()
 
     # Actions.
 
