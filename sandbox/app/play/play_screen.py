@@ -127,12 +127,15 @@ class PlayScreen:
         before, self.panel = self.panel, None
         if self.show_panel:
             height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
-            choices = {
+            choices: dict[str, Callable[[str], None]] = {
                 "hand": self.choose_strength, "view": self._app.act, "springs": self._set_by, "fold": self._fold,
             }  # fmt: skip
-            self.panel = Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape)
-            if before is not None and before.playback is self.playback:
+            self.panel = self._make_panel(ui, choices, height)
+            if before is not None and before.playback.level is self.playback.level:
                 self.panel.choose_material(before.material)
+
+    def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> Panel:
+        return Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape)
 
     def _set_by(self, way: str) -> None:
         """Show the pad or the sliders from now on, in later runs too."""
@@ -251,7 +254,7 @@ class PlayScreen:
         self.out_of_view = OutOfView()
         self._app.follow(self.playback)
         if self.panel is not None:
-            self.panel.playback = self.playback
+            self.panel.follow(self.playback)
 
     def _toggle_panel(self) -> None:
         self._wants_panel = not self.show_panel
@@ -267,6 +270,10 @@ class PlayScreen:
         """The last seconds [s] of the run, as it is seen now."""
         stage = self.stage
         return Film(self.playback.session, stage.camera, stage.renderer, seconds, stage.fitted_box)
+
+    def drop_caches(self) -> None:
+        """Use kernels that have come about."""
+        self.playback.session.world.drop_caches()
 
     # Pointer and keys.
 

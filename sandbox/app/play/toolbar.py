@@ -34,6 +34,7 @@ LEFT = (
 )  # fmt: skip
 RIGHT = (
     ("share", "share"),
+    ("compare", "compare"),
     ("gallery", "levels"),
     ("settings", "settings"),
     ("fit", "fit"),
@@ -46,6 +47,7 @@ WIDE_WORDS = {**WORDS, "share": "Share"}
 # What goes into the menu where the window is too narrow, first what is missed least.
 LEAVING = (
     "save",
+    "compare",
     "settings",
     "record",
     "fit",
