@@ -10,10 +10,9 @@ from sandbox.app.application import Application
 from sandbox.app.compare.difference import Difference, draw_chip, draw_pill
 from sandbox.app.compare.twin import TwinPlayback, coefficients_of
 from sandbox.app.draw.colours import LINE, TEXT
-from sandbox.app.play.panel import PANEL_WIDTH, SOLVER_LABELS, Panel
+from sandbox.app.play.panel import SOLVER_LABELS, Panel
 from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.stage import Stage
-from sandbox.app.play.status import STATUS_HEIGHT
 from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Pixel, Pointer
@@ -56,24 +55,15 @@ class CompareScreen(PlayScreen):
 
     # Where the halves are.
 
-    def _whole(self) -> pygame.Rect:
-        ui, (width, height) = self._ui, self._ui.size
-        top, bottom = ui.px(BAR_HEIGHT), ui.px(STATUS_HEIGHT)
-        right = ui.px(PANEL_WIDTH) if self.show_panel else 0
-        return pygame.Rect(0, top, max(width - right, 2), max(height - top - bottom, 2))
-
     @property
     def _is_wide(self) -> bool:
-        whole = self._whole()
-        return whole.width >= whole.height
+        return self.area[2] >= self.area[3]
 
     @property
     def viewport(self) -> tuple[int, int, int, int]:
         """The part of the window that shows A, in pixels."""
-        whole = self._whole()
-        if self._is_wide:
-            return whole.left, whole.top, whole.width // 2, whole.height
-        return whole.left, whole.top, whole.width, whole.height // 2
+        left, top, width, height = self.area
+        return (left, top, max(width // 2, 1), height) if self._is_wide else (left, top, width, max(height // 2, 1))
 
     @property
     def other_viewport(self) -> tuple[int, int, int, int]:
@@ -151,20 +141,11 @@ class CompareScreen(PlayScreen):
 
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
         """Let the same time pass in both."""
-        other, clock = self.other, self.playback.clock
-        other.clock.paused, other.clock.speed, other.clock.single_steps = clock.paused, clock.speed, clock.single_steps
         super().update(frame_time, None if pointer is None else self._in_first(pointer), profile, ready)
-        with profile.part("commands"):
-            other.apply_pending()
         with profile.part("ticks"):
-            self._advance_other(frame_time if ready and not self._ui.has_sheet else 0.0)
-        # It says the same as A, but for what breaks.
-        other.messages.clear()
-        self.difference.update(self.playback.current, other.current)
+            self.other.follow(self.playback.session.tick)
+        self.difference.update(self.playback.current, self.other.current)
         self._show_ghost()
-
-    def _advance_other(self, frame_time: float) -> None:
-        self.other.advance(frame_time)
 
     def _show_ghost(self) -> None:
         """Show on the pad where the other side's springs are."""
@@ -190,7 +171,7 @@ class CompareScreen(PlayScreen):
         for side, viewport, lines in zip(SIDES, (self.viewport, self.other_viewport), self.captions(), strict=True):
             draw_chip(surface, self._ui, viewport, side, lines)
         if self.difference.text:
-            draw_pill(surface, self._ui, self._whole(), self.difference.text, TEXT)
+            draw_pill(surface, self._ui, pygame.Rect(self.area), self.difference.text, TEXT)
 
     def captions(self) -> tuple[list[str], list[str]]:
         """What stands over each half: its settings, and what comes of them."""

@@ -7,6 +7,7 @@ import numpy as np
 from sandbox.app.play.playback import Playback
 from sandbox.physics.world import LAW_HOOKE, World
 from sandbox.session.commands import Command, SetCoefficients, SetFirmness, SetSolver
+from sandbox.session.session import Branch
 
 # What is set on one side alone.
 OWN = (SetCoefficients, SetFirmness, SetSolver)
@@ -20,8 +21,9 @@ class TwinPlayback(Playback):
     twin: "TwinPlayback | None" = None
 
     def pair(self, other: "TwinPlayback") -> None:
-        """Be twins from now on."""
+        """Be twins from now on; the other one goes by the clock of this one, see `follow`."""
         self.twin, other.twin = other, self
+        other.clock = self.clock
         self._pairs: dict[int, int] = {}
         other._pairs = {}
 
@@ -36,10 +38,35 @@ class TwinPlayback(Playback):
         paired = None if gesture is None else self._pairs[gesture]
         Playback.submit(twin, NOTHING if isinstance(command, OWN) else command, paired)
 
+    def follow(self, tick: int) -> None:
+        """Come to the tick that the twin is at, after it has got there."""
+        self.apply_pending()
+        if tick < self.session.tick:
+            Playback.seek(self, tick)
+        while self.session.tick < tick:
+            if self.session.tick == tick - 1:
+                self.previous = self.session.snapshot()
+            self._tick()
+            if self.session.tick == tick:
+                self.current = self.session.snapshot()
+        if len(self.previous.mass) != len(self.current.mass):
+            self.previous = self.current
+        # It says the same as its twin.
+        self.session.messages.clear()
+        self.messages.clear()
+
+    def return_to(self, branch: Branch) -> None:
+        """Go back to where a branch begins in both."""
+        place, twin = self.session.branches.index(branch), self.twin
+        super().return_to(branch)
+        if twin is not None and place < len(twin.session.branches):
+            Playback.return_to(twin, twin.session.branches[place])
+
     def reset(self) -> Self:
         """The same level from its beginning, with the settings that it has now, at the same speed."""
         fresh = type(self)(self.level)
-        fresh.clock.paused, fresh.clock.speed = self.clock.paused, self.clock.speed
+        fresh.clock.paused, fresh.clock.speed = self.clock.paused, abs(self.clock.speed)
+        fresh.travel.bookmarks, fresh.travel.span = self.travel.bookmarks, self.travel.span
         for command in own_settings(self.session.world, fresh.session.world):
             fresh.session.submit(command)
         fresh.session.apply_pending()
