@@ -298,15 +298,14 @@ def _keep_apart(options: argparse.Namespace) -> None:
 
 
 def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
-    from sandbox.level.format.files import LevelError, level_data, parse_level
+    from sandbox.level.faults.level_error import LevelError
+    from sandbox.session.replay.again import with_settings
 
     given = {name: getattr(options, name) for name in ("solver", "substeps") if getattr(options, name) is not None}
     if not given:
         return level
-    data = level_data(level)
-    data["settings"] = {**data.get("settings", {}), **given}
     try:
-        return parse_level(json.dumps(data).encode(), "command line")
+        return with_settings(level, given, "command line")
     except LevelError as error:
         raise Refused(*error.faults) from None
 
