@@ -3,6 +3,7 @@
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from sandbox.app.play.breaks import Breaks
 from sandbox.level.format.model import Level
 from sandbox.physics.energy import Dissipation
 from sandbox.physics.snapshot import Snapshot, state_hash
+from sandbox.physics.world import World
 from sandbox.session.commands import Command, CommandError, Redo, Undo
 from sandbox.session.replay.recording import Replay
 from sandbox.session.session import Session, break_lines
@@ -19,6 +21,18 @@ from sandbox.tools.tool import Response
 # Wall time [s] that the ticks of one frame may take; the ticks beyond it are lost and the run falls behind real time,
 # but the window goes on answering.
 TICK_BUDGET = 0.05
+
+
+class Listener(Protocol):
+    """Who is told of every tick of a run; it reads and never writes."""
+
+    def hear(self, world: World) -> None:
+        """Take in the world after a tick."""
+        ...
+
+    def forget(self) -> None:
+        """Compare with nothing that was before: history is another."""
+        ...
 
 
 class Playback:
@@ -34,6 +48,7 @@ class Playback:
         self.behind = False
         self.verdict = ""
         self.messages: list[str] = []
+        self.listener: Listener | None = None
         self.current = self.previous = self.session.snapshot()
         self._equal = True
         self._submitted = False
@@ -62,6 +77,8 @@ class Playback:
         if self.watching:
             self.take_over()
         self._submitted = True
+        if self.listener is not None and isinstance(command, (Undo, Redo)):
+            self.listener.forget()
         self.session.submit(command, gesture)
 
     def respond(self, response: Response) -> None:
@@ -150,6 +167,8 @@ class Playback:
                 self.session.advance()
                 self.dissipation.after(self.session.world)
                 self._note_breaks()
+                if self.listener is not None:
+                    self.listener.hear(self.session.world)
         except CommandError as error:
             self._end_watching(f"the recording holds a command that cannot be carried out: {error}")
             return False

@@ -35,6 +35,7 @@ LEFT = (
 RIGHT = (
     ("share", "share"),
     ("gallery", "levels"),
+    ("sound", "sound"),
     ("settings", "settings"),
     ("fit", "fit"),
     ("panel", "panel"),
@@ -48,6 +49,7 @@ LEAVING = (
     "save",
     "settings",
     "record",
+    "sound",
     "fit",
     "redo",
     "step",
@@ -75,6 +77,7 @@ class BarState:
     can_redo: bool
     panel: bool
     palette: bool
+    sound: bool
 
 
 def fitting(actions: Sequence[str], width: float) -> list[str]:
@@ -146,6 +149,7 @@ class Toolbar:
         self._mark("record", DANGER, state.recording, "stop" if state.recording else "record")
         self._mark("panel", TEXT, state.panel)
         self._mark("palette", TEXT, state.palette)
+        self._mark("sound", TEXT if state.sound else DISABLED, False, "sound" if state.sound else "muted")
         for name, on in (("undo", state.can_undo), ("redo", state.can_redo)):
             self._mark(name, TEXT if on else DISABLED, False)
             if name in self.buttons:

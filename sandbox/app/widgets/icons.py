@@ -157,13 +157,29 @@ def _stability(pen: IconPen) -> None:
     pen.disc(12, 16, 2.2)
 
 
+def _speaker(pen: IconPen) -> None:
+    pen.shape((3, 9), (7, 9), (12, 4.5), (12, 19.5), (7, 15), (3, 15))
+
+
+def _sound(pen: IconPen) -> None:
+    _speaker(pen)
+    pen.arc(12, 12, 4.6, -50, 50)
+    pen.arc(12, 12, 8.6, -50, 50)
+
+
+def _muted(pen: IconPen) -> None:
+    _speaker(pen)
+    pen.line((15.5, 9), (21, 15))
+    pen.line((21, 9), (15.5, 15))
+
+
 ICONS: dict[str, Icon] = {
     "settings": _settings, "more": _more,
     "drag": _drag, "pin": draw_pin, "cut": _cut, "play": _play, "pause": _pause, "step": _step, "reset": _reset,
     "undo": _undo, "redo": _redo, "record": _record, "stop": _stop, "levels": _levels, "fit": _fit,
     "panel": _panel, "save": _save, "edit": _edit, "keep": _keep, "share": _share, "spring": draw_spring,
     "lattice": _lattice, "particles": _particles, "contacts": _contacts, "forces": _forces,
-    "velocities": _velocities, "stability": _stability, "parts": _parts,
+    "velocities": _velocities, "stability": _stability, "parts": _parts, "sound": _sound, "muted": _muted,
 }  # fmt: skip
 
 
