@@ -14,7 +14,7 @@ from sandbox.app.sound.bank import MAKERS, Bank, Note
 from sandbox.app.sound.device import Device, may_have_sound
 from sandbox.app.sound.ear import Ear
 from sandbox.app.sound.sounds import Sounds
-from sandbox.app.sound.voices import SPARE, VOICES, Voices, Wanted
+from sandbox.app.sound.voices import SPARE, VOICES, Cue, Voices
 from sandbox.level.format.files import load_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddParticle, CutSprings, SetDrive
@@ -154,7 +154,7 @@ def play_all(bank, frames, make):
 def test_a_crowd_of_loud_sounds_takes_a_dozen_voices_and_never_clips(bank):
     notes = [Note("thud", step, "metal") for step in range(26)] + [Note("pluck", step) for step in range(5, 20)]
     sources = itertools.count()
-    out, _ = play_all(bank, 60, lambda k: [Wanted(notes[(7 * k + j) % 41], 1.0, 0.0, next(sources)) for j in range(6)])
+    out, _ = play_all(bank, 60, lambda k: [Cue(notes[(7 * k + j) % 41], 1.0, 0.0, next(sources)) for j in range(6)])
     assert VOICES - SPARE <= out.most <= VOICES
     assert 0.5 < np.abs(out.mixed).max() <= 1.0
     # A voice that makes room for another fades: nothing jumps by more than the loudest waves do themselves.
@@ -163,12 +163,12 @@ def test_a_crowd_of_loud_sounds_takes_a_dozen_voices_and_never_clips(bank):
 
 def test_a_thing_that_rattles_does_not_drone(bank):
     note = Note("thud", 10, "wood")
-    out, _ = play_all(bank, 60, lambda k: [Wanted(note, 0.5, 0.0, 7)] * 3)
+    out, _ = play_all(bank, 60, lambda k: [Cue(note, 0.5, 0.0, 7)] * 3)
     assert 5 <= len(out.played) <= 12
 
 
 def test_sounds_come_from_where_they_are(bank):
-    out, _ = play_all(bank, 1, lambda k: [Wanted(Note("thud", 12, "wood"), 0.5, -1.0, 1)])
+    out, _ = play_all(bank, 1, lambda k: [Cue(Note("thud", 12, "wood"), 0.5, -1.0, 1)])
     (_, _, (left, right)) = out.played[0]
     assert left > 2.5 * right > 0.0
 
@@ -177,7 +177,7 @@ def test_motors_rise_and_fall_without_a_jump(bank):
     out = Mixdown()
     voices = Voices(out, bank)
     for frame in range(60):
-        wanted = [Wanted(Note("motor", 6 + frame // 10), 0.8, 0.0, 3)] if frame < 40 else []
+        wanted = [Cue(Note("motor", 6 + frame // 10), 0.8, 0.0, 3)] if frame < 40 else []
         voices.hum(wanted, out.now)
         out.advance(FRAME)
     steepest = max(np.abs(np.diff(bank[Note("motor", step)].pcm / 32767.0)).max() for step in range(6, 10))

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.sound.bank import Note, note
-from sandbox.app.sound.timbre import Bodies, bodies_of
+from sandbox.app.sound.timbre import Timbres, timbres_of
 from sandbox.physics.collision.narrow_phase import DISC, TERRAIN
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.substeps import substep_time
@@ -70,7 +70,7 @@ class _Onsets:
         self._usual = np.full(count, np.inf)
 
     def new(self, now: Floats, least: float, keep: float) -> Slots:
-        """Bodies of which there is much more now than of late; keep: what share of the past still counts."""
+        """Timbres of which there is much more now than of late; keep: what share of the past still counts."""
         found = np.flatnonzero(now > NEWS * self._usual + least)
         # At first what is there already is nothing new.
         self._usual = np.where(np.isinf(self._usual), now, np.maximum(self._usual * keep, now))
@@ -85,7 +85,7 @@ class Ear:
         # Whether bodies have come that `likely_notes` has not told of.
         self.has_new_bodies = False
         self._before: _Before | None = None
-        self._bodies: Bodies | None = None
+        self._bodies: Timbres | None = None
         self._key: tuple[object, ...] = ()
 
     def forget(self) -> None:
@@ -107,7 +107,7 @@ class Ear:
         """Take in a tick of the world."""
         key = (world.particle_count, world.joined)
         if self._bodies is None or self._key != key:
-            self._bodies, self._key, self._before = bodies_of(world), key, None
+            self._bodies, self._key, self._before = timbres_of(world), key, None
             count, self.has_new_bodies = len(self._bodies.mass), True
             self._blows, self._rubs, self._jerks = (_Onsets(count) for _ in range(3))
         before = self._before

@@ -9,7 +9,7 @@ from sandbox.app.settings.chosen import Chosen
 from sandbox.app.sound.bank import Bank, Note
 from sandbox.app.sound.device import Device
 from sandbox.app.sound.ear import Ear, Sounding
-from sandbox.app.sound.voices import Voices, Wanted
+from sandbox.app.sound.voices import Cue, Voices
 
 # What is outside the view is quieter by this factor for each width of the view that it is away.
 FAR = 0.25
@@ -86,11 +86,11 @@ class Sounds:
         self.device.close()
 
 
-def _wanted(sounding: Sounding, camera: Camera) -> Wanted:
+def _wanted(sounding: Sounding, camera: Camera) -> Cue:
     """A sound where it is on the screen."""
     left, _, width, _ = camera.viewport
     across = 2.0 * (camera.to_pixels(sounding.place)[0] - left) / max(width, 1) - 1.0
     away = max(abs(across) - 1.0, 0.0) / 2.0
-    return Wanted(
+    return Cue(
         sounding.note, sounding.loudness * FAR**away, min(max(across, -1.0), 1.0), sounding.source
     )  # fmt: skip

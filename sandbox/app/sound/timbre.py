@@ -33,12 +33,12 @@ LOUD_SIZE, QUIETER, LEAST = 0.6, 0.5, 0.3
 
 
 @dataclass(frozen=True, eq=False)
-class Bodies:
+class Timbres:
     """The bodies of a world by number, b of them.
 
     body (n,): of every particle. By number (b,): owner, as the world calls them; mass [kg]; size [m]; pitch [Hz] when
     struck; weight 0..1, how loud they are beside others; strand: whether they are strings; squeaks: whether they do
-    where they rub; stuff, of STUFFS. strings: slots of the springs of strings; balls: of particles that are a body each.
+    where they rub; stuff, of STUFFS. strings: slots of the springs of strings; balls: those that are a body each.
     """
 
     body: Slots
@@ -54,7 +54,7 @@ class Bodies:
     stuff: list[str]
 
 
-def bodies_of(world: World) -> Bodies:
+def timbres_of(world: World) -> Timbres:
     """The bodies of a world as they are now."""
     owners, body = np.unique(world.owner, return_inverse=True)
     body = body.reshape(-1)
@@ -83,7 +83,7 @@ def bodies_of(world: World) -> Bodies:
     squeaks = np.array([kind in SQUEAKING for kind in stuff], dtype=np.bool_)
     strings = np.flatnonzero(strand[first] & (world.material >= 0))
     balls = np.flatnonzero((share[body] == 1) & (world.owner >= 0))
-    return Bodies(body, owners.astype(np.int64), mass, size, pitch, weight, strand, squeaks, strings, balls, stuff)
+    return Timbres(body, owners.astype(np.int64), mass, size, pitch, weight, strand, squeaks, strings, balls, stuff)
 
 
 def _kinds(world: World) -> Iterator[tuple[int, tuple[str, bool]]]:

@@ -46,7 +46,7 @@ class Output(Protocol):
 
 
 @dataclass(frozen=True)
-class Wanted:
+class Cue:
     """A sound that is wanted: loudness 0..1, pan -1..1 (left to right), source: whose it is."""
 
     note: Note
@@ -96,7 +96,7 @@ class Voices:
 
     # One frame.
 
-    def play(self, wanted: Sequence[Wanted], now: float) -> int:
+    def play(self, wanted: Sequence[Cue], now: float) -> int:
         """Begin what is wanted in a frame, the loudest first; now [s]. How many sounds began."""
         self._sweep(now)
         began, share = 0, self.volume
@@ -120,7 +120,7 @@ class Voices:
         self._make_room(now)
         return began
 
-    def hum(self, wanted: Sequence[Wanted], now: float) -> None:
+    def hum(self, wanted: Sequence[Cue], now: float) -> None:
         """Let the motors that are wanted run, the loudest first, and no others."""
         loudest = {each.source: each for each in sorted(wanted, key=lambda one: -one.loudness)[:MOTORS]}
         for source in [source for source in self._hums if source not in loudest]:
@@ -165,7 +165,7 @@ class Voices:
     def _room(self, now: float) -> float:
         return 1.0 - self.total(now)
 
-    def _is_too_soon(self, each: Wanted, now: float) -> bool:
+    def _is_too_soon(self, each: Cue, now: float) -> bool:
         mine = now - self._last.get((each.source, each.note.kind), -1e9)
         same = now - self._last.get(each.note, -1e9)
         return mine < REST_OF.get(each.note.kind, REST) or same < SAME_REST
