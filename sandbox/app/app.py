@@ -298,7 +298,8 @@ class App:
 
     def _sound(self) -> None:
         play, covered = self.play, self.ui.has_sheet or self.gallery is not None or self.display.hidden
-        is_heard = play is not None and self.ready and not covered and not play.playback.clock.paused
+        clock = None if play is None else play.playback.clock
+        is_heard = clock is not None and self.ready and not covered and not clock.paused and clock.speed > 0.0
         with self.profile.part("sound"):
             self.sounds.update(play, is_heard)
 
@@ -326,11 +327,11 @@ class App:
             self.screen.draw(surface, self.profile)
         with self.profile.part("ui"):
             if self.screen is not None:
-                left = None if self.ui.has_sheet else self.screen.notices_left
+                corner = None if self.ui.has_sheet else self.screen.notices_corner
                 parts = self.sharing.status() + self.screen.status(self._figures)
                 if not self.ready and self.mode == "edit":
                     parts.append(("preparing the physics", WARNING))
-                self.status.draw(surface, parts, self.ui.units[0], left)
+                self.status.draw(surface, parts, self.ui.units[0], corner)
             self.ui.draw(surface)
             if self.gallery is not None:
                 self.gallery.draw(surface)
