@@ -286,7 +286,7 @@ def _load_limits(contacts: Contacts, touch: Touch, system: System, state: State,
         share = 0.0
         if k < bodies:
             span = span_of(system, islands.body[k])
-            share = bank_limit(islands.body[k], span, system, h)
+            share = bank_limit(islands.body[k], system)
             for r in range(span.first_row, span.last_row):
                 mass += system.rows.mass[r]
         else:
