@@ -60,6 +60,7 @@ SHORTCUTS = (
     Shortcut("forces", ("F5",), "Forces of springs and contacts", "View", "play"),
     Shortcut("velocities", ("F6",), "Velocities", "View", "play"),
     Shortcut("stability", ("F7",), "Stability: how near springs are to the limit", "View", "play"),
+    Shortcut("compare", ("F9",), "Two settings side by side; or back to one", "View", "play"),
     Shortcut("let_go", ("Escape",), "Let go of everything; back to the hand", "Tools", "play"),
     Shortcut("hand", ("T",), "Hand: gentle, normal or strong", "Tools", "play"),
     Shortcut("free", ("J",), "Free it: what is stuck in something", "Tools", "play"),

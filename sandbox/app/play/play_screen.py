@@ -104,6 +104,11 @@ class PlayScreen:
     @property
     def viewport(self) -> tuple[int, int, int, int]:
         """The part of the window that shows the world, in pixels."""
+        return self.area
+
+    @property
+    def area(self) -> tuple[int, int, int, int]:
+        """What bar, panel, timeline and status line leave of the window, in pixels."""
         ui, (width, height) = self._ui, self._ui.size
         top, bottom = ui.px(BAR_HEIGHT), ui.px(STATUS_HEIGHT)
         right = ui.px(PANEL_WIDTH) if self.show_panel else 0
@@ -122,7 +127,7 @@ class PlayScreen:
         self.stage.place(self.viewport, ui.scale)
         self.palette = None
         if self.show_palette:
-            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, self.viewport[3] / ui.scale)
+            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, self.area[3] / ui.scale)
         left = FREE_PLACE[0] if self.palette is None else self.palette.right + FREE_PLACE[1]
         place = ui.rect(left, BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
         self.free = ui.button(place, "Free it", self._free, tip=tip_of("free", "play"))
@@ -131,17 +136,20 @@ class PlayScreen:
         place = ui.rect(left, BAR_HEIGHT + AGAIN_TOP, *AGAIN_SIZE)
         self.again = ui.button(place, "Again", self._reset, style="@primary", tip=tip_of("reset", "play"))
         self.again.hide()
-        self.time.build(ui, self.viewport[2] / ui.scale, ui.units[1] - STATUS_HEIGHT)
+        self.time.build(ui, self.area[2] / ui.scale, ui.units[1] - STATUS_HEIGHT)
         self.stage.renderer.follow_theme()
         before, self.panel = self.panel, None
         if self.show_panel:
             height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
-            choices = {
+            choices: dict[str, Callable[[str], None]] = {
                 "hand": self.choose_strength, "view": self._app.act, "springs": self._set_by, "fold": self._fold,
             }  # fmt: skip
-            self.panel = Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape)
-            if before is not None and before.playback is self.playback:
+            self.panel = self._make_panel(ui, choices, height)
+            if before is not None and before.playback.level is self.playback.level:
                 self.panel.choose_material(before.material)
+
+    def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> Panel:
+        return Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape)
 
     def _set_by(self, way: str) -> None:
         """Show the pad or the sliders from now on, in later runs too."""
@@ -257,7 +265,7 @@ class PlayScreen:
         self.out_of_view = OutOfView()
         self._app.follow(self.playback)
         if self.panel is not None:
-            self.panel.playback = self.playback
+            self.panel.follow(self.playback)
 
     def _toggle_panel(self) -> None:
         self._wants_panel = not self.show_panel
@@ -274,6 +282,10 @@ class PlayScreen:
         stage, session = self.stage, self.playback.session
         span = self.playback.travel.span or last_ticks(session, seconds)
         return Film(session, stage.camera, stage.renderer, span, stage.fitted_box)
+
+    def drop_caches(self) -> None:
+        """Use kernels that have come about."""
+        self.playback.session.world.drop_caches()
 
     # Pointer and keys.
 

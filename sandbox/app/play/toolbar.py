@@ -36,6 +36,7 @@ LEFT = (
 )  # fmt: skip
 RIGHT = (
     ("share", "share"),
+    ("compare", "compare"),
     ("gallery", "levels"),
     ("settings", "settings"),
     ("fit", "fit"),
@@ -48,6 +49,7 @@ WIDE_WORDS = {**WORDS, "share": "Share"}
 # What goes into the menu where the window is too narrow, first what is missed least.
 LEAVING = (
     "save",
+    "compare",
     "settings",
     "timeline",
     "record",

@@ -157,6 +157,13 @@ def _stability(pen: IconPen) -> None:
     pen.disc(12, 16, 2.2)
 
 
+def _compare(pen: IconPen) -> None:
+    pen.line((4, 5), (10, 5), (10, 19), (4, 19), (4, 5), width=1.8)
+    pen.line((14, 5), (20, 5), (20, 19), (14, 19), (14, 5), width=1.8)
+    pen.disc(7, 9, 1.7)
+    pen.disc(17, 14.5, 1.7)
+
+
 def _timeline(pen: IconPen) -> None:
     pen.line((3, 12), (21, 12), width=1.8)
     pen.disc(9, 12, 3.4)
@@ -205,6 +212,7 @@ ICONS: dict[str, Icon] = {
     "panel": _panel, "save": _save, "edit": _edit, "keep": _keep, "share": _share, "spring": draw_spring,
     "lattice": _lattice, "particles": _particles, "contacts": _contacts, "forces": _forces,
     "velocities": _velocities, "stability": _stability, "parts": _parts,
+    "compare": _compare,
     "timeline": _timeline, "back": _back, "backwards": _backwards, "bookmark": _bookmark, "loop": _loop,
     "next_mark": lambda pen: _mark_beside(pen, 1), "previous_mark": lambda pen: _mark_beside(pen, -1),
     "branch": _branch,

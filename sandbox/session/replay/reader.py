@@ -2,9 +2,10 @@
 
 import json
 import os
+from collections.abc import Generator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from pydantic import field_validator
 
@@ -25,6 +26,8 @@ from sandbox.session.replay.recording import Replay, ReplayError, StoredState, T
 # What a stored state may hold [bytes]: so much, and so much for each particle and spring. Shipped levels have up to 224
 # bytes a slot, and a third more as base64.
 STATE_BYTES, STATE_BYTES_A_SLOT = 2**20, 400
+# Lines that are read at a time, where somebody waits for what comes next.
+SLICE_LINES = 100
 
 
 class _Sealed(Line):
@@ -156,6 +159,16 @@ def read_replay(path: str | Path, partial: bool = False, retold: bool = False) -
     retold: accept one of another physics version, for its level and commands, which can be recorded again.
     Raises ReplayError, naming file and line, for anything that no Recorder wrote.
     """
+    slices = read_in_slices(path, partial, retold)
+    while True:
+        try:
+            next(slices)
+        except StopIteration as end:
+            return cast(Replay, end.value)
+
+
+def read_in_slices(path: str | Path, partial: bool = False, retold: bool = False) -> Generator[None, None, Replay]:
+    """As `read_replay`, some lines at a time."""
     source = str(path)
     lines = ReplayLines(Path(path))
     each = iter(lines)
@@ -179,6 +192,8 @@ def read_replay(path: str | Path, partial: bool = False, retold: bool = False) -
         digest = sealed
         gathered.add(_parse(where, line), number, where)
         lines.state_limit = gathered.state_limit
+        if number % SLICE_LINES == 0:
+            yield
     _check_end(source, gathered, number, lines.cut, partial)
     return Replay(source, level, tuple(gathered.script), tuple(gathered.hashes), gathered.states, gathered.end_hash)
 
