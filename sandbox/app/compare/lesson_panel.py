@@ -28,8 +28,8 @@ class LessonPanel:
     material: int | None = None
 
     def __init__(
-        self, ui: Ui, playback: Playback, trial: SpringTrial, change: Callable[[SpringTrial], None], again: Callable[[], None],
-        top: float, height: float,
+        self, ui: Ui, playback: Playback, trial: SpringTrial, change: Callable[[SpringTrial], None],
+        again: Callable[[], None], top: float, height: float,
     ) -> None:  # fmt: skip
         self._ui, self.playback, self._trial, self._change = ui, playback, trial, change
         self._exploded_at: int | None = None
