@@ -9,6 +9,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.compare.compare_screen import CompareScreen
+from sandbox.app.compare.hooke_lesson import HookeLesson
 from sandbox.app.compare.twin import TwinPlayback
 from sandbox.app.display import SCALE_RANGE, Display
 from sandbox.app.draw.colours import BACKGROUND, WARNING, show_theme
@@ -37,6 +38,7 @@ from sandbox.app.sound.sounds import Sounds
 from sandbox.app.start_request import StartRequest
 from sandbox.app.widgets.dialogs import show_lines
 from sandbox.app.widgets.ui import Ui
+from sandbox.level.format.files import read_level
 
 # How often the status figures and the window title change [s].
 FIGURES_EVERY = 0.5
@@ -210,6 +212,17 @@ class App:
             "compare": self._compare,
             "sound": self._toggle_sound,
         }
+
+    def start_lesson(self) -> None:
+        """Begin the lesson on Hooke's spring and the article's."""
+        self.show_screen(HookeLesson(self))
+
+    def start_pair(self, path: Path) -> None:
+        """Play the level of a file twice side by side, with the pad in the panel."""
+        level = read_level(path)
+        screen = CompareScreen(self, TwinPlayback(level), TwinPlayback(level), None)
+        screen.shape.springs = "pad"
+        self.show_screen(screen)
 
     def _compare(self) -> None:
         """Play the level of the run twice side by side, with two settings; or back to once."""
