@@ -179,6 +179,11 @@ class EditScreen:
     # Layout.
 
     @property
+    def ready(self) -> bool:
+        """Whether the physics is prepared."""
+        return self.app.ready
+
+    @property
     def scale(self) -> float:
         """Pixels per layout unit."""
         return self.ui.scale
@@ -210,6 +215,14 @@ class EditScreen:
         """Hide or show the panel at the side."""
         self.show_side = not self.show_side
         self.app.rebuild()
+
+    def show_page(self, name: str) -> None:
+        """Show a page of the panel at the side by its name, and give it the keyboard where it takes it."""
+        if self.side is None:
+            self.toggle_side()
+        assert self.side is not None
+        self.side.choose(name)
+        self.side.focus()
 
     def turn_page(self, by: int) -> None:
         """Show another page of the panel at the side."""
