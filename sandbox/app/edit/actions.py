@@ -105,7 +105,7 @@ def _show_menu(screen: Editing, app: Application) -> None:
 def _show_parts(screen: Editing) -> None:
     """Show the catalogue, and let the keyboard choose from it."""
     screen.choose_tool("part")
-    screen.show_page("parts")
+    screen.show_parts()
 
 
 def _has_selection(screen: Editing) -> bool:

@@ -3,6 +3,7 @@
 import math
 from collections import deque
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pygame
@@ -216,13 +217,13 @@ class EditScreen:
         self.show_side = not self.show_side
         self.app.rebuild()
 
-    def show_page(self, name: str) -> None:
-        """Show a page of the panel at the side by its name, and give it the keyboard where it takes it."""
+    def show_parts(self, path: Path | None = None) -> None:
+        """Show the catalogue of parts at the side, and give the part of a file the keyboard; None = that in hand."""
         if self.side is None:
             self.toggle_side()
         assert self.side is not None
-        self.side.choose(name)
-        self.side.focus()
+        self.side.choose("parts")
+        self.side.focus(path)
 
     def turn_page(self, by: int) -> None:
         """Show another page of the panel at the side."""

@@ -1,6 +1,7 @@
 """Editing: what the parts of the editor ask of the screen that they belong to."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Protocol
 
 import numpy as np
@@ -222,8 +223,8 @@ class Editing(Protocol):
         """Hide or show the panel at the side."""
         ...
 
-    def show_page(self, name: str) -> None:
-        """Show a page of the panel at the side by its name, and give it the keyboard where it takes it."""
+    def show_parts(self, path: Path | None = None) -> None:
+        """Show the catalogue of parts at the side, and give the part of a file the keyboard; None = that in hand."""
         ...
 
     def turn_page(self, by: int) -> None:

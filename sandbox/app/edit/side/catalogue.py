@@ -4,6 +4,7 @@ import time
 from collections import deque
 from collections.abc import Iterator
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import pygame
@@ -110,6 +111,10 @@ class CataloguePage:
             # The file in hand may have another name or another content.
             same = (part for part in files if self._chosen is not None and part.path == self._chosen.path)
             self._chosen = next(same, None)
+        drawing = self._drawing()
+        if self._chosen is None and drawing is not None and drawing.options.part is not None:
+            # The window is laid out anew, and the tool still has it.
+            self._chosen = next((part for part in files if part.level is drawing.options.part), None)
         own = [part for part in files if part.is_own]
         y = self._add_section("Ready", [part for part in files if not part.is_own], 0.0)
         y = self._add_section("Your own", own, y + GAP)
@@ -229,12 +234,16 @@ class CataloguePage:
             self._ui.focus_on(self.cards[index])
             self.area.follow_focus()
 
-    def focus(self) -> None:
-        """Give the keyboard to the part in hand, or to the first."""
+    def focus(self, path: Path | None = None) -> None:
+        """Give the keyboard to the part of a file, None = that in hand, or the first."""
+        self._looked = 0
         self.refresh()
+        if path is not None:
+            self._look_for(path)
         wanted = next((card for card in self.cards if card.part == self._chosen), None) or next(iter(self.cards), None)
         if wanted is not None:
             self._ui.focus_on(wanted)
+            self.area.follow_focus()
 
     # Own parts.
 
@@ -273,7 +282,7 @@ class CataloguePage:
 
         choose(self._ui, f"Delete the part “{part.name}”?", "Levels that have it keep it.", [("Delete it", do)])
 
-    def _look_for(self, path: Any) -> None:
+    def _look_for(self, path: Path) -> None:
         """Show the files as they are now, that of a path as chosen."""
         self._looked = 0
         self._chosen = next((part for part in catalogue() if part.path == path), None)

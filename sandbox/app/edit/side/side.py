@@ -1,6 +1,7 @@
 """Side: the panel at the right of the editor, a page at a time."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, Protocol
 
 import pygame
@@ -82,10 +83,10 @@ class Side:
         self.choose(names[(names.index(self.tab) + by) % len(names)])
         self._ui.focus_on(self._tab_button(self.tab))
 
-    def focus(self) -> None:
-        """Give the page the keyboard, where it has something to choose from."""
+    def focus(self, path: Path | None = None) -> None:
+        """Give the page of parts the keyboard, and show the part of a file on it."""
         if isinstance(self.page, CataloguePage):
-            self.page.focus()
+            self.page.focus(path)
 
     def _tab_button(self, tab: str) -> UIButton:
         return next(row.buttons[tab] for row in self._rows if tab in row.buttons)
