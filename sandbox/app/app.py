@@ -310,11 +310,11 @@ class App:
             self.screen.draw(surface, self.profile)
         with self.profile.part("ui"):
             if self.screen is not None:
-                left = None if self.ui.has_sheet else self.screen.notices_left
+                corner = None if self.ui.has_sheet else self.screen.notices_corner
                 parts = self.sharing.status() + self.screen.status(self._figures)
                 if not self.ready and self.mode == "edit":
                     parts.append(("preparing the physics", WARNING))
-                self.status.draw(surface, parts, self.ui.units[0], left)
+                self.status.draw(surface, parts, self.ui.units[0], corner)
             self.ui.draw(surface)
             if self.gallery is not None:
                 self.gallery.draw(surface)
