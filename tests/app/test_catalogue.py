@@ -3,7 +3,7 @@
 import pygame
 import pytest
 
-from sandbox.editor.storage.parts import catalogue
+from sandbox.editor.storage.part_files import catalogue
 from tests.app.conftest import small_level
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT

@@ -12,7 +12,7 @@ from sandbox.editor.history import History
 from sandbox.editor.items import Item, items_of
 from sandbox.editor.scene import make_scene
 from sandbox.editor.storage.level_file import StorageError
-from sandbox.editor.storage.parts import catalogue, delete_part, keep_part, rename_part
+from sandbox.editor.storage.part_files import catalogue, delete_part, keep_part, rename_part
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.model import NissenMaterial, ParticleDef, TerrainDef

@@ -8,7 +8,7 @@ from sandbox.editor.document import EditError
 from sandbox.editor.edits.parts import part_of
 from sandbox.editor.items import chosen_definitions
 from sandbox.editor.storage.level_file import StorageError
-from sandbox.editor.storage.parts import keep_part
+from sandbox.editor.storage.part_files import keep_part
 
 
 def ask_to_keep_part(screen: Editing) -> None:

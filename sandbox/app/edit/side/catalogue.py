@@ -21,7 +21,7 @@ from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.editor.storage.level_file import StorageError
-from sandbox.editor.storage.parts import PartFile, catalogue, delete_part, rename_part
+from sandbox.editor.storage.part_files import PartFile, catalogue, delete_part, rename_part
 from sandbox.editor.tools.drawing_part import PartDrawing
 from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format.files import read_bytes

@@ -8,7 +8,7 @@ from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, LINE, SURFACE, 
 from sandbox.app.screen import Pixel
 from sandbox.app.widgets.painted import ENTER_KEYS, Lit, Pressable, wrapped
 from sandbox.app.widgets.ui import Ui
-from sandbox.editor.storage.parts import PartFile
+from sandbox.editor.storage.part_files import PartFile
 
 # Sizes in layout units.
 PICTURE_RATIO = 9 / 16
