@@ -82,6 +82,7 @@ SHORTCUTS = (
     Shortcut("paste", ("Ctrl+V",), "Paste at the pointer", "Edit", "edit"),
     Shortcut("copy_level", ("Ctrl+Shift+C",), "Copy all as JSON", "Edit", "edit"),
     Shortcut("duplicate", ("Ctrl+D",), "Duplicate", "Edit", "edit"),
+    Shortcut("keep_part", ("Ctrl+K",), "Keep as a part of the catalogue", "Edit", "edit"),
     Shortcut("array", ("Ctrl+Shift+D",), "Several copies, along a line or a circle", "Arrange", "edit"),
     Shortcut("delete", ("Delete", "Backspace"), "Delete", "Edit", "edit"),
     Shortcut("mirror", ("M",), "Mirror", "Arrange", "edit"),
