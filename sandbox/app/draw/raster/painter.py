@@ -159,7 +159,7 @@ class Painter:
         if not len(arrays.sheet):
             return
         if self.exact:
-            paint_cells(self.pixels(), arrays, sheets, self.clip)
+            paint_cells(self.pixels(), arrays, sheets, np.zeros(9), self.clip)
             return
         tones = sheets.reshape(len(sheets), -1)[:, 0].tolist()
         seen = (np.abs(arrays.corner) < FAR).all(axis=1)
@@ -197,9 +197,13 @@ class Painter:
                 size,
                 BodyScratch(
                     _cells((width + 2) * (height + 2)), _cells(half), _cells(half), _cells(width), _cells(flush),
-                    _cells(flush), np.zeros(4),
+                    _cells(flush), _cells(width), _cells(width), np.zeros(width + FLUSH_CELL, dtype=np.int32),
+                    np.zeros(width + 2 * FLUSH_CELL, dtype=np.int32), np.zeros(width, dtype=np.uint32), np.zeros(4),
                 ),
-                ShadowScratch(_cells(quarter), _cells(quarter), _cells(quarter), _cells(size[0]), np.zeros(4)),
+                ShadowScratch(
+                    _cells(quarter), _cells(quarter), _cells(quarter), _cells(size[0]),
+                    np.zeros(size[0] + 8 * FACTOR, dtype=np.int32), np.zeros(4),
+                ),
                 np.zeros(9, dtype=np.int64),
             )  # fmt: skip
         return self._scratch
@@ -280,7 +284,7 @@ def expect_painting() -> None:
         Flush(np.zeros((0, 4)), numbers), scratch.bodies, scratch.place, clip,
     )  # fmt: skip
     triangles = CellArrays(np.zeros((0, 6)), np.zeros((0, 6)), np.zeros((0, 3)), numbers)
-    jit.expect(paint_cells, pixels, triangles, np.zeros((1, SHEET, SHEET), dtype=np.int64), clip)
+    jit.expect(paint_cells, pixels, triangles, np.zeros((1, SHEET, SHEET), dtype=np.int64), np.zeros(9), clip)
     thrown = Thrown(np.zeros((0, 5)), np.zeros((0, 3)))
     jit.expect(paint_shadows, pixels, shapes, thrown, scratch.shadows, np.zeros(2), 0, 0.5, clip)
     loops = Loops(numbers, numbers, numbers, flat, numbers)
