@@ -129,8 +129,8 @@ def _grainy(colour, amount):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _find_texels(row, scratch, place):  # type: ignore[no-untyped-def]
-    """Where in its table the colour of each pixel of a row lies; place: see _light_row."""
+def _find_texels(row, first, last, scratch, place):  # type: ignore[no-untyped-def]
+    """Where in its table the colour of each pixel of a run lies; place: see _light_row."""
     high, middle, fall, texel = scratch.high, scratch.middle, scratch.fall, scratch.texel
     wide, tall, reach = unsigned(place[3]), place[4], place[5]
     gain = 1.1 * reach * 256.0 / 3.0
@@ -139,19 +139,21 @@ def _find_texels(row, scratch, place):  # type: ignore[no-untyped-def]
     iy = min(max(int(half_y - 0.5), 0), tall - 2)
     fy = min(max(half_y - 0.5 - iy, 0.0), 1.0)
     above, below = unsigned(iy) * wide, unsigned(iy + 1) * wide
-    for k in range(wide):
+    one, two = unsigned(1), unsigned(2)
+    begin, end = unsigned(max(first - 1, 0) // 2), unsigned(min(last // 2 + 1, place[3] - 1))
+    for k in range(begin, end + one):
         fall[k] = high[below + k] - high[above + k]
         middle[k] = high[above + k] + fall[k] * fy
-    one, two = unsigned(1), unsigned(2)
     # Two pixels lie between the middles of two cells.
-    for k in range(wide - one):
+    for k in range(begin, end):
         slope, bend = middle[k + one] - middle[k], fall[k + one] - fall[k]
         light, inside = slope * across + fall[k] * down + 128.0, (middle[k] - 0.45) * 120.0
         for half in range(two):
             part = 0.25 + 0.5 * half
             lit = min(max(int(light + bend * part * down), 0), LIT - 1)
             texel[two * k + one + half] = min(max(int(inside + slope * part * 120.0), 0), INSIDE - 1) * LIT + lit
-    texel[0] = texel[1]
+    if first == 0:
+        texel[0] = texel[1]
 
 
 @inner_kernel
@@ -170,8 +172,8 @@ def _find_amounts(row, scratch, place):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _lay_flush(tone, amount, count, squeezed, stretched):  # type: ignore[no-untyped-def]
-    for x in range(unsigned(count)):
+def _lay_flush(tone, amount, first, last, squeezed, stretched):  # type: ignore[no-untyped-def]
+    for x in range(unsigned(first), unsigned(last)):
         share, colour = int(amount[x]), int(tone[x])
         over = stretched if share > 0 else squeezed
         by = abs(share) if abs(share) > 2 else 0
@@ -179,33 +181,42 @@ def _lay_flush(tone, amount, count, squeezed, stretched):  # type: ignore[no-unt
 
 
 @inner_kernel
-def _light_row(pixels, y, rows, b, skins, flush, scratch, place, clip):  # type: ignore[no-untyped-def]
-    """One row of pixels of a body. place: left, top, width, wide, tall, reach, wide and tall of the flush, 0."""
-    cover, tone = scratch.cover, scratch.tone
-    table, grain, left, width = rows.look[b, 0], rows.look[b, 1], place[0], place[2]
-    begin = (y - place[1]) * (width + 2)
-    first, last = max(clip[0], left) - left, min(clip[2], left + width) - left
-    while first < last and cover[begin + first] <= FAINT:
-        first += 1
-    while first < last and cover[begin + last - 1] <= FAINT:
-        last -= 1
-    if first >= last:
-        return
-    _find_texels(y - place[1], scratch, place)
+def _light_run(pixels, y, first, last, rows, b, skins, flush, scratch, place):  # type: ignore[no-untyped-def]
+    """Pixels of a row of a body that lie side by side."""
+    cover, tone, texel = scratch.cover, scratch.tone, scratch.texel
+    table, grain, left = rows.look[b, 0], rows.look[b, 1], place[0]
+    _find_texels(y - place[1], first, last, scratch, place)
     for x in range(unsigned(first), unsigned(last)):
-        k = scratch.texel[x]
+        k = texel[x]
         tone[x] = skins.tables[table, k // LIT, k % LIT]
     if place[8]:
-        _find_amounts(y - place[1], scratch, place)
-        _lay_flush(tone, scratch.amount, last, flush.colours[0], flush.colours[1])
+        _lay_flush(tone, scratch.amount, first, last, flush.colours[0], flush.colours[1])
     if grain >= 0:
         for x in range(first, last):
             tone[x] = _grainy(int(tone[x]), skins.grains[grain, y & (GRAIN - 1), (left + x) & (GRAIN - 1)])
-    row, start, at = unsigned(y), unsigned(left + first), unsigned(begin + first)
+    row, start, at = unsigned(y), unsigned(left + first), unsigned((y - place[1]) * (place[2] + 2) + first)
     for x in range(unsigned(last - first)):
         colour = int(tone[unsigned(first) + x])
         share = int(cover[at + x] * (colour >> 24) * 1.004)
         pixels[row, start + x] = laid_over(int(pixels[row, start + x]), colour, share)
+
+
+@inner_kernel
+def _light_row(pixels, y, rows, b, skins, flush, scratch, place, clip):  # type: ignore[no-untyped-def]
+    """One row of pixels of a body. place: left, top, width, wide, tall, reach, wide and tall of the flush, 0."""
+    cover, left, width = scratch.cover, place[0], place[2]
+    begin = (y - place[1]) * (width + 2)
+    x, last = max(clip[0], left) - left, min(clip[2], left + width) - left
+    if place[8] and x < last:
+        _find_amounts(y - place[1], scratch, place)
+    while x < last:
+        while x < last and cover[begin + x] <= FAINT:
+            x += 1
+        first = x
+        while x < last and cover[begin + x] > FAINT:
+            x += 1
+        if first < x:
+            _light_run(pixels, y, first, x, rows, b, skins, flush, scratch, place)
 
 
 @inner_kernel

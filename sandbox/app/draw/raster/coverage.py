@@ -91,17 +91,17 @@ def blur(cells, spare, sums, width, height, reach, passes):  # type: ignore[no-u
             total = 0.0
             for x in range(min(ahead, wide)):
                 total += cells[begin + x]
-            for x in range(min(ahead, last)):
+            whole = min(ahead + unsigned(1), last)
+            for x in range(whole):
                 total += cells[begin + x + ahead]
                 spare[begin + x] = total * share
-            for x in range(min(ahead, last), last):
-                total += cells[begin + x + ahead]
+            for x in range(whole, last):
+                total += cells[begin + x + ahead] - cells[begin + x - whole]
                 spare[begin + x] = total * share
-                total -= cells[begin + x - ahead]
             for x in range(last, wide):
+                if x > ahead:
+                    total -= cells[begin + x - ahead - unsigned(1)]
                 spare[begin + x] = total * share
-                if x >= ahead:
-                    total -= cells[begin + x - ahead]
         # Down the columns a whole row at a time, as memory lies.
         for x in range(wide):
             sums[x] = 0.0

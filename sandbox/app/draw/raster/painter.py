@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import pygame
@@ -36,7 +37,7 @@ class MarkList:
     """Collects marks of a layer, in the order in which they are drawn."""
 
     def __init__(self) -> None:
-        self._rows: list[tuple[Floats, ...]] = []
+        self._rows: list[tuple[NDArray[Any], ...]] = []
 
     def _add(
         self, ends: Floats, half: ArrayLike, colour: ArrayLike, alpha: ArrayLike, kind: ArrayLike,
@@ -76,6 +77,12 @@ class MarkList:
     def mixed(self, ends: Floats, half: ArrayLike, colour: ArrayLike, alpha: ArrayLike, kind: ArrayLike) -> None:
         """Strokes, discs and glows in any order."""
         self._add(ends, half, colour, alpha, kind)
+
+    def rows(
+        self, ends: Floats, half: Floats, colour: Slots, alpha: Floats, kind: Slots, extra: Slots, along: Floats
+    ) -> None:
+        """Marks of any kind, column by column as MarkArrays has them."""
+        self._rows.append((ends, half, colour, alpha, kind, extra, along))
 
     def arrays(self) -> MarkArrays | None:
         """All of them, None where there are none."""

@@ -18,7 +18,7 @@ MARGIN = REACH * PASSES + 1
 
 
 class ShadowScratch(NamedTuple):
-    """Cells of the shadow: mask, cover, spare: as many as it has; sums, dark: of a row of cells, of pixels; box (4,)."""
+    """Cells of the shadow: mask, cover, spare: as many as it has; sums, dark: of one row, of its pixels; box (4,)."""
 
     mask: Singles
     cover: Singles
