@@ -37,13 +37,13 @@ class Faces:
         self._slots = np.concatenate([actor.slots for actor, _ in rows])
         self._start = starts_of([len(actor.slots) for actor, _ in rows])
         self._size = np.diff(self._start)
-        forms = [actor.made.form - actor.made.form.mean(axis=0) for actor, _ in rows]
+        forms = [actor.form for actor, _ in rows]
         # As seen: pixels count downwards.
         self._form = np.concatenate(forms) * np.array([1.0, -1.0])
         spots = [actor.spot(loop, _spot) for actor, loop in rows]
         self._spot = np.array([place for place, _ in spots]) * np.array([1.0, -1.0])
         self._inner = np.array([radius for _, radius in spots])
-        angle = np.array([float(actor.body.__dict__.get("angle", 0.0)) for actor, _ in rows])
+        angle = np.array([actor.angle for actor, _ in rows])
         self._upright = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
         self._springs = np.concatenate([actor.springs for actor, _ in rows])
         self._spring_start = starts_of([len(actor.springs) for actor, _ in rows])
@@ -179,7 +179,7 @@ def _draw_faces(
 
 def _spot(actor: Actor, loop: Slots) -> tuple[Floats, float]:
     """Where a face sits, about the middle of the form, and how much room there is [m]."""
-    form = actor.made.form - actor.made.form.mean(axis=0)
+    form = actor.form
     index = {slot: k for k, slot in enumerate(actor.slots.tolist())}
     ring = form[[index[slot] for slot in loop.tolist()]]
     ring = np.concatenate([ring + (np.roll(ring, -1, axis=0) - ring) * k / 4 for k in range(4)])
