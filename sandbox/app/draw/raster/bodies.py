@@ -82,19 +82,17 @@ class BodyScratch(NamedTuple):
 def _raise_skin(scratch, width, height, wide, tall):  # type: ignore[no-untyped-def]
     """Coverage from areas, and from it a quarter as many cells of the skin."""
     cover, high = scratch.cover, scratch.high
-    one, two, stride, columns = unsigned(1), unsigned(2), unsigned(width + 2), unsigned(wide)
-    for y in range(unsigned(height)):
+    stride = width + 2
+    for y in range(height):
         total = 0.0
-        for k in range(y * stride, y * stride + unsigned(width)):
+        for k in range(y * stride, y * stride + width):
             total += cover[k]
             cover[k] = min(abs(total), 1.0)
     clear(high, wide * tall)
-    for y in range(unsigned(height // 2)):
-        above, below = two * y * stride, (two * y + one) * stride
-        for x in range(unsigned(width // 2)):
-            k = two * x
-            upper, lower = cover[above + k] + cover[above + k + one], cover[below + k] + cover[below + k + one]
-            high[y * columns + x] = 0.25 * (upper + lower)
+    for y in range(height // 2):
+        for x in range(width // 2):
+            k = 2 * y * stride + 2 * x
+            high[y * wide + x] = 0.25 * (cover[k] + cover[k + 1] + cover[k + stride] + cover[k + stride + 1])
 
 
 @inner_kernel
@@ -166,9 +164,9 @@ def _find_amounts(row, scratch, place):  # type: ignore[no-untyped-def]
     for j in range(min(place[2] // FLUSH_CELL + 1, wide - 1)):
         begin = field[above + j] + (field[below + j] - field[above + j]) * part
         end = field[above + j + 1] + (field[below + j + 1] - field[above + j + 1]) * part
-        first, step = unsigned(j * FLUSH_CELL), (end - begin) / FLUSH_CELL
-        for x in range(unsigned(FLUSH_CELL)):
-            amount[first + x] = int(begin + step * x)
+        step = (end - begin) / FLUSH_CELL
+        for x in range(FLUSH_CELL):
+            amount[j * FLUSH_CELL + x] = int(begin + step * x)
 
 
 @inner_kernel

@@ -84,23 +84,17 @@ def add_outline(cells, width, height, point, first, last, x0, y0, scale):  # typ
 def blur(cells, spare, sums, width, height, reach, passes):  # type: ignore[no-untyped-def]
     """Blur cells (height, width) by boxes of 2 reach + 1, so many times; what lies outside counts as 0."""
     share = 1.0 / (2 * reach + 1)
-    ahead, wide, last = unsigned(reach), unsigned(width), unsigned(max(width - reach, 0))
+    ahead, wide = unsigned(reach), unsigned(width)
     for _ in range(passes):
         for y in range(unsigned(height)):
             begin = y * wide
             total = 0.0
             for x in range(min(ahead, wide)):
                 total += cells[begin + x]
-            whole = min(ahead + unsigned(1), last)
-            for x in range(whole):
-                total += cells[begin + x + ahead]
-                spare[begin + x] = total * share
-            for x in range(whole, last):
-                total += cells[begin + x + ahead] - cells[begin + x - whole]
-                spare[begin + x] = total * share
-            for x in range(last, wide):
-                if x > ahead:
-                    total -= cells[begin + x - ahead - unsigned(1)]
+            for x in range(wide):
+                enters = cells[begin + x + ahead] if x + ahead < wide else 0.0
+                leaves = cells[begin + x - ahead - unsigned(1)] if x > ahead else 0.0
+                total += enters - leaves
                 spare[begin + x] = total * share
         # Down the columns a whole row at a time, as memory lies.
         for x in range(wide):
