@@ -8,6 +8,8 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.compare.compare_screen import CompareScreen
+from sandbox.app.compare.twin import TwinPlayback
 from sandbox.app.display import SCALE_RANGE, Display
 from sandbox.app.draw.colours import BACKGROUND, WARNING, show_theme
 from sandbox.app.edit.documents import DocumentActions
@@ -200,7 +202,20 @@ class App:
         }
 
     def _play_actions(self) -> dict[str, Callable[[], object]]:
-        return {"hint": self._show_hint, "share": self.share_page.open}
+        return {"hint": self._show_hint, "share": self.share_page.open, "compare": self._compare}
+
+    def _compare(self) -> None:
+        """Play the level of the run twice side by side, with two settings; or back to once."""
+        play = self.play
+        if play is None:
+            return
+        level, source = play.playback.level, play.source
+        if isinstance(play, CompareScreen):
+            self.start(Playback(level), source)
+        elif play.of_document:
+            self.say("Save the level and open it from its file to play it twice: this run belongs to the editor.")
+        else:
+            self.show_screen(CompareScreen(self, TwinPlayback(level), TwinPlayback(level), source))
 
     @property
     def actions(self) -> dict[str, Callable[[], object]]:
@@ -299,7 +314,7 @@ class App:
 
     def _switched(self) -> None:
         if self.play is not None:
-            self.play.playback.session.world.drop_caches()
+            self.play.drop_caches()
         self.sharing.drop_caches()
 
     def _draw(self) -> None:
@@ -310,11 +325,11 @@ class App:
             self.screen.draw(surface, self.profile)
         with self.profile.part("ui"):
             if self.screen is not None:
-                left = None if self.ui.has_sheet else self.screen.notices_left
+                corner = None if self.ui.has_sheet else self.screen.notices_corner
                 parts = self.sharing.status() + self.screen.status(self._figures)
                 if not self.ready and self.mode == "edit":
                     parts.append(("preparing the physics", WARNING))
-                self.status.draw(surface, parts, self.ui.units[0], left)
+                self.status.draw(surface, parts, self.ui.units[0], corner)
             self.ui.draw(surface)
             if self.gallery is not None:
                 self.gallery.draw(surface)

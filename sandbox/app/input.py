@@ -15,7 +15,8 @@ DOUBLE_SECONDS = 0.4
 EDITING_KEYS = (pygame.K_a, pygame.K_c, pygame.K_v, pygame.K_x, pygame.K_z, pygame.K_y)
 # Actions that go on while their key is held down.
 REPEATED = (
-    "step", "zoom_in", "zoom_out", "undo", "redo", "next_particle", "previous_particle", "next_item", "previous_item",
+    "step", "back", "zoom_in", "zoom_out", "undo", "redo",
+    "next_particle", "previous_particle", "next_item", "previous_item",
 )  # fmt: skip
 # Actions that lay the widgets out anew, which keeps what is being typed; they work over a page, too.
 LAYOUT = ("fullscreen", "larger", "smaller")

@@ -189,6 +189,36 @@ def _pole_match(frequency: float, damping_ratio: float, h: float) -> tuple[float
     return 2.0 - damping - math.exp(root - fall) - math.exp(-root - fall), damping
 
 
+def at_other_step(stiffness: float, damping: float, times: float) -> tuple[float, float]:
+    """Cs and Cd at a time step so many times as long that leave one spring's motion per second as it was, exactly.
+
+    Raises ValueError where Cs would have to be above 1, or the spring would swing more than once in two such steps.
+    Source: the roots r of r^2 - (2 - Cs - Cd) r + (1 - Cd) = 0, its motion from step to step, become r^times.
+    """
+    # 1 - r are the roots s of s^2 - (Cs + Cd) s + Cs = 0; so written, small coefficients keep their digits.
+    total = stiffness + damping
+    apart = total * total - 4.0 * stiffness
+    if apart >= 0.0:
+        quick = 0.5 * (total + math.sqrt(apart))
+        slow = stiffness / quick if quick > 0.0 else 0.0
+        quick, slow = _fallen(quick, times), _fallen(slow, times)
+        return quick * slow, quick + slow - quick * slow
+    # Both are e exp(+-i turn), with Cs = (1 - e)^2 + 4 e sin(turn / 2)^2.
+    fall = 0.5 * math.log1p(-damping)
+    e = math.exp(fall)
+    turn = 2.0 * math.asin(min(1.0, math.sqrt(max(0.0, stiffness - (damping / (1.0 + e)) ** 2) / (4.0 * e))))
+    new = math.exp(times * fall)
+    found = math.expm1(times * fall) ** 2 + 4.0 * new * math.sin(0.5 * times * turn) ** 2
+    if found > 1.0 or times * turn > math.pi:
+        raise ValueError(f"Cs = {stiffness:g}, Cd = {damping:g} swing too fast for a step {times:g} times as long")
+    return found, -math.expm1(2.0 * times * fall)
+
+
+def _fallen(part: float, times: float) -> float:
+    """1 - (1 - part)^times."""
+    return 1.0 if part >= 1.0 else -math.expm1(times * math.log1p(-part))
+
+
 def _reachable(frequency: float, damping_ratio: float, h: float) -> bool:
     """Whether Cs is in 0..1 and the frequency is not an alias beyond half the tick rate."""
     phase = 2.0 * math.pi * frequency * h

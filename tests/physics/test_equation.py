@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.equation import (
+    at_other_step,
     coefficients_from_frequency,
     direction,
     frequency_from_coefficients,
@@ -178,3 +179,24 @@ def test_the_frequency_of_every_pair_of_coefficients_is_a_number_of_0_or_more():
 def test_frequencies_and_ratios_that_mean_nothing_are_refused(asked):
     with pytest.raises(ValueError, match="finite numbers of 0 or more"):
         coefficients_from_frequency(*asked)
+
+
+def test_at_twice_the_rate_a_spring_keeps_its_motion_as_half_a_step_does():
+    for stiffness, damping in random_coefficients(60):
+        halved = half_step(stiffness, damping)
+        assert at_other_step(stiffness, damping, 0.5) == pytest.approx(halved, rel=1e-6, abs=1e-15)
+
+
+@pytest.mark.parametrize("times", [0.1, 0.37, 1.0, 1.5])
+def test_at_any_other_step_frequency_and_damping_ratio_stay(times):
+    for stiffness, damping in [(0.3, 0.3), (0.02, 0.001), (0.01, 0.9), (1e-5, 1e-3)]:
+        other = at_other_step(stiffness, damping, times)
+        before, after = frequency_from_coefficients(stiffness, damping, 1.0), frequency_from_coefficients(*other, times)
+        assert after == pytest.approx(before, rel=1e-6)
+        assert at_other_step(*other, 1.0 / times) == pytest.approx((stiffness, damping), rel=1e-6)
+    assert at_other_step(1.0, 1.0, times) == (1.0, 1.0) and at_other_step(0.0, 0.0, times) == (0.0, 0.0)
+
+
+def test_a_swing_that_a_longer_step_cannot_follow_is_refused():
+    with pytest.raises(ValueError, match="swing too fast"):
+        at_other_step(0.5, 0.0, 2.0)

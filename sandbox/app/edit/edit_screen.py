@@ -58,7 +58,7 @@ class EditScreen:
     """Edits a level; panels and tools change it by `edit` alone, so that every change can be undone."""
 
     mode: Mode = "edit"
-    notices_left = PALETTE_WIDTH + RULER + 12.0
+    notices_corner = (PALETTE_WIDTH + RULER + 12.0, 0.0)
 
     def __init__(self, app: Application, history: History, level_file: LevelFile) -> None:
         self.app = app

@@ -4,7 +4,6 @@ import json
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -18,13 +17,13 @@ from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.gallery.card import PICTURE_RATIO, TEXT_HEIGHT, Card, draw_shadow
 from sandbox.app.gallery.header import Header
 from sandbox.app.gallery.preview import Preview
+from sandbox.app.gallery.replay_card import date_of, fill_replay
 from sandbox.app.gallery.sections import FIRST, LIGHT_LEVELS, in_sections, is_found
 from sandbox.app.picture_cache import (
     SECONDS,
     draw_in_slices,
     find_picture,
-    forget_old_pictures,
-    keep_picture,
+    keep_for_later,
     kept_picture,
     picture_key,
 )
@@ -43,7 +42,6 @@ GAP = 16.0
 MARGIN = 36.0
 HEADING = 40.0
 SECTION_GAP = 4.0
-ROW_HEIGHT, ROW_WIDTH = 56.0, 760.0
 # Wall time [s] of a frame that cards are filled in.
 FILL_BUDGET = 0.02
 TITLES = {"levels": "Levels", "mine": "My levels", "recordings": "Replays"}
@@ -197,21 +195,15 @@ class Gallery:
         picture = yield from draw_in_slices(level, theme, SECONDS if jit.COMPILED else 0.0)
         card.show_picture(pygame.transform.smoothscale(picture, size))
         if jit.COMPILED:
-            with suppress(OSError):
-                keep_picture(picture, kept_picture(key, theme))
-                forget_old_pictures(kept_picture(key, theme).parent)
+            keep_for_later(picture, kept_picture(key, theme))
 
     def _add_recordings(self) -> None:
-        width = min(self._width, ROW_WIDTH)
-        group = Group("", "", 1, width, ROW_HEIGHT)
-        self.groups.append(group)
+        group = self._group("")
         for path in saved_recordings():
-            stat = path.stat()
-            when = time.strftime("%d %B %Y, %H:%M", time.localtime(stat.st_mtime))
-            text = f"{when}, {stat.st_size / 1024:,.0f} KiB"
-            card = self._add_card(group, one_line(path.name), text, partial(self._app.files.open_replay, path))
-            card.has_picture = False
+            card = self._add_card(group, one_line(path.name), "", partial(self._app.files.open_replay, path))
+            card.line = date_of(path)
             card.repaint()
+            self._unfilled.append(fill_replay(card, path, lambda contacts: self._has_kernels(contacts)))
 
     # Where it stands.
 
@@ -319,7 +311,7 @@ class Gallery:
         if self._ui.top_sheet is not self.sheet:
             return
         for card in self._shown():
-            if card.is_pointed_at and not card.is_small and card.has_picture:
+            if card.is_pointed_at and not card.is_small:
                 picture = card.paint_open()
                 view = self.area.view.rect.inflate(0, -2)
                 place = picture.get_rect(midtop=card.rect.midtop).clamp(view)
