@@ -159,7 +159,7 @@ def read_replay(path: str | Path, partial: bool = False, retold: bool = False) -
     retold: accept one of another physics version, for its level and commands, which can be recorded again.
     Raises ReplayError, naming file and line, for anything that no Recorder wrote.
     """
-    slices = read_in_slices(path, partial)
+    slices = read_in_slices(path, partial, retold)
     while True:
         try:
             next(slices)
@@ -167,7 +167,7 @@ def read_replay(path: str | Path, partial: bool = False, retold: bool = False) -
             return cast(Replay, end.value)
 
 
-def read_in_slices(path: str | Path, partial: bool = False) -> Generator[None, None, Replay]:
+def read_in_slices(path: str | Path, partial: bool = False, retold: bool = False) -> Generator[None, None, Replay]:
     """As `read_replay`, some lines at a time."""
     source = str(path)
     lines = ReplayLines(Path(path))
