@@ -1,8 +1,9 @@
 """Soak: random mouse and keyboard at the app for minutes; nothing may fail, leak, or be replayed otherwise.
 
-Run by hand: make soak, or python -m tests.abuse.soak [--frames 36000] [--seed 1] [--seconds S]. In stretches, each from
-another screen on, with the same few places in between at which memory is measured and the run so far is recorded and
-verified. Whatever it writes goes to a folder that is thrown away. Ends with 1 where something was found.
+Run by hand: make soak, or python -m tests.abuse.soak [--frames 36000] [--seed 1] [--seconds S] [--screen]. In
+stretches, each from another screen on, with the same few places in between at which memory is measured and the run so
+far is recorded and verified. Whatever it writes goes to a folder that is thrown away. Ends with 1 where something was
+found.
 """
 
 import argparse
@@ -10,6 +11,7 @@ import ctypes
 import gc
 import os
 import random
+import shutil
 import sys
 import tempfile
 import time
@@ -26,6 +28,7 @@ from sandbox.app.start_request import StartRequest
 from sandbox.level.format.files import load_level
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
+from tests.support.person import VirtualScreen
 
 FRAME = 1 / 60
 STRETCH = 600
@@ -40,14 +43,17 @@ SCREENS = (
 SIZES = ((1280, 720), (640, 480), (900, 700), (1600, 900), (1280, 720))
 # What is typed, and never a name of a folder.
 LETTERS = "abcxyz 0123456789-+e,;äß"
+# Where systems say that a person's folders are.
+HOMES = (
+    "HOME", "USERPROFILE", "APPDATA", "LOCALAPPDATA", "XDG_DATA_HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME",
+    "XDG_DOCUMENTS_DIR", "XDG_PICTURES_DIR",
+)  # fmt: skip
 KEYS = "abcdefghijklmnopqrstuvwxyz0123456789"
 
 
 def hide_home(folder: Path) -> None:
     """Let a person's folders be in this one, and no programs of the system be found."""
-    names = ("HOME", "USERPROFILE", "APPDATA", "LOCALAPPDATA", "XDG_DATA_HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME",
-             "XDG_DOCUMENTS_DIR", "XDG_PICTURES_DIR")  # fmt: skip
-    for name in names:
+    for name in HOMES:
         os.environ[name] = str(folder)
     (folder / "nothing").mkdir(exist_ok=True)
     os.environ["PATH"] = str(folder / "nothing")
@@ -275,12 +281,22 @@ def main() -> None:
     parser.add_argument("--frames", type=int, default=36_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--seconds", type=float)
+    parser.add_argument("--screen", action="store_true", help="in a window on a virtual screen, where Xvfb is")
     parser.add_argument("--all", action="store_true", help="the usual; for make abuse")
     given = parser.parse_args()
+    if given.screen and not shutil.which("Xvfb"):
+        print("needs Xvfb (apt install xvfb)")
+        return
     with tempfile.TemporaryDirectory() as folder:
-        hide_home(Path(folder))
-        found = soak(given.seed, given.frames, Path(folder), given.seconds)
-        os.chdir("/")
+        screen = VirtualScreen(Path(folder)) if given.screen else None
+        os.environ |= {"SDL_VIDEODRIVER": "x11", "DISPLAY": screen.display} if screen else {}
+        try:
+            hide_home(Path(folder))
+            found = soak(given.seed, given.frames, Path(folder), given.seconds)
+        finally:
+            os.chdir("/")
+            if screen is not None:
+                screen.close()
     print("\n".join(found) or "nothing was found")
     sys.exit(1 if found else 0)
 
