@@ -15,7 +15,8 @@ DOUBLE_SECONDS = 0.4
 EDITING_KEYS = (pygame.K_a, pygame.K_c, pygame.K_v, pygame.K_x, pygame.K_z, pygame.K_y)
 # Actions that go on while their key is held down.
 REPEATED = (
-    "step", "zoom_in", "zoom_out", "undo", "redo", "next_particle", "previous_particle", "next_item", "previous_item",
+    "step", "back", "zoom_in", "zoom_out", "undo", "redo",
+    "next_particle", "previous_particle", "next_item", "previous_item",
 )  # fmt: skip
 # Actions that lay the widgets out anew, which keeps what is being typed; they work over a page, too.
 LAYOUT = ("fullscreen", "larger", "smaller")
@@ -55,6 +56,8 @@ class Input:
                 self.app.display.hidden = True
             elif event.type in SHOWING:
                 self.app.display.hidden = False
+            elif event.type == pygame.AUDIODEVICEREMOVED:
+                self.app.sounds.look_again()
             elif event.type == pygame.WINDOWFOCUSGAINED:
                 self.app.documents.look_at_disk()
             elif self._follows_world(event) or not self.app.ui.process(event):

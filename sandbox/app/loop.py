@@ -6,8 +6,10 @@ from dataclasses import dataclass
 FRAME_RATE = 60
 # Longest frame [s] that is made up for; a longer one (a stopped window, a slow computer) is time that is lost.
 LONGEST_FRAME = 0.1
-# Speeds that a person can choose, real time first.
+# Speeds that a person can choose, real time first: slow motion, fast, and back in time.
 SPEEDS = (1.0, 0.5, 0.25, 0.125)
+FAST_SPEEDS = (1.0, 2.0, 4.0, 8.0)
+BACKWARD_SPEEDS = (1.0, -1.0, -2.0, -4.0)
 
 
 @dataclass
@@ -20,7 +22,7 @@ class TickClock:
     single_steps: int = 0
 
     def ticks(self, frame_time: float, tick_rate: float) -> int:
-        """How many ticks are due after a frame of frame_time [s]."""
+        """How many ticks are due after a frame of frame_time [s]; back in time, less than none."""
         if self.paused:
             steps, self.single_steps = self.single_steps, 0
             self.accumulator = 0.0
@@ -33,6 +35,12 @@ class TickClock:
     def alpha(self, tick_rate: float) -> float:
         """How far the present lies between the last two ticks, 0..1; paused, the last tick itself is shown."""
         return 1.0 if self.paused else min(max(self.accumulator * tick_rate, 0.0), 1.0)
+
+    def next_speed(self, speeds: tuple[float, ...]) -> None:
+        """Go on at the next of these speeds, round and round; from another speed, at the second."""
+        place = speeds.index(self.speed) if self.speed in speeds else 0
+        self.speed, self.accumulator = speeds[(place + 1) % len(speeds)], 0.0
+        self.paused = False
 
     def step_once(self) -> None:
         """Pause, and ask for one tick."""

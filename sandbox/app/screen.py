@@ -28,8 +28,11 @@ class Screen(Protocol):
 
     mode: Mode
     actions: dict[str, Callable[[], object]]
-    # Left edge of the notices, where they cover no widgets [layout units].
-    notices_left: float
+
+    @property
+    def notices_corner(self) -> tuple[float, float]:
+        """Left edge of the notices, where they cover no widgets, and how far above the status line [layout units]."""
+        ...
 
     @property
     def camera(self) -> Camera:

@@ -48,12 +48,6 @@ def spring_impulse(
 
 
 @scalar_kernel
-def highest_coefficient(parts: int) -> float:
-    """Where Cd of one of so many substeps is capped, so that a rigid spring has the k of a step in one part."""
-    return 1.0 - (1.0 - HIGHEST_COEFFICIENT) * (parts * parts)
-
-
-@scalar_kernel
 def capped(stiffness: float, damping: float, highest: float) -> tuple[float, float]:
     """Cs and Cd, with both at most `highest` where Cd is above it: so Cs = Cd = 1 keeps beta = 1."""
     if damping > highest:
@@ -158,6 +152,27 @@ def half_step_of_network(stiffness: float, damping: float, lowest_mode: float) -
     return half_step(stiffness, damping)
 
 
+@scalar_kernel
+def part_of_network(stiffness: float, damping: float, lowest_mode: float, parts: int) -> tuple[float, float]:
+    """Cs and Cd of one of so many parts of a tick, a power of two, that leave k = Cs m_r / ((1 - Cd) h^2) as it was.
+
+    So the energy of a network does not depend on the parts. Damping is the greater of what `half_step_of_network` makes
+    of it and of c = (Cd - Cs) m_r / ((1 - Cd) h) as it was. Cs <= Cd stays so.
+    """
+    # S = Cs / (1 - Cd), D = Cd / (1 - Cd):  k = S m_r / h^2,  c = (D - S) m_r / h,  1 + a D = 1 / (1 - Cd_a)
+    stiffness, damping = capped(stiffness, damping, HIGHEST_COEFFICIENT)
+    mode = lowest_mode if lowest_mode > 0.0 else 1.0
+    restoring = stiffness / (1.0 - damping)
+    stiff = damping / (1.0 - damping)
+    while parts > 1:
+        halved = stiff / (1.0 + math.sqrt(1.0 + mode * stiff))
+        # Of Cs > Cd, c is below 0, and no less than a quarter of D is kept: Cs / Cd never rises.
+        stiff = max(halved, 0.25 * max(stiff, 2.0 * stiff - restoring))
+        restoring *= 0.25
+        parts //= 2
+    return restoring / (1.0 + stiff), stiff / (1.0 + stiff)
+
+
 def coefficients_from_frequency(frequency: float, damping_ratio: float, h: float) -> tuple[float, float]:
     """Cs and Cd that give one spring the frequency [Hz] and damping ratio at time step h [s], exactly.
 
@@ -187,6 +202,36 @@ def _pole_match(frequency: float, damping_ratio: float, h: float) -> tuple[float
     root = phase * math.sqrt(damping_ratio**2 - 1.0)
     fall = damping_ratio * phase
     return 2.0 - damping - math.exp(root - fall) - math.exp(-root - fall), damping
+
+
+def at_other_step(stiffness: float, damping: float, times: float) -> tuple[float, float]:
+    """Cs and Cd at a time step so many times as long that leave one spring's motion per second as it was, exactly.
+
+    Raises ValueError where Cs would have to be above 1, or the spring would swing more than once in two such steps.
+    Source: the roots r of r^2 - (2 - Cs - Cd) r + (1 - Cd) = 0, its motion from step to step, become r^times.
+    """
+    # 1 - r are the roots s of s^2 - (Cs + Cd) s + Cs = 0; so written, small coefficients keep their digits.
+    total = stiffness + damping
+    apart = total * total - 4.0 * stiffness
+    if apart >= 0.0:
+        quick = 0.5 * (total + math.sqrt(apart))
+        slow = stiffness / quick if quick > 0.0 else 0.0
+        quick, slow = _fallen(quick, times), _fallen(slow, times)
+        return quick * slow, quick + slow - quick * slow
+    # Both are e exp(+-i turn), with Cs = (1 - e)^2 + 4 e sin(turn / 2)^2.
+    fall = 0.5 * math.log1p(-damping)
+    e = math.exp(fall)
+    turn = 2.0 * math.asin(min(1.0, math.sqrt(max(0.0, stiffness - (damping / (1.0 + e)) ** 2) / (4.0 * e))))
+    new = math.exp(times * fall)
+    found = math.expm1(times * fall) ** 2 + 4.0 * new * math.sin(0.5 * times * turn) ** 2
+    if found > 1.0 or times * turn > math.pi:
+        raise ValueError(f"Cs = {stiffness:g}, Cd = {damping:g} swing too fast for a step {times:g} times as long")
+    return found, -math.expm1(2.0 * times * fall)
+
+
+def _fallen(part: float, times: float) -> float:
+    """1 - (1 - part)^times."""
+    return 1.0 if part >= 1.0 else -math.expm1(times * math.log1p(-part))
 
 
 def _reachable(frequency: float, damping_ratio: float, h: float) -> bool:

@@ -292,6 +292,46 @@ def report(world: World) -> StabilityReport:
     )
 
 
+def _counted(world: World, material: int | None) -> tuple[Floats, NDArray[np.bool_]]:
+    """n_eff of every spring, then every constraint (m + t,); and which of them have Cs and Cd of a material."""
+    counts = np.concatenate([effective_count(world), constraint_count(world)])
+    materials = np.concatenate([world.material, world.constraint_material])
+    is_nissen = np.append(world.law != LAW_HOOKE, np.ones(world.constraint_count, dtype=np.bool_))
+    chosen = (materials >= 0) if material is None else (materials == material)
+    return counts, chosen & (counts > 0.0) & is_nissen
+
+
+def most_springs(world: World, material: int | None = None) -> int:
+    """The article's n: most springs and constraints on a particle that springs of a material (None = all) hold."""
+    _, chosen = _counted(world, material)
+    degree, slots = _degrees(world), np.flatnonzero(chosen[: world.spring_count])
+    ends = [world.particle_a[slots], world.particle_b[slots]]
+    held = _held_corners(world)
+    owner = np.repeat(np.arange(world.constraint_count), world.constraint_corners)[held]
+    ends.append(world.corner_particle[held[chosen[world.spring_count :][owner]]])
+    return int(degree[np.concatenate(ends)].max(initial=0))
+
+
+def demand_limit(world: World, material: int | None = None) -> float:
+    """What Cs + 2 Cd of a substep stays below where a material's springs (None = all) are proven stable, inf: nothing.
+
+    All have the same Cs and Cd then, and other springs what they have now; 0 or less where these are too much already.
+    """
+    _, chosen = _counted(world, material)
+    slots, elements = chosen[: world.spring_count], chosen[world.spring_count :]
+    demands = _demands(world, world.stiffness, world.damping)
+    of_constraints = _constraint_demands(world, world.constraint_stiffness, world.constraint_damping)
+
+    def loads(demand: float) -> Floats:
+        both = np.where(slots, demand, demands), np.where(elements, demand, of_constraints)
+        return _summed_loads(world, *both)[chosen]
+
+    # The loads are linear in what is demanded.
+    at_rest = loads(0.0)
+    slope = loads(1.0) - at_rest
+    return float(np.min((BOUND - at_rest) / slope)) if len(slope) else np.inf
+
+
 def coefficient_limits(world: World, material: int | None = None) -> CoefficientLimits:
     """Marks for the Cs and Cd sliders of a material's springs (None = all).
 
@@ -303,11 +343,7 @@ def coefficient_limits(world: World, material: int | None = None) -> Coefficient
         return CoefficientLimits(1.0, 1.0, _energy_bound(world))
     if not SOLVERS[solver].proven_limit:
         return CoefficientLimits(None, None, f"no proven limit for the {solver} solver")
-    counts = np.concatenate([effective_count(world), constraint_count(world)])
-    materials = np.concatenate([world.material, world.constraint_material])
-    is_nissen = np.append(world.law != LAW_HOOKE, np.ones(world.constraint_count, dtype=np.bool_))
-    chosen = (materials >= 0) if material is None else (materials == material)
-    chosen &= (counts > 0.0) & is_nissen
+    counts, chosen = _counted(world, material)
     if not chosen.any():
         return CoefficientLimits(1.0, 1.0, "no spring of this material does anything")
 

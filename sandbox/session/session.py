@@ -15,16 +15,12 @@ from sandbox.physics.world import World
 from sandbox.session.commands import Command, CommandError, Redo, Undo, apply
 from sandbox.session.commands.adding import name_added
 from sandbox.session.commands.records import ScriptLine, from_record, to_record
+from sandbox.session.keyframes import Keyframe, Keyframes
 from sandbox.session.replay.format import STATE_TICKS
 from sandbox.session.replay.writer import Recorder
 
-KEYFRAME_TICKS = 60
-# Commands of one tick after which its state is kept as well, until the next keyframe, so that undoing the last of
-# thousands does not carry out all the others again: so many, and so many more for each particle, as keeping takes
-# longer then. Lower keeps more, higher undoes slower.
-KEYFRAME_COMMANDS, COMMANDS_PER_PARTICLE = 4, 0.004
-# Memory for keyframes [bytes]; beyond it every other one goes, and undo re-steps twice as far.
-KEYFRAME_BUDGET = 256 * 2**20
+# Ends of the run that are kept when another one begins in the past, newest last.
+BRANCH_LIMIT = 9
 # Ticks between two calls of `progress` while re-stepping.
 PROGRESS_TICKS = 120
 # Of more springs that break in one tick the message says how many they are, not their names.
@@ -47,18 +43,17 @@ class LogEntry:
     implied: bool = False
 
 
-@dataclass(frozen=True)
-class Keyframe:
-    """The state of a tick once all commands of an order below this one are applied; between: of some of that tick."""
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """How a run went on from a tick (0..) before something else was done there; see Session.return_to.
 
-    order: int
-    snapshot: Snapshot
-    between: bool = False
+    history: its commands from the beginning; last_tick: how far it went; breaks: ticks in which springs broke.
+    """
 
-    @property
-    def tick(self) -> int:
-        """Ticks since the level's start."""
-        return self.snapshot.tick
+    tick: int
+    history: tuple[LogEntry, ...]
+    last_tick: int
+    breaks: frozenset[int]
 
 
 class Session:
@@ -93,10 +88,11 @@ class Session:
         self._last_gesture = 0
         self._last_tick = self.tick
         self._next_order = 0
-        # Gestures of which a command has or had no effect; and how many commands of this tick no keyframe holds.
+        # Gestures of which a command has or had no effect.
         self._hindered: set[int] = set()
-        self._unkept = 0
-        self._keyframes = [Keyframe(0, take(self.world))]
+        self._keyframes = Keyframes(Keyframe(0, take(self.world)))
+        self._breaks: set[int] = set()
+        self._branches: list[Branch] = []
         self._recorder: Recorder | None = None
 
     @property
@@ -191,8 +187,8 @@ class Session:
 
         Raises ValueError out of that range, or while recording.
         """
-        if not self._keyframes[0].tick <= tick <= self._last_tick:
-            raise ValueError(f"tick {tick} is outside {self._keyframes[0].tick}..{self._last_tick}")
+        if not self._keyframes.first.tick <= tick <= self._last_tick:
+            raise ValueError(f"tick {tick} is outside {self._keyframes.first.tick}..{self._last_tick}")
         if self._recorder is not None:
             raise ValueError("stop the recording before going back in time")
         self._rewind(tick, tick)
@@ -201,9 +197,9 @@ class Session:
         """A run of its own with the same history, at the last keyframe at or before a tick; `advance` follows it from
         there to the last tick. Neither run changes the other.
         """
-        first = self._keyframe_before(tick)
+        first = self._keyframes.before(tick)
         twin = Session(self.level, start=first.snapshot)
-        twin._keyframes = [kept for kept in self._keyframes if kept.order >= first.order]
+        twin._keyframes = self._keyframes.onward(first)
         twin._take_over([replace(entry) for entry in self._timeline if entry.order >= first.order])
         twin._next_order, twin._last_tick = self._next_order, self._last_tick
         twin._follow(0, first.tick)
@@ -213,13 +209,42 @@ class Session:
         """The states of ticks first..last that are kept, a few each second or less."""
         return [kept.snapshot for kept in self._keyframes if first <= kept.tick <= last]
 
+    @property
+    def breaks(self) -> tuple[int, ...]:
+        """The ticks in which springs broke, in order."""
+        return tuple(sorted(self._breaks))
+
+    @property
+    def gestures(self) -> tuple[LogEntry, ...]:
+        """The first command of each gesture that counts, in order."""
+        return tuple(self._entries[gesture][0] for gesture in self._done)
+
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        """How the run went on before it was changed in the past; see `return_to`."""
+        return tuple(self._branches)
+
+    def going(self) -> list[Command]:
+        """The commands that end what is going on now, as a hand that holds or a part that is driven."""
+        endings = (entry.command.ending(self.world) for entry in self._begun())
+        return [ending for ending in endings if ending is not None]
+
+    def _begun(self) -> list[LogEntry]:
+        """What began last of each thing that can go on, until now."""
+        begun = {
+            key: entry
+            for entry in self._timeline
+            if entry.tick <= self.tick and entry.in_effect and (key := entry.command.begins()) is not None
+        }
+        return list(begun.values())
+
     def record_to(self, path: Path, state_ticks: int = STATE_TICKS) -> None:
         """Record this run to a file, from the level's start: what was played until now is played again into it.
 
         state_ticks: from one stored state to the next; from each the recording can be verified, and each takes room.
         Overwrites the file. Raises OSError where it cannot be written, ValueError for a run that began in the middle.
         """
-        if self._keyframes[0].tick > 0:
+        if self._keyframes.first.tick > 0:
             raise ValueError("only a run from the level's start can be recorded")
         self.stop_recording()
         twin = Session(self.level)
@@ -297,13 +322,13 @@ class Session:
             return
         self._entries.setdefault(gesture, []).append(entry)
         self._timeline.append(entry)
-        self._keep_between(self._next_order)
+        self._keyframes.note_command(self.world, self._next_order)
 
     # Undo and time travel: restore the nearest earlier keyframe and step again with the commands that still count.
 
     def _undo(self) -> None:
-        if self._keyframes[0].tick > 0:
-            raise CommandError(f"undo reaches back before tick {self._keyframes[0].tick}, where this run began")
+        if self._keyframes.first.tick > 0:
+            raise CommandError(f"undo reaches back before tick {self._keyframes.first.tick}, where this run began")
         gesture = self._last_in_effect()
         if gesture is None:
             raise CommandError("nothing to undo")
@@ -352,33 +377,25 @@ class Session:
         """End what a gesture began and is still going on, so that doing it again cannot leave it going for ever."""
         if all(entry.command.begins() is None for entry in self._entries[gesture]):
             return
-        going = {
-            begun: (entry.gesture, entry.command)
-            for entry in self._timeline
-            if entry.in_effect and (begun := entry.command.begins()) is not None
-        }
-        for owner, command in going.values():
-            ending = command.ending(self.world)
-            if owner == gesture and ending is not None:
+        for entry in self._begun():
+            ending = entry.command.ending(self.world)
+            if entry.gesture == gesture and ending is not None:
                 self._note(ending, gesture, implied=True)
 
     def _step_again_from(self, order: int) -> None:
         """Come to the present tick once more, by history as it now stands, which is another from an order on."""
         tick = self.tick
-        while self._keyframes[-1].order > order:
-            self._keyframes.pop()
+        self._keyframes.drop_after(order)
+        self._forget_breaks(self._keyframes.before(tick).tick)
         self._rewind(tick, tick)
 
     def _rewind(self, back_to: int, tick: int) -> None:
         """Restore the last keyframe at or before a tick and follow history to another."""
-        keyframe = self._keyframe_before(back_to)
+        keyframe = self._keyframes.before(back_to)
         restore(self.world, keyframe.snapshot)
-        self._unkept = 0
+        self._keyframes.note_return()
         name_added(self.world)
         self._follow(bisect.bisect_left(self._timeline, keyframe.order, key=_order), tick)
-
-    def _keyframe_before(self, tick: int) -> Keyframe:
-        return next(kept for kept in reversed(self._keyframes) if kept.tick <= tick)
 
     def _first_of(self, tick: int) -> int:
         """Where in history the commands of a tick begin."""
@@ -397,10 +414,11 @@ class Session:
                     history[place].in_effect = False
                     self._hindered.add(history[place].gesture)
                 place += 1
-                self._keep_between(self._order_at(place))
+                self._keyframes.note_command(self.world, self._order_at(place))
             if self.tick >= tick:
                 return
             self._step(self._order_at(place))
+            self._keyframes.note_passed(self.world, self._order_at(place), tick)
             self._report_progress(self.tick - start, tick - start)
 
     def _order_at(self, place: int) -> int:
@@ -408,16 +426,56 @@ class Session:
         return self._timeline[place].order if place < len(self._timeline) else self._next_order
 
     def _drop_future(self) -> None:
-        """Make the present tick the end of history, after `seek` went back."""
+        """Make the present tick the end of history, after `seek` went back; what followed is kept as a branch."""
         if self.tick == self._last_tick:
             return
-        self._take_over([entry for entry in self._timeline if entry.tick <= self.tick and entry.in_effect])
+        self._keep_branch(self.tick)
+        self._go_by([entry for entry in self._timeline if entry.tick <= self.tick and entry.in_effect], self.tick)
+        self._keyframes.drop_beyond(self.tick)
+        self._forget_breaks(self.tick)
+
+    def _keep_branch(self, tick: int) -> None:
+        """Keep how the run goes on after a tick."""
+        history = tuple(entry for entry in self._timeline if entry.in_effect)
+        self._branches.append(Branch(tick, history, self._last_tick, frozenset(self._breaks)))
+        del self._branches[:-BRANCH_LIMIT]
+
+    def return_to(self, branch: Branch) -> None:
+        """Go to where a branch begins, with it as what follows; what followed until now becomes a branch in its place.
+
+        Raises ValueError while recording, and for a branch that is not one of this run's.
+        """
+        if self._recorder is not None:
+            raise ValueError("stop the recording before going back in time")
+        if branch not in self._branches:
+            raise ValueError("that branch is gone: only the last ones are kept")
+        common = 0
+        for ours, theirs in zip(self._timeline, branch.history, strict=False):
+            if ours is not theirs:
+                break
+            common += 1
+        following = [*self._timeline[common : common + 1], *branch.history[common : common + 1]]
+        tick = min(self._last_tick, branch.last_tick, *(entry.tick for entry in following))
+        self._branches.remove(branch)
+        if self._last_tick > tick:
+            self._keep_branch(tick)
+        self._go_by(list(branch.history), branch.last_tick)
+        self._keyframes.drop_after(min((entry.order for entry in following), default=self._next_order))
+        self._keyframes.drop_beyond(tick)
+        self._breaks = set(branch.breaks)
+        self._rewind(tick, tick)
+
+    def _go_by(self, history: list[LogEntry], last_tick: int) -> None:
+        """Make these entries all that ever was, up to a tick; nothing is undone."""
+        self._take_over(history)
         self._undone.clear()
         self._hindered.clear()
         self._redoable.clear()
-        self._keyframes = [keyframe for keyframe in self._keyframes if keyframe.tick <= self.tick]
-        self._last_tick = self.tick
+        self._last_tick = last_tick
         self._scripted = None
+
+    def _forget_breaks(self, tick: int) -> None:
+        self._breaks = {each for each in self._breaks if each <= tick}
 
     def _take_over(self, history: list[LogEntry]) -> None:
         """Make these entries all that ever was."""
@@ -431,26 +489,9 @@ class Session:
         """One tick; order: of the next command to come."""
         self.world.contained.clear()
         step(self.world)
-        self._unkept = 0
-        if self.tick % KEYFRAME_TICKS == 0 and self._keyframes[-1].tick < self.tick:
-            self._keyframes = [kept for kept in self._keyframes if not kept.between]
-            self._keep(Keyframe(order, take(self.world)))
-
-    def _keep_between(self, order: int) -> None:
-        """Keep the state after a command where enough of this tick have been applied; order: of the next to come."""
-        self._unkept += 1
-        enough = KEYFRAME_COMMANDS + COMMANDS_PER_PARTICLE * self.world.particle_count
-        # In the past that `seek` reached, later ones are kept already.
-        if self._unkept >= enough and self._keyframes[-1].order < order:
-            self._keep(Keyframe(order, take(self.world), between=True))
-
-    def _keep(self, keyframe: Keyframe) -> None:
-        self._unkept = 0
-        self._keyframes.append(keyframe)
-        size = sum(array.nbytes for array in keyframe.snapshot.arrays.values())
-        if size * len(self._keyframes) > KEYFRAME_BUDGET and len(self._keyframes) > 2:
-            first = next((place for place, kept in enumerate(self._keyframes) if kept.between), 1)
-            del self._keyframes[first::2]
+        if len(self.world.broken):
+            self._breaks.add(self.tick)
+        self._keyframes.note_tick(self.world, order)
 
     def _report_progress(self, done: int, total: int) -> None:
         if self.progress is not None and done % PROGRESS_TICKS == 0:

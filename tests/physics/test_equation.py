@@ -7,11 +7,15 @@ import numpy as np
 import pytest
 
 from sandbox.physics.equation import (
+    HIGHEST_COEFFICIENT,
+    at_other_step,
     coefficients_from_frequency,
     direction,
     frequency_from_coefficients,
     half_step,
     highest_frequency,
+    implicit_masses,
+    part_of_network,
     reduced_mass,
     spring_impulse,
 )
@@ -81,6 +85,18 @@ def test_the_halving_map_keeps_every_digit_of_small_coefficients():
     half_stiffness, half_damping = half_step(1e-12, 1e-12)
     assert half_stiffness == pytest.approx(0.25e-12, rel=1e-11)
     assert half_damping == pytest.approx(0.5e-12, rel=1e-11)
+
+
+@pytest.mark.parametrize("parts", [2, 4, 8])
+def test_parts_that_a_tick_chooses_keep_the_constant_of_a_spring_and_damp_no_less(parts):
+    for stiffness, damping in random_coefficients(scaled(4000, 500)):
+        part = part_of_network(stiffness, damping, 0.0, parts)
+        whole = implicit_masses(stiffness, damping, 1.0)[1]
+        assert 0.0 <= part[0] <= 1.0 and 0.0 <= part[1] <= 1.0
+        assert implicit_masses(*part, 1.0)[1] * parts * parts == pytest.approx(whole, rel=1e-7)
+        assert 1.0 - part[1] <= (1.0 - min(damping, HIGHEST_COEFFICIENT)) ** (1.0 / parts) * (1.0 + 1e-9)
+        if stiffness <= damping:
+            assert part[0] <= part[1]
 
 
 def measured_period(frequency, damping_ratio, tick_rate, periods):
@@ -178,3 +194,24 @@ def test_the_frequency_of_every_pair_of_coefficients_is_a_number_of_0_or_more():
 def test_frequencies_and_ratios_that_mean_nothing_are_refused(asked):
     with pytest.raises(ValueError, match="finite numbers of 0 or more"):
         coefficients_from_frequency(*asked)
+
+
+def test_at_twice_the_rate_a_spring_keeps_its_motion_as_half_a_step_does():
+    for stiffness, damping in random_coefficients(60):
+        halved = half_step(stiffness, damping)
+        assert at_other_step(stiffness, damping, 0.5) == pytest.approx(halved, rel=1e-6, abs=1e-15)
+
+
+@pytest.mark.parametrize("times", [0.1, 0.37, 1.0, 1.5])
+def test_at_any_other_step_frequency_and_damping_ratio_stay(times):
+    for stiffness, damping in [(0.3, 0.3), (0.02, 0.001), (0.01, 0.9), (1e-5, 1e-3)]:
+        other = at_other_step(stiffness, damping, times)
+        before, after = frequency_from_coefficients(stiffness, damping, 1.0), frequency_from_coefficients(*other, times)
+        assert after == pytest.approx(before, rel=1e-6)
+        assert at_other_step(*other, 1.0 / times) == pytest.approx((stiffness, damping), rel=1e-6)
+    assert at_other_step(1.0, 1.0, times) == (1.0, 1.0) and at_other_step(0.0, 0.0, times) == (0.0, 0.0)
+
+
+def test_a_swing_that_a_longer_step_cannot_follow_is_refused():
+    with pytest.raises(ValueError, match="swing too fast"):
+        at_other_step(0.5, 0.0, 2.0)

@@ -310,8 +310,8 @@ class SessionMachine(RuleBasedStateMachine):
 @pytest.fixture(autouse=True)
 def short_intervals(monkeypatch):
     """Keyframes and stored states every few ticks, and few of them kept, so that short runs meet them."""
-    monkeypatch.setattr("sandbox.session.session.KEYFRAME_TICKS", 5)
-    monkeypatch.setattr("sandbox.session.session.KEYFRAME_BUDGET", 25_000)
+    monkeypatch.setattr("sandbox.session.keyframes.KEYFRAME_TICKS", 5)
+    monkeypatch.setattr("sandbox.session.keyframes.KEYFRAME_BUDGET", 25_000)
     monkeypatch.setattr("sandbox.session.replay.writer.STATE_TICKS", 7)
 
 

@@ -1,21 +1,26 @@
-"""Panel: Cs and Cd with their Hz reading and proven limit, gravity, and the solver with its settings."""
+"""Panel: Cs and Cd by a pad or by sliders, with their Hz reading and what is proven; gravity, solver and settings."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
+from dataclasses import dataclass
 
 import numpy as np
 import pygame
 
 from sandbox.app.draw.colours import WARNING
 from sandbox.app.edit.side.scroll import ScrollArea
+from sandbox.app.play.coefficient_pad import STIFFNESSES, CoefficientPad, PadState
 from sandbox.app.play.firmness_rows import ALL_BODIES, FirmnessRows
 from sandbox.app.play.playback import Playback
+from sandbox.app.play.response_curve import ResponseCurve
 from sandbox.app.play.view_row import ViewRow
 from sandbox.app.widgets.fields import Field, typed_number
+from sandbox.app.widgets.fold import FoldHeading
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.sliders import LogSlider
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.limits import GRAVITY_LIMIT, SUBSTEPS
+from sandbox.physics.coefficient_zones import CoefficientZones, coefficient_zones
 from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
 from sandbox.physics.firmness import WORDS
@@ -37,8 +42,14 @@ HAND_LABEL = 46.0
 FULL_HEIGHT = 636.0
 # Rows shrink to no less than this part of their height: text would be cut.
 TIGHTEST = 0.94
-# What is added where there are bodies whose firmness can be set.
+# What is added where there are bodies whose firmness can be set; by the pad, in place of sliders; and what of the full
+# height the section of the world takes, which is folded where the pad leaves it no room.
 FIRMNESS_HEIGHT = 118.0
+PAD_HEIGHT, CURVE_HEIGHT = 224.0, 84.0
+PAD_MORE = PAD_HEIGHT + CURVE_HEIGHT - 68.0
+WORLD_HEIGHT = 300.0
+SPRINGS_CHOICE = 118.0
+SIDES_HEIGHT = 38.0
 # Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
 LOOK_EVERY = 15
 ALL_MATERIALS = "All springs"
@@ -46,17 +57,32 @@ DASH = "–"
 SOLVER_LABELS = {"single_pass": "Single pass", "iterative": "Iterative", "direct": "Direct"}
 
 
+@dataclass
+class PanelShape:
+    """How a person has the panel: springs by "pad" or "sliders", the world open or not; None: as room allows."""
+
+    springs: str | None = None
+    world: bool | None = None
+    # Of two runs the one that it shows: "A" or "B".
+    side: str | None = None
+
+
 class Panel:
     """The panel at the right of a window; `say` shows a line to the person.
 
-    choose: what is done with a strength of the "hand", and with a "view" that is shown or no longer.
+    choose: what is done with a strength of the "hand", with a "view" that is shown or no longer, with how "springs" are
+    set ("pad" or "sliders"), the "fold" of the world ("open" or "folded"), and of two runs the "side" to show.
     """
 
     def __init__(
         self, ui: Ui, playback: Playback, say: Callable[[str], None], choose: Mapping[str, Callable[[str], None]],
-        top: float, height: float,
+        top: float, height: float, shape: PanelShape,
     ) -> None:  # fmt: skip
         self._ui, self.playback, self._say, self._choose = ui, playback, say, choose
+        self.pad: CoefficientPad | None = None
+        self.curve: ResponseCurve | None = None
+        self._zones: CoefficientZones | None = None
+        self._zones_of: tuple[object, ...] = ()
         self.material = self._first_material()
         self._gesture: int | None = None
         self._limits: CoefficientLimits | None = None
@@ -66,11 +92,17 @@ class Panel:
         self._y = 0.0
         self.firmness = FirmnessRows(playback, say)
         full = FULL_HEIGHT + (FIRMNESS_HEIGHT if self.firmness.bodies else 0.0)
+        self.by_pad = height >= full + PAD_MORE if shape.springs is None else shape.springs == "pad"
+        full += (PAD_MORE if self.by_pad else 0.0) + (0.0 if shape.side is None else SIDES_HEIGHT)
+        self.is_folded = (self.by_pad and height < TIGHTEST * full) if shape.world is None else not shape.world
+        full -= WORLD_HEIGHT if self.is_folded else 0.0
         self._tight = min(1.0, max(height / full, TIGHTEST))
         background = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
         # What does not fit is scrolled to.
         self.area = ScrollArea(ui, ui.rect(0, 0, PANEL_WIDTH, height), background)
         self.back = self.area.content
+        if shape.side is not None:
+            self._build_sides(shape.side)
         self._build_springs()
         if self.firmness.bodies:
             self._build_firmness()
@@ -89,9 +121,6 @@ class Panel:
     def _place(self, x: float, below: float, width: float, height: float) -> pygame.Rect:
         return self._ui.rect(x, 14 + self._y + below * self._tight, width, height * self._tight)
 
-    def _heading(self, text: str) -> None:
-        self._ui.label(self._row(18, 6), text.upper(), self.back, "@heading")
-
     def _named_field(self, text: str, commit: Callable[[str], bool]) -> Field:
         """A label at the left and a line to type into at the right, on a row of their own."""
         self._ui.label(self._place(MARGIN, 0, INSIDE - ENTRY_WIDTH - 8, ROW), text, self.back)
@@ -107,22 +136,51 @@ class Panel:
         self._row(19 + ROW, 6)
         return fields
 
+    def _build_sides(self, side: str) -> None:
+        """Which of two runs all below is of."""
+        options = [(name, name, f"Show and set the springs and the solver of {name}") for name in ("A", "B")]
+        self.sides = self._ui.choice(self._row(SIDES_HEIGHT - 8, 8), options, self._choose["side"], self.back)
+        self.sides.show(side)
+
+    def follow(self, playback: Playback) -> None:
+        """Show and change another run of the same level."""
+        self.playback = self.firmness.playback = playback
+
     def _build_springs(self) -> None:
         ui = self._ui
-        self._heading("Springs")
+        ui.label(self._place(MARGIN, 2, INSIDE - SPRINGS_CHOICE, 18), "SPRINGS", self.back, "@heading")
+        ways = [("pad", "Pad", "Cs and Cd on a map of what they do"), ("sliders", "Sliders", "Cs and Cd one by one")]
+        place = self._row(22, 6, MARGIN + INSIDE - SPRINGS_CHOICE, SPRINGS_CHOICE)
+        self.ways = ui.choice(place, ways, self._choose["springs"], self.back)
+        self.ways.show("pad" if self.by_pad else "sliders")
         names = [ALL_MATERIALS, *self._material_names()]
         chosen = ALL_MATERIALS if self.material is None else self._material_names()[self.material]
         self.menu = ui.menu(self._row(30, 10), names, chosen, self._choose_material, self.back)
+        if self.by_pad:
+            self._build_pad()
+        else:
+            self._build_sliders()
+        self.frequency, self.ratio = self._beside(
+            ("Frequency [Hz]", "Damping ratio"), (self._type_frequency, self._type_ratio)
+        )
+        self.note = TextBlock(ui, self._row(45, 8), "", self.back)
+
+    def _build_sliders(self) -> None:
         self.stiffness_limit = self._limit_label()
         self.stiffness_field = self._named_field("Cs  stiffness", lambda text: self._type_coefficient(text, True))
         self.stiffness = self._slider(lambda value: self._slide(value, True))
         self.damping_limit = self._limit_label()
         self.damping_field = self._named_field("Cd  damping", lambda text: self._type_coefficient(text, False))
         self.damping = self._slider(lambda value: self._slide(value, False))
-        self.frequency, self.ratio = self._beside(
-            ("Frequency [Hz]", "Damping ratio"), (self._type_frequency, self._type_ratio)
+
+    def _build_pad(self) -> None:
+        place = self._row(PAD_HEIGHT - 6, 6, MARGIN - 8, INSIDE + 12)
+        self.pad = CoefficientPad(self._ui, place, self._move, self._end_gesture, self.back)
+        self.curve = ResponseCurve(self._ui, self._row(CURVE_HEIGHT - 6, 6), self.back)
+        self.stiffness_field, self.damping_field = self._beside(
+            ("Cs  stiffness", "Cd  damping"),
+            (lambda text: self._type_coefficient(text, True), lambda text: self._type_coefficient(text, False)),
         )
-        self.note = TextBlock(ui, self._row(45, 8), "", self.back)
 
     def _limit_label(self) -> TextBlock:
         """Room for a coefficient's proven limit, on its row."""
@@ -149,7 +207,8 @@ class Panel:
 
     def _build_world(self) -> None:
         ui = self._ui
-        self._heading("World")
+        FoldHeading(ui, self._row(18, 6), "World", self.is_folded, self._toggle_fold, self.back)
+        before = len(self.back.elements)
         self.gravity_x, self.gravity_y = self._beside(
             ("Gravity x [m/s²]", "Gravity y [m/s²]"),
             (lambda text: self._type_gravity(text, 0), lambda text: self._type_gravity(text, 1)),
@@ -174,6 +233,12 @@ class Panel:
         columns = (self._place(MARGIN, 0, INSIDE / 2, 34), self._place(MARGIN + INSIDE / 2, 0, INSIDE / 2, 34))
         self.energies = [TextBlock(ui, place, "", self.back) for place in columns]
         self._row(40)
+        if self.is_folded:
+            for element in self.back.elements[before:]:
+                element.hide()
+
+    def _toggle_fold(self) -> None:
+        self._choose["fold"]("open" if self.is_folded else "folded")
 
     def _first_material(self) -> int | None:
         """The material of the most springs, so that a slider does not change all at once; None: there is none."""
@@ -209,7 +274,13 @@ class Panel:
         if key != self._limits_of:
             self._limits_of = key
             self._limits = coefficient_limits(world, self.material)
+            self._find_zones()
             self._show_springs()
+
+    def show_choices(self, strength: str, views: Set[str]) -> None:
+        """Show the strength of the hand, and which overlays are seen."""
+        self.hand.show(strength)
+        self.views.show(views)
 
     def _show_energy(self) -> None:
         world = self.playback.session.world
@@ -226,27 +297,54 @@ class Panel:
     def _show_springs(self) -> None:
         world, chosen, limits = self.playback.session.world, self._chosen(), self._limits
         assert limits is not None
+        stiffness, damping = world.stiffness[chosen], world.damping[chosen]
+        if self.by_pad:
+            self._show_on_pad(stiffness, damping)
+        else:
+            self._show_on_sliders(stiffness, damping, limits)
+        for values, field in ((stiffness, self.stiffness_field), (damping, self.damping_field)):
+            field.show(DASH if not len(values) else "mixed" if values.min() != values.max() else f"{values[0]:.6g}")
         if not len(chosen):
-            self.stiffness_limit.show_text("")
-            self.damping_limit.show_text("")
-            for slider, field in ((self.stiffness, self.stiffness_field), (self.damping, self.damping_field)):
-                slider.show_value(slider.value, None, False, False)
-                field.show(DASH)
             self.frequency.show(DASH)
             self.ratio.show(DASH)
             self.note.show_text(self._no_spring_note())
             return
-        stiffness, damping = world.stiffness[chosen], world.damping[chosen]
-        for values, slider, field, limit, label in (
-            (stiffness, self.stiffness, self.stiffness_field, limits.stiffness, self.stiffness_limit),
-            (damping, self.damping, self.damping_field, limits.damping, self.damping_limit),
-        ):
-            label.show_text(f"limit {limit:.3g}" if limit is not None and limit < 1.0 else "")
-            is_mixed = bool(values.min() != values.max())
-            slider.show_value(float(np.median(values)), limit, is_mixed, True)
-            field.show("mixed" if is_mixed else f"{values[0]:.6g}")
         self._show_reading(stiffness, damping)
         self.note.show_text(f"{limits.reason[0].upper()}{limits.reason[1:]}.")
+
+    def _show_on_sliders(self, stiffness: np.ndarray, damping: np.ndarray, limits: CoefficientLimits) -> None:
+        for values, slider, limit, label in (
+            (stiffness, self.stiffness, limits.stiffness, self.stiffness_limit),
+            (damping, self.damping, limits.damping, self.damping_limit),
+        ):
+            if not len(values):
+                label.show_text("")
+                slider.show_value(slider.value, None, False, False)
+                continue
+            label.show_text(f"limit {limit:.3g}" if limit is not None and limit < 1.0 else "")
+            slider.show_value(float(np.median(values)), limit, bool(values.min() != values.max()), True)
+
+    def _find_zones(self) -> None:
+        """Find the pad's zones anew, where what they depend on has changed: not the chosen springs' own Cs and Cd."""
+        if not self.by_pad:
+            return
+        world = self.playback.session.world
+        others = world.material != self.material if self.material is not None else world.material < 0
+        arrays = (world.stiffness[others], world.damping[others], world.spring_active, world.inverse_mass)
+        key = (world.settings, self.material, world.constraint_count, *(array.tobytes() for array in arrays))
+        if key != self._zones_of:
+            self._zones_of, self._zones = key, coefficient_zones(world, self.material, STIFFNESSES)
+
+    def _show_on_pad(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
+        assert self.pad is not None and self.curve is not None
+        if not len(stiffness):
+            self.pad.show_state(self.pad.state._replace(enabled=False), self._zones)
+            self.curve.show_spring(None, 1)
+            return
+        is_mixed = bool(stiffness.min() != stiffness.max() or damping.min() != damping.max())
+        pair = float(np.median(stiffness)), float(np.median(damping))
+        self.pad.show_state(PadState(*pair, is_mixed, True), self._zones)
+        self.curve.show_spring(None if is_mixed else pair, self.playback.session.world.settings.tick_rate)
 
     def _show_reading(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
         if stiffness.min() != stiffness.max() or damping.min() != damping.max():
@@ -296,6 +394,13 @@ class Panel:
         if self._gesture is None:
             self._gesture = self.playback.session.new_gesture()
         self._set(value, is_stiffness, self._gesture)
+
+    def _move(self, stiffness: float, damping: float) -> None:
+        """Take up what the pad was dragged to."""
+        if self._gesture is None:
+            self._gesture = self.playback.session.new_gesture()
+        self._submit(SetCoefficients(stiffness, damping, self.material), self._gesture)
+        self._tell_of_all()
 
     def _set(self, value: float, is_stiffness: bool, gesture: int | None = None) -> None:
         command = SetCoefficients(

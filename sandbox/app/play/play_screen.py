@@ -20,15 +20,18 @@ from sandbox.app.play.legend import Legend
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.out_of_view import OutOfView
 from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
-from sandbox.app.play.panel import PANEL_WIDTH, Panel
+from sandbox.app.play.panel import PANEL_WIDTH, Panel, PanelShape
 from sandbox.app.play.playback import Playback
+from sandbox.app.play.side_panel import SidePanel
+from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
 from sandbox.app.play.stuck import NOTICE, StuckBodies
+from sandbox.app.play.time_bar import TimeBar
 from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Figures, Pixel, Pointer
-from sandbox.app.share.film import Film
+from sandbox.app.share.film import Film, last_ticks
 from sandbox.app.shortcuts import Mode, tip_of
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
@@ -47,13 +50,14 @@ ROOM_FOR_PANEL = 800.0
 AGAIN_TOP, AGAIN_SIZE = 16.0, (150.0, 40.0)
 # Under what the strength of the hand is remembered.
 HAND = "hand"
+# And how springs are set: "pad" or "sliders".
+SPRINGS = "springs"
 
 
 class PlayScreen:
     """Plays a level or a replay; source: the file of the level; of_document: the level is what the editor has open."""
 
     mode: Mode = "play"
-    notices_left = 16.0
 
     def __init__(
         self, app: Application, playback: Playback, source: Path | None = None, of_document: bool = False
@@ -66,8 +70,12 @@ class PlayScreen:
         self.show_panel = app.ui.units[0] >= ROOM_FOR_PANEL
         self.show_palette = False
         self.palette: PartsPalette | None = None
-        self.panel: Panel | None = None
-        self.stage = Stage(playback, self.viewport, app.scale)
+        self.panel: SidePanel | None = None
+        self.stage = Stage(playback, (0, 0, *app.ui.size), app.scale)
+        self.time = TimeBar(app, lambda: self.playback)
+        self.stage.place(self.viewport, app.scale)
+        kept = preference(SPRINGS)
+        self.shape = PanelShape(kept if kept in ("pad", "sliders") else None)
         kept = preference(HAND)
         if isinstance(kept, str) and kept in STRENGTHS:
             self.stage.drag.strength = kept
@@ -97,10 +105,20 @@ class PlayScreen:
     @property
     def viewport(self) -> tuple[int, int, int, int]:
         """The part of the window that shows the world, in pixels."""
+        return self.area
+
+    @property
+    def area(self) -> tuple[int, int, int, int]:
+        """What bar, panel, timeline and status line leave of the window, in pixels."""
         ui, (width, height) = self._ui, self._ui.size
         top, bottom = ui.px(BAR_HEIGHT), ui.px(STATUS_HEIGHT)
         right = ui.px(PANEL_WIDTH) if self.show_panel else 0
-        return 0, top, max(width - right, 1), max(height - top - bottom, 1)
+        return 0, top, max(width - right, 1), max(height - top - bottom - ui.px(self.time.height), 1)
+
+    @property
+    def notices_corner(self) -> tuple[float, float]:
+        """Where the notices are, from the left and above the status line [layout units]."""
+        return 16.0, self.time.height
 
     def build(self, ui: Ui) -> None:
         """Lay the bar and the panel out anew."""
@@ -110,7 +128,7 @@ class PlayScreen:
         self.stage.place(self.viewport, ui.scale)
         self.palette = None
         if self.show_palette:
-            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT)
+            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, self.area[3] / ui.scale)
         left = FREE_PLACE[0] if self.palette is None else self.palette.right + FREE_PLACE[1]
         place = ui.rect(left, BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
         self.free = ui.button(place, "Free it", self._free, tip=tip_of("free", "play"))
@@ -119,14 +137,30 @@ class PlayScreen:
         place = ui.rect(left, BAR_HEIGHT + AGAIN_TOP, *AGAIN_SIZE)
         self.again = ui.button(place, "Again", self._reset, style="@primary", tip=tip_of("reset", "play"))
         self.again.hide()
+        self.time.build(ui, self.area[2] / ui.scale, ui.units[1] - STATUS_HEIGHT)
         self.stage.renderer.follow_theme()
         before, self.panel = self.panel, None
         if self.show_panel:
             height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
-            choices = {"hand": self.choose_strength, "view": self._app.act}
-            self.panel = Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height)
-            if before is not None and before.playback is self.playback:
+            choices: dict[str, Callable[[str], None]] = {
+                "hand": self.choose_strength, "view": self._app.act, "springs": self._set_by, "fold": self._fold,
+            }  # fmt: skip
+            self.panel = self._make_panel(ui, choices, height)
+            if before is not None and before.playback.level is self.playback.level:
                 self.panel.choose_material(before.material)
+
+    def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> SidePanel:
+        return Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape)
+
+    def _set_by(self, way: str) -> None:
+        """Show the pad or the sliders from now on, in later runs too."""
+        self.shape.springs = way
+        set_preference(SPRINGS, way)
+        self._app.rebuild()
+
+    def _fold(self, how: str) -> None:
+        self.shape.world = how == "open"
+        self._app.rebuild()
 
     # Actions.
 
@@ -146,7 +180,8 @@ class PlayScreen:
             "redo": lambda: self.playback.submit_redo(),
             "pause": lambda: self.playback.toggle_pause(),
             "step": lambda: self.playback.clock.step_once(),
-            "slow": self._slower,
+            "slow": lambda: self.playback.clock.next_speed(SPEEDS),
+            **self.time.actions,
             "reset": self._reset,
             "zoom_in": lambda: self._zoom(2),
             "zoom_out": lambda: self._zoom(-2),
@@ -224,18 +259,17 @@ class PlayScreen:
             self.playback.submit(Free(particle), gesture)
         self.stuck = StuckBodies()
 
-    def _slower(self) -> None:
-        clock = self.playback.clock
-        clock.speed = SPEEDS[(SPEEDS.index(clock.speed) + 1) % len(SPEEDS)]
-
     def _reset(self) -> None:
         self.leave()
-        self.stage.replace_playback(self.playback.reset())
+        self._begin_again()
         self.stuck = StuckBodies()
         self.out_of_view = OutOfView()
         self._app.follow(self.playback)
         if self.panel is not None:
-            self.panel.playback = self.playback
+            self.panel.follow(self.playback)
+
+    def _begin_again(self) -> None:
+        self.stage.replace_playback(self.playback.reset())
 
     def _toggle_panel(self) -> None:
         self._wants_panel = not self.show_panel
@@ -248,9 +282,14 @@ class PlayScreen:
             self._app.say(f"Saved as {path}")
 
     def film(self, seconds: float) -> Film:
-        """The last seconds [s] of the run, as it is seen now."""
-        stage = self.stage
-        return Film(self.playback.session, stage.camera, stage.renderer, seconds, stage.fitted_box)
+        """The chosen range of the run, or its last seconds [s], as it is seen now."""
+        stage, session = self.stage, self.playback.session
+        span = self.playback.travel.span or last_ticks(session, seconds)
+        return Film(session, stage.camera, stage.renderer, span, stage.fitted_box)
+
+    def drop_caches(self) -> None:
+        """Use kernels that have come about."""
+        self.playback.session.world.drop_caches()
 
     # Pointer and keys.
 
@@ -289,17 +328,13 @@ class PlayScreen:
         self.stage.renderer.compiled = ready
         self._show_stuck()
         self._show_again()
-        for message in self.playback.messages:
-            self._app.say(message)
-        self.playback.messages.clear()
-        self._tell_breaks()
+        self._tell()
         if self.panel is not None and ready:
             self.panel.refresh()
-            self.panel.hand.show(self.stage.drag.strength)
+            self.panel.show_choices(self.stage.drag.strength, self.stage.renderer.overlays.shown)
+        self.time.show()
         if self.palette is not None:
             self.palette.show(PaletteState(self.stage.tool_name, ready))
-        if self.panel is not None:
-            self.panel.views.show(self.stage.renderer.overlays.shown)
         self.toolbar.show(
             BarState(
                 self.playback.level.name,
@@ -311,8 +346,17 @@ class PlayScreen:
                 self.playback.session.can_redo,
                 self.show_panel,
                 self.show_palette,
+                self._app.chosen["sound"] == "on",
+                self.time.is_shown,
             )
         )
+
+    def _tell(self) -> None:
+        """Say what the run has to say."""
+        for message in self.playback.messages:
+            self._app.say(message)
+        self.playback.messages.clear()
+        self._tell_breaks()
 
     def _tell_breaks(self) -> None:
         """Say what broke; a line that has grown takes the place of what it was."""
@@ -373,9 +417,7 @@ class PlayScreen:
     def _state(self) -> str:
         """The state of the run in a word, as status line and window title show it."""
         clock = self.playback.clock
-        if clock.paused:
-            return "paused"
-        return "playing" if clock.speed == 1.0 else f"slow motion 1/{round(1 / clock.speed)}"
+        return "paused" if clock.paused else state_of(clock.speed)
 
     def title(self) -> list[str]:
         """Level, tick and state, so that other programs can follow what happens."""

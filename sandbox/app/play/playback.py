@@ -3,22 +3,37 @@
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
 from sandbox.app.loop import TickClock
 from sandbox.app.play.breaks import Breaks
+from sandbox.app.play.travel import Travel
 from sandbox.level.format.model import Level
 from sandbox.physics.energy import Dissipation
 from sandbox.physics.snapshot import Snapshot, state_hash
+from sandbox.physics.world import World
 from sandbox.session.commands import Command, CommandError, Redo, Undo
 from sandbox.session.replay.recording import Replay
-from sandbox.session.session import Session, break_lines
+from sandbox.session.session import Branch, Session, break_lines
 from sandbox.tools.tool import Response
 
 # Wall time [s] that the ticks of one frame may take; the ticks beyond it are lost and the run falls behind real time,
 # but the window goes on answering.
 TICK_BUDGET = 0.05
+
+
+class Listener(Protocol):
+    """Who is told of every tick of a run; it reads and never writes."""
+
+    def hear(self, world: World) -> None:
+        """Take in the world after a tick."""
+        ...
+
+    def forget(self) -> None:
+        """Compare with nothing that was before: history is another."""
+        ...
 
 
 class Playback:
@@ -34,8 +49,11 @@ class Playback:
         self.behind = False
         self.verdict = ""
         self.messages: list[str] = []
+        self.listener: Listener | None = None
         self.current = self.previous = self.session.snapshot()
+        self.travel = Travel(self.session, replay)
         self._equal = True
+        self._taken_over = False
         self._submitted = False
         self._has_grown = False
         # Grows with every command of the person's that was applied.
@@ -49,20 +67,37 @@ class Playback:
     @property
     def watching(self) -> bool:
         """Whether a replay still decides what happens."""
-        return self.replay is not None and not self.verdict
+        return self.replay is not None and not self._taken_over
+
+    @property
+    def length(self) -> int:
+        """The last tick that can be gone to."""
+        return self.travel.length(self.watching)
 
     def reset(self) -> "Playback":
         """The same level or replay from its beginning, at the same speed."""
         fresh = Playback(self.level, self.replay)
-        fresh.clock = replace(self.clock, accumulator=0.0, single_steps=0)
+        fresh.clock = replace(self.clock, speed=abs(self.clock.speed), accumulator=0.0, single_steps=0)
+        fresh.travel.bookmarks, fresh.travel.span = self.travel.bookmarks, self.travel.span
         return fresh
 
     def submit(self, command: Command, gesture: int | None = None) -> None:
-        """Queue a command of the person's; while a replay is watched, the person takes over from it."""
+        """Queue a command of the person's; while a replay is watched, or in the past, the person takes over from it."""
+        session = self.session
         if self.watching:
             self.take_over()
+        if session.tick < session.last_tick and not self._submitted:
+            gesture = session.new_gesture() if gesture is None else gesture
+            for ending in session.going():
+                session.submit(ending, gesture)
+            self.messages.append("The run goes on from here. What followed is kept: Shift+Y returns to it.")
+        if self.clock.speed < 0.0:
+            self.clock.speed, self.clock.accumulator = 1.0, 0.0
+        self.travel.target = None
         self._submitted = True
-        self.session.submit(command, gesture)
+        if self.listener is not None and isinstance(command, (Undo, Redo)):
+            self.listener.forget()
+        session.submit(command, gesture)
 
     def respond(self, response: Response) -> None:
         """Queue what a tool answered."""
@@ -86,13 +121,48 @@ class Playback:
             self.messages.append(otherwise)
 
     def toggle_pause(self) -> None:
-        """Pause, or go on."""
+        """Pause, or go on; at the end of a replay the run goes on from there."""
+        if self.clock.paused and self.watching and self.verdict and self.session.tick == self.length:
+            self.take_over()
+        self.travel.target = None
         self.clock.paused = not self.clock.paused
 
     def take_over(self) -> None:
         """Stop following the replay: from here the person plays."""
+        self._taken_over = True
         self.verdict = f"You took over at tick {self.session.tick}"
         self.messages.append(f"{self.verdict}: the recording is not followed any further.")
+
+    def seek(self, tick: int) -> None:
+        """Go to a tick, as near as there is one; a replay that has not been there yet hurries to it.
+
+        While the run is recorded it stays where it is, with a message.
+        """
+        session = self.session
+        tick = min(max(tick, 0), self.length)
+        if session.recording is not None:
+            self.messages.append("Stop the recording before you go back in time.")
+            self.clock.speed = abs(self.clock.speed)
+            return
+        self.apply_pending()
+        self.travel.target = tick if tick > session.last_tick else None
+        with np.errstate(over="ignore", invalid="ignore"):
+            session.seek(min(tick, session.last_tick))
+        self.clock.accumulator = 0.0
+        self.revision += 1
+        if self.listener is not None:
+            self.listener.forget()
+        self.current = self.previous = session.snapshot()
+
+    def return_to(self, branch: Branch) -> None:
+        """Go back to where a branch begins, with it as what follows."""
+        if self.session.recording is not None:
+            self.messages.append("Stop the recording before you go back in time.")
+            return
+        self._taken_over = True
+        with np.errstate(over="ignore", invalid="ignore"):
+            self.session.return_to(branch)
+        self.seek(branch.tick)
 
     def apply_pending(self) -> None:
         """Apply what was submitted, also while paused, and show it at once."""
@@ -101,7 +171,7 @@ class Playback:
         try:
             self.session.apply_pending()
         except CommandError as error:
-            self._end_watching(f"the recording holds a command that cannot be carried out: {error}")
+            self._give_up(error)
         self._has_grown = len(self.session.world.joined) > len(joined)
         if submitted:
             self.revision += 1
@@ -122,9 +192,16 @@ class Playback:
             self._has_grown, self.clock.accumulator = False, self.clock.accumulator + frame_time * self.clock.speed
             return 0
         due = self.clock.ticks(frame_time, self.session.world.settings.tick_rate)
+        if self.travel.target is not None:
+            return self._hurry(self.travel.target)
+        if due < 0:
+            return self._go_back(-due)
         started, done = time.perf_counter(), 0
         self.behind = False
         while done < due and not self._at_replays_end():
+            turn = self.travel.turns_at(self.session.tick, backward=False)
+            if turn is not None and self.session.recording is None:
+                self.seek(turn)
             if done == due - 1:
                 self.previous = self.session.snapshot()
             if not self._tick():
@@ -142,7 +219,29 @@ class Playback:
         self._drain()
         return done
 
+    def _hurry(self, target: int) -> int:
+        """Make as many ticks towards a tick as a frame has time for."""
+        started, done = time.perf_counter(), 0
+        while self.session.tick < target and time.perf_counter() - started < TICK_BUDGET and self._tick():
+            done += 1
+        if self.session.tick >= target or not self.watching:
+            self.travel.target = None
+        self.current = self.previous = self.session.snapshot()
+        self._drain()
+        return done
+
+    def _go_back(self, ticks: int) -> int:
+        """Play backwards; pauses at the beginning."""
+        tick = self.session.tick
+        turn = self.travel.turns_at(tick, backward=True)
+        self.seek(tick - ticks if turn is None else turn)
+        if self.session.tick == 0 and turn is None:
+            self.clock.paused, self.clock.speed = True, 1.0
+        self._drain()
+        return 0
+
     def _tick(self) -> bool:
+        is_new = self.session.tick == self.session.last_tick
         try:
             with np.errstate(over="ignore", invalid="ignore"):
                 self.session.apply_pending()
@@ -150,10 +249,12 @@ class Playback:
                 self.session.advance()
                 self.dissipation.after(self.session.world)
                 self._note_breaks()
+                if self.listener is not None and self.travel.target is None:
+                    self.listener.hear(self.session.world)
         except CommandError as error:
-            self._end_watching(f"the recording holds a command that cannot be carried out: {error}")
+            self._give_up(error)
             return False
-        if self.watching:
+        if self.watching and is_new:
             self._compare()
         return True
 
@@ -178,6 +279,9 @@ class Playback:
         assert self.replay is not None
         if self.session.tick < self.replay.ticks:
             return False
+        if self.verdict:
+            self.clock.paused = True
+            return True
         cut = " (the file is cut off there)" if self.replay.end_hash is None else ""
         outcome = "verified: every tick equal bit for bit" if self._equal else "NOT equal to the recording"
         self._end_watching(f"{self.replay.ticks:,} ticks{cut}, {outcome}")
@@ -187,6 +291,10 @@ class Playback:
         self.verdict = f"End of the replay: {outcome}"
         self.clock.paused = True
         self.messages.append(self.verdict)
+
+    def _give_up(self, error: CommandError) -> None:
+        self._end_watching(f"the recording holds a command that cannot be carried out: {error}")
+        self._taken_over = True
 
     def _drain(self) -> None:
         self.messages.extend(self.session.messages)

@@ -63,9 +63,9 @@ class StatusLine:
         surface: pygame.Surface,
         parts: list[tuple[str, Colour]],
         right: float,
-        notices_left: float | None,
+        notices_corner: tuple[float, float] | None,
     ) -> None:
-        """Draw parts of text from the left up to `right`, notices from a left edge; in layout units."""
+        """Draw parts of text from the left up to `right`, notices so far from the left and above; in layout units."""
         ui = self.ui
         height = ui.px(STATUS_HEIGHT)
         top = surface.get_height() - height
@@ -78,8 +78,9 @@ class StatusLine:
                 break
             surface.blit(picture, (x, top + (height - picture.get_height()) // 2))
             x += picture.get_width() + ui.px(18)
-        if notices_left is not None:
-            self._draw_notices_above(surface, top, notices_left)
+        if notices_corner is not None:
+            left, above = notices_corner
+            self._draw_notices_above(surface, top - ui.px(above), left)
 
     def draw_notices(self, surface: pygame.Surface, left: float) -> None:
         """Draw the notices alone, over a page that covers the line."""

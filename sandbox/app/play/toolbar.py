@@ -8,6 +8,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED, TEXT, Colour
+from sandbox.app.play.speeds import words_of
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.icons import ICONS, painted_icon
@@ -29,12 +30,15 @@ LEFT = (
     (("edit", "edit"),),
     (("tool_drag", "drag"), ("tool_pin", "pin"), ("tool_cut", "cut"), ("palette", "parts")),
     (("undo", "undo"), ("redo", "redo")),
-    (("reset", "reset"), ("pause", "pause"), ("step", "step"), ("slow", ""), ("keep", "keep")),
+    (("reset", "reset"), ("pause", "pause"), ("step", "step"), ("slow", ""), ("timeline", "timeline")),
+    (("keep", "keep"),),
     (("record", "record"), ("save", "save")),
 )  # fmt: skip
 RIGHT = (
     ("share", "share"),
+    ("compare", "compare"),
     ("gallery", "levels"),
+    ("sound", "sound"),
     ("settings", "settings"),
     ("fit", "fit"),
     ("panel", "panel"),
@@ -46,8 +50,11 @@ WIDE_WORDS = {**WORDS, "share": "Share"}
 # What goes into the menu where the window is too narrow, first what is missed least.
 LEAVING = (
     "save",
+    "compare",
     "settings",
+    "timeline",
     "record",
+    "sound",
     "fit",
     "redo",
     "step",
@@ -75,6 +82,8 @@ class BarState:
     can_redo: bool
     panel: bool
     palette: bool
+    sound: bool
+    timeline: bool
 
 
 def fitting(actions: Sequence[str], width: float) -> list[str]:
@@ -146,13 +155,15 @@ class Toolbar:
         self._mark("record", DANGER, state.recording, "stop" if state.recording else "record")
         self._mark("panel", TEXT, state.panel)
         self._mark("palette", TEXT, state.palette)
+        self._mark("sound", TEXT if state.sound else DISABLED, False, "sound" if state.sound else "muted")
+        self._mark("timeline", TEXT, state.timeline)
         for name, on in (("undo", state.can_undo), ("redo", state.can_redo)):
             self._mark(name, TEXT if on else DISABLED, False)
             if name in self.buttons:
                 (self.buttons[name].enable if on else self.buttons[name].disable)()
         slow = self.buttons.get("slow")
         if slow is not None:
-            slow.set_text("1x" if state.speed == 1.0 else f"1/{round(1 / state.speed)}x")
+            slow.set_text(words_of(state.speed))
             (slow.unselect if state.speed == 1.0 else slow.select)()
         if self.title is not None:
             self.title.set_text(state.name)

@@ -25,21 +25,21 @@ SHADE = (0, 0, 0, 96)
 
 
 class Film:
-    """What `session` has done in its last `seconds`, as a camera shows it and a renderer draws it now.
+    """What `session` has done from the first to the last tick of a span, as a camera shows it and a renderer draws it.
 
     What becomes of the three after that does not change the film. box [m]: what is shown instead, as large as it goes,
     whatever shape the pictures have. first, last: its ticks.
     """
 
     def __init__(
-        self, session: Session, camera: Camera, renderer: Renderer, seconds: float, box: Box | None = None
+        self, session: Session, camera: Camera, renderer: Renderer, span: tuple[int, int], box: Box | None = None
     ) -> None:
         self.level = session.level
         self.rate = session.world.settings.tick_rate
-        self.last = session.tick
-        self._past = session.retold(max(0, self.last - round(seconds * self.rate)))
-        self.first = max(self._past.tick, self.last - round(seconds * self.rate))
-        self._end = session.snapshot()
+        self.last = min(max(span[1], 0), session.last_tick)
+        self._past = session.retold(min(span[0], self.last))
+        self.first = min(max(self._past.tick, span[0]), self.last)
+        self._end = session.snapshot() if session.tick == self.last else session.keyframes(0, self.last)[-1]
         self._centre, self._zoom = camera.centre, camera.zoom
         self._shown, self._box = camera.viewport[2:], box
         self._renderer = renderer.alike(renderer.scale)
@@ -115,6 +115,11 @@ class _FilmStage:
         return surface
 
 
+def last_ticks(session: Session, seconds: float) -> tuple[int, int]:
+    """The first and last tick of the last seconds [s] of a run until now."""
+    return max(0, session.tick - round(seconds * session.world.settings.tick_rate)), session.tick
+
+
 def picture_count(start: float, end: float, fps: float) -> int:
     """How many pictures a film of start..end [s] has."""
     return max(1, round((end - start) * fps))
@@ -135,4 +140,4 @@ def film_of_view(session: Session, size: Size, seconds: float) -> Film:
     camera = Camera(viewport=(0, 0, *size))
     camera.fit(view_of(session.level, session.keyframes(0, session.tick)[0]))
     scale = max(SMALLEST_SCALE, min(size[0] / 1280, size[1] / 720))
-    return Film(session, camera, Renderer(scale, session.level), seconds)
+    return Film(session, camera, Renderer(scale, session.level), last_ticks(session, seconds))

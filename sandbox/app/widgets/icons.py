@@ -157,13 +157,81 @@ def _stability(pen: IconPen) -> None:
     pen.disc(12, 16, 2.2)
 
 
+def _compare(pen: IconPen) -> None:
+    pen.line((4, 5), (10, 5), (10, 19), (4, 19), (4, 5), width=1.8)
+    pen.line((14, 5), (20, 5), (20, 19), (14, 19), (14, 5), width=1.8)
+    pen.disc(7, 9, 1.7)
+    pen.disc(17, 14.5, 1.7)
+
+
+def _speaker(pen: IconPen) -> None:
+    pen.shape((3, 9), (7, 9), (12, 4.5), (12, 19.5), (7, 15), (3, 15))
+
+
+def _sound(pen: IconPen) -> None:
+    _speaker(pen)
+    pen.arc(12, 12, 4.6, -50, 50)
+    pen.arc(12, 12, 8.6, -50, 50)
+
+
+def _muted(pen: IconPen) -> None:
+    _speaker(pen)
+    pen.line((15.5, 9), (21, 15))
+    pen.line((21, 9), (15.5, 15))
+
+
+def _timeline(pen: IconPen) -> None:
+    pen.line((3, 12), (21, 12), width=1.8)
+    pen.disc(9, 12, 3.4)
+    for x in (5, 15, 19):
+        pen.line((x, 6), (x, 8.5), width=1.6)
+
+
+def _back(pen: IconPen) -> None:
+    pen.shape((19, 5), (9, 12), (19, 19))
+    pen.line((6, 6), (6, 18), width=2.6)
+
+
+def _backwards(pen: IconPen) -> None:
+    pen.shape((18, 4), (5, 12), (18, 20))
+
+
+def _mark_beside(pen: IconPen, turn: int) -> None:
+    for x in (12 - 7 * turn, 12):
+        pen.shape((x, 5), (x + 7 * turn, 12), (x, 19))
+    pen.line((12 + 8.5 * turn, 5), (12 + 8.5 * turn, 19), width=2.2)
+
+
+def _bookmark(pen: IconPen) -> None:
+    pen.line((7, 3), (7, 21))
+    pen.shape((7, 4), (19, 8), (7, 12))
+
+
+def _loop(pen: IconPen) -> None:
+    pen.arc(12, 12, 7.5, 30, 200)
+    pen.arc(12, 12, 7.5, 210, 380)
+    pen.shape((16, 10.5), (23, 10.5), (19.5, 5))
+    pen.shape((8, 13.5), (1, 13.5), (4.5, 19))
+
+
+def _branch(pen: IconPen) -> None:
+    pen.line((4, 12), (10, 12), (19, 5))
+    pen.line((10, 12), (19, 19))
+    for y in (5, 19):
+        pen.disc(19, y, 2.6)
+
+
 ICONS: dict[str, Icon] = {
     "settings": _settings, "more": _more,
     "drag": _drag, "pin": draw_pin, "cut": _cut, "play": _play, "pause": _pause, "step": _step, "reset": _reset,
     "undo": _undo, "redo": _redo, "record": _record, "stop": _stop, "levels": _levels, "fit": _fit,
     "panel": _panel, "save": _save, "edit": _edit, "keep": _keep, "share": _share, "spring": draw_spring,
     "lattice": _lattice, "particles": _particles, "contacts": _contacts, "forces": _forces,
-    "velocities": _velocities, "stability": _stability, "parts": _parts,
+    "velocities": _velocities, "stability": _stability, "parts": _parts, "sound": _sound, "muted": _muted,
+    "compare": _compare,
+    "timeline": _timeline, "back": _back, "backwards": _backwards, "bookmark": _bookmark, "loop": _loop,
+    "next_mark": lambda pen: _mark_beside(pen, 1), "previous_mark": lambda pen: _mark_beside(pen, -1),
+    "branch": _branch,
 }  # fmt: skip
 
 

@@ -6,8 +6,10 @@ import pygame
 
 from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.form import GAP, ROW, Form
-from sandbox.editor.document import Document
+from sandbox.app.widgets.dialogs import ask
+from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_level_field
+from sandbox.editor.edits.pace import set_rate_in_pace
 from sandbox.editor.panel.level_properties import level_properties
 from sandbox.level.format.model import Level
 
@@ -20,7 +22,7 @@ class SettingsPage:
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen, self._ui = screen, screen.ui
-        below = self._ui.px(ROW + 2 * GAP)
+        below = self._ui.px(2 * ROW + 3 * GAP)
         self.form = Form(screen, pygame.Rect(place.topleft, (place.width, place.height - below)), container)
         half = (place.width - self._ui.px(12 + GAP)) // 2
         row = pygame.Rect(place.left, place.bottom - self._ui.px(ROW + 4), half, self._ui.px(ROW))
@@ -29,6 +31,11 @@ class SettingsPage:
         row = row.move(half + self._ui.px(GAP), 0)
         tip = "Let the level open with everything in sight"
         self.no_view = self._ui.button(row, "View: everything", self._drop_view, container, style="@segment", tip=tip)
+        row = pygame.Rect(place.left, row.top - self._ui.px(ROW + GAP), 2 * half + self._ui.px(GAP), row.height)
+        tip = "Another tick rate, with Cs and Cd worked out so that springs move per second as they do now"
+        self.pace = self._ui.button(
+            row, "Tick rate, at the same pace…", self._ask_rate, container, style="@segment", tip=tip
+        )
         self._shown: Level | None = None
 
     def refresh(self) -> None:
@@ -55,8 +62,28 @@ class SettingsPage:
 
         self._screen.edit("View", with_view)
 
+    def _ask_rate(self) -> None:
+        """Ask for another tick rate at which springs move as they do now."""
+        rate = self._screen.document.level.settings.tick_rate
+        hint = "Ticks a second. Each spring keeps its frequency and damping ratio; muscles keep their time."
+        title = "Another tick rate, the same behaviour"
+        ask(self._ui, title, hint, str(rate), "Change", self._take_rate)
+
+    def _take_rate(self, typed: str) -> str | None:
+        """Take a typed rate; what is wrong with it otherwise."""
+        if not typed.isdecimal():
+            return f"{typed or 'Nothing'!r} is not a whole number of ticks a second."
+        try:
+            document = set_rate_in_pace(self._screen.document, int(typed))
+        except EditError as error:
+            text = str(error)
+            return f"{text[0].upper()}{text[1:]}."
+        self._screen.apply("Tick rate at the same pace", document)
+        return None
+
     def close(self) -> None:
         """Take the page away."""
         self.form.close()
         self._ui.remove(self.from_camera)
         self._ui.remove(self.no_view)
+        self._ui.remove(self.pace)

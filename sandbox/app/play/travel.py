@@ -1,0 +1,75 @@
+"""Travel: where in its time a run is and can go: marks to jump to, a range that is played over and over."""
+
+import bisect
+from dataclasses import dataclass
+
+from sandbox.session.replay.recording import Replay
+from sandbox.session.session import Session
+
+# Shortest range that is played over and over [ticks].
+SHORTEST_RANGE = 6
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A tick worth going to, and why in a word or two; kind: "command", "break", "bookmark" or "branch"."""
+
+    tick: int
+    kind: str
+    label: str
+
+
+class Travel:
+    """The times of a run. bookmarks: ticks that the person marked. span: first and last tick of the range, or None;
+    looping: whether it is played over and over. target: the tick that a replay is hurrying to, or None.
+    """
+
+    def __init__(self, session: Session, replay: Replay | None) -> None:
+        self._session, self._replay = session, replay
+        self.bookmarks: list[int] = []
+        self.span: tuple[int, int] | None = None
+        self.looping = False
+        self.target: int | None = None
+
+    def length(self, watching: bool) -> int:
+        """The last tick that can be gone to; watching: whether the replay is followed to its end."""
+        reached = self._session.last_tick
+        return max(reached, self._replay.ticks) if watching and self._replay is not None else reached
+
+    def marks(self) -> list[Mark]:
+        """What happened, in order."""
+        session = self._session
+        commands = [Mark(entry.tick, "command", entry.command.type.replace("_", " ")) for entry in session.gestures]
+        breaks = [Mark(tick, "break", "break") for tick in session.breaks]
+        bookmarks = [Mark(tick, "bookmark", "bookmark") for tick in self.bookmarks]
+        branches = [Mark(branch.tick, "branch", "it went on otherwise") for branch in session.branches]
+        return sorted([*commands, *breaks, *bookmarks, *branches], key=lambda mark: mark.tick)
+
+    def mark_beside(self, tick: int, by: int) -> Mark | None:
+        """The first mark after a tick (by 1), or the last before it (by -1)."""
+        marks = self.marks()
+        ticks = [mark.tick for mark in marks]
+        place = bisect.bisect_right(ticks, tick) if by > 0 else bisect.bisect_left(ticks, tick) - 1
+        return marks[place] if 0 <= place < len(marks) else None
+
+    def toggle_bookmark(self, tick: int) -> bool:
+        """Mark a tick, or no longer; whether it is marked now."""
+        if tick in self.bookmarks:
+            self.bookmarks.remove(tick)
+        else:
+            bisect.insort(self.bookmarks, tick)
+        return tick in self.bookmarks
+
+    def set_span(self, first: int, last: int) -> None:
+        """Choose a range by its ends, in any order."""
+        first, last = min(first, last), max(first, last)
+        self.span = first, max(last, first + SHORTEST_RANGE)
+
+    def turns_at(self, tick: int, backward: bool) -> int | None:
+        """Where to go on from a tick that ends the range while it is looped; None: just on."""
+        if not self.looping or self.span is None:
+            return None
+        first, last = self.span
+        if backward:
+            return last if tick <= first else None
+        return first if tick >= last else None
