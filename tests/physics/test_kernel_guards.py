@@ -39,8 +39,8 @@ LIBRARY = (
     "_finalize_final_module",
 )  # fmt: skip
 
-# Runs files, a line of standard input each: in a copy of itself where the system can, which spares importing numba, else
-# in itself, and ends. Answers a line of JSON: what the file calls `outcome`, or a text that says what was raised.
+# Runs files, a line of standard input each: in a copy of itself where the system can, which spares importing numba,
+# else in itself, and ends. Answers a line of JSON: what the file calls `outcome`, or a text of what was raised.
 PROGRAMME = """
 import json, os, runpy, sys, traceback
 import numpy as np
