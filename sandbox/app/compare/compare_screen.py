@@ -12,6 +12,7 @@ from sandbox.app.compare.twin import TwinPlayback, coefficients_of
 from sandbox.app.draw.colours import LINE, TEXT
 from sandbox.app.play.panel import SOLVER_LABELS, Panel
 from sandbox.app.play.play_screen import PlayScreen
+from sandbox.app.play.side_panel import SidePanel
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.profile import Profile
@@ -19,6 +20,8 @@ from sandbox.app.screen import Pixel, Pointer
 from sandbox.app.widgets.ui import Ui
 
 SIDES = ("A", "B")
+# Layout units: halves that are lower have no figures over them; how far down the line about both is.
+ROOM_FOR_FIGURES, PILL_TOP = 260.0, 76.0
 WELCOME = "The same level twice. Choose A or B in the panel and set its springs; what your hand does is done to both."
 
 
@@ -38,7 +41,8 @@ class CompareScreen(PlayScreen):
         # The beginning is the same in both: they show the same part of it.
         self.stage.place(self.viewport, app.scale)
         app.follow(other)
-        app.say(self.welcome)
+        if self.welcome:
+            app.say(self.welcome)
 
     @property
     def other(self) -> TwinPlayback:
@@ -91,7 +95,7 @@ class CompareScreen(PlayScreen):
             self.beside.place(self.other_viewport, ui.scale)
             self.beside.renderer.follow_theme()
 
-    def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> Panel:
+    def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> SidePanel:
         self.shape.side = self.side
         playback = self.playback if self.side == SIDES[0] or self.beside is None else self.other
         return Panel(ui, playback, self._app.say, {**choices, "side": self.choose_side}, BAR_HEIGHT, height, self.shape)
@@ -101,15 +105,25 @@ class CompareScreen(PlayScreen):
         self.side = side
         self._app.rebuild()
 
+    def _next_runs(self) -> tuple[TwinPlayback, TwinPlayback]:
+        """Both runs from their beginning."""
+        assert isinstance(self.playback, TwinPlayback)
+        return self.playback.reset(), self.other.reset()
+
+    def _begin_again(self) -> None:
+        assert self.beside is not None
+        one, other = self._next_runs()
+        one.pair(other)
+        self.stage.replace_playback(one)
+        self.beside.replace_playback(other)
+        self._join_stages()
+        self.difference = Difference()
+        self._app.follow(other)
+
     def _reset(self) -> None:
         super()._reset()
-        assert self.beside is not None and isinstance(self.playback, TwinPlayback)
-        self.beside.replace_playback(self.other.reset())
-        self.playback.pair(self.other)
-        self._join_stages()
-        self._app.follow(self.other)
-        if self.panel is not None:
-            self.panel.follow(self.playback if self.side == SIDES[0] else self.other)
+        if self.panel is not None and self.side == SIDES[1]:
+            self.panel.follow(self.other)
 
     def drop_caches(self) -> None:
         """Use kernels that have come about."""
@@ -169,9 +183,17 @@ class CompareScreen(PlayScreen):
         end = (left, top + height) if self._is_wide else (left + width, top)
         pygame.draw.line(surface, LINE, (left, top), end, max(2, self._ui.px(2)))
         for side, viewport, lines in zip(SIDES, (self.viewport, self.other_viewport), self.captions(), strict=True):
-            draw_chip(surface, self._ui, viewport, side, lines)
+            is_low = viewport[3] < self._ui.px(ROOM_FOR_FIGURES)
+            draw_chip(surface, self._ui, viewport, side, lines[:1] if is_low else lines)
         if self.difference.text:
-            draw_pill(surface, self._ui, pygame.Rect(self.area), self.difference.text, TEXT)
+            draw_pill(surface, self._ui, self._pill_place, self.difference.text, TEXT)
+
+    @property
+    def _pill_place(self) -> tuple[int, int]:
+        """Where the middle of the line about both is: on what divides them."""
+        left, top, width, height = self.area
+        across = left + width // 2
+        return across, top + (self._ui.px(PILL_TOP) if self._is_wide else height // 2)
 
     def captions(self) -> tuple[list[str], list[str]]:
         """What stands over each half: its settings, and what comes of them."""

@@ -16,7 +16,6 @@ LOOK_EVERY = 6
 SAME = 5e-4
 # Sizes in layout units.
 MARGIN, PADDING, TEXT_SIZE, SMALL_SIZE = 10.0, 8.0, 13.0, 11.5
-PILL_TOP = 58.0
 OPACITY = 225
 
 
@@ -97,9 +96,17 @@ def draw_chip(
     surface.set_clip(None)
 
 
-def draw_pill(surface: pygame.Surface, ui: Ui, area: pygame.Rect, text: str, colour: Colour) -> None:
-    """A line on a card below the chips, in the middle of an area."""
+def draw_card_of_words(surface: pygame.Surface, ui: Ui, area: pygame.Rect, text: str) -> None:
+    """A word in large letters in the middle of an area."""
+    picture = ui.font(22, True).render(text, True, TEXT)
+    place = picture.get_rect(center=area.center)
+    _card(surface, place.inflate(ui.px(44), ui.px(28)), ui)
+    surface.blit(picture, place)
+
+
+def draw_pill(surface: pygame.Surface, ui: Ui, middle: tuple[int, int], text: str, colour: Colour) -> None:
+    """A line on a card about a place [pixels]."""
     picture = ui.font(TEXT_SIZE).render(text, True, colour)
-    place = picture.get_rect(midtop=(area.centerx, area.top + ui.px(MARGIN + PILL_TOP)))
+    place = picture.get_rect(center=middle)
     _card(surface, place.inflate(ui.px(22), ui.px(10)), ui)
     surface.blit(picture, place)

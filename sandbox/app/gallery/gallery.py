@@ -11,6 +11,7 @@ from pathlib import Path
 import pygame
 
 from sandbox.app.application import Application
+from sandbox.app.compare.lesson_picture import lesson_picture, twice
 from sandbox.app.compiling import is_prepared
 from sandbox.app.draw.colours import TEXT, shown_theme
 from sandbox.app.edit.side.scroll import ScrollArea
@@ -45,6 +46,8 @@ SECTION_GAP = 4.0
 # Wall time [s] of a frame that cards are filled in.
 FILL_BUDGET = 0.02
 TITLES = {"levels": "Levels", "mine": "My levels", "recordings": "Replays"}
+# The level that a lesson plays twice.
+COMPARED = "jelly_cube"
 NO_LEVELS = "No levels of yours yet. Draw one in the editor (New, or E in any level) and save it with Ctrl+S."
 NO_REPLAYS = "No replays yet. Record a run with Ctrl+R, or save what you did with Ctrl+S."
 STEPS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
@@ -132,7 +135,9 @@ class Gallery:
             played = [path for path in light if path.is_file()]
         for path in played[: shortcuts.columns]:
             self._add_level(shortcuts, path)
-        for section, paths in in_sections(shipped_levels()):
+        for place, (section, paths) in enumerate(in_sections(shipped_levels())):
+            if place == 1 and self._app.mode == "play":
+                self._add_lessons()
             group = self._group(section.title, section.line)
             for path in paths:
                 self._add_level(group, path, section.levels.get(path.stem, ""))
@@ -141,6 +146,23 @@ class Gallery:
         own = self._group("Your own")
         for path in recent_levels():
             self._add_level(own, path)
+
+    def _add_lessons(self) -> None:
+        group = self._group("Lessons", "Try it, and see why.")
+        name, text = "Stiffer, until it explodes", "Hooke's spring beside the article's: the same spring, made stiffer."
+        card = self._add_card(group, name, text, self._app.start_lesson)
+        card.line, card.tags = "Find where Hooke's breaks", ("lesson", "article", "hooke")
+        card.show_picture(lesson_picture(card.picture_size, shown_theme()))
+        path = shipped_folder("levels") / f"{COMPARED}.json"
+        if path.is_file():
+            text = (
+                "A level twice, side by side: other springs for A and for B, one hand that pulls at both. F9 anywhere."
+            )
+            card = self._add_card(group, "Two settings at once", text, partial(self._app.start_pair, path))
+            card.line, card.tags = "Softer springs for B, then pull", ("lesson", "compare")
+            picture = find_picture(path, picture_key(path.read_bytes()), card.picture_size, shown_theme())
+            if picture is not None:
+                card.show_picture(twice(picture))
 
     def _add_own(self) -> None:
         group = self._group("")

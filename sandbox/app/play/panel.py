@@ -1,7 +1,7 @@
 """Panel: Cs and Cd by a pad or by sliders, with their Hz reading and what is proven; gravity, solver and settings."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass
 
 import numpy as np
@@ -276,6 +276,11 @@ class Panel:
             self._limits = coefficient_limits(world, self.material)
             self._find_zones()
             self._show_springs()
+
+    def show_choices(self, strength: str, views: Set[str]) -> None:
+        """Show the strength of the hand, and which overlays are seen."""
+        self.hand.show(strength)
+        self.views.show(views)
 
     def _show_energy(self) -> None:
         world = self.playback.session.world

@@ -22,6 +22,7 @@ from sandbox.app.play.out_of_view import OutOfView
 from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
 from sandbox.app.play.panel import PANEL_WIDTH, Panel, PanelShape
 from sandbox.app.play.playback import Playback
+from sandbox.app.play.side_panel import SidePanel
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
@@ -69,7 +70,7 @@ class PlayScreen:
         self.show_panel = app.ui.units[0] >= ROOM_FOR_PANEL
         self.show_palette = False
         self.palette: PartsPalette | None = None
-        self.panel: Panel | None = None
+        self.panel: SidePanel | None = None
         self.stage = Stage(playback, (0, 0, *app.ui.size), app.scale)
         self.time = TimeBar(app, lambda: self.playback)
         self.stage.place(self.viewport, app.scale)
@@ -148,7 +149,7 @@ class PlayScreen:
             if before is not None and before.playback.level is self.playback.level:
                 self.panel.choose_material(before.material)
 
-    def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> Panel:
+    def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> SidePanel:
         return Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape)
 
     def _set_by(self, way: str) -> None:
@@ -260,12 +261,15 @@ class PlayScreen:
 
     def _reset(self) -> None:
         self.leave()
-        self.stage.replace_playback(self.playback.reset())
+        self._begin_again()
         self.stuck = StuckBodies()
         self.out_of_view = OutOfView()
         self._app.follow(self.playback)
         if self.panel is not None:
             self.panel.follow(self.playback)
+
+    def _begin_again(self) -> None:
+        self.stage.replace_playback(self.playback.reset())
 
     def _toggle_panel(self) -> None:
         self._wants_panel = not self.show_panel
@@ -324,18 +328,13 @@ class PlayScreen:
         self.stage.renderer.compiled = ready
         self._show_stuck()
         self._show_again()
-        for message in self.playback.messages:
-            self._app.say(message)
-        self.playback.messages.clear()
-        self._tell_breaks()
+        self._tell()
         if self.panel is not None and ready:
             self.panel.refresh()
-            self.panel.hand.show(self.stage.drag.strength)
+            self.panel.show_choices(self.stage.drag.strength, self.stage.renderer.overlays.shown)
         self.time.show()
         if self.palette is not None:
             self.palette.show(PaletteState(self.stage.tool_name, ready))
-        if self.panel is not None:
-            self.panel.views.show(self.stage.renderer.overlays.shown)
         self.toolbar.show(
             BarState(
                 self.playback.level.name,
@@ -347,9 +346,17 @@ class PlayScreen:
                 self.playback.session.can_redo,
                 self.show_panel,
                 self.show_palette,
+                self._app.chosen["sound"] == "on",
                 self.time.is_shown,
             )
         )
+
+    def _tell(self) -> None:
+        """Say what the run has to say."""
+        for message in self.playback.messages:
+            self._app.say(message)
+        self.playback.messages.clear()
+        self._tell_breaks()
 
     def _tell_breaks(self) -> None:
         """Say what broke; a line that has grown takes the place of what it was."""

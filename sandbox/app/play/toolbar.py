@@ -38,6 +38,7 @@ RIGHT = (
     ("share", "share"),
     ("compare", "compare"),
     ("gallery", "levels"),
+    ("sound", "sound"),
     ("settings", "settings"),
     ("fit", "fit"),
     ("panel", "panel"),
@@ -53,6 +54,7 @@ LEAVING = (
     "settings",
     "timeline",
     "record",
+    "sound",
     "fit",
     "redo",
     "step",
@@ -80,6 +82,7 @@ class BarState:
     can_redo: bool
     panel: bool
     palette: bool
+    sound: bool
     timeline: bool
 
 
@@ -152,6 +155,7 @@ class Toolbar:
         self._mark("record", DANGER, state.recording, "stop" if state.recording else "record")
         self._mark("panel", TEXT, state.panel)
         self._mark("palette", TEXT, state.palette)
+        self._mark("sound", TEXT if state.sound else DISABLED, False, "sound" if state.sound else "muted")
         self._mark("timeline", TEXT, state.timeline)
         for name, on in (("undo", state.can_undo), ("redo", state.can_redo)):
             self._mark(name, TEXT if on else DISABLED, False)
