@@ -36,6 +36,7 @@ LEFT = (
 )  # fmt: skip
 RIGHT = (
     ("share", "share"),
+    ("graphs", "graphs"),
     ("compare", "compare"),
     ("gallery", "levels"),
     ("settings", "settings"),
@@ -50,6 +51,7 @@ WIDE_WORDS = {**WORDS, "share": "Share"}
 LEAVING = (
     "save",
     "compare",
+    "graphs",
     "settings",
     "timeline",
     "record",
@@ -81,6 +83,7 @@ class BarState:
     panel: bool
     palette: bool
     timeline: bool
+    graphs: bool
 
 
 def fitting(actions: Sequence[str], width: float) -> list[str]:
@@ -153,6 +156,7 @@ class Toolbar:
         self._mark("panel", TEXT, state.panel)
         self._mark("palette", TEXT, state.palette)
         self._mark("timeline", TEXT, state.timeline)
+        self._mark("graphs", TEXT, state.graphs)
         for name, on in (("undo", state.can_undo), ("redo", state.can_redo)):
             self._mark(name, TEXT if on else DISABLED, False)
             if name in self.buttons:
