@@ -34,6 +34,7 @@ from sandbox.app.settings.system_theme import theme_of
 from sandbox.app.share.page import SharePage
 from sandbox.app.share.sharing import Sharing
 from sandbox.app.shortcuts import Mode, use_keys
+from sandbox.app.sound.sounds import Sounds
 from sandbox.app.start_request import StartRequest
 from sandbox.app.widgets.dialogs import show_lines
 from sandbox.app.widgets.ui import Ui
@@ -71,6 +72,7 @@ class App:
         self.guide = Guide(self, self.documents)
         self.sharing = Sharing(self)
         self.share_page = SharePage(self, self.sharing)
+        self.sounds = Sounds(self.chosen, time.perf_counter)
         self._progress = RunProgress(self)
         self._own_actions = self._actions()
         self._figures = Figures()
@@ -204,7 +206,12 @@ class App:
         }
 
     def _play_actions(self) -> dict[str, Callable[[], object]]:
-        return {"hint": self._show_hint, "share": self.share_page.open, "compare": self._compare}
+        return {
+            "hint": self._show_hint,
+            "share": self.share_page.open,
+            "compare": self._compare,
+            "sound": self._toggle_sound,
+        }
 
     def start_lesson(self) -> None:
         """Begin the lesson on Hooke's spring and the article's."""
@@ -254,6 +261,7 @@ class App:
         """Close the window; whatever ended the loop, a recording gets its last line."""
         if self.screen is not None:
             self.screen.leave()
+        self.sounds.close()
         self.sharing.close()
         self.documents.close()
         self.display.close()
@@ -274,8 +282,14 @@ class App:
     def _obey(self, name: str) -> None:
         """Follow a change of what is chosen."""
         self._take_up()
+        if name == "sound" and not self.sounds.device.is_open:
+            self.sounds.look_again()
         if name in LAID_OUT:
             self.rebuild()
+
+    def _toggle_sound(self) -> None:
+        is_on = self.chosen["sound"] == "on"
+        self.chosen.choose("sound", "off" if is_on else "on")
 
     def _open_settings(self) -> None:
         SettingsSheet(self.ui, self.chosen)
@@ -297,6 +311,7 @@ class App:
             tick, began = self._tick, time.thread_time()
             self.screen.update(frame_time, self.input.pointer_over_world(), self.profile, self.ready)
             self.preparation.note(self._tick - tick, time.thread_time() - began)
+            self._sound()
         with self.profile.part("ui"):
             self.status.update(frame_time)
             self.documents.update()
@@ -313,6 +328,13 @@ class App:
         spent = time.perf_counter() - started
         self.profile.milliseconds["frame"].append(1e3 * spent)
         self._count(frame_time, spent)
+
+    def _sound(self) -> None:
+        play, covered = self.play, self.ui.has_sheet or self.gallery is not None or self.display.hidden
+        clock = None if play is None else play.playback.clock
+        is_heard = clock is not None and self.ready and not covered and not clock.paused and clock.speed > 0.0
+        with self.profile.part("sound"):
+            self.sounds.update(play, is_heard)
 
     @property
     def _tick(self) -> int:

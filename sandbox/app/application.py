@@ -13,6 +13,7 @@ from sandbox.app.screen import Screen
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.share.film import Film
 from sandbox.app.shortcuts import Mode
+from sandbox.app.sound.sounds import Sounds
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.model import Level
 
@@ -151,6 +152,11 @@ class Application(Protocol):
     @property
     def chosen(self) -> Chosen:
         """What the person has chosen about the app."""
+        ...
+
+    @property
+    def sounds(self) -> Sounds:
+        """What is heard of the run."""
         ...
 
     @property

@@ -62,7 +62,7 @@ class LevelTests(pytest.File):
     def result(self, number: int) -> "CheckResult":
         """What came of a check; all of the file are measured in the same run. Raises Failed."""
         if self._results is None:
-            from sandbox.session.summary import run_checks
+            from sandbox.session.check_run import run_checks
             from sandbox.testing.replaying import with_solver
 
             level = with_solver(self.config, self.level())

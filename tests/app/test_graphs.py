@@ -39,7 +39,7 @@ def test_energies_strain_and_times_are_those_of_the_run(driver, graphs):
     assert values(graphs, "torque") == {} and MEASURES["torque"].hint
 
 
-def test_a_particle_under_the_mouse_is_followed_by_m_and_no_longer_by_m(driver, graphs):
+def test_a_particle_under_the_mouse_is_followed_and_again_no_longer(driver, graphs):
     slot = driver.world.particle_slot("rope.2")
     driver.playback.clock.paused = True
     driver.move(driver.pixel_of("rope.2"))

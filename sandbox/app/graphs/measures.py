@@ -87,7 +87,7 @@ def _times(moment: Moment) -> dict[str, float]:
     return {name: value for name, value in found.items() if value is not None}
 
 
-PICK = "Point at a particle and press M; up to four are followed, and M again lets one go."
+PICK = "Point at a particle and press O; up to four are followed, and O again lets one go."
 MEASURES: dict[str, Measure] = {
     "energy": Measure("Energy", "J", _energies, "", ("total", "motion")),
     "strain": Measure("Strain", "%", _strains, "There is no spring here.", ("most stretched",)),

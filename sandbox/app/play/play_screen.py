@@ -358,6 +358,7 @@ class PlayScreen:
                 self.playback.session.can_redo,
                 self.show_panel,
                 self.show_palette,
+                self._app.chosen["sound"] == "on",
                 self.time.is_shown,
                 self.graphs.is_shown,
             )

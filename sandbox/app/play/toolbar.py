@@ -39,6 +39,7 @@ RIGHT = (
     ("graphs", "graphs"),
     ("compare", "compare"),
     ("gallery", "levels"),
+    ("sound", "sound"),
     ("settings", "settings"),
     ("fit", "fit"),
     ("panel", "panel"),
@@ -55,6 +56,7 @@ LEAVING = (
     "settings",
     "timeline",
     "record",
+    "sound",
     "fit",
     "redo",
     "step",
@@ -82,6 +84,7 @@ class BarState:
     can_redo: bool
     panel: bool
     palette: bool
+    sound: bool
     timeline: bool
     graphs: bool
 
@@ -155,6 +158,7 @@ class Toolbar:
         self._mark("record", DANGER, state.recording, "stop" if state.recording else "record")
         self._mark("panel", TEXT, state.panel)
         self._mark("palette", TEXT, state.palette)
+        self._mark("sound", TEXT if state.sound else DISABLED, False, "sound" if state.sound else "muted")
         self._mark("timeline", TEXT, state.timeline)
         self._mark("graphs", TEXT, state.graphs)
         for name, on in (("undo", state.can_undo), ("redo", state.can_redo)):

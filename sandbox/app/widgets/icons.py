@@ -169,6 +169,22 @@ def _compare(pen: IconPen) -> None:
     pen.disc(17, 14.5, 1.7)
 
 
+def _speaker(pen: IconPen) -> None:
+    pen.shape((3, 9), (7, 9), (12, 4.5), (12, 19.5), (7, 15), (3, 15))
+
+
+def _sound(pen: IconPen) -> None:
+    _speaker(pen)
+    pen.arc(12, 12, 4.6, -50, 50)
+    pen.arc(12, 12, 8.6, -50, 50)
+
+
+def _muted(pen: IconPen) -> None:
+    _speaker(pen)
+    pen.line((15.5, 9), (21, 15))
+    pen.line((21, 9), (15.5, 15))
+
+
 def _timeline(pen: IconPen) -> None:
     pen.line((3, 12), (21, 12), width=1.8)
     pen.disc(9, 12, 3.4)
@@ -216,7 +232,7 @@ ICONS: dict[str, Icon] = {
     "undo": _undo, "redo": _redo, "record": _record, "stop": _stop, "levels": _levels, "fit": _fit,
     "panel": _panel, "save": _save, "edit": _edit, "keep": _keep, "share": _share, "spring": draw_spring,
     "lattice": _lattice, "particles": _particles, "contacts": _contacts, "forces": _forces,
-    "velocities": _velocities, "stability": _stability, "parts": _parts,
+    "velocities": _velocities, "stability": _stability, "parts": _parts, "sound": _sound, "muted": _muted,
     "compare": _compare, "graphs": _graphs,
     "timeline": _timeline, "back": _back, "backwards": _backwards, "bookmark": _bookmark, "loop": _loop,
     "next_mark": lambda pen: _mark_beside(pen, 1), "previous_mark": lambda pen: _mark_beside(pen, -1),
