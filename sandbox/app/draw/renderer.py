@@ -7,7 +7,7 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.backdrop import GRID_STEP as GRID_STEP
-from sandbox.app.draw.backdrop import Backdrop
+from sandbox.app.draw.backdrop import Backdrop, stage_pictures
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import ACCENT, DANGER, WARNING, packed
 from sandbox.app.draw.detail import FULL, NO_EFFECTS, NO_SHADOWS
@@ -117,6 +117,11 @@ class Renderer:
     @lattice.setter
     def lattice(self, is_shown: bool) -> None:
         (self.overlays.shown.add if is_shown else self.overlays.shown.discard)("lattice")
+
+    def expect(self, camera: Camera) -> None:
+        """Make what takes longest of the first picture of a view of this size."""
+        width, height = camera.viewport[2:]
+        stage_pictures((width, height), self.theme)
 
     def draw(
         self,
