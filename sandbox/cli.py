@@ -115,6 +115,12 @@ def _parser() -> argparse.ArgumentParser:
     play.add_argument("--seconds", type=seconds, help="close the app after so many seconds")
     _add_look_options(play)
 
+    toy = command("toy", _toy, "play a level in a small window that stays on top and feels how it is moved")
+    toy.add_argument("level", nargs="?", metavar="LEVEL", help="a level file or a shipped level's name")
+    toy.add_argument("--record", type=Path, metavar="FILE", help="write a replay; .gz compresses")
+    toy.add_argument("--seconds", type=seconds, help="close it after so many seconds")
+    _add_look_options(toy)
+
     run = command("run", _run, "run a level headless and print what came of it")
     run.add_argument("level", metavar="LEVEL")
     length = run.add_mutually_exclusive_group()
@@ -221,6 +227,20 @@ def _play(options: argparse.Namespace) -> int:
         return StartRequest(None if replay else level, replay, source)
 
     return open_app(find, profile=options.profile, seconds=options.seconds, scale=options.scale, theme=options.theme)
+
+
+def _toy(options: argparse.Namespace) -> int:
+    from sandbox.app.display import has_display
+
+    if not has_display():
+        raise Refused("the desk toy needs a display; `sandbox run` plays a level without one")
+    from sandbox.app.toy.toy_start import USUAL, run_toy
+
+    def find() -> "Level":
+        return _level(options.level or USUAL)
+
+    run_toy(find, lambda line: tell([line]), options.record, options.seconds, options.scale, options.theme)
+    return EXIT_OK
 
 
 def _level_or_replay(name: str) -> "tuple[Level, Replay | None]":

@@ -33,6 +33,7 @@ from sandbox.app.share.sharing import Sharing
 from sandbox.app.shortcuts import Mode, use_keys
 from sandbox.app.sound.sounds import Sounds
 from sandbox.app.start_request import StartRequest
+from sandbox.app.toy.toy_start import start_toy
 from sandbox.app.widgets.dialogs import show_lines
 from sandbox.app.widgets.ui import Ui
 
@@ -202,7 +203,8 @@ class App:
         }
 
     def _play_actions(self) -> dict[str, Callable[[], object]]:
-        return {"hint": self._show_hint, "share": self.share_page.open, "sound": self._toggle_sound}
+        return {"hint": self._show_hint, "share": self.share_page.open, "sound": self._toggle_sound,
+                "toy": self._start_toy}  # fmt: skip
 
     @property
     def actions(self) -> dict[str, Callable[[], object]]:
@@ -257,6 +259,12 @@ class App:
     def _toggle_sound(self) -> None:
         is_on = self.chosen["sound"] == "on"
         self.chosen.choose("sound", "off" if is_on else "on")
+
+    def _start_toy(self) -> None:
+        if self.play is not None:
+            self.say(
+                start_toy(self.play.playback.level) or "The desk toy opens. Drag its window, and the world shakes."
+            )
 
     def _open_settings(self) -> None:
         SettingsSheet(self.ui, self.chosen)

@@ -36,6 +36,7 @@ LEFT = (
 )  # fmt: skip
 RIGHT = (
     ("share", "share"),
+    ("toy", "toy"),
     ("gallery", "levels"),
     ("sound", "sound"),
     ("settings", "settings"),
@@ -48,6 +49,7 @@ WORDS = {"slow": "1x", "help": "?"}
 WIDE_WORDS = {**WORDS, "share": "Share"}
 # What goes into the menu where the window is too narrow, first what is missed least.
 LEAVING = (
+    "toy",
     "save",
     "settings",
     "timeline",

@@ -73,7 +73,8 @@ class Faces:
         velocity = np.add.reduceat(frame.state.velocity[self._slots], begins, axis=0) / self._size[:, None]
         velocity = np.nan_to_num(velocity * np.array([1.0, -1.0]))
         pen = _Pen(centre[shown], turn[shown], size[shown])
-        pen.draw(load[shown], velocity[shown], self.blinks(frame.seconds)[shown])
+        shut = self.blinks(frame.seconds)[shown] | frame.asleep
+        pen.draw(load[shown], velocity[shown], shut, _towards(frame.pointer, centre[shown], size[shown]))
         pen.into(marks)
 
     def blinks(self, seconds: float) -> NDArray[np.bool_]:
@@ -115,14 +116,16 @@ class _Pen:
         ends = np.concatenate([self._place(*start), self._place(*end)], axis=1)
         self._rows.append((ends[only], np.maximum(half * self.size, 0.9)[only], INK, 1.0, STROKE))
 
-    def draw(self, load: Floats, velocity: Floats, blinks: NDArray[np.bool_]) -> None:
-        """Eyes that look where it moves, cheeks, and a mouth that says how it feels."""
+    def draw(self, load: Floats, velocity: Floats, blinks: NDArray[np.bool_], at_rest: Floats | None) -> None:
+        """Eyes that look where it moves, or at_rest (f, 2), cheeks, and a mouth that says how it feels."""
         speed = np.sqrt(np.sum(velocity * velocity, axis=1))
         squeezed = load > SQUEEZED
         open_eyes = ~squeezed & ~blinks
         resting = speed <= 0.25
         way = np.where(resting[:, None], np.array([0.0, 1.0]), velocity / np.maximum(speed, 1e-9)[:, None])
         gaze = way * np.minimum(1.0, 0.3 + speed / 4.0)[:, None] * (0.42 * EYE_SIZE)
+        if at_rest is not None:
+            gaze = np.where(resting[:, None], at_rest * (0.42 * EYE_SIZE), gaze)
         for side in (-1.0, 1.0):
             x = side * GAP
             self.disc(x, EYE_UP, 1.13 * EYE_SIZE, INK, 0.35, only=open_eyes)
@@ -158,6 +161,14 @@ class _Pen:
                 np.concatenate([half for _, half, *_ in rows]),
                 *(np.repeat([row[k] for row in rows], [len(row[1]) for row in rows]) for k in (2, 3, 4)),
             )
+
+
+def _towards(pointer: tuple[float, float] | None, centre: Floats, size: Floats) -> Floats | None:
+    """How far faces turn their eyes (f, 2) to a pointer, 0..1: the farther the more."""
+    if pointer is None:
+        return None
+    way = (np.array(pointer) - centre) / size[:, None]
+    return np.asarray(way / np.maximum(np.sqrt(np.sum(way * way, axis=1)), 1.0)[:, None])
 
 
 def _spot(actor: Actor, loop: Slots) -> tuple[Floats, float]:
