@@ -136,11 +136,8 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--every", type=count, default=1, metavar="N", help="follow them every N ticks; default 1")
     run.add_argument("-o", "--output", type=Path, metavar="FILE.csv", help="where the probe's table goes")
 
-    replay = command("replay", _replay, "run recordings again and compare every bit")
-    replay.add_argument("files", nargs="+", metavar="FILE")
-    replay.add_argument("--json", action="store_true", help="print one JSON object a file")
-    replay.add_argument("--partial", action="store_true", help="verify what there is of a recording that is cut off")
-    replay.add_argument("--against", metavar="LEVEL", help="run their commands on this level, not on the recorded one")
+    _add_replay_options(command("replay", _replay, "run recordings again and compare every bit"))
+    _add_resume_options(command("resume", _resume, "go on with a recording that was cut off, and make it whole"))
 
     check = command("check", _check, "validate levels, report their stability, run the checks they carry")
     check.add_argument("levels", nargs="+", metavar="LEVEL")
@@ -163,6 +160,20 @@ def _parser() -> argparse.ArgumentParser:
 def _add_look_options(app: argparse.ArgumentParser) -> None:
     app.add_argument("--scale", type=scale, help="size of the widgets, 0.5 to 4; default: as in the settings")
     app.add_argument("--theme", choices=("dark", "light", "system"), help="for this time; default: as in the settings")
+
+
+def _add_replay_options(replay: argparse.ArgumentParser) -> None:
+    replay.add_argument("files", nargs="+", metavar="FILE")
+    replay.add_argument("--json", action="store_true", help="print one JSON object a file")
+    replay.add_argument("--partial", action="store_true", help="verify what there is of a recording that is cut off")
+    replay.add_argument("--against", metavar="LEVEL", help="run their commands on this level, not on the recorded one")
+
+
+def _add_resume_options(again: argparse.ArgumentParser) -> None:
+    again.add_argument("file", metavar="FILE")
+    length = again.add_mutually_exclusive_group()
+    length.add_argument("--seconds", type=seconds, help="simulated time in all; default: up to where it was cut off")
+    length.add_argument("--ticks", type=count, help="the same, in ticks")
 
 
 def _add_render_options(render: argparse.ArgumentParser) -> None:
@@ -307,15 +318,14 @@ def _keep_apart(options: argparse.Namespace) -> None:
 
 
 def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
-    from sandbox.level.format.files import LevelError, level_data, parse_level
+    from sandbox.level.faults.level_error import LevelError
+    from sandbox.session.replay.again import with_settings
 
     given = {name: getattr(options, name) for name in ("solver", "substeps") if getattr(options, name) is not None}
     if not given:
         return level
-    data = level_data(level)
-    data["settings"] = {**data.get("settings", {}), **given}
     try:
-        return parse_level(json.dumps(data).encode(), "command line")
+        return with_settings(level, given, "command line")
     except LevelError as error:
         raise Refused(*error.faults) from None
 
@@ -408,6 +418,35 @@ def _verify(name: str, partial: bool, level: "Level | None") -> tuple[int, dict[
         return EXIT_OK, {"file": name, "result": "equal", "ticks": replay.ticks, "text": text}
     details = finite({**asdict(divergence), "text": f"diverged at {divergence}"})
     return EXIT_FAILED, {"file": name, "result": "diverged", **details}
+
+
+def _resume(options: argparse.Namespace) -> int:
+    from sandbox.session.commands import CommandError
+    from sandbox.session.replay.recording import ReplayError
+    from sandbox.session.replay.resume import resume
+
+    try:
+        whole = _recording(options.file)
+    except Refused:
+        replay = _recording(options.file, partial=True)
+    else:
+        raise Refused(f"{options.file}: is whole, {whole.ticks} ticks: there is nothing to resume")
+    rate = replay.level.settings.tick_rate
+    ticks = options.ticks or (replay.ticks if options.seconds is None else round(options.seconds * rate))
+    if ticks < replay.ticks:
+        raise Refused(f"{options.file}: has {replay.ticks} ticks already; --seconds and --ticks are of the whole run")
+    try:
+        with interrupted_between_ticks() as look_up, Progress(ticks) as bar:
+
+            def show(tick: int) -> None:
+                bar.update(tick - bar.done)
+                look_up()
+
+            resume(replay, ticks, show)
+    except (CommandError, ReplayError) as error:
+        raise Refused(*error.faults) from None
+    print(f"{options.file}: whole, {ticks} ticks, {ticks - replay.ticks} of them new")
+    return EXIT_OK
 
 
 def _check(options: argparse.Namespace) -> int:

@@ -20,10 +20,10 @@ from sandbox.physics.stability import report
 from sandbox.physics.step import step
 from sandbox.physics.substeps import halve
 from sandbox.physics.world import World
+from sandbox.session.check_run import run_checks
 from sandbox.session.commands import COMMAND_TYPES
 from sandbox.session.replay.script import read_script
 from sandbox.session.session import Session
-from sandbox.session.summary import run_checks
 from tests.support.wobbles import firm_world
 
 ROOT = Path(__file__).resolve().parents[1]

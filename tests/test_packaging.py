@@ -11,7 +11,7 @@ from sandbox.app.share.kinds import KINDS
 ROOT = Path(__file__).resolve().parents[1]
 
 
-def test_an_installed_wheel_finds_its_levels_and_assets_from_another_folder(tmp_path):
+def test_an_installed_wheel_finds_its_levels_parts_and_assets_from_another_folder(tmp_path):
     build = [
         sys.executable,
         "-m",
@@ -34,15 +34,17 @@ def test_an_installed_wheel_finds_its_levels_and_assets_from_another_folder(tmp_
     program = (
         "import sandbox; from sandbox.level.format.files import load_level, shipped_folder, shipped_levels\n"
         "assert load_level('rope').name and shipped_levels()\n"
-        "print(sandbox.__file__, len(shipped_levels()), len(list(shipped_folder('assets').iterdir())))"
+        "print(sandbox.__file__, len(shipped_levels()), len(list(shipped_folder('assets').iterdir())),\n"
+        "len(list((shipped_folder('levels') / 'parts').glob('*.json'))))"
     )
     environment = {**os.environ, "PYTHONPATH": str(installed)}
     command = [sys.executable, "-P", "-c", program]
     run = subprocess.run(command, cwd=elsewhere, env=environment, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
-    file, levels, assets = run.stdout.split()
+    file, levels, assets, parts = run.stdout.split()
     assert Path(file).is_relative_to(installed)
     assert int(levels) == len(list((ROOT / "levels").glob("*.json")))
+    assert int(parts) == len(list((ROOT / "levels" / "parts").glob("*.json"))) > 0
     assert int(assets) == len(list((ROOT / "assets").iterdir()))
 
 

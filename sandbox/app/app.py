@@ -8,6 +8,9 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.compare.compare_screen import CompareScreen
+from sandbox.app.compare.hooke_lesson import HookeLesson
+from sandbox.app.compare.twin import TwinPlayback
 from sandbox.app.display import SCALE_RANGE, Display
 from sandbox.app.draw.colours import BACKGROUND, WARNING, show_theme
 from sandbox.app.edit.documents import DocumentActions
@@ -36,6 +39,7 @@ from sandbox.app.start_request import StartRequest
 from sandbox.app.toy.toy_start import start_toy
 from sandbox.app.widgets.dialogs import show_lines
 from sandbox.app.widgets.ui import Ui
+from sandbox.level.format.files import read_level
 
 # How often the status figures and the window title change [s].
 FIGURES_EVERY = 0.5
@@ -203,8 +207,37 @@ class App:
         }
 
     def _play_actions(self) -> dict[str, Callable[[], object]]:
-        return {"hint": self._show_hint, "share": self.share_page.open, "sound": self._toggle_sound,
-                "toy": self._start_toy}  # fmt: skip
+        return {
+            "hint": self._show_hint,
+            "share": self.share_page.open,
+            "compare": self._compare,
+            "sound": self._toggle_sound,
+            "toy": self._start_toy,
+        }
+
+    def start_lesson(self) -> None:
+        """Begin the lesson on Hooke's spring and the article's."""
+        self.show_screen(HookeLesson(self))
+
+    def start_pair(self, path: Path) -> None:
+        """Play the level of a file twice side by side, with the pad in the panel."""
+        level = read_level(path)
+        screen = CompareScreen(self, TwinPlayback(level), TwinPlayback(level), None)
+        screen.shape.springs = "pad"
+        self.show_screen(screen)
+
+    def _compare(self) -> None:
+        """Play the level of the run twice side by side, with two settings; or back to once."""
+        play = self.play
+        if play is None:
+            return
+        level, source = play.playback.level, play.source
+        if isinstance(play, CompareScreen):
+            self.start(Playback(level), source)
+        elif play.of_document:
+            self.say("Save the level and open it from its file to play it twice: this run belongs to the editor.")
+        else:
+            self.show_screen(CompareScreen(self, TwinPlayback(level), TwinPlayback(level), source))
 
     @property
     def actions(self) -> dict[str, Callable[[], object]]:
@@ -324,7 +357,7 @@ class App:
 
     def _switched(self) -> None:
         if self.play is not None:
-            self.play.playback.session.world.drop_caches()
+            self.play.drop_caches()
         self.sharing.drop_caches()
 
     def _draw(self) -> None:

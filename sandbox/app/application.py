@@ -217,6 +217,14 @@ class Application(Protocol):
         """Fill the window with another screen."""
         ...
 
+    def start_pair(self, path: Path) -> None:
+        """Play the level of a file twice side by side, with the pad in the panel."""
+        ...
+
+    def start_lesson(self) -> None:
+        """Begin the lesson on Hooke's spring and the article's."""
+        ...
+
     def follow(self, playback: Playback) -> None:
         """Show how far a run is that has to be played again."""
         ...

@@ -16,8 +16,8 @@ from sandbox.app.widgets.ui import Ui
 COLUMN_WIDTH = 500.0
 NARROWEST_COLUMN = 400.0
 MOST_COLUMNS = 3
-ROW = 19.0
-HEADING = 29.0
+ROW = 18.0
+HEADING = 27.0
 TOP = 56.0
 MARGIN = 28.0
 TEXT_SIZE = 12.5

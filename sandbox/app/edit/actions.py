@@ -11,6 +11,7 @@ from sandbox.app.draw.colours import material_colours
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.edit.clipboard import Clipboard
 from sandbox.app.edit.editing import Editing
+from sandbox.app.edit.part_keeping import ask_to_keep_part
 from sandbox.app.edit.side.rows import Row
 from sandbox.app.shortcuts import shortcuts
 from sandbox.app.widgets.dialogs import choose, choose_row, fill_in
@@ -30,8 +31,8 @@ COPY_LIMIT = 1_000
 
 # Actions that have no button in the bar.
 MENU = (
-    "copy", "cut", "paste", "copy_level", "select_all", "select_material", "forward", "backward", "recent", "open_file",
-    "save_as", "revert", "settings",
+    "copy", "cut", "paste", "copy_level", "keep_part", "select_all", "select_material", "forward", "backward",
+    "recent", "open_file", "save_as", "revert", "settings",
 )  # fmt: skip
 
 Edge = Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]
@@ -45,6 +46,8 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
         tool.action: partial(screen.choose_tool, name) for name, tool in TOOLS.items()
     }
     return tools | {
+        "tool_part": lambda: _show_parts(screen),
+        "keep_part": lambda: ask_to_keep_part(screen),
         "play": documents.play,
         "undo": lambda: _step(screen, -1),
         "redo": lambda: _step(screen, 1),
@@ -97,6 +100,12 @@ def _show_menu(screen: Editing, app: Application) -> None:
     entries = [entry for entry in shortcuts("edit") if entry.action in MENU]
     choices = [(f"{entry.label}  [{entry.keys[0]}]", partial(app.act, entry.action)) for entry in entries]
     choose(screen.ui, "More", "", choices, columns=2)
+
+
+def _show_parts(screen: Editing) -> None:
+    """Show the catalogue, and let the keyboard choose from it."""
+    screen.choose_tool("part")
+    screen.show_parts()
 
 
 def _has_selection(screen: Editing) -> bool:

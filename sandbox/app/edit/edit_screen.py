@@ -3,6 +3,7 @@
 import math
 from collections import deque
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pygame
@@ -179,6 +180,11 @@ class EditScreen:
     # Layout.
 
     @property
+    def ready(self) -> bool:
+        """Whether the physics is prepared."""
+        return self.app.ready
+
+    @property
     def scale(self) -> float:
         """Pixels per layout unit."""
         return self.ui.scale
@@ -210,6 +216,14 @@ class EditScreen:
         """Hide or show the panel at the side."""
         self.show_side = not self.show_side
         self.app.rebuild()
+
+    def show_parts(self, path: Path | None = None) -> None:
+        """Show the catalogue of parts at the side, and give the part of a file the keyboard; None = that in hand."""
+        if self.side is None:
+            self.toggle_side()
+        assert self.side is not None
+        self.side.choose("parts")
+        self.side.focus(path)
 
     def turn_page(self, by: int) -> None:
         """Show another page of the panel at the side."""

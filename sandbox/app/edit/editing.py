@@ -1,6 +1,7 @@
 """Editing: what the parts of the editor ask of the screen that they belong to."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Protocol
 
 import numpy as np
@@ -8,7 +9,7 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Box, Camera, Point
-from sandbox.app.screen import Pixel
+from sandbox.app.screen import Pixel, Pointer
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import Document
 from sandbox.editor.history import History
@@ -153,6 +154,14 @@ class Editing(Protocol):
         """How far off a particle [m] the pointer still takes it."""
         ...
 
+    def contains(self, pixel: Pixel) -> bool:
+        """Whether a pixel shows the level."""
+        ...
+
+    def point(self, kind: Pointer, pixel: Pixel, modifiers: int, clicks: int = 1) -> None:
+        """Hand a pointer event to the tool."""
+        ...
+
     @property
     def grid(self) -> float:
         """Distance [m] of the points that the pointer snaps to."""
@@ -181,6 +190,11 @@ class Editing(Protocol):
     # What is shown.
 
     @property
+    def ready(self) -> bool:
+        """Whether the physics is prepared."""
+        ...
+
+    @property
     def scale(self) -> float:
         """Pixels per layout unit."""
         ...
@@ -207,6 +221,10 @@ class Editing(Protocol):
 
     def toggle_side(self) -> None:
         """Hide or show the panel at the side."""
+        ...
+
+    def show_parts(self, path: Path | None = None) -> None:
+        """Show the catalogue of parts at the side, and give the part of a file the keyboard; None = that in hand."""
         ...
 
     def turn_page(self, by: int) -> None:

@@ -22,6 +22,7 @@ from sandbox.app.play.out_of_view import OutOfView
 from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
 from sandbox.app.play.panel import PANEL_WIDTH, Panel, PanelShape
 from sandbox.app.play.playback import Playback
+from sandbox.app.play.side_panel import SidePanel
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
@@ -69,7 +70,7 @@ class PlayScreen:
         self.show_panel = app.ui.units[0] >= ROOM_FOR_PANEL
         self.show_palette = False
         self.palette: PartsPalette | None = None
-        self.panel: Panel | None = None
+        self.panel: SidePanel | None = None
         self.stage = Stage(playback, (0, 0, *app.ui.size), app.scale)
         self.time = TimeBar(app, lambda: self.playback)
         self.stage.place(self.viewport, app.scale)
@@ -104,6 +105,11 @@ class PlayScreen:
     @property
     def viewport(self) -> tuple[int, int, int, int]:
         """The part of the window that shows the world, in pixels."""
+        return self.area
+
+    @property
+    def area(self) -> tuple[int, int, int, int]:
+        """What bar, panel, timeline and status line leave of the window, in pixels."""
         ui, (width, height) = self._ui, self._ui.size
         top, bottom = ui.px(BAR_HEIGHT), ui.px(STATUS_HEIGHT)
         right = ui.px(PANEL_WIDTH) if self.show_panel else 0
@@ -122,7 +128,7 @@ class PlayScreen:
         self.stage.place(self.viewport, ui.scale)
         self.palette = None
         if self.show_palette:
-            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, self.viewport[3] / ui.scale)
+            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, self.area[3] / ui.scale)
         left = FREE_PLACE[0] if self.palette is None else self.palette.right + FREE_PLACE[1]
         place = ui.rect(left, BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
         self.free = ui.button(place, "Free it", self._free, tip=tip_of("free", "play"))
@@ -131,17 +137,20 @@ class PlayScreen:
         place = ui.rect(left, BAR_HEIGHT + AGAIN_TOP, *AGAIN_SIZE)
         self.again = ui.button(place, "Again", self._reset, style="@primary", tip=tip_of("reset", "play"))
         self.again.hide()
-        self.time.build(ui, self.viewport[2] / ui.scale, ui.units[1] - STATUS_HEIGHT)
+        self.time.build(ui, self.area[2] / ui.scale, ui.units[1] - STATUS_HEIGHT)
         self.stage.renderer.follow_theme()
         before, self.panel = self.panel, None
         if self.show_panel:
             height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
-            choices = {
+            choices: dict[str, Callable[[str], None]] = {
                 "hand": self.choose_strength, "view": self._app.act, "springs": self._set_by, "fold": self._fold,
             }  # fmt: skip
-            self.panel = Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape)
-            if before is not None and before.playback is self.playback:
+            self.panel = self._make_panel(ui, choices, height)
+            if before is not None and before.playback.level is self.playback.level:
                 self.panel.choose_material(before.material)
+
+    def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> SidePanel:
+        return Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape)
 
     def _set_by(self, way: str) -> None:
         """Show the pad or the sliders from now on, in later runs too."""
@@ -252,12 +261,15 @@ class PlayScreen:
 
     def _reset(self) -> None:
         self.leave()
-        self.stage.replace_playback(self.playback.reset())
+        self._begin_again()
         self.stuck = StuckBodies()
         self.out_of_view = OutOfView()
         self._app.follow(self.playback)
         if self.panel is not None:
-            self.panel.playback = self.playback
+            self.panel.follow(self.playback)
+
+    def _begin_again(self) -> None:
+        self.stage.replace_playback(self.playback.reset())
 
     def _toggle_panel(self) -> None:
         self._wants_panel = not self.show_panel
@@ -274,6 +286,10 @@ class PlayScreen:
         stage, session = self.stage, self.playback.session
         span = self.playback.travel.span or last_ticks(session, seconds)
         return Film(session, stage.camera, stage.renderer, span, stage.fitted_box)
+
+    def drop_caches(self) -> None:
+        """Use kernels that have come about."""
+        self.playback.session.world.drop_caches()
 
     # Pointer and keys.
 
@@ -312,18 +328,13 @@ class PlayScreen:
         self.stage.renderer.compiled = ready
         self._show_stuck()
         self._show_again()
-        for message in self.playback.messages:
-            self._app.say(message)
-        self.playback.messages.clear()
-        self._tell_breaks()
+        self._tell()
         if self.panel is not None and ready:
             self.panel.refresh()
-            self.panel.hand.show(self.stage.drag.strength)
+            self.panel.show_choices(self.stage.drag.strength, self.stage.renderer.overlays.shown)
         self.time.show()
         if self.palette is not None:
             self.palette.show(PaletteState(self.stage.tool_name, ready))
-        if self.panel is not None:
-            self.panel.views.show(self.stage.renderer.overlays.shown)
         self.toolbar.show(
             BarState(
                 self.playback.level.name,
@@ -339,6 +350,13 @@ class PlayScreen:
                 self.time.is_shown,
             )
         )
+
+    def _tell(self) -> None:
+        """Say what the run has to say."""
+        for message in self.playback.messages:
+            self._app.say(message)
+        self.playback.messages.clear()
+        self._tell_breaks()
 
     def _tell_breaks(self) -> None:
         """Say what broke; a line that has grown takes the place of what it was."""

@@ -150,6 +150,8 @@ class Playback:
             session.seek(min(tick, session.last_tick))
         self.clock.accumulator = 0.0
         self.revision += 1
+        if self.listener is not None:
+            self.listener.forget()
         self.current = self.previous = session.snapshot()
 
     def return_to(self, branch: Branch) -> None:
@@ -247,7 +249,7 @@ class Playback:
                 self.session.advance()
                 self.dissipation.after(self.session.world)
                 self._note_breaks()
-                if self.listener is not None:
+                if self.listener is not None and self.travel.target is None:
                     self.listener.hear(self.session.world)
         except CommandError as error:
             self._give_up(error)

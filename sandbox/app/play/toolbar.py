@@ -37,6 +37,7 @@ LEFT = (
 RIGHT = (
     ("share", "share"),
     ("toy", "toy"),
+    ("compare", "compare"),
     ("gallery", "levels"),
     ("sound", "sound"),
     ("settings", "settings"),
@@ -51,6 +52,7 @@ WIDE_WORDS = {**WORDS, "share": "Share"}
 LEAVING = (
     "toy",
     "save",
+    "compare",
     "settings",
     "timeline",
     "record",

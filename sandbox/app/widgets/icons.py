@@ -157,6 +157,13 @@ def _stability(pen: IconPen) -> None:
     pen.disc(12, 16, 2.2)
 
 
+def _compare(pen: IconPen) -> None:
+    pen.line((4, 5), (10, 5), (10, 19), (4, 19), (4, 5), width=1.8)
+    pen.line((14, 5), (20, 5), (20, 19), (14, 19), (14, 5), width=1.8)
+    pen.disc(7, 9, 1.7)
+    pen.disc(17, 14.5, 1.7)
+
+
 def _speaker(pen: IconPen) -> None:
     pen.shape((3, 9), (7, 9), (12, 4.5), (12, 19.5), (7, 15), (3, 15))
 
@@ -227,7 +234,8 @@ ICONS: dict[str, Icon] = {
     "undo": _undo, "redo": _redo, "record": _record, "stop": _stop, "levels": _levels, "fit": _fit,
     "panel": _panel, "save": _save, "edit": _edit, "keep": _keep, "share": _share, "spring": draw_spring,
     "lattice": _lattice, "particles": _particles, "contacts": _contacts, "forces": _forces,
-    "velocities": _velocities, "stability": _stability, "parts": _parts, "sound": _sound, "muted": _muted, "toy": _toy,
+    "velocities": _velocities, "stability": _stability, "parts": _parts, "sound": _sound, "muted": _muted,
+    "compare": _compare, "toy": _toy,
     "timeline": _timeline, "back": _back, "backwards": _backwards, "bookmark": _bookmark, "loop": _loop,
     "next_mark": lambda pen: _mark_beside(pen, 1), "previous_mark": lambda pen: _mark_beside(pen, -1),
     "branch": _branch,

@@ -41,19 +41,19 @@ def paste(document: Document, text: str, at: Point | None = None) -> Document:
         raise EditError("what was copied is a level with nothing in it")
     box = make_scene(found).bounds()
     if at is not None and box is not None:
-        found = _shifted(found, at[0] - (box[0] + box[2]) / 2.0, at[1] - (box[1] + box[3]) / 2.0)
-    return Document(*_inserted(document.level, [found]))
+        found = shifted(found, at[0] - (box[0] + box[2]) / 2.0, at[1] - (box[1] + box[3]) / 2.0)
+    return Document(*inserted(document.level, [found]))
 
 
 def duplicate(document: Document, dx: float, dy: float) -> Document:
     """Add a copy of what is selected, moved by dx, dy [m], and select it. Raises EditError."""
-    return Document(*_inserted(document.level, [_shifted(fragment(document), dx, dy)]))
+    return Document(*inserted(document.level, [shifted(fragment(document), dx, dy)]))
 
 
 def array_line(document: Document, count: int, dx: float, dy: float) -> Document:
     """Make `count` in a row of what is selected, each dx, dy [m] from the one before, and select all of them."""
     first = _repeated(document, count)
-    return _arrayed(document, [_shifted(first, k * dx, k * dy) for k in range(1, count)])
+    return _arrayed(document, [shifted(first, k * dx, k * dy) for k in range(1, count)])
 
 
 def array_circle(document: Document, count: int, centre: Point, angle: float) -> Document:
@@ -95,7 +95,8 @@ def _used(parts: Iterable[AnyBody | SpringDef]) -> set[str]:
     return {part.material for part in parts}
 
 
-def _shifted(level: Level, dx: float, dy: float) -> Level:
+def shifted(level: Level, dx: float, dy: float) -> Level:
+    """A level with all that is in it moved by dx, dy [m]. Raises EditError where it would leave the world."""
     return move(Document(level, frozenset(items_of(level))), dx, dy).level
 
 
@@ -120,12 +121,12 @@ def _size(level: Level, part: int) -> int:
 
 
 def _arrayed(document: Document, copies: list[Level]) -> Document:
-    level, selection = _inserted(document.level, copies)
+    level, selection = inserted(document.level, copies)
     return Document(level, selection | document.selection)
 
 
-def _inserted(level: Level, copies: Iterable[Level]) -> tuple[Level, Selection]:
-    """A level with the contents of others, sound by themselves, and which items these became."""
+def inserted(level: Level, copies: Iterable[Level]) -> tuple[Level, Selection]:
+    """A level with the contents of others, sound by themselves, and which items these became. Raises EditError."""
     ids, groups = taken_ids(level), taken_groups(level)
     bodies, particles, springs, welds = (
         list(part) for part in (level.bodies, level.particles, level.springs, level.welds)

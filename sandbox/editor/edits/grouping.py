@@ -12,11 +12,11 @@ from sandbox.level.format.quantities import replaced
 Place = Literal["front", "back", "forward", "backward"]
 
 
-def group(document: Document) -> Document:
-    """Make one new group of everything selected. Raises EditError for less than two things."""
+def group(document: Document, name: str = "group") -> Document:
+    """Make one new group of everything selected, by a free name. Raises EditError for less than two things."""
     if len(document.selection) < 2:
         raise EditError("select two things or more to group them")
-    return _grouped(document, free_ids(taken_groups(document.level), ["group"])[0])
+    return _grouped(document, free_ids(taken_groups(document.level), [name])[0])
 
 
 def ungroup(document: Document) -> Document:

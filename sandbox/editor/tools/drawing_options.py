@@ -98,8 +98,8 @@ AnyOptions = TypeVar("AnyOptions", bound=Options)
 
 
 def described(options: Options) -> dict[str, OptionInfo]:
-    """What a person is told of each option, by its name, in order."""
-    return {each.name: each.metadata["about"] for each in fields(options)}
+    """What a person is told of each option that is set in a row of fields, by its name, in order."""
+    return {each.name: each.metadata["about"] for each in fields(options) if "about" in each.metadata}
 
 
 def changed(options: AnyOptions, name: str, value: Any) -> AnyOptions:

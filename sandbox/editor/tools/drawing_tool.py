@@ -44,6 +44,11 @@ class Drawing(Generic[AnyOptions]):
     # ---- what the app asks
 
     @property
+    def step(self) -> str:
+        """What a step of the history is called that it makes; empty = by the tool's name."""
+        return ""
+
+    @property
     def under_way(self) -> bool:
         """Whether a gesture has begun."""
         return bool(self.points)

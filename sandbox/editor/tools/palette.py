@@ -3,9 +3,10 @@
 from sandbox.editor.kinds.table import BODY_TOOLS
 from sandbox.editor.tools.drawing_axle import AXLE
 from sandbox.editor.tools.drawing_chassis import CHASSIS
+from sandbox.editor.tools.drawing_part import PART
 from sandbox.editor.tools.drawing_particles import PARTICLE, PIN, SPRING
 from sandbox.editor.tools.drawing_terrain import GROUND, LINE, WALLS
 from sandbox.editor.tools.selecting import LASSO, SELECT
 
-_ALL = (SELECT, LASSO, PARTICLE, SPRING, *BODY_TOOLS, CHASSIS, AXLE, PIN, GROUND, LINE, WALLS)
+_ALL = (SELECT, LASSO, PARTICLE, SPRING, *BODY_TOOLS, CHASSIS, AXLE, PART, PIN, GROUND, LINE, WALLS)
 TOOLS = {tool.name: tool for tool in _ALL}

@@ -48,6 +48,8 @@ PLAIN_FROM = 6_000
 # What is only a preview is this much paler.
 GHOST_SHARE = 0.45
 HIGHLIGHT_WIDTH = 2.4
+# A preview of more particles and springs shows its springs alone: it is another one with every move of the pointer.
+GHOST_FLESH = 600
 # Springs and particles over what they look like are so much thinner.
 FINE = 0.55
 # The smooth picture is made of so many springs or particles at a time, for so long [s] in every frame.
@@ -91,7 +93,7 @@ class ScenePainter:
     def __init__(self, scale: float) -> None:
         self.scale = scale
         self.compiled = True
-        self._flesh = Flesh()
+        self._flesh, self._ghost_flesh = Flesh(), Flesh()
         self._layer: pygame.Surface | None = None
         self._scene: Scene | None = None
         self._key: tuple[object, ...] = ()
@@ -150,6 +152,14 @@ class ScenePainter:
         yield from self._slices(layer, camera, Part(scene, ~particles, ~away, is_fine=has_flesh), plain)
         if not hidden:
             yield from self._slices(layer, camera, Part(scene, particles, springs, ACCENT), plain)
+
+    def paint_ghost(self, surface: pygame.Surface, camera: Camera, part: Part) -> None:
+        """Draw a preview, pale, and where it is small as what it will be."""
+        is_small = int(np.count_nonzero(part.particles) + np.count_nonzero(part.springs)) <= GHOST_FLESH
+        has_flesh = is_small and self._ghost_flesh.paint(
+            surface, camera, part.scene, part.particles, part.springs, self.scale, self.compiled
+        )
+        self.paint(surface, camera, replace(part, ghost=True, is_fine=has_flesh))
 
     def paint_moved(self, surface: pygame.Surface, camera: Camera, moved: Scene, chosen: SelectionMasks) -> None:
         """Draw the selection in a scene where it has been moved, and the springs of others that hang on it."""

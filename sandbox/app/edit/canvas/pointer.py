@@ -260,7 +260,11 @@ class DrawTool:
             self._screen.say(str(error))
             return
         if document is not None:
-            self._screen.apply(self._name, document)
+            touched = self._screen.document.level.has_contacts
+            step = self.drawing.step or self._name
+            self._screen.apply(step, document)
+            if document.level.has_contacts and not touched:
+                self._screen.say("Things touch each other now; Contacts on the page Level says how.")
 
     def hover(self, point: Point | None, modifiers: int) -> None:
         """Show what a click would do."""

@@ -85,8 +85,7 @@ class View:
         if walls is not None and walls is not screen.document.level.walls:
             self._painter.paint_walls(surface, screen.camera, walls.box, ACCENT)
         self._painter.paint_ground(surface, screen.camera, Ground(drawn, drawn.chosen(new), ghost=True))
-        part = Part(drawn, drawn.particles_of(new), drawn.springs_of(new), ghost=True)
-        self._painter.paint(surface, screen.camera, part)
+        self._painter.paint_ghost(surface, screen.camera, Part(drawn, drawn.particles_of(new), drawn.springs_of(new)))
 
     def _draw_marks(self, surface: pygame.Surface) -> None:
         screen, tool = self._screen, self._screen.pointer_tool

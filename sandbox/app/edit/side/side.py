@@ -1,12 +1,14 @@
 """Side: the panel at the right of the editor, a page at a time."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, Protocol
 
 import pygame
 from pygame_gui.elements import UIButton
 
 from sandbox.app.edit.editing import Editing
+from sandbox.app.edit.side.catalogue import CataloguePage
 from sandbox.app.edit.side.checks import ChecksPage
 from sandbox.app.edit.side.findings import FindingsPage
 from sandbox.app.edit.side.history import HistoryPage
@@ -37,12 +39,13 @@ class SidePage(Protocol):
 PAGES: dict[str, tuple[str, str, Callable[[Editing, pygame.Rect, Any], SidePage]]] = {
     "properties": ("Properties", "What is selected", PropertiesPage),
     "materials": ("Materials", "What springs are made of", MaterialsPage),
+    "parts": ("Parts", "Ready parts, and your own, to put on the sheet", CataloguePage),
     "level": ("Level", "Name, maker, view, time and solver", SettingsPage),
     "checks": ("Checks", "What must hold of the level's run", ChecksPage),
     "history": ("History", "Every step so far", HistoryPage),
     "findings": ("Findings", "What you may have overlooked", FindingsPage),
 }
-COLUMNS = 3
+COLUMNS = 4
 
 
 class Side:
@@ -79,6 +82,11 @@ class Side:
         names = list(PAGES)
         self.choose(names[(names.index(self.tab) + by) % len(names)])
         self._ui.focus_on(self._tab_button(self.tab))
+
+    def focus(self, path: Path | None = None) -> None:
+        """Give the page of parts the keyboard, and show the part of a file on it."""
+        if isinstance(self.page, CataloguePage):
+            self.page.focus(path)
 
     def _tab_button(self, tab: str) -> UIButton:
         return next(row.buttons[tab] for row in self._rows if tab in row.buttons)

@@ -1,0 +1,294 @@
+"""CataloguePage: ready parts and a person's own, with pictures, to be put on the sheet by a click or a drag."""
+
+import time
+from collections import deque
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pygame
+
+from sandbox.app.draw.colours import DANGER, MUTED, TEXT, shown_theme
+from sandbox.app.edit.canvas.pointer import DrawTool
+from sandbox.app.edit.editing import Editing
+from sandbox.app.edit.side.part_card import NAME_HEIGHT, PICTURE_RATIO, PartCard
+from sandbox.app.edit.side.scroll import ScrollArea
+from sandbox.app.picture_cache import draw_in_slices, find_picture, forget_old_pictures, keep_picture, kept_picture
+from sandbox.app.picture_cache import picture_key as key_of_level
+from sandbox.app.screen import Pixel
+from sandbox.app.shortcuts import tip_of
+from sandbox.app.widgets.dialogs import ask, choose
+from sandbox.app.widgets.painted import TextBlock
+from sandbox.editor.storage.level_file import StorageError
+from sandbox.editor.storage.part_files import PartFile, catalogue, delete_part, rename_part
+from sandbox.editor.tools.drawing_part import PartDrawing
+from sandbox.level.faults.level_error import LevelError
+from sandbox.level.format.files import read_bytes
+from sandbox.physics import jit
+
+# Sizes in layout units.
+BUTTON_HEIGHT = 28.0
+SMALL_WIDTH = 62.0
+GAP = 6.0
+COLUMNS = 2
+HEADING = 24.0
+TEXT_HEIGHT = 64.0
+# Wall time [s] of a frame that cards are filled in; and how many frames go by between two looks at the folders.
+FILL_BUDGET = 0.008
+LOOK_EVERY = 30
+NOTHING_OWN = "Select something, and keep it as a part."
+
+
+class CataloguePage:
+    """The cards of all parts; the one that is in hand is the part tool's."""
+
+    def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
+        self._screen, self._ui = screen, screen.ui
+        ui, width = screen.ui, place.width - screen.ui.px(6)
+        small, gap, height = ui.px(SMALL_WIDTH), ui.px(GAP), ui.px(BUTTON_HEIGHT)
+        x = place.left + width - 2 * small - gap
+        wide = pygame.Rect(place.left, place.top, x - gap - place.left, height)
+        tip = tip_of("keep_part", "edit")
+        self.keep = ui.button(wide, "Keep as a part …", self._keep, container, style="@segment", tip=tip)
+        self.rename = ui.button(
+            pygame.Rect(x, place.top, small, height), "Rename", self._ask_name, container, style="@segment",
+            tip="Give a part of your own another name",
+        )  # fmt: skip
+        self.delete = ui.button(
+            pygame.Rect(x + small + gap, place.top, small, height), "Delete", self._ask_delete, container,
+            style="@segment", tip="Delete a part of your own; levels that have it keep it",
+        )  # fmt: skip
+        text_height = ui.px(TEXT_HEIGHT)
+        top = place.top + height + 2 * gap
+        self.area = ScrollArea(
+            ui, pygame.Rect(place.left, top, place.width, place.bottom - top - text_height - gap), container
+        )
+        below = pygame.Rect(place.left, place.bottom - text_height, width, text_height)
+        self._text = TextBlock(ui, below, "", container, 12.0)
+        self.cards: list[PartCard] = []
+        self._labels: list[TextBlock] = []
+        self._files: list[PartFile] = []
+        self._chosen: PartFile | None = None
+        self._unfilled: deque[Iterator[bool]] = deque()
+        self._looked = 0
+
+    # What there is.
+
+    def refresh(self) -> None:
+        """Show what there is by now, and which part is in hand."""
+        if self._looked <= 0:
+            self._looked = LOOK_EVERY
+            self._look()
+        self._looked -= 1
+        self._fill_some()
+        drawing = self._drawing()
+        for card in self.cards:
+            card.mark(card.part == self._chosen and (drawing is not None or card.part.is_own))
+        self._describe()
+        is_own = self._chosen is not None and self._chosen.is_own
+        for button, possible in (
+            (self.keep, bool(self._screen.document.selection)),
+            (self.rename, is_own and self._chosen is not None and self._chosen.level is not None),
+            (self.delete, is_own),
+        ):
+            if possible != button.is_enabled:
+                (button.enable if possible else button.disable)()
+
+    def _drawing(self) -> PartDrawing | None:
+        """The drawing that has a part in hand, where it is the tool in use."""
+        tool = self._screen.pointer_tool
+        return tool.drawing if isinstance(tool, DrawTool) and isinstance(tool.drawing, PartDrawing) else None
+
+    def _look(self) -> None:
+        files = catalogue()
+        if files == self._files:
+            return
+        for widget in (*self.cards, *self._labels):
+            self._ui.remove(widget)
+        self.cards, self._labels, self._unfilled, self._files = [], [], deque(), files
+        if self._chosen not in files:
+            # The file in hand may have another name or another content.
+            same = (part for part in files if self._chosen is not None and part.path == self._chosen.path)
+            self._chosen = next(same, None)
+        drawing = self._drawing()
+        if self._chosen is None and drawing is not None and drawing.options.part is not None:
+            # The window is laid out anew, and the tool still has it.
+            self._chosen = next((part for part in files if part.level is drawing.options.part), None)
+        own = [part for part in files if part.is_own]
+        y = self._add_section("Ready", [part for part in files if not part.is_own], 0.0)
+        y = self._add_section("Your own", own, y + GAP)
+        if not own:
+            self._add_label(NOTHING_OWN, y, 12.0, 34.0, is_bold=False)
+            y += 34.0
+        self.area.set_height(self._ui.px(y))
+
+    def _add_label(self, text: str, y: float, size: float, height: float, *, is_bold: bool) -> None:
+        ui = self._ui
+        place = ui.rect(3, y, self.area.view.rect.width / ui.scale - 6, height)
+        colour = TEXT if is_bold else MUTED
+        self._labels.append(TextBlock(ui, place, text, self.area.content, size, colour, is_bold=is_bold))
+
+    def _add_section(self, title: str, parts: list[PartFile], y: float) -> float:
+        """Cards under a heading from a place [layout units] on; where they end."""
+        ui = self._ui
+        self._add_label(title, y, 13.0, HEADING, is_bold=True)
+        y += HEADING
+        width = (self.area.view.rect.width / ui.scale - 6 - GAP * (COLUMNS - 1)) / COLUMNS
+        height = width * PICTURE_RATIO + NAME_HEIGHT
+        for index, part in enumerate(parts):
+            row, column = divmod(index, COLUMNS)
+            place = ui.rect(3 + column * (width + GAP), y + row * (height + GAP), width, height)
+            card = PartCard(ui, place, part, self, self.area.content)
+            self.cards.append(card)
+            self._unfilled.append(self._fill(card))
+        return y + -(-len(parts) // COLUMNS) * (height + GAP)
+
+    def _fill_some(self) -> None:
+        end, waiting = time.perf_counter() + FILL_BUDGET, 0
+        while waiting < len(self._unfilled):
+            went_on = next(self._unfilled[0], None)
+            if went_on is None:
+                self._unfilled.popleft()
+            elif not went_on:
+                self._unfilled.rotate(-1)
+                waiting += 1
+            if time.perf_counter() > end:
+                return
+
+    def _fill(self, card: PartCard) -> Iterator[bool]:
+        """Read a card's part and draw its picture, a slice at each turn; False where it has to wait."""
+        level, theme = card.part.level, shown_theme()
+        card.show()
+        yield True
+        if level is None:
+            return
+        try:
+            # A level of the same content is drawn after it has moved, and kept by another key.
+            key = key_of_level(b"part " + read_bytes(card.part.path))
+        except LevelError:
+            return
+        picture = find_picture(card.part.path, key, card.picture_size, theme)
+        if picture is not None:
+            card.show(picture)
+            return
+        while not self._screen.ready:
+            yield False
+        picture = yield from draw_in_slices(level, theme, 0.0)
+        card.show(pygame.transform.smoothscale(picture, card.picture_size))
+        if jit.COMPILED:
+            with suppress(OSError):
+                keep_picture(picture, kept_picture(key, theme))
+                forget_old_pictures(kept_picture(key, theme).parent)
+
+    def _describe(self) -> None:
+        part = self._chosen
+        text, colour = "Click a part, then the sheet; or drag it there. Escape ends it.", MUTED
+        if part is not None and part.fault:
+            text, colour = part.fault, DANGER
+        elif part is not None and part.level is not None:
+            text = f"{part.name}. {part.level.description}".strip()
+        if (text, colour) != (self._text.text, self._text.colour):
+            self._text.colour = colour
+            self._text.show_text(text)
+
+    # What the cards ask.
+
+    def take(self, part: PartFile, by_key: bool) -> None:
+        """Have a part in hand; by_key: it is shown in the middle of the sheet, where the arrows move it."""
+        screen, level = self._screen, part.level
+        self._chosen = part
+        if level is None:
+            screen.say(part.fault)
+            return
+        screen.choose_tool("part")
+        drawing = self._drawing()
+        assert drawing is not None
+        drawing.take(level)
+        screen.cursor = None
+        if by_key:
+            screen.cursor = screen.snapped(screen.camera.to_world(screen.camera.middle), 0).point
+            self._ui.blur()
+
+    def carry(self, pixel: Pixel) -> None:
+        """Show the part where a drag has it."""
+        screen = self._screen
+        over = self._drawing() is not None and screen.contains(pixel)
+        screen.pointer = pixel if over else None
+        screen.pointer_tool.hover(screen.camera.to_world(pixel) if over else None, pygame.key.get_mods())
+
+    def drop(self, pixel: Pixel) -> None:
+        """Put the part on the sheet, where the drag ends over it; then it is selected, and nothing is in hand."""
+        screen = self._screen
+        if self._drawing() is None or not screen.contains(pixel):
+            return
+        modifiers = pygame.key.get_mods()
+        screen.point("down", pixel, modifiers)
+        screen.point("up", pixel, modifiers)
+        screen.choose_tool("select")
+
+    def go(self, card: PartCard, by: int) -> None:
+        """Give the keyboard to another card."""
+        index = self.cards.index(card) + by
+        if 0 <= index < len(self.cards):
+            self._ui.focus_on(self.cards[index])
+            self.area.follow_focus()
+
+    def focus(self, path: Path | None = None) -> None:
+        """Give the keyboard to the part of a file, None = that in hand, or the first."""
+        self._looked = 0
+        self.refresh()
+        if path is not None:
+            self._look_for(path)
+        wanted = next((card for card in self.cards if card.part == self._chosen), None) or next(iter(self.cards), None)
+        if wanted is not None:
+            self._ui.focus_on(wanted)
+            self.area.follow_focus()
+
+    # Own parts.
+
+    def _keep(self) -> None:
+        self._screen.actions["keep_part"]()
+
+    def _ask_name(self) -> None:
+        part = self._chosen
+        if part is None:
+            return
+
+        def answer(typed: str) -> str | None:
+            try:
+                path = rename_part(part, typed)
+            except (StorageError, ValueError) as error:
+                return f"{str(error)[:1].upper()}{str(error)[1:]}."
+            self._look_for(path)
+            return None
+
+        ask(self._ui, "Rename the part", "Its file gets that name too.", part.name, "Rename", answer)
+
+    def _ask_delete(self) -> None:
+        part = self._chosen
+        if part is None:
+            return
+
+        def do() -> None:
+            try:
+                delete_part(part)
+            except StorageError as error:
+                self._screen.say(f"{error}.")
+                return
+            self._chosen = None
+            self._looked = 0
+            self._screen.say(f"The part {part.name} is deleted.")
+
+        choose(self._ui, f"Delete the part “{part.name}”?", "Levels that have it keep it.", [("Delete it", do)])
+
+    def _look_for(self, path: Path) -> None:
+        """Show the files as they are now, that of a path as chosen."""
+        self._looked = 0
+        self._chosen = next((part for part in catalogue() if part.path == path), None)
+
+    def close(self) -> None:
+        """Take the page away."""
+        for widget in (*self.cards, *self._labels, self.keep, self.rename, self.delete, self._text):
+            self._ui.remove(widget)
+        self.area.kill()

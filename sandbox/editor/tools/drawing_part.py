@@ -1,0 +1,67 @@
+"""The part tool: a click puts a part of the catalogue into the level, as one group."""
+
+from dataclasses import dataclass, field, replace
+
+from sandbox.editor.document import Document, EditError
+from sandbox.editor.edits.parts import place_part
+from sandbox.editor.tools.drawing_options import Options, flag_option
+from sandbox.editor.tools.drawing_tool import Drawing
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
+from sandbox.editor.tools.snap import Snap
+from sandbox.level.format.model import Level
+
+
+@dataclass(frozen=True)
+class PartOptions(Options):
+    """Which part, None = none yet, and which way round."""
+
+    part: Level | None = field(default=None)
+    mirrored: bool = flag_option(False, "mirrored", "Left for right: a car that looks the other way.")
+
+
+class PartDrawing(Drawing[PartOptions]):
+    """A click puts the part where the pointer is, by its origin; it joins nothing."""
+
+    defaults = PartOptions()
+    needs = 1
+
+    @property
+    def hint(self) -> str:
+        """What a click would do, or why it cannot be done."""
+        part = self.options.part
+        fault = self._fault or self._ghost_fault
+        return fault or ("Choose a part on the page Parts" if part is None else f"Click where it goes: {part.name}")
+
+    @property
+    def step(self) -> str:
+        """What it is called in the history."""
+        return "Add a part" if self.options.part is None else f"Add {self.options.part.name}"
+
+    def take(self, part: Level) -> None:
+        """Have another part in hand."""
+        self.cancel()
+        self.options = replace(self.options, part=part)
+
+    def joins(self, index: int) -> bool:
+        """A part lies beside what it is put on."""
+        return False
+
+    def ghost(self, document: Document) -> Document | None:
+        """The part where a click would put it; None where none is chosen."""
+        return None if self.options.part is None else super().ghost(document)
+
+    def placed(self, document: Document, points: list[Snap]) -> Document:
+        """The document with the part. Raises EditError."""
+        if self.options.part is None:
+            raise EditError("choose a part first, on the page Parts")
+        return place_part(document, self.options.part, points[0].point, self.options.mirrored)
+
+
+def _draw_part(pen: IconPen) -> None:
+    pen.line((4, 10.5), (12, 10.5), (12, 19.5), (4, 19.5), (4, 10.5))
+    pen.disc(18, 16, 4, 2)
+    pen.shape((12, 2), (16.5, 8.5), (7.5, 8.5))
+
+
+PART = EditorTool("part", "Shift+P", "Part: car, crane, walker and others", _draw_part, PartDrawing)

@@ -1,0 +1,146 @@
+"""The page of parts in the editor: put on the sheet by mouse and keyboard, kept, renamed, deleted."""
+
+import pygame
+import pytest
+
+from sandbox.editor.storage.part_files import catalogue
+from tests.app.conftest import small_level
+
+CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
+
+
+@pytest.fixture
+def driver(edit):
+    driver = edit(small_level())
+    driver.key(pygame.K_p, SHIFT)
+    return driver
+
+
+def page(driver):
+    return driver.editor.side.page
+
+
+def card(driver, name):
+    return next(card for card in page(driver).cards if card.part.name == name)
+
+
+def ids(driver):
+    return [body.id for body in driver.editor.document.level.bodies]
+
+
+def own():
+    return [part.name for part in catalogue() if part.is_own]
+
+
+def keep(driver, name):
+    """Keep the pair of the level as a part."""
+    driver.key(pygame.K_ESCAPE)
+    driver.key(pygame.K_ESCAPE)
+    driver.click_at(1, 2)
+    driver.key(pygame.K_k, CTRL)
+    driver.app.ui.focus.set_text(name)
+    driver.key(pygame.K_RETURN)
+    driver.frames(2)
+
+
+def test_a_click_takes_a_part_up_and_clicks_put_it_on_the_sheet_as_one_step_each(driver):
+    driver.click_widget(card(driver, "Tower"))
+    driver.move(driver.at(3, -2))
+    ghost = driver.editor.pointer_tool.ghost()
+    assert [body.id for body in ghost.level.bodies] == ["tower"] and "tower" not in ids(driver)
+    driver.click_at(3, -2)
+    driver.click_at(5, -2)
+    assert ids(driver)[-2:] == ["tower", "tower 2"]
+    assert driver.editor.document.level.bodies[-2].particles[0] == pytest.approx((3 - 1.2, -2))
+    assert driver.editor.history.labels[-1] == "Add Tower"
+    driver.key(pygame.K_z, CTRL)
+    assert ids(driver)[-1] == "tower"
+
+
+def test_a_drag_from_the_card_shows_the_part_and_lets_it_go_where_it_ends(driver):
+    tower = card(driver, "Tower")
+    driver.press(tower.rect.center)
+    driver.move(driver.at(4, -1))
+    assert driver.editor.pointer_tool.ghost() is not None
+    driver.release(driver.at(4, -1))
+    assert ids(driver)[-1] == "tower" and driver.editor.tool == "select"
+    assert {item.key for item in driver.editor.document.selection} == {"tower"}
+
+
+def test_a_drag_that_ends_beside_the_sheet_puts_nothing_on_it(driver):
+    driver.press(card(driver, "Tower").rect.center)
+    driver.release(card(driver, "Car").rect.center)
+    assert ids(driver) == ["rope", "pair"]
+
+
+def test_keys_alone_choose_a_part_move_it_and_put_it_down(driver):
+    driver.key(pygame.K_RIGHT)
+    driver.key(pygame.K_LEFT)
+    driver.key(pygame.K_DOWN)
+    driver.key(pygame.K_RETURN)
+    driver.key(pygame.K_RIGHT)
+    x = driver.editor.cursor[0]
+    driver.key(pygame.K_RETURN)
+    assert ids(driver)[-1] == "body", "the walker is below the car"
+    assert driver.editor.scene.position[driver.editor.scene.slot("body.2"), 0] == pytest.approx(x)
+
+
+def test_the_card_says_what_the_part_is_and_keys_that_a_level_uses_are_in_its_text(driver):
+    driver.click_widget(card(driver, "Car"))
+    driver.frames(2)
+    assert "D drives it" in page(driver)._text.text
+
+
+def test_what_is_selected_is_kept_as_a_part_and_is_there_at_once(driver):
+    keep(driver, "My pair")
+    assert own() == ["My pair"] and driver.editor.side.tab == "parts"
+    assert driver.app.ui.focus is card(driver, "My pair")
+    driver.click_widget(card(driver, "My pair"))
+    driver.click_at(4, 3)
+    assert ids(driver)[-1] == "pair 2"
+
+
+def test_a_name_that_is_taken_keeps_the_question_open(driver):
+    keep(driver, "My pair")
+    keep(driver, "my pair")
+    assert driver.app.ui.has_sheet and own() == ["My pair"]
+
+
+def test_own_parts_are_renamed_and_deleted_by_buttons_that_others_do_not_have(driver):
+    driver.click_widget(card(driver, "Car"))
+    driver.frames(2)
+    assert not page(driver).rename.is_enabled and not page(driver).delete.is_enabled
+    keep(driver, "My pair")
+    driver.click_widget(page(driver).rename)
+    driver.app.ui.focus.set_text("Two")
+    driver.key(pygame.K_RETURN)
+    driver.frames(2)
+    assert own() == ["Two"]
+    driver.click_widget(page(driver).delete)
+    driver.choose("Delete it")
+    driver.frames(2)
+    assert own() == []
+
+
+def test_a_broken_file_is_a_card_with_its_fault_and_can_only_be_deleted(driver, documents):
+    folder = documents.parent / "data" / "parts"
+    folder.mkdir(parents=True)
+    (folder / "odd.json").write_text('{"wheels": 4')
+    driver.key(pygame.K_p, SHIFT)
+    page(driver).area.scroll_to(9999)
+    driver.frames()
+    driver.click_widget(card(driver, "odd"))
+    driver.frames(2)
+    assert "odd.json" in page(driver)._text.text and driver.editor.tool == "part"
+    assert page(driver).delete.is_enabled and not page(driver).rename.is_enabled
+    driver.click_at(3, -2)
+    assert ids(driver) == ["rope", "pair"]
+
+
+def test_the_page_and_the_part_in_hand_survive_a_new_layout(driver):
+    driver.click_widget(card(driver, "Tower"))
+    driver.app.rebuild()
+    driver.frames(2)
+    assert driver.editor.side.tab == "parts" and card(driver, "Tower").is_taken
+    driver.click_at(3, -2)
+    assert ids(driver)[-1] == "tower"
