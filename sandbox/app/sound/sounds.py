@@ -14,7 +14,7 @@ from sandbox.app.sound.voices import Cue, Voices
 FAR = 0.25
 
 
-class Choices(Protocol):
+class SoundChoices(Protocol):
     """What is chosen, by name."""
 
     def __getitem__(self, name: str) -> Any:
@@ -39,7 +39,7 @@ class SoundingRun(Protocol):
 class Sounds:
     """Listens to one run at a time; chosen: whether there is sound, and how loud. clock: now [s]."""
 
-    def __init__(self, chosen: Choices, clock: Callable[[], float], device: Device | None = None) -> None:
+    def __init__(self, chosen: SoundChoices, clock: Callable[[], float], device: Device | None = None) -> None:
         self._chosen, self._clock = chosen, clock
         self.device = device or Device()
         self.bank = Bank()

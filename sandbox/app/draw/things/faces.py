@@ -76,8 +76,11 @@ class Faces:
         velocity = np.add.reduceat(frame.state.velocity[self._slots], begins, axis=0) / self._size[:, None]
         velocity = np.nan_to_num(velocity * np.array([1.0, -1.0]))
         shut = self.blinks(frame.seconds) | frame.asleep
-        at_rest = None if frame.pointer is None else _towards(frame.pointer, centre[shown], size[shown])
-        _draw_faces(marks, *(each[shown] for each in (centre, turn, size, load, velocity, shut)), at_rest=at_rest)
+        centre, turn, size, load, velocity, shut = (
+            each[shown] for each in (centre, turn, size, load, velocity, shut)
+        )  # fmt: skip
+        at_rest = None if frame.pointer is None else _towards(frame.pointer, centre, size)
+        _draw_faces(marks, centre, turn, size, load, velocity, shut, at_rest)
 
     def blinks(self, seconds: float) -> NDArray[np.bool_]:
         """Which of them have their eyes shut at a time [s]."""
