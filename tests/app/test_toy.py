@@ -192,6 +192,22 @@ def test_a_drag_of_the_empty_box_moves_the_window_and_one_of_a_thing_holds_it(de
     assert one.toy.window.place[0] == place[0] + 22
 
 
+def test_keys_of_the_level_drive_it_in_a_window_of_its_shape(desk):
+    wheel = {"type": "wheel", "id": "mill", "position": [4, 1], "radius": 0.5, "thickness": 0.2, "segments": 8,
+             "pin": ["hub"], "motor": {"speed": 5, "torque": 50, "key": "d"}}  # fmt: skip
+    one = desk(level=small_level(**BOX | {"bodies": [wheel], "particles": [], "view": [0, 0, 8, 2]}))
+    one.post(pygame.KEYDOWN, key=pygame.K_d, mod=0, unicode="d", scancode=0)
+    one.frames(2)
+    assert one.world.actuator_value[0] == 1.0
+    one.post(pygame.KEYUP, key=pygame.K_d, mod=0, unicode="d", scancode=0)
+    one.frames(2)
+    assert one.world.actuator_value[0] == 0.0
+    window = ToyWindow(1.0, 4.0)
+    width, height = window.size
+    window.window.destroy()
+    assert width == pytest.approx(2.5 * height, rel=0.01) and width * height == pytest.approx(SIDE * SIDE, rel=0.01)
+
+
 def test_it_opens_where_it_was_left_and_on_the_desktop_where_that_is_gone(desk):
     one = desk()
     one.toy.window.move_to((37, 41))

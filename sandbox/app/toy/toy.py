@@ -9,6 +9,7 @@ import pygame
 
 from sandbox.app.draw.colours import MUTED, show_theme
 from sandbox.app.loop import LONGEST_FRAME
+from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.stage import Stage
 from sandbox.app.preparing import Preparation
@@ -76,6 +77,7 @@ class Toy:
 
     def _make_stage(self) -> None:
         width, height = self.window.size
+        self._keys = DriveKeys(self.playback)
         self.stage = Stage(self.playback, (0, 0, width, height), self.window.scale)
         # The edge of the window is the edge of what is seen: no margin but this.
         left, bottom, right, top = self.stage.first_box
@@ -121,7 +123,8 @@ class Toy:
         self._follow_pointer()
         moved = self.motion.see(self.window.place, self.camera.zoom)
         # A window that is shown for the first time sends events as well: only what a person does wakes it.
-        if moved or self._pressed or any(event.type in WAKING for event in events):
+        held = any(is_held for _, is_held in self._keys.shown())
+        if moved or held or self._pressed or any(event.type in WAKING for event in events):
             self.rest.disturb()
         if self.rest.is_over and self._is_ready and self.motion.rests:
             if not self.asleep:
@@ -177,8 +180,7 @@ class Toy:
         self._draw()
         self.sounds.update(None, False)
         if self.playback.session.recording is None and not self.stage.drag.holds:
-            self.playback = Playback(self.playback.level, start=self.playback.session.snapshot())
-            self.stage.replace_playback(self.playback)
+            self._show(Playback(self.playback.level, start=self.playback.session.snapshot()))
         self.window.keep(sound=self.choices.sound)
 
     def close(self) -> None:
@@ -201,6 +203,8 @@ class Toy:
             self.hovered = False
         elif event.type == pygame.KEYDOWN:
             self._press_key(event)
+        elif event.type == pygame.KEYUP:
+            self._keys.release(event.key)
         elif event.type == pygame.MOUSEBUTTONDOWN and event.button in (1, 2, 3):
             self._press(event)
         elif event.type == pygame.MOUSEMOTION:
@@ -212,6 +216,8 @@ class Toy:
         with_ctrl = bool(event.mod & (pygame.KMOD_CTRL | pygame.KMOD_META))
         if event.key == pygame.K_ESCAPE or (with_ctrl and event.key in (pygame.K_q, pygame.K_w)):
             self.running = False
+        elif self._keys.press(event.key, event.mod):
+            return
         elif event.key in ARROWS:
             dx, dy = ARROWS[event.key]
             self._nudge(dx, dy)
@@ -236,8 +242,13 @@ class Toy:
 
     def _begin_again(self) -> None:
         if self.playback.session.recording is None:
-            self.playback = self.playback.reset()
-            self.stage.replace_playback(self.playback)
+            self._show(self.playback.reset())
+
+    def _show(self, playback: Playback) -> None:
+        """Go on with another run of the level."""
+        self.playback = playback
+        self._keys = DriveKeys(playback)
+        self.stage.replace_playback(playback)
 
     def _say(self, words: str) -> None:
         self._words, self._words_left = words, READABLE / 2

@@ -35,7 +35,8 @@ def run_toy(
     from sandbox.app.toy.toy_window import ToyWindow
 
     level, chosen = find(), Chosen(theme=theme)
-    window = ToyWindow(scale or chosen["scale"])
+    left, bottom, right, top = level.view or (0.0, 0.0, 1.0, 1.0)
+    window = ToyWindow(scale or chosen["scale"], (right - left) / max(top - bottom, 1e-9))
     for line in (*chosen.faults, window.refusal):
         if line:
             tell(line)
