@@ -37,6 +37,7 @@ from sandbox.app.share.sharing import Sharing
 from sandbox.app.shortcuts import Mode, use_keys
 from sandbox.app.sound.sounds import Sounds
 from sandbox.app.start_request import StartRequest
+from sandbox.app.toy.toy_start import start_toy
 from sandbox.app.widgets.dialogs import show_lines
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.files import read_level
@@ -214,6 +215,7 @@ class App:
             "share": self.share_page.open,
             "compare": self._compare,
             "sound": self._toggle_sound,
+            "toy": self._start_toy,
         }
 
     def start_lesson(self) -> None:
@@ -293,6 +295,12 @@ class App:
     def _toggle_sound(self) -> None:
         is_on = self.chosen["sound"] == "on"
         self.chosen.choose("sound", "off" if is_on else "on")
+
+    def _start_toy(self) -> None:
+        if self.play is not None:
+            self.say(
+                start_toy(self.play.playback.level) or "The desk toy opens. Drag its window, and the world shakes."
+            )
 
     def _open_settings(self) -> None:
         SettingsSheet(self.ui, self.chosen)
