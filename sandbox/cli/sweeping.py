@@ -31,12 +31,12 @@ def add_options(sweep: argparse.ArgumentParser) -> None:
 
 def sweep(options: argparse.Namespace) -> int:
     """Run the grid and write its table."""
-    from sandbox.session.sweep import Grid, Journal, SweepError, case_level, swept
+    from sandbox.session.sweep import Journal, SweepError, SweepGrid, case_level, swept
 
     if options.output.suffix.lower() != ".csv":
         raise Refused(f"{options.output}: a table is CSV; end the name in .csv")
     level = level_of(options.level)
-    grid = Grid(level, _columns(options), max(1, round(options.seconds * level.settings.tick_rate)))
+    grid = SweepGrid(level, _columns(options), max(1, round(options.seconds * level.settings.tick_rate)))
     runs = math.prod(map(len, grid.columns.values()))
     if not grid.columns:
         raise Refused("nothing varies: give --cs, --cd, --solver, --substeps or --set")

@@ -44,7 +44,7 @@ class SweepError(ValueError):
 
 
 @dataclass(frozen=True)
-class Grid:
+class SweepGrid:
     """A level and the values of every column, of which the last changes fastest; ticks of each run."""
 
     level: Level
@@ -146,7 +146,7 @@ class Journal:
     rows: by number. fresh: forget what was there. Raises OSError, and SweepError for one of another sweep.
     """
 
-    def __init__(self, table: Path, grid: Grid, fresh: bool = False) -> None:
+    def __init__(self, table: Path, grid: SweepGrid, fresh: bool = False) -> None:
         self.path = table.with_name(table.name + ".unfinished")
         self.rows: dict[int, list[Any]] = {}
         request = json.dumps(grid.request())
@@ -168,13 +168,13 @@ class Journal:
         with self.path.open("a", encoding="utf-8") as file:
             file.write(json.dumps([number, row]) + "\n")
 
-    def finish(self, table: Path, grid: Grid) -> None:
+    def finish(self, table: Path, grid: SweepGrid) -> None:
         """Write the table, rows in the order of the grid, and remove the journal."""
         write_file(table, table_text(grid, self.rows).encode())
         self.path.unlink(missing_ok=True)
 
 
-def table_text(grid: Grid, rows: dict[int, list[Any]]) -> str:
+def table_text(grid: SweepGrid, rows: dict[int, list[Any]]) -> str:
     """The table as CSV; what there is none of is empty."""
     lines = [grid.header, *([*case, *rows[number]] for number, case in enumerate(grid.cases))]
     return "".join(",".join(map(_cell, line)) + "\n" for line in lines)
@@ -185,7 +185,7 @@ def _cell(value: Any) -> str:
     return '"' + text.replace('"', '""') + '"' if set(text) & set(',"\n') else text
 
 
-def swept(grid: Grid, known: Sequence[int], processes: int) -> Generator[tuple[int, list[Any]], None, None]:
+def swept(grid: SweepGrid, known: Sequence[int], processes: int) -> Generator[tuple[int, list[Any]], None, None]:
     """Run the points that are not known; number and row of each as it ends, in whatever order.
 
     Close it if not all are wanted. Raises SweepError, and OSError where a process is gone.

@@ -8,7 +8,7 @@ import pytest
 import sandbox.session.sweep as sweep_module
 from sandbox.cli import main
 from sandbox.level.format.files import level_data
-from sandbox.session.sweep import Grid, Journal, SweepError, run_case, swept
+from sandbox.session.sweep import Journal, SweepError, SweepGrid, run_case, swept
 from tests.support.rope_level import rope_level
 
 CHECKS = [{"name": "stays up", "metric": "y", "particle": "rope.end", "after": 0.1, "at_least": -0.2}]
@@ -34,12 +34,8 @@ def test_every_point_of_the_grid_is_a_row_in_order_with_its_figures(level, tmp_p
     assert sweep(level, tmp_path / "a.csv", "--processes", "1") == 0
     table = rows(tmp_path / "a.csv")
     points = [(row["settings.gravity.1"], row["cs"], row["cd"]) for row in table]
-    assert points == [
-        (gravity, cs, cd)
-        for gravity in ("-9.81", "-40")
-        for cs in ("0.1", "0.316227766", "1.0")
-        for cd in ("0.0", "1.0")
-    ]
+    axes = ("-9.81", "-40"), ("0.1", "0.316227766", "1.0"), ("0.0", "1.0")
+    assert points == list(itertools.product(*axes))
     assert [row["check: stays up"] for row in table] == ["1"] * 6 + ["0"] * 6
     assert all(float(row["max_strain"]) > 0.0 and row["settle_time"] == "" for row in table)
     stiff, soft = (next(row for row in table if row["cs"] == cs) for cs in ("1.0", "0.1"))
@@ -72,11 +68,11 @@ def test_processes_and_a_resumed_sweep_give_the_same_table(level, tmp_path, monk
 
 
 def test_a_journal_of_another_sweep_is_left_alone(tmp_path):
-    one = Grid(rope_level(), {"cs": (0.1, 0.2)}, 3)
+    one = SweepGrid(rope_level(), {"cs": (0.1, 0.2)}, 3)
     Journal(tmp_path / "t.csv", one).add(1, [1.5, None])
     assert Journal(tmp_path / "t.csv", one).rows == {1: [1.5, None]}
     with pytest.raises(SweepError, match="another sweep"):
-        Journal(tmp_path / "t.csv", Grid(rope_level(), {"cs": (0.1, 0.3)}, 3))
+        Journal(tmp_path / "t.csv", SweepGrid(rope_level(), {"cs": (0.1, 0.3)}, 3))
     assert Journal(tmp_path / "t.csv", one, fresh=True).rows == {}
 
 
@@ -86,7 +82,7 @@ def test_what_blows_up_and_what_breaks_is_said():
     brittle = {"stiffness": 0.3, "damping": 0.5, "tension_limit": 0.001}
     torn = rope_level(materials={"steel": brittle, "rubber": brittle})
     for level, breaks, blows_up in ((wild, False, 1), (torn, True, 0)):
-        grid = Grid(level, {"settings.tick_rate": (60,)}, 60)
+        grid = SweepGrid(level, {"settings.tick_rate": (60,)}, 60)
         ((_, row),) = swept(grid, [], 1)
         figures = dict(zip(grid.header[1:], row, strict=True))
         assert (figures["broken_springs"] > 0, figures["blew_up"]) == (breaks, blows_up)
