@@ -1,6 +1,7 @@
 """Sweeps: rows in the order of the grid, the same however they were made, and taken up again."""
 
 import csv
+import itertools
 import json
 
 import pytest
