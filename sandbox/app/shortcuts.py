@@ -60,6 +60,8 @@ SHORTCUTS = (
     Shortcut("forces", ("F5",), "Forces of springs and contacts", "View", "play"),
     Shortcut("velocities", ("F6",), "Velocities", "View", "play"),
     Shortcut("stability", ("F7",), "Stability: how near springs are to the limit", "View", "play"),
+    Shortcut("graphs", ("F8",), "Graphs: energy, strain, speeds, torque, time", "View", "play"),
+    Shortcut("pick", ("O",), "Graph the particle pointed at, or no longer", "View", "play"),
     Shortcut("compare", ("F9",), "Two settings side by side; or back to one", "View", "play"),
     Shortcut("let_go", ("Escape",), "Let go of everything; back to the hand", "Tools", "play"),
     Shortcut("hand", ("T",), "Hand: gentle, normal or strong", "Tools", "play"),

@@ -12,6 +12,7 @@ from sandbox.app.compare.twin import TwinPlayback, coefficients_of
 from sandbox.app.draw.colours import LINE, TEXT
 from sandbox.app.play.panel import SOLVER_LABELS, Panel
 from sandbox.app.play.play_screen import PlayScreen
+from sandbox.app.play.playback import Playback
 from sandbox.app.play.side_panel import SidePanel
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.toolbar import BAR_HEIGHT
@@ -158,6 +159,7 @@ class CompareScreen(PlayScreen):
         super().update(frame_time, None if pointer is None else self._in_first(pointer), profile, ready)
         with profile.part("ticks"):
             self.other.follow(self.playback.session.tick)
+        super()._measure(self._ticks_made, profile)
         self.difference.update(self.playback.current, self.other.current)
         self._show_ghost()
 
@@ -194,6 +196,17 @@ class CompareScreen(PlayScreen):
         left, top, width, height = self.area
         across = left + width // 2
         return across, top + (self._ui.px(PILL_TOP) if self._is_wide else height // 2)
+
+    def _measured(self) -> list[tuple[str, Playback]]:
+        if self.beside is None:
+            return super()._measured()
+        return [("A ", self.playback), ("B ", self.other)]
+
+    def _measure(self, ticks: int, profile: Profile) -> None:
+        """It is measured once both are at the same tick."""
+        self._ticks_made = ticks
+
+    _ticks_made = 0
 
     def captions(self) -> tuple[list[str], list[str]]:
         """What stands over each half: its settings, and what comes of them."""

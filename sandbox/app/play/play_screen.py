@@ -12,6 +12,7 @@ from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colou
 from sandbox.app.draw.detail import FULL, NO_EFFECTS
 from sandbox.app.draw.views.overlays import NAMES as OVERLAYS
 from sandbox.app.edit.bake_choice import ask_to_keep
+from sandbox.app.graphs.graph_dock import GraphDock
 from sandbox.app.loop import SPEEDS
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.hand_labels import draw_labels
@@ -73,6 +74,7 @@ class PlayScreen:
         self.panel: SidePanel | None = None
         self.stage = Stage(playback, (0, 0, *app.ui.size), app.scale)
         self.time = TimeBar(app, lambda: self.playback)
+        self.graphs = GraphDock(app, self._measured)
         self.stage.place(self.viewport, app.scale)
         kept = preference(SPRINGS)
         self.shape = PanelShape(kept if kept in ("pad", "sliders") else None)
@@ -113,12 +115,17 @@ class PlayScreen:
         ui, (width, height) = self._ui, self._ui.size
         top, bottom = ui.px(BAR_HEIGHT), ui.px(STATUS_HEIGHT)
         right = ui.px(PANEL_WIDTH) if self.show_panel else 0
-        return 0, top, max(width - right, 1), max(height - top - bottom - ui.px(self.time.height), 1)
+        return 0, top, max(width - right, 1), max(height - top - bottom - ui.px(self._below), 1)
+
+    @property
+    def _below(self) -> float:
+        """What graphs and timeline take of the height [layout units]."""
+        return self.time.height + self.graphs.height(self._ui)
 
     @property
     def notices_corner(self) -> tuple[float, float]:
         """Where the notices are, from the left and above the status line [layout units]."""
-        return (16.0 if self.palette is None else self.palette.right + 10.0), self.time.height
+        return (16.0 if self.palette is None else self.palette.right + 10.0), self._below
 
     def build(self, ui: Ui) -> None:
         """Lay the bar and the panel out anew."""
@@ -137,6 +144,7 @@ class PlayScreen:
         place = ui.rect(left, BAR_HEIGHT + AGAIN_TOP, *AGAIN_SIZE)
         self.again = ui.button(place, "Again", self._reset, style="@primary", tip=tip_of("reset", "play"))
         self.again.hide()
+        self.graphs.build(ui, self.area[2] / ui.scale, ui.units[1] - STATUS_HEIGHT - self.time.height)
         self.time.build(ui, self.area[2] / ui.scale, ui.units[1] - STATUS_HEIGHT)
         self.stage.renderer.follow_theme()
         before, self.panel = self.panel, None
@@ -182,6 +190,8 @@ class PlayScreen:
             "step": lambda: self.playback.clock.step_once(),
             "slow": lambda: self.playback.clock.next_speed(SPEEDS),
             **self.time.actions,
+            "graphs": self.graphs.toggle,
+            "pick": lambda: self.graphs.pick(self.stage.pointed),
             "reset": self._reset,
             "zoom_in": lambda: self._zoom(2),
             "zoom_out": lambda: self._zoom(-2),
@@ -324,7 +334,9 @@ class PlayScreen:
 
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
         """Let time pass, where no page is open and the physics is ready."""
+        before = self.playback.session.tick
         self.stage.update(frame_time if ready and not self._ui.has_sheet else 0.0, pointer, profile)
+        self._measure(self.playback.session.tick - before, profile)
         self.stage.renderer.compiled = ready
         self._show_stuck()
         self._show_again()
@@ -348,8 +360,18 @@ class PlayScreen:
                 self.show_palette,
                 self._app.chosen["sound"] == "on",
                 self.time.is_shown,
+                self.graphs.is_shown,
             )
         )
+
+    def _measured(self) -> list[tuple[str, Playback]]:
+        """The runs that graphs are of, each with what stands before its names."""
+        return [("", self.playback)]
+
+    def _measure(self, ticks: int, profile: Profile) -> None:
+        times = profile.milliseconds
+        frame = times["frame"][-1] if times["frame"] else None
+        self.graphs.update(times["ticks"][-1] / ticks if ticks > 0 else None, frame)
 
     def _tell(self) -> None:
         """Say what the run has to say."""
@@ -395,6 +417,9 @@ class PlayScreen:
         self.stuck.draw(surface, self._ui, self.camera, self.playback.current)
         draw_key_caps(surface, self._ui, self._keys.shown(), self.viewport)
         draw_labels(surface, self._ui, self.camera, self.playback.current, self.stage.pulls())
+        surface.set_clip(None)
+        self.graphs.draw(surface)
+        surface.set_clip(self.viewport)
         renderer, (left, top, width, _) = self.stage.renderer, self.viewport
         solver = self.playback.current.settings.solver
         self._legend.draw(surface, self._ui, renderer.overlays, renderer.theme, solver, (left + width, top))

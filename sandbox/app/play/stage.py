@@ -220,6 +220,14 @@ class Stage:
         if self.pressed_by_key:
             self.point("move", pixel, modifiers)
 
+    @property
+    def pointed(self) -> int | None:
+        """The particle under the mouse, or else at the keyboard cursor."""
+        if self._hovered is not None or self.cursor is None:
+            return self._hovered
+        within = PICK_RADIUS * self.renderer.scale / self.camera.zoom
+        return nearest_particle(self.playback.current, self.cursor, within)
+
     # A frame.
 
     def pulls(self) -> list[Pull]:

@@ -37,6 +37,7 @@ LEFT = (
 )  # fmt: skip
 RIGHT = (
     ("share", "share"),
+    ("graphs", "graphs"),
     ("compare", "compare"),
     ("gallery", "levels"),
     ("sound", "sound"),
@@ -52,6 +53,7 @@ WIDE_WORDS = {**WORDS, "share": "Share"}
 LEAVING = (
     "save",
     "compare",
+    "graphs",
     "settings",
     "timeline",
     "record",
@@ -85,6 +87,7 @@ class BarState:
     palette: bool
     sound: bool
     timeline: bool
+    graphs: bool
 
 
 def fitting(actions: Sequence[str], width: float) -> list[str]:
@@ -159,6 +162,7 @@ class Toolbar:
         self._mark("palette", TEXT, state.palette)
         self._mark("sound", TEXT if state.sound else DISABLED, False, "sound" if state.sound else "muted")
         self._mark("timeline", TEXT, state.timeline)
+        self._mark("graphs", TEXT, state.graphs)
         for name, on in (("undo", state.can_undo), ("redo", state.can_redo)):
             self._mark(name, TEXT if on else DISABLED, False)
             if name in self.buttons:

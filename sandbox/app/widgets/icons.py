@@ -157,6 +157,11 @@ def _stability(pen: IconPen) -> None:
     pen.disc(12, 16, 2.2)
 
 
+def _graphs(pen: IconPen) -> None:
+    pen.line((4, 4), (4, 20), (20, 20), width=1.8)
+    pen.line((6.5, 15), (10, 9), (13.5, 13), (19.5, 5.5), width=1.8)
+
+
 def _compare(pen: IconPen) -> None:
     pen.line((4, 5), (10, 5), (10, 19), (4, 19), (4, 5), width=1.8)
     pen.line((14, 5), (20, 5), (20, 19), (14, 19), (14, 5), width=1.8)
@@ -228,7 +233,7 @@ ICONS: dict[str, Icon] = {
     "panel": _panel, "save": _save, "edit": _edit, "keep": _keep, "share": _share, "spring": draw_spring,
     "lattice": _lattice, "particles": _particles, "contacts": _contacts, "forces": _forces,
     "velocities": _velocities, "stability": _stability, "parts": _parts, "sound": _sound, "muted": _muted,
-    "compare": _compare,
+    "compare": _compare, "graphs": _graphs,
     "timeline": _timeline, "back": _back, "backwards": _backwards, "bookmark": _bookmark, "loop": _loop,
     "next_mark": lambda pen: _mark_beside(pen, 1), "previous_mark": lambda pen: _mark_beside(pen, -1),
     "branch": _branch,
