@@ -9,6 +9,7 @@ import pygame
 from sandbox.app.draw.colours import ACCENT, MUTED, TEXT
 from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.shortcuts import Mode, Shortcut, shortcuts
+from sandbox.app.widgets.layout import WindowLayout
 from sandbox.app.widgets.painted import Painted
 from sandbox.app.widgets.ui import Ui
 
@@ -84,7 +85,7 @@ def _height(column: Column) -> float:
     return sum(HEADING + ROW * len(entries) for entries in column.values())
 
 
-def _widths(ui: Ui, columns: list[Column]) -> list[int]:
+def _widths(ui: WindowLayout, columns: list[Column]) -> list[int]:
     """How wide [pixels] the texts of each column are, with the gap behind it."""
     bold, plain = ui.font(TEXT_SIZE, True), ui.font(TEXT_SIZE)
     widths = []
