@@ -26,7 +26,7 @@ lint: $(VENV)/installed-dev
 pictures: $(VENV)/installed-dev
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.picture_cache
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.draw.app_icon
-	$(BIN)/python -m tests.pictures.sharing
+	$(BIN)/python -m tests.pictures
 
 bench: $(VENV)/installed-dev
 	for bench in tests/bench/*.py; do echo "## $$bench"; PYTHONPATH=. $(BIN)/python "$$bench" || exit 1; done

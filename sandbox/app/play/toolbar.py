@@ -22,8 +22,9 @@ ICON = 18.0
 SLOW_WIDTH = 46.0
 MARGIN = 14.0
 SHARE_WIDTH = 68.0
-# Narrower windows leave the level's name out, and the wider gaps between the groups.
+# Narrower windows leave the level's name out, and the wider gaps between the groups; and so does less room for it.
 ROOM_FOR_NAME = 1000.0
+LEAST_NAME = 90.0
 WIDE_GAP, NARROW_GAP = 16.0, 4.0
 # Groups of actions from the left, and those at the right end, with their pictures.
 LEFT = (
@@ -131,8 +132,9 @@ class Toolbar:
         at_end = [*at_right, *(["more"] if self.left_out else [])]
         self._x = width - MARGIN + GAP - sum(_width(action, is_wide) + GAP for action in at_end)
         self.title = None
-        if is_wide:
-            place = ui.rect(title_left, 0, self._x - title_left - 14, BAR_HEIGHT)
+        room = self._x - title_left - 14
+        if is_wide and room >= LEAST_NAME:
+            place = ui.rect(title_left, 0, room, BAR_HEIGHT)
             self.title = ui.label(place, "", self.back, "@title")
         for action in at_right:
             self._add(action)
