@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sandbox import __version__
-from sandbox.cli import comparing
+from sandbox.cli import comparing, toys
 from sandbox.cli.inputs import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
@@ -116,6 +116,10 @@ def _parser() -> argparse.ArgumentParser:
     play.add_argument("--profile", action="store_true", help="print where a frame's time goes, at the end")
     play.add_argument("--seconds", type=seconds, help="close the app after so many seconds")
     _add_look_options(play)
+
+    toy = command("toy", toys.play_toy, "play a level in a small window that stays on top and feels how it is moved")
+    toys.add_toy_options(toy)
+    _add_look_options(toy)
 
     run = command("run", _run, "run a level headless and print what came of it")
     run.add_argument("level", metavar="LEVEL")
