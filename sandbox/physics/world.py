@@ -569,9 +569,9 @@ class World(StateArrays):
         """Let go; the grab's slots wait for its next use. Nothing spends what a hand's work has put into banks."""
         cursor, spring = self.grab_particle + grab, self.grab_spring + grab
         self.change("particle_active", False, cursor)
-        self.energy_bank[self.energy_bank > 0.0] = BANK_EMPTIED
         # Not begun anew: what overlaps where a hand lets go is no start, at which parting costs nothing.
-        self.energy_bank[self.particle_b[spring]] = BANK_EMPTIED
+        held = np.arange(self.particle_count) == self.particle_b[spring]
+        self.energy_bank[(self.energy_bank > 0.0) | (held & (self.energy_bank == 0.0))] = BANK_EMPTIED
         self.position[cursor] = 0.0
         self.velocity[cursor] = 0.0
         self.slow_velocity[cursor] = 0.0
