@@ -24,7 +24,7 @@ LEFT = (
         ("duplicate", "duplicate"), ("delete", "delete"), ("mirror", "mirror"), ("array", "array"), ("parts", "group"),
         ("align", "align"), ("order", "order"),
     ),
-    (("snap", "snap"), ("forecast", "forecast")),
+    (("snap", "snap"), ("forecast", "forecast"), ("rest", "rest")),
 )  # fmt: skip
 RIGHT = (("menu", "menu"), ("fit", "fit"), ("panel", "panel"))
 NEEDS_SELECTION = ("duplicate", "delete", "mirror", "array", "parts", "align", "order")

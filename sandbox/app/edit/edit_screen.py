@@ -165,6 +165,10 @@ class EditScreen:
         """Whether it is shown where everything will hang."""
         return self.watch.forecasts
 
+    def begin_at_rest(self) -> None:
+        """Let everything begin where it will hang."""
+        self.watch.begin_at_rest()
+
     def toggle_forecast(self) -> None:
         """Show where everything will hang, or no more."""
         self.watch.toggle_forecast()

@@ -236,6 +236,10 @@ class Editing(Protocol):
         """Whether it is shown where everything will hang."""
         ...
 
+    def begin_at_rest(self) -> None:
+        """Let everything begin where it will hang."""
+        ...
+
     def toggle_forecast(self) -> None:
         """Show where everything will hang, or no more."""
         ...
