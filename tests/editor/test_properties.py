@@ -372,7 +372,21 @@ def test_whatever_is_typed_gives_a_level_that_can_be_saved_or_one_line(index, da
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_a_number_is_shown_without_becoming_another(value):
-    assert float(number_text(value)) == value
+    assert math.isclose(float(number_text(value)), value, rel_tol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.1 + 0.2, "0.3"),
+        (-1.4000000000000001, "-1.4"),
+        (3.0999999999999996, "3.1"),
+        (1 / 3, repr(1 / 3)),
+        (1e-9, "1e-09"),
+    ],
+)
+def test_the_dust_of_arithmetic_is_not_shown(value, text):
+    assert number_text(value) == text
 
 
 @given(st.text(alphabet="ab\\nt\n\t ", max_size=12))

@@ -13,7 +13,7 @@ from sandbox.app.edit.clipboard import Clipboard
 from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.part_keeping import ask_to_keep_part
 from sandbox.app.edit.side.rows import Row
-from sandbox.app.shortcuts import shortcuts
+from sandbox.app.shortcuts import shortcuts, tip_of
 from sandbox.app.widgets.dialogs import choose, choose_row, fill_in
 from sandbox.editor.document import Document
 from sandbox.editor.edits.copying import array_circle, array_line, duplicate
@@ -100,8 +100,8 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
 
 def _show_menu(screen: Editing, app: Application) -> None:
     """Offer what has no button of its own."""
-    entries = [entry for entry in shortcuts("edit") if entry.action in MENU]
-    choices = [(f"{entry.label}  [{entry.keys[0]}]", partial(app.act, entry.action)) for entry in entries]
+    entries = [entry for entry in shortcuts("edit") if entry.action in (*MENU, *screen.without_button)]
+    choices = [(tip_of(entry.action, "edit"), partial(app.act, entry.action)) for entry in entries]
     choose(screen.ui, "More", "", choices, columns=2)
 
 

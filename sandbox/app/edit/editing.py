@@ -190,6 +190,11 @@ class Editing(Protocol):
     # What is shown.
 
     @property
+    def without_button(self) -> tuple[str, ...]:
+        """Actions whose buttons have no room."""
+        ...
+
+    @property
     def ready(self) -> bool:
         """Whether the physics is prepared."""
         ...
