@@ -24,6 +24,12 @@ def number_text(value: float) -> str:
     return text if math.isclose(float(text), value, rel_tol=DUST) else repr(value)
 
 
+def exact_text(value: float) -> str:
+    """A number as short as it can be without becoming another one; of lists, all of which are read when one changes."""
+    text = number_text(value)
+    return text if float(text) == value else repr(value)
+
+
 def significant(value: float, digits: int) -> float:
     """A number rounded to so many digits, as a person reads it."""
     return float(f"{value:.{digits}g}")
@@ -53,7 +59,7 @@ def list_text(values: Sequence[Any]) -> str:
 def _entry(value: Any) -> str:
     if isinstance(value, list | tuple):
         return "[" + ", ".join(_entry(part) for part in value) + "]"
-    return number_text(value)
+    return exact_text(value)
 
 
 def line_text(text: str) -> str:
