@@ -1,13 +1,14 @@
 # make play: install into .venv and run the app.    make test: install into .venv and run every test.
 # Kernels are compiled before, or each worker would compile all of them.
 # make abuse: what stirring, throwing and driving does to things, in figures; hours.
+# make soak: random mouse and keyboard at the app for minutes, and a while in a window on a virtual screen.
 # make pictures: draw the gallery's pictures of shipped levels anew, after one was changed, and those of docs/.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 WORKERS ?= 2
 
-.PHONY: play test lint pictures bench abuse clean
+.PHONY: play test lint pictures bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
@@ -25,7 +26,7 @@ lint: $(VENV)/installed-dev
 pictures: $(VENV)/installed-dev
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.picture_cache
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.draw.app_icon
-	$(BIN)/python -m tests.pictures.sharing
+	$(BIN)/python -m tests.pictures
 
 bench: $(VENV)/installed-dev
 	for bench in tests/bench/*.py; do echo "## $$bench"; PYTHONPATH=. $(BIN)/python "$$bench" || exit 1; done
@@ -35,6 +36,10 @@ abuse: $(VENV)/installed-dev
 		module=$$(basename "$$script" .py); echo "## $$module"; \
 		SDL_VIDEODRIVER=dummy $(BIN)/python -m "tests.abuse.$$module" --all || exit 1; \
 	done
+
+soak: $(VENV)/installed-dev
+	SDL_VIDEODRIVER=dummy $(BIN)/python -m tests.abuse.soak
+	$(BIN)/python -m tests.abuse.soak --seconds 120 --screen
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)

@@ -20,7 +20,7 @@ _HOME = {
     "state_hash": "sandbox.physics.snapshot",
     "step": "sandbox.physics.step",
     "Session": "sandbox.session.session",
-    "run_checks": "sandbox.session.summary",
+    "run_checks": "sandbox.session.check_run",
     "Replay": "sandbox.session.replay.recording",
 }
 __all__ = [
@@ -48,9 +48,9 @@ if TYPE_CHECKING:
     from sandbox.physics.snapshot import Snapshot, state_hash
     from sandbox.physics.step import step
     from sandbox.physics.world import World
+    from sandbox.session.check_run import run_checks
     from sandbox.session.replay.recording import Replay
     from sandbox.session.session import Session
-    from sandbox.session.summary import run_checks
 
 
 def __getattr__(name: str) -> Any:

@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "sandbox"
 # What users import: modules that only pass names on. They stand above the rooms that they take those from.
 PUBLIC = ("commands", "replay", "bodies")
-ROOMS = ("physics", "level", "session", *PUBLIC, "tools", "editor", "app", "terminal", "cli", "__main__")
+ROOMS = ("physics", "level", "session", *PUBLIC, "tools", "editor", "app", "testing", "terminal", "cli", "__main__")
 LIBRARIES = {
     "physics": {"numpy", "numba", "llvmlite"},
     "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},
@@ -24,6 +24,7 @@ LIBRARIES = {
     **{name: set() for name in PUBLIC},
     "tools": {"numpy"},
     "editor": {"numpy", "pydantic", "platformdirs", "filelock"},
+    "testing": {"numpy", "pytest"},
     "terminal": {"tqdm"},
     "cli": set(),
     "__main__": set(),
@@ -166,6 +167,12 @@ def test_help_loads_neither_pygame_nor_numba_nor_numpy(arguments):
     )
     assert "sandbox.cli" in loaded
     assert not loaded & {"pygame", "pygame_gui", "numba", "numpy", "pydantic"}
+
+
+def test_the_plugin_of_pytest_loads_nothing_heavy():
+    loaded = loaded_after("import sandbox.testing.plugin")
+    assert "sandbox.testing.items" in loaded
+    assert not loaded & {"pygame", "pygame_gui", "numba", "numpy", "pydantic", "sandbox.level", "sandbox.app"}
 
 
 def test_the_window_needs_none_of_the_libraries_that_take_long_to_import():

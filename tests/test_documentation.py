@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.level.format.files import load_level, parse_level
+from sandbox.level.format.files import load_level, parse_level, shipped_levels
 from sandbox.physics.energy import kinetic_energy, spring_energy, spring_lengths
 from sandbox.physics.equation import of_body, of_springs
 from sandbox.physics.firmness import lowest_mode_of
@@ -20,10 +20,11 @@ from sandbox.physics.stability import report
 from sandbox.physics.step import step
 from sandbox.physics.substeps import halve
 from sandbox.physics.world import World
+from sandbox.session.check_run import run_checks
 from sandbox.session.commands import COMMAND_TYPES
 from sandbox.session.replay.script import read_script
 from sandbox.session.session import Session
-from sandbox.session.summary import run_checks
+from tests.pictures import gallery
 from tests.support.wobbles import firm_world
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -128,6 +129,20 @@ def test_every_link_within_the_project_leads_somewhere(page):
         if found is None or (place and place not in map(anchor, headings)):
             astray.append(target)
     assert astray == []
+
+
+def test_the_gallery_has_every_level_with_its_text_and_picture():
+    assert gallery.PAGE.read_text(encoding="utf-8") == gallery.page(), "python -m tests.pictures gallery"
+    named = set(re.findall(r"^    sandbox play (\w+)$", gallery.page(), re.MULTILINE))
+    assert named == {path.stem for path in shipped_levels()}
+    assert {path.stem for path in gallery.FOLDER.glob("*")} == named
+
+
+def test_the_pictures_of_the_documentation_are_few_bytes_and_each_is_shown_somewhere():
+    pictures = [path for folder in ("gallery", "how-to", "sharing") for path in (ROOT / "docs" / folder).iterdir()]
+    assert sum(path.stat().st_size for path in pictures) < 3_000_000
+    shown = "".join(page.read_text(encoding="utf-8") for page in PAGES)
+    assert [path.name for path in pictures if f"{path.parent.name}/{path.name}" not in shown] == []
 
 
 def test_the_map_in_the_readme_names_every_room_and_every_folder_and_no_other():

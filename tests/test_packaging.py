@@ -35,7 +35,7 @@ def test_an_installed_wheel_finds_its_levels_parts_and_assets_from_another_folde
         "import sandbox; from sandbox.level.format.files import load_level, shipped_folder, shipped_levels\n"
         "assert load_level('rope').name and shipped_levels()\n"
         "print(sandbox.__file__, len(shipped_levels()), len(list(shipped_folder('assets').iterdir())),\n"
-        "len(list(shipped_folder('parts').glob('*.json'))))"
+        "len(list((shipped_folder('levels') / 'parts').glob('*.json'))))"
     )
     environment = {**os.environ, "PYTHONPATH": str(installed)}
     command = [sys.executable, "-P", "-c", program]
@@ -44,7 +44,7 @@ def test_an_installed_wheel_finds_its_levels_parts_and_assets_from_another_folde
     file, levels, assets, parts = run.stdout.split()
     assert Path(file).is_relative_to(installed)
     assert int(levels) == len(list((ROOT / "levels").glob("*.json")))
-    assert int(parts) == len(list((ROOT / "parts").glob("*.json"))) > 0
+    assert int(parts) == len(list((ROOT / "levels" / "parts").glob("*.json"))) > 0
     assert int(assets) == len(list((ROOT / "assets").iterdir()))
 
 

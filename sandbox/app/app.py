@@ -8,6 +8,9 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.compare.compare_screen import CompareScreen
+from sandbox.app.compare.hooke_lesson import HookeLesson
+from sandbox.app.compare.twin import TwinPlayback
 from sandbox.app.display import SCALE_RANGE, Display
 from sandbox.app.draw.colours import BACKGROUND, WARNING, show_theme
 from sandbox.app.edit.documents import DocumentActions
@@ -31,9 +34,11 @@ from sandbox.app.settings.system_theme import theme_of
 from sandbox.app.share.page import SharePage
 from sandbox.app.share.sharing import Sharing
 from sandbox.app.shortcuts import Mode, use_keys
+from sandbox.app.sound.sounds import Sounds
 from sandbox.app.start_request import StartRequest
 from sandbox.app.widgets.dialogs import show_lines
 from sandbox.app.widgets.ui import Ui
+from sandbox.level.format.files import read_level
 
 # How often the status figures and the window title change [s].
 FIGURES_EVERY = 0.5
@@ -67,6 +72,7 @@ class App:
         self.guide = Guide(self, self.documents)
         self.sharing = Sharing(self)
         self.share_page = SharePage(self, self.sharing)
+        self.sounds = Sounds(self.chosen, time.perf_counter)
         self._progress = RunProgress(self)
         self._own_actions = self._actions()
         self._figures = Figures()
@@ -200,7 +206,36 @@ class App:
         }
 
     def _play_actions(self) -> dict[str, Callable[[], object]]:
-        return {"hint": self._show_hint, "share": self.share_page.open}
+        return {
+            "hint": self._show_hint,
+            "share": self.share_page.open,
+            "compare": self._compare,
+            "sound": self._toggle_sound,
+        }
+
+    def start_lesson(self) -> None:
+        """Begin the lesson on Hooke's spring and the article's."""
+        self.show_screen(HookeLesson(self))
+
+    def start_pair(self, path: Path) -> None:
+        """Play the level of a file twice side by side, with the pad in the panel."""
+        level = read_level(path)
+        screen = CompareScreen(self, TwinPlayback(level), TwinPlayback(level), None)
+        screen.shape.springs = "pad"
+        self.show_screen(screen)
+
+    def _compare(self) -> None:
+        """Play the level of the run twice side by side, with two settings; or back to once."""
+        play = self.play
+        if play is None:
+            return
+        level, source = play.playback.level, play.source
+        if isinstance(play, CompareScreen):
+            self.start(Playback(level), source)
+        elif play.of_document:
+            self.say("Save the level and open it from its file to play it twice: this run belongs to the editor.")
+        else:
+            self.show_screen(CompareScreen(self, TwinPlayback(level), TwinPlayback(level), source))
 
     @property
     def actions(self) -> dict[str, Callable[[], object]]:
@@ -226,6 +261,7 @@ class App:
         """Close the window; whatever ended the loop, a recording gets its last line."""
         if self.screen is not None:
             self.screen.leave()
+        self.sounds.close()
         self.sharing.close()
         self.documents.close()
         self.display.close()
@@ -246,8 +282,14 @@ class App:
     def _obey(self, name: str) -> None:
         """Follow a change of what is chosen."""
         self._take_up()
+        if name == "sound" and not self.sounds.device.is_open:
+            self.sounds.look_again()
         if name in LAID_OUT:
             self.rebuild()
+
+    def _toggle_sound(self) -> None:
+        is_on = self.chosen["sound"] == "on"
+        self.chosen.choose("sound", "off" if is_on else "on")
 
     def _open_settings(self) -> None:
         SettingsSheet(self.ui, self.chosen)
@@ -269,6 +311,7 @@ class App:
             tick, began = self._tick, time.thread_time()
             self.screen.update(frame_time, self.input.pointer_over_world(), self.profile, self.ready)
             self.preparation.note(self._tick - tick, time.thread_time() - began)
+            self._sound()
         with self.profile.part("ui"):
             self.status.update(frame_time)
             self.documents.update()
@@ -286,6 +329,13 @@ class App:
         self.profile.milliseconds["frame"].append(1e3 * spent)
         self._count(frame_time, spent)
 
+    def _sound(self) -> None:
+        play, covered = self.play, self.ui.has_sheet or self.gallery is not None or self.display.hidden
+        clock = None if play is None else play.playback.clock
+        is_heard = clock is not None and self.ready and not covered and not clock.paused and clock.speed > 0.0
+        with self.profile.part("sound"):
+            self.sounds.update(play, is_heard)
+
     @property
     def _tick(self) -> int:
         return self.play.playback.session.tick if self.play is not None else 0
@@ -299,7 +349,7 @@ class App:
 
     def _switched(self) -> None:
         if self.play is not None:
-            self.play.playback.session.world.drop_caches()
+            self.play.drop_caches()
         self.sharing.drop_caches()
 
     def _draw(self) -> None:

@@ -13,6 +13,7 @@ from sandbox.app.screen import Screen
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.share.film import Film
 from sandbox.app.shortcuts import Mode
+from sandbox.app.sound.sounds import Sounds
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.model import Level
 
@@ -154,6 +155,11 @@ class Application(Protocol):
         ...
 
     @property
+    def sounds(self) -> Sounds:
+        """What is heard of the run."""
+        ...
+
+    @property
     def mode(self) -> Mode:
         """Which table of shortcuts holds."""
         ...
@@ -209,6 +215,14 @@ class Application(Protocol):
 
     def show_screen(self, screen: Screen) -> None:
         """Fill the window with another screen."""
+        ...
+
+    def start_pair(self, path: Path) -> None:
+        """Play the level of a file twice side by side, with the pad in the panel."""
+        ...
+
+    def start_lesson(self) -> None:
+        """Begin the lesson on Hooke's spring and the article's."""
         ...
 
     def follow(self, playback: Playback) -> None:

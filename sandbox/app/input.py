@@ -56,6 +56,8 @@ class Input:
                 self.app.display.hidden = True
             elif event.type in SHOWING:
                 self.app.display.hidden = False
+            elif event.type == pygame.AUDIODEVICEREMOVED:
+                self.app.sounds.look_again()
             elif event.type == pygame.WINDOWFOCUSGAINED:
                 self.app.documents.look_at_disk()
             elif self._follows_world(event) or not self.app.ui.process(event):

@@ -105,6 +105,13 @@ def keep_picture(picture: pygame.Surface, path: Path) -> None:
     _read.cache_clear()
 
 
+def keep_for_later(picture: pygame.Surface, path: Path) -> None:
+    """Keep a picture that can be drawn again, where that can be, in place of the oldest ones."""
+    with contextlib.suppress(OSError):
+        keep_picture(picture, path)
+        forget_old_pictures(path.parent)
+
+
 def forget_old_pictures(folder: Path) -> None:
     """Remove all but the newest pictures of a folder."""
     with contextlib.suppress(OSError):

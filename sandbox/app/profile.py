@@ -5,7 +5,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-PARTS = ("events", "commands", "ticks", "stage", "things", "marks", "ui", "flip", "frame")
+PARTS = ("events", "commands", "ticks", "stage", "things", "marks", "sound", "ui", "flip", "frame")
 
 
 class Profile:

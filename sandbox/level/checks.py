@@ -1,71 +1,163 @@
 """Acceptance checks: what a level promises of its own run, and how measured values are held against it."""
 
-from collections.abc import Callable, Iterable
+import math
 from dataclasses import dataclass
 from typing import Literal
 
 from pydantic import Field
 
-from sandbox.level.format.quantities import Description, Name, Seconds
+from sandbox.level.format.quantities import Coordinate, Description, Name, Seconds
 
-PARTICLE_METRICS = ("x", "y", "speed")
 Metric = Literal[
     "max_strain",
     "rms_strain",
+    "strain",
     "kinetic_energy",
     "potential_energy",
+    "energy",
     "max_speed",
     "non_finite",
     "broken_springs",
     "x",
     "y",
     "speed",
+    "distance",
+    "inside",
+    "settled",
 ]
+Box = tuple[Coordinate, Coordinate, Coordinate, Coordinate]
+# A body that is no faster [m/s] has settled.
+STILL = 0.05
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a metric is measured of: fields that it needs, and those that it may have; its unit.
+
+    at_least: the bound that holds where a check names none; momentary: whether it has a value at every tick.
+    """
+
+    unit: str = ""
+    needs: tuple[str, ...] = ()
+    may_have: tuple[str, ...] = ()
+    at_least: float | None = None
+    momentary: bool = True
+
+    def takes(self, field: str) -> bool:
+        """Whether a field means anything to it."""
+        return field in self.needs or field in self.may_have
+
+
+METRICS: dict[str, Measured] = {
+    "max_strain": Measured(momentary=False),
+    "rms_strain": Measured(momentary=False),
+    "strain": Measured(may_have=("body",)),
+    "kinetic_energy": Measured("J"),
+    "potential_energy": Measured("J"),
+    "energy": Measured("J"),
+    "max_speed": Measured("m/s"),
+    "non_finite": Measured(),
+    "broken_springs": Measured(may_have=("body",)),
+    "x": Measured("m", ("particle",)),
+    "y": Measured("m", ("particle",)),
+    "speed": Measured("m/s", ("particle",)),
+    "distance": Measured("m", ("particle", "other")),
+    "inside": Measured("m", ("box",), ("particle", "body"), at_least=0.0),
+    "settled": Measured("s", (), ("body",), at_least=1.0),
+}
+# Fields that only some metrics take.
+SUBJECTS = ("particle", "other", "body", "box")
 
 
 class CheckDef(Description):
-    """A metric of the level's run and the bounds that it must keep; at least one bound."""
+    """A metric of the level's run and the bounds that it must keep, at a time, always or eventually."""
 
     name: Name = Field(description="What the check is about.")
-    metric: Metric = Field(
-        description="What is measured, as `sandbox run --json` names it; or x, y [m], speed [m/s] of a particle."
+    metric: Metric = Field(description="What is measured, see [Checks](#checks).")
+    particle: Name | None = Field(default=None, description="The particle that is measured.")
+    other: Name | None = Field(default=None, description="The particle that `distance` is measured to.")
+    body: Name | None = Field(default=None, description="The body that is measured; null = the whole level.")
+    box: Box | None = Field(
+        default=None,
+        description="What it must be inside of: left, bottom, right, top.",
+        json_schema_extra={"unit": "m"},
     )
-    particle: Name | None = Field(default=None, description="The particle that x, y and speed are measured of.")
     after: Seconds = Field(default=5.0, description="How long the level runs by itself first.")
+    always: tuple[Seconds, Seconds] | None = Field(
+        default=None, description="In place of `after`: it must hold at every tick from the first time to the second."
+    )
+    eventually: tuple[Seconds, Seconds] | None = Field(
+        default=None, description="In place of `after`: it must hold at one tick from the first time to the second."
+    )
     at_most: float | None = Field(default=None, description="Upper bound, in the metric's unit.")
-    at_least: float | None = Field(default=None, description="Lower bound, in the metric's unit.")
+    at_least: float | None = Field(
+        default=None,
+        description="Lower bound, in the metric's unit; of `inside` 0, of `settled` 1 where none is.",
+    )
 
 
 @dataclass(frozen=True)
 class CheckResult:
-    """A check, the value measured for it, whether it holds, and one line that says so."""
+    """A check, the value measured for it, whether it holds, and one line that says so; at [s]: when it was measured."""
 
     check: CheckDef
     value: float
     passed: bool
     text: str
+    at: float
 
 
-def check_ticks(check: CheckDef, tick_rate: int) -> int:
-    """Tick after which a check is measured; tick_rate [1/s]."""
-    return round(check.after * tick_rate)
+def bounds_of(check: CheckDef) -> tuple[float, float]:
+    """Least and largest value that a check lets pass, both included; infinite where there is no bound."""
+    low, high = check.at_least, check.at_most
+    if low is None and high is None:
+        low = METRICS[check.metric].at_least
+    return -math.inf if low is None else low, math.inf if high is None else high
 
 
-def evaluate(checks: Iterable[CheckDef], measure: Callable[[CheckDef], float]) -> list[CheckResult]:
-    """Hold each check against the value that `measure` gives for it; a value that is no number fails."""
-    return [_judge(check, float(measure(check))) for check in checks]
+def window_of(check: CheckDef) -> tuple[float, float]:
+    """From when to when a check is measured [s]; the same twice where it is once."""
+    return check.always or check.eventually or (check.after, check.after)
 
 
-def _judge(check: CheckDef, value: float) -> CheckResult:
-    bounds = []
-    passed = value == value
-    if check.at_least is not None:
-        bounds.append(f"at least {check.at_least:g}")
-        passed = passed and value >= check.at_least
-    if check.at_most is not None:
-        bounds.append(f"at most {check.at_most:g}")
-        passed = passed and value <= check.at_most
-    subject = check.metric if check.particle is None else f"{check.metric} of {check.particle}"
-    verdict = "holds" if passed else "FAILS"
-    text = f"{check.name}: {verdict}: {subject} after {check.after:g} s is {value:.6g}, wanted {' and '.join(bounds)}"
-    return CheckResult(check, value, passed, text)
+def excess(check: CheckDef, value: float) -> float:
+    """How far a value is beyond the bounds of a check; at most 0 where it holds, infinite where it is no number."""
+    low, high = bounds_of(check)
+    beyond = max(low - value if low > -math.inf else -math.inf, value - high if high < math.inf else -math.inf)
+    return math.inf if math.isnan(value) else beyond
+
+
+def subject_text(check: CheckDef) -> str:
+    """What a check measures: "distance of a to b"."""
+    owner = check.particle or check.body
+    other = f" to {check.other}" if check.other is not None else ""
+    return check.metric + (f" of {owner}" if owner is not None else "") + other
+
+
+def time_text(check: CheckDef) -> str:
+    """When a check is measured."""
+    start, end = window_of(check)
+    if check.always or check.eventually:
+        return f"{'always' if check.always else 'eventually'} from {start:g} to {end:g} s"
+    return f"after {check.after:g} s"
+
+
+def wanted_text(check: CheckDef) -> str:
+    """The bounds of a check."""
+    low, high = bounds_of(check)
+    parts = [f"at least {low:g}"] if low > -math.inf else []
+    return " and ".join([*parts, *([f"at most {high:g}"] if high < math.inf else [])])
+
+
+def judge(check: CheckDef, value: float, at: float | None = None) -> CheckResult:
+    """Hold a check against a value measured at a time [s], of a window the one that decides; no number fails."""
+    passed = excess(check, value) <= 0.0
+    when = check.after if at is None else at
+    measured = f"is {value:.6g}"
+    if check.always or check.eventually:
+        measured = f"is at {'worst' if check.always else 'best'} {value:.6g}, after {when:g} s"
+    text = (
+        f"{check.name}: {'holds' if passed else 'FAILS'}: {subject_text(check)} {time_text(check)} {measured}, "
+        f"wanted {wanted_text(check)}"
+    )
+    return CheckResult(check, value, passed, text, when)

@@ -48,12 +48,6 @@ def spring_impulse(
 
 
 @scalar_kernel
-def highest_coefficient(parts: int) -> float:
-    """Where Cd of one of so many substeps is capped, so that a rigid spring has the k of a step in one part."""
-    return 1.0 - (1.0 - HIGHEST_COEFFICIENT) * (parts * parts)
-
-
-@scalar_kernel
 def capped(stiffness: float, damping: float, highest: float) -> tuple[float, float]:
     """Cs and Cd, with both at most `highest` where Cd is above it: so Cs = Cd = 1 keeps beta = 1."""
     if damping > highest:
@@ -156,6 +150,27 @@ def half_step_of_network(stiffness: float, damping: float, lowest_mode: float) -
         stiffness, damping = half_step(stiffness, damping)
         return of_springs(stiffness, damping, lowest_mode)
     return half_step(stiffness, damping)
+
+
+@scalar_kernel
+def part_of_network(stiffness: float, damping: float, lowest_mode: float, parts: int) -> tuple[float, float]:
+    """Cs and Cd of one of so many parts of a tick, a power of two, that leave k = Cs m_r / ((1 - Cd) h^2) as it was.
+
+    So the energy of a network does not depend on the parts. Damping is the greater of what `half_step_of_network` makes
+    of it and of c = (Cd - Cs) m_r / ((1 - Cd) h) as it was. Cs <= Cd stays so.
+    """
+    # S = Cs / (1 - Cd), D = Cd / (1 - Cd):  k = S m_r / h^2,  c = (D - S) m_r / h,  1 + a D = 1 / (1 - Cd_a)
+    stiffness, damping = capped(stiffness, damping, HIGHEST_COEFFICIENT)
+    mode = lowest_mode if lowest_mode > 0.0 else 1.0
+    restoring = stiffness / (1.0 - damping)
+    stiff = damping / (1.0 - damping)
+    while parts > 1:
+        halved = stiff / (1.0 + math.sqrt(1.0 + mode * stiff))
+        # Of Cs > Cd, c is below 0, and no less than a quarter of D is kept: Cs / Cd never rises.
+        stiff = max(halved, 0.25 * max(stiff, 2.0 * stiff - restoring))
+        restoring *= 0.25
+        parts //= 2
+    return restoring / (1.0 + stiff), stiff / (1.0 + stiff)
 
 
 def coefficients_from_frequency(frequency: float, damping_ratio: float, h: float) -> tuple[float, float]:

@@ -106,8 +106,9 @@ def _step_held(world: World) -> None:
     # Solvers only read them, so a tick of one substep needs no copies.
     springs, constraints = (world.stiffness, world.damping), world.constraint_coefficients
     if count > 1:
-        springs = substep_coefficients(world, count, plan.springs)
-        constraints = constraint_coefficients(world, count, plan.constraints)
+        keeps_constant = solver.bounded and settings.substeps == AUTO
+        springs = substep_coefficients(world, count, plan.springs, keeps_constant)
+        constraints = constraint_coefficients(world, count, plan.constraints, keeps_constant)
     # What a solver keeps is an impulse of one substep: exact, as their number is a power of two.
     scale = settings.fewest_substeps / count
     world.scale_impulses(scale)

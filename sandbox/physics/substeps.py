@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.equation import half_step_of_network
+from sandbox.physics.equation import half_step_of_network, part_of_network
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
 from sandbox.physics.settings import AUTO, WorldSettings
@@ -43,29 +43,36 @@ def substep_time(settings: WorldSettings, count: int | None = None) -> float:
     return 1.0 / (settings.tick_rate * (count or settings.fewest_substeps))
 
 
-def substep_coefficients(world: World, count: int | None = None, into: Pair | None = None) -> Pair:
+def substep_coefficients(
+    world: World, count: int | None = None, into: Pair | None = None, keeps_constant: bool = False
+) -> Pair:
     """Cs and Cd (m,) of one substep, which leave every spring's motion from tick to tick as its Cs and Cd say.
 
     count: substeps in the tick (None: the fewest that the settings give it). into: the arrays that are filled in and
-    returned (None: new ones).
+    returned (None: new ones). keeps_constant: leave its k instead, as the direct solver's where ticks choose their
+    parts.
     """
-    springs = world.stiffness, world.damping
-    return _halved(springs, world.lowest_mode, count or world.settings.fewest_substeps, into)
+    return _of_substep(world, (world.stiffness, world.damping), world.lowest_mode, count, into, keeps_constant)
 
 
-def constraint_coefficients(world: World, count: int | None = None, into: Pair | None = None) -> Pair:
+def constraint_coefficients(
+    world: World, count: int | None = None, into: Pair | None = None, keeps_constant: bool = False
+) -> Pair:
     """Cs and Cd (t,) of constraints, as `substep_coefficients` gives those of springs."""
     modes = world.constraint_lowest_mode
-    return _halved(world.constraint_coefficients, modes, count or world.settings.fewest_substeps, into)
+    return _of_substep(world, world.constraint_coefficients, modes, count, into, keeps_constant)
 
 
-def _halved(coefficients: Pair, lowest_mode: Floats, count: int, into: Pair | None) -> Pair:
+def _of_substep(
+    world: World, coefficients: Pair, lowest_mode: Floats, count: int | None, into: Pair | None, keeps_constant: bool
+) -> Pair:
     # Of nothing there is nothing to copy, which takes a fifth of the tick of a few discs.
     if not len(coefficients[0]):
         return coefficients
     stiffness, damping = into or (np.empty_like(coefficients[0]), np.empty_like(coefficients[1]))
     stiffness[:], damping[:] = coefficients
-    halve(stiffness, damping, lowest_mode, count)
+    turn = divide if keeps_constant else halve
+    turn(stiffness, damping, lowest_mode, count or world.settings.fewest_substeps)
     return stiffness, damping
 
 
@@ -81,6 +88,14 @@ def halve(stiffness: Floats, damping: Floats, lowest_mode: Floats, substeps: int
         while count < substeps:
             stiffness[s], damping[s] = half_step_of_network(stiffness[s], damping[s], lowest_mode[s])
             count *= 2
+
+
+@kernel
+def divide(stiffness: Floats, damping: Floats, lowest_mode: Floats, parts: int) -> None:
+    """The same for one of the parts that a tick chooses, with the k of the tick in one part (`part_of_network`)."""
+    if parts > 1:
+        for s in range(stiffness.shape[0]):
+            stiffness[s], damping[s] = part_of_network(stiffness[s], damping[s], lowest_mode[s], parts)
 
 
 @kernel

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.files import LevelError, load_level
 from sandbox.physics.stability import report
-from sandbox.session.summary import run_checks
+from sandbox.session.check_run import run_checks
 
 
 @dataclass(frozen=True)

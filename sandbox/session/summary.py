@@ -1,4 +1,4 @@
-"""Summary: what a headless run measures, for `sandbox run --json` and for the checks that a level carries."""
+"""Summary: what a headless run measures, for `sandbox run --json`."""
 
 import time
 from collections.abc import Callable
@@ -7,8 +7,6 @@ from statistics import median
 
 import numpy as np
 
-from sandbox.level.checks import CheckDef, CheckResult, check_ticks, evaluate
-from sandbox.level.format.model import Level
 from sandbox.physics.energy import Dissipation, gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.query import load_bearing, shown_particles, shown_springs, strain
 from sandbox.physics.settings import Substeps
@@ -79,14 +77,14 @@ def run(session: Session, ticks: int, on_tick: Callable[[World], None] | None = 
             times.append(time.perf_counter() - start)
             dissipation.after(world)
             if ticks - done <= samples:
-                window.append(_strain_sample(world))
+                window.append(strain_sample(world))
             if on_tick is not None:
                 on_tick(world)
         session.apply_pending()
         return _summary(world, ticks, window, times, dissipation.energy)
 
 
-def _strain_sample(world: World) -> tuple[float, float, int]:
+def strain_sample(world: World) -> tuple[float, float, int]:
     """Largest |strain|, sum of squares and count of the springs that bear load."""
     size = np.abs(strain(world)[load_bearing(world)])
     return (float(size.max()), float(np.sum(size * size)), len(size)) if len(size) else (0.0, 0.0, 0)
@@ -129,20 +127,3 @@ def particle_metric(world: World, particle: str, metric: str) -> float:
     slot = world.particle_slot(particle)
     x, y = world.position[slot].tolist()
     return {"x": x, "y": y, "speed": float(np.hypot(*world.velocity[slot]))}[metric]
-
-
-def run_checks(level: Level) -> list[CheckResult]:
-    """Run the level by itself as long as each check asks for, and judge; in the order of the file."""
-    measured: dict[int, tuple[Session, Summary]] = {}
-
-    def measure(check: CheckDef) -> float:
-        ticks = check_ticks(check, level.settings.tick_rate)
-        if ticks not in measured:
-            session = Session(level)
-            measured[ticks] = session, run(session, ticks)
-        session, summary = measured[ticks]
-        if check.particle is not None:
-            return particle_metric(session.world, check.particle, check.metric)
-        return float(getattr(summary, check.metric))
-
-    return evaluate(level.checks, measure)

@@ -1,8 +1,9 @@
 """Random scenes that hands abuse for five seconds: what energy they have after the release.
 
-Run by hand: python -m tests.abuse.random_scenes [--all] [--scenes N] [--first SEED] [--solver NAME] [--softest].
---all: 1,000 scenes, an hour. Printed are the scenes kept in tests/abuse/scenes, then those that have more energy than
-at their release, or grow by more than a twentieth of it within a second.
+Run by hand: python -m tests.abuse.random_scenes [--all] [--scenes N] [--first SEED] [--solver NAME] [--softest]
+[--auto]. --all: 1,000 scenes, an hour. --auto: every tick chooses its substeps. Printed are the scenes kept in
+tests/abuse/scenes, then those that have more energy than at their release, or grow by more than a twentieth of it
+within a second.
 """
 
 import argparse
@@ -10,6 +11,7 @@ import time
 
 import numpy as np
 
+from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers import SOLVERS
 from tests.support.random_scenes import SCENES, energies, kept_scene, random_scene
 
@@ -26,6 +28,7 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--solver", choices=SOLVERS, default="direct")
     parser.add_argument("--softest", action="store_true")
+    parser.add_argument("--auto", action="store_true")
     given = parser.parse_args()
     scenes = given.scenes or (1000 if given.all else 40)
     for path in sorted(SCENES.glob("*.json")):
@@ -33,7 +36,7 @@ def main() -> None:
         print(f"{path.stem}: most {found.over:.4f} of the release, grows by {found.growth:.4f} of it", flush=True)
     over, growth, began = [], [], time.process_time()
     for seed in range(given.first, given.first + scenes):
-        world, drags = random_scene(seed, given.softest, given.solver)
+        world, drags = random_scene(seed, given.softest, given.solver, AUTO if given.auto else None)
         found = energies(world, drags, AFTER)
         over.append(found.over)
         growth.append(found.growth)

@@ -10,6 +10,7 @@ from sandbox.app.recordings import chosen_path, free_path, plain_name
 from sandbox.editor.storage.recent import remember
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import shipped_levels
+from sandbox.session.replay.reader import read_replay
 from tests.app.conftest import Driver, small_level
 
 
@@ -17,7 +18,7 @@ def test_every_shipped_level_has_a_card_with_a_picture(open_app):
     driver = open_app()
     driver.app.preparation.finish(contacts=True)
     driver.frames(len(shipped_levels()) + 2)
-    cards = driver.app.gallery.cards
+    cards = [card for card in driver.app.gallery.cards if card in driver.app.gallery._paths]
     assert len(cards) == len(shipped_levels())
     for card in cards:
         pixels = pygame.surfarray.array3d(card.picture)
@@ -76,6 +77,24 @@ def test_saved_replays_are_listed_and_open(driver: Driver, documents):
     assert card.name == next(documents.iterdir()).name
     driver.click_widget(card)
     assert driver.playback.watching
+
+
+def test_a_replay_has_a_picture_its_level_and_its_length_and_a_broken_one_its_fault(driver: Driver, documents):
+    driver.frames(30)
+    driver.key(pygame.K_s, pygame.KMOD_CTRL)
+    driver.key(pygame.K_RETURN)
+    (whole,) = documents.iterdir()
+    ticks = read_replay(whole).ticks
+    (documents / "cut.replay.jsonl").write_bytes(whole.read_bytes()[:-60])
+    (documents / "broken.replay.jsonl").write_text("{}")
+    driver.app.open_gallery("recordings")
+    cards = {card.name: card for card in driver.app.gallery.cards}
+    while not (cards[whole.name].picture and cards["cut.replay.jsonl"].picture and cards["broken.replay.jsonl"].broken):
+        driver.frames()
+    assert cards[whole.name].line.startswith(f"Small, {ticks / 60:.1f} s, ")
+    assert ", cut off, " in cards["cut.replay.jsonl"].line
+    assert "nothing was done" in cards[whole.name].text
+    assert "not a replay" in cards["broken.replay.jsonl"].text
 
 
 def test_opening_by_name_takes_a_shipped_level_and_says_what_is_wrong_with_others(driver: Driver):

@@ -13,9 +13,8 @@ import numpy as np
 
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.energy import measure_constraints
-from sandbox.physics.settings import AUTO, Substeps, WorldSettings
+from sandbox.physics.settings import Substeps, WorldSettings
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.direct.energy_norm import extremes
 from sandbox.physics.step import step
 from sandbox.physics.world import Floats, Slots, World
 
@@ -126,25 +125,18 @@ def random_graphs(
     return graphs
 
 
-def energies(graphs: Graphs, count: int, *, start: bool = False) -> Floats:
-    """Kinetic plus spring energy [J] of each graph (count,).
-
-    Where ticks choose their parts: in the least k of any number of parts, at the start in the most.
-    """
+def energies(graphs: Graphs, count: int) -> Floats:
+    """Kinetic plus spring energy [J] of each graph (count,)."""
     world = graphs.world
     h = 1.0 / world.settings.tick_rate
     inverse = world.inverse_mass[world.particle_a] + world.inverse_mass[world.particle_b]
     mass = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
     constant = SOLVERS[world.settings.solver].spring_constant(world.stiffness, world.damping, mass, h)
-    if world.settings.substeps == AUTO:
-        constant = extremes(world.stiffness, world.damping, world.lowest_mode)[start] * mass / (h * h)
     separation = world.position[world.particle_b] - world.position[world.particle_a]
     error = np.sqrt(np.sum(separation**2, axis=1)) - world.rest_length
     value, effective, _ = measure_constraints(world)
     stiffness, damping = world.constraint_coefficients
     of_constraints = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, effective, h)
-    if world.settings.substeps == AUTO:
-        of_constraints = extremes(stiffness, damping, world.constraint_lowest_mode)[start] * effective / (h * h)
     moving = np.where(world.inverse_mass > 0.0, world.mass * np.sum(world.velocity**2, axis=1), 0.0)
     return 0.5 * (
         np.bincount(graphs.of_particle, moving, count)
@@ -155,7 +147,7 @@ def energies(graphs: Graphs, count: int, *, start: bool = False) -> Floats:
 
 def highest_energies(graphs: Graphs, count: int, steps: int) -> Floats:
     """The highest energy of each graph over a run, as a multiple of its start; inf where it is not finite."""
-    start = energies(graphs, count, start=True)
+    start = energies(graphs, count)
     highest = start.copy()
     for _ in range(steps):
         step(graphs.world)

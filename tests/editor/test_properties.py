@@ -322,6 +322,24 @@ def test_settings_are_set_with_the_formats_types(level):
         setting("tick_rate").set(document, setting("tick_rate").typed("0"))
 
 
+def test_a_check_takes_a_box_a_body_or_a_span_of_time_by_what_it_measures(level):
+    document = add_check(chosen(level, "rope"))
+
+    def of_check():
+        return {each.field: each for each in check_properties(document, 1)[0].properties}
+
+    document = of_check()["metric"].set(document, "inside")
+    assert {"particle", "body", "box"} <= of_check().keys() and "other" not in of_check()
+    for field, text in (("box", "0, 0, 5, 5"), ("always", "0, 3"), ("eventually", "1, 2")):
+        document = of_check()[field].set(document, of_check()[field].typed(text))
+    check = document.level.checks[1]
+    assert (check.box, check.always, check.eventually) == ((0.0, 0.0, 5.0, 5.0), None, (1.0, 2.0))
+    document = of_check()["metric"].set(document, "max_strain")
+    assert (document.level.checks[1].box, document.level.checks[1].eventually) == (None, None)
+    with pytest.raises(EditError, match="always"):
+        of_check()["always"].set(document, (1.0, 2.0, 3.0))
+
+
 def test_a_check_gets_a_particle_with_a_metric_that_needs_one_and_loses_it_again(level):
     document = add_check(chosen(level, "rope"))
     assert document.level.checks[1].at_most == 0.0

@@ -8,6 +8,7 @@ from sandbox.level.kinds.jelly import JellyDef
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE
 from sandbox.physics.energy import total_energy
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.settings import AUTO
 from sandbox.physics.step import step
 from tests.support.contact_scenes import BODIES, add_discs, add_jelly, world
 from tests.support.overlaps import overlaps
@@ -17,20 +18,21 @@ from tests.support.stirring import heap, stir
 pytestmark = pytest.mark.skipif(not COMPILED, reason="takes minutes where kernels are interpreted")
 
 
-# In 2057 a truss of 19 t takes 3 J of a ball of 0.15 kg and pays with them, half a second later, for pushing it out.
-@pytest.mark.parametrize(
-    ("name", "growth"), [("abuse-2057", 0.4), ("abuse-2109", 0.05), ("abuse-2167", 0.05), ("abuse-2198", 0.05)]
-)
-def test_no_energy_appears_after_the_hands_have_let_go(name, growth):
+# In 2057 a truss of 19 t that lies in the ground must not be pushed out of it by what a ball of 0.15 kg lost on it.
+@pytest.mark.parametrize("name", ["abuse-2057", "abuse-2109", "abuse-2167", "abuse-2198"])
+def test_no_energy_appears_after_the_hands_have_let_go(name):
     found = energies(*kept_scene(name), 120)
     assert found.over <= 1.001
-    assert found.growth <= growth
+    assert found.growth <= 0.05
 
 
 # With banks that kept what hands had put in, or all that contacts of a stiff rope might cost, these grew by .3 to 32 %.
-@pytest.mark.parametrize("seed", [348, 360, 424, 449, 460])
-def test_in_random_scenes_no_energy_appears(seed):
-    found = energies(*random_scene(seed), 90)
+# Where the parts of a tick had other k, the last two had 2.9 and 1.6 times the energy of the release.
+@pytest.mark.parametrize(
+    ("seed", "substeps"), [(348, None), (360, None), (424, None), (449, None), (460, None), (29, AUTO), (32, AUTO)]
+)
+def test_in_random_scenes_no_energy_appears(seed, substeps):
+    found = energies(*random_scene(seed, substeps=substeps), 90)
     assert found.over <= 1.001
     assert found.growth <= 0.05
 

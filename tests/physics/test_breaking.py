@@ -6,10 +6,8 @@ import pytest
 from sandbox.physics.actuators import NEVER, Actuators, Muscles, StrainLimits
 from sandbox.physics.energy import kinetic_energy, reduced_masses, spring_lengths
 from sandbox.physics.equation import implicit_spring_constant
-from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.direct.energy_norm import extremes
 from sandbox.physics.step import step
 from sandbox.physics.substeps import substep_coefficients, substep_time
 from tests.support.physics_scenes import girder, network, random_graph, rope, run, scaled
@@ -141,10 +139,7 @@ def test_a_beam_that_has_yielded_stays_bent(solver):
 def held(world):
     """Kinetic and spring energy [J] as the direct solver's test measures them, and what is saved in its banks."""
     h = substep_time(world.settings)
-    if world.settings.substeps == AUTO:
-        constant = reduced_masses(world) * extremes(world.stiffness, world.damping, world.lowest_mode)[0] / (h * h)
-    else:
-        constant = implicit_spring_constant(*substep_coefficients(world), reduced_masses(world), h)
+    constant = implicit_spring_constant(*substep_coefficients(world), reduced_masses(world), h)
     error = (spring_lengths(world) - world.rest_length) * world.spring_active
     return kinetic_energy(world) + 0.5 * np.sum(constant * error * error) + world.energy_bank.clip(min=0.0).sum()
 

@@ -7,12 +7,15 @@ import numpy as np
 import pytest
 
 from sandbox.physics.equation import (
+    HIGHEST_COEFFICIENT,
     at_other_step,
     coefficients_from_frequency,
     direction,
     frequency_from_coefficients,
     half_step,
     highest_frequency,
+    implicit_masses,
+    part_of_network,
     reduced_mass,
     spring_impulse,
 )
@@ -82,6 +85,18 @@ def test_the_halving_map_keeps_every_digit_of_small_coefficients():
     half_stiffness, half_damping = half_step(1e-12, 1e-12)
     assert half_stiffness == pytest.approx(0.25e-12, rel=1e-11)
     assert half_damping == pytest.approx(0.5e-12, rel=1e-11)
+
+
+@pytest.mark.parametrize("parts", [2, 4, 8])
+def test_parts_that_a_tick_chooses_keep_the_constant_of_a_spring_and_damp_no_less(parts):
+    for stiffness, damping in random_coefficients(scaled(4000, 500)):
+        part = part_of_network(stiffness, damping, 0.0, parts)
+        whole = implicit_masses(stiffness, damping, 1.0)[1]
+        assert 0.0 <= part[0] <= 1.0 and 0.0 <= part[1] <= 1.0
+        assert implicit_masses(*part, 1.0)[1] * parts * parts == pytest.approx(whole, rel=1e-7)
+        assert 1.0 - part[1] <= (1.0 - min(damping, HIGHEST_COEFFICIENT)) ** (1.0 / parts) * (1.0 + 1e-9)
+        if stiffness <= damping:
+            assert part[0] <= part[1]
 
 
 def measured_period(frequency, damping_ratio, tick_rate, periods):

@@ -134,6 +134,21 @@ def test_after_a_jump_of_the_mouse_nothing_rigid_swings_past_it(solver, strength
     assert x + 2.97 < farthest < x + 3.15
 
 
+@pytest.mark.parametrize("strength", list(STRENGTHS))
+@pytest.mark.parametrize("where", [(0.0, 0.5), (-0.5, 0.5), (0.5, 0.5)])
+def test_after_a_jump_of_the_mouse_a_soft_jelly_swings_past_it_by_a_twentieth_at_most(strength, where):
+    world = jelly(sag=SAG, substeps="auto", gravity=(0.0, 0.0))
+    particle = nearest(world, where)
+    x, y = world.position[particle].tolist()
+    world.hold(0, particle, (x, y), STRENGTHS[strength], grip_radius(world, particle))
+    world.move_grab(0, (x + 3.0, y))
+    farthest = x
+    for _ in range(scaled(120, 3)):
+        step(world)
+        farthest = max(farthest, float(world.position[particle, 0]))
+    assert farthest <= x + 3.15
+
+
 @pytest.mark.parametrize("solver", list(SOLVERS))
 def test_a_release_leaves_a_body_the_velocity_that_it_has(solver):
     world = within_limits(rope(solver=solver, gravity=(0.0, 0.0)))

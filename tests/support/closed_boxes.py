@@ -12,15 +12,10 @@ from sandbox.physics.constraints import AREA
 from sandbox.physics.energy import (
     gravity_energy,
     kinetic_energy,
-    measure_constraints,
-    reduced_masses,
     spring_energy,
-    spring_lengths,
 )
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.direct.energy_bank import UNDERDAMPED_BANK_SHARE
-from sandbox.physics.solvers.direct.energy_norm import extremes
-from sandbox.physics.substeps import substep_time
 from sandbox.physics.terrain import Chain
 from sandbox.physics.world import World
 from tests.support.contact_scenes import BODIES, add_discs, world
@@ -102,18 +97,8 @@ def random_box(seed: int, solver: str = "direct", bouncy: bool | None = None, mo
 
 
 def energy(of: World) -> float:
-    """Kinetic energy, that of gravity and of springs [J]; with "auto" in the least k of any number of parts."""
-    springs = spring_energy(of)
-    if of.settings.substeps == AUTO:
-        h = substep_time(of.settings)
-        error, (value, mass, _) = spring_lengths(of) - of.rest_length, measure_constraints(of)
-        constant, _ = extremes(of.stiffness, of.damping, of.lowest_mode)
-        constants, _ = extremes(of.constraint_stiffness, of.constraint_damping, of.constraint_lowest_mode)
-        springs = float(np.sum(constant * reduced_masses(of) * error**2) + np.sum(constants * mass * value**2)) / (
-            h * h
-        )
-        springs *= 0.5
-    return kinetic_energy(of) + gravity_energy(of) + springs
+    """Kinetic energy, that of gravity and of springs [J]."""
+    return kinetic_energy(of) + gravity_energy(of) + spring_energy(of)
 
 
 def allowed(box: Box) -> float:

@@ -23,6 +23,7 @@ from sandbox.session.commands import (
     SetFirmness,
     SetInflation,
     SetSolver,
+    Shake,
 )
 
 # A body of each kind, small, at the origin or from it on.
@@ -92,12 +93,14 @@ class RandomPlayer:
 
     def __init__(self, session, seed):
         self.session, self.random, self.held = session, random.Random(seed), None
+        self.shaken = None
 
     def act(self):
         """Do what comes to mind before the next tick."""
         deeds = (
             (0.06, self._add), (0.03, self._remove), (0.05, self._push), (0.06, self._drag), (0.02, self._cut),
             (0.03, self._set), (0.04, self.session.undo), (0.03, self.session.redo), (0.02, self._drop_ball),
+            (0.05, self._shake),
         )  # fmt: skip
         for chance, deed in deeds:
             if self.random.random() < chance:
@@ -139,6 +142,11 @@ class RandomPlayer:
     def _push(self):
         impulse = self.random.uniform(-20, 20), self.random.uniform(-20, 20)
         self.session.submit(Push(self._place(), self.random.uniform(0.3, 2.0), impulse, self.random.uniform(0, 10)))
+
+    def _shake(self):
+        if self.shaken is None or self.random.random() < 0.3:
+            self.shaken = self.session.new_gesture()
+        self.session.submit(Shake((self.random.uniform(-80, 80), self.random.uniform(-80, 80))), self.shaken)
 
     def _drag(self):
         if self.held is not None:

@@ -11,6 +11,7 @@ import numpy as np
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.parse import parse_level
 from sandbox.physics.energy import kinetic_energy, total_energy
+from sandbox.physics.settings import Substeps
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
 from sandbox.physics.substeps import substep_time
@@ -169,9 +170,12 @@ def energies(world: World, drags: list[Drag], after: int) -> Energies:
     return Energies(*np.array(rows).T)
 
 
-def random_scene(seed: int, softest: bool = False, solver: str = "direct") -> tuple[World, list[Drag]]:
-    """A random scene and its hands."""
+def random_scene(
+    seed: int, softest: bool = False, solver: str = "direct", substeps: Substeps | None = None
+) -> tuple[World, list[Drag]]:
+    """A random scene and its hands; substeps: None: 1, 2 or 4, by the seed."""
     assert solver in SOLVERS
     level = random_level(seed, softest, solver)
+    level["settings"]["substeps"] = substeps or level["settings"]["substeps"]
     world = build_world(parse_level(json.dumps(level).encode(), level["name"]))
     return world, random_drags(seed, world)

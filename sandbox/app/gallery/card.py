@@ -37,7 +37,6 @@ class Card(Lit, Pressable):
         self.line = self.badge = ""
         self.tags: tuple[str, ...] = ()
         self.picture: pygame.Surface | None = None
-        self.has_picture = True
         self.broken = False
         self._is_open = False
         ui.add(self)
@@ -79,7 +78,7 @@ class Card(Lit, Pressable):
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """The card as it is now."""
         self._is_open = self.is_pointed_at
-        return self._painted(size, self._lines(size[0], self.is_small or not self.has_picture))
+        return self._painted(size, self._lines(size[0], self.is_small))
 
     def paint_open(self) -> pygame.Surface:
         """The card with all of its text, as high as that is."""
@@ -115,14 +114,13 @@ class Card(Lit, Pressable):
             y += font.get_linesize()
 
     def _paint_whole(self, card: pygame.Surface, lines: list[tuple[str, Colour]]) -> None:
-        ui, width, top = self.ui, card.get_width(), 0
-        if self.has_picture:
-            picture = pygame.Rect(1, 1, *self.picture_size)
-            self._paint_picture(card, picture)
-            top = picture.bottom
-            if self.badge:
-                self._paint_badge(card)
-            pygame.draw.line(card, LINE, (1, top), (width - 2, top))
+        ui, width = self.ui, card.get_width()
+        picture = pygame.Rect(1, 1, *self.picture_size)
+        self._paint_picture(card, picture)
+        top = picture.bottom
+        if self.badge:
+            self._paint_badge(card)
+        pygame.draw.line(card, LINE, (1, top), (width - 2, top))
         y, left = top + ui.px(8), ui.px(PADDING)
         bold, plain = ui.font(NAME_SIZE, True), ui.font(LINE_SIZE)
         card.blit(bold.render(wrapped(self.name, bold, width - 2 * left, 1)[0], True, TEXT), (left, y))

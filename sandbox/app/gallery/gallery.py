@@ -4,7 +4,6 @@ import json
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -12,19 +11,20 @@ from pathlib import Path
 import pygame
 
 from sandbox.app.application import Application
+from sandbox.app.compare.lesson_picture import lesson_picture, twice
 from sandbox.app.compiling import is_prepared
 from sandbox.app.draw.colours import TEXT, shown_theme
 from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.gallery.card import PICTURE_RATIO, TEXT_HEIGHT, Card, draw_shadow
 from sandbox.app.gallery.header import Header
 from sandbox.app.gallery.preview import Preview
+from sandbox.app.gallery.replay_card import date_of, fill_replay
 from sandbox.app.gallery.sections import FIRST, LIGHT_LEVELS, in_sections, is_found
 from sandbox.app.picture_cache import (
     SECONDS,
     draw_in_slices,
     find_picture,
-    forget_old_pictures,
-    keep_picture,
+    keep_for_later,
     kept_picture,
     picture_key,
 )
@@ -43,10 +43,11 @@ GAP = 16.0
 MARGIN = 36.0
 HEADING = 40.0
 SECTION_GAP = 4.0
-ROW_HEIGHT, ROW_WIDTH = 56.0, 760.0
 # Wall time [s] of a frame that cards are filled in.
 FILL_BUDGET = 0.02
 TITLES = {"levels": "Levels", "mine": "My levels", "recordings": "Replays"}
+# The level that a lesson plays twice.
+COMPARED = "jelly_cube"
 NO_LEVELS = "No levels of yours yet. Draw one in the editor (New, or E in any level) and save it with Ctrl+S."
 NO_REPLAYS = "No replays yet. Record a run with Ctrl+R, or save what you did with Ctrl+S."
 STEPS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
@@ -134,7 +135,9 @@ class Gallery:
             played = [path for path in light if path.is_file()]
         for path in played[: shortcuts.columns]:
             self._add_level(shortcuts, path)
-        for section, paths in in_sections(shipped_levels()):
+        for place, (section, paths) in enumerate(in_sections(shipped_levels())):
+            if place == 1 and self._app.mode == "play":
+                self._add_lessons()
             group = self._group(section.title, section.line)
             for path in paths:
                 self._add_level(group, path, section.levels.get(path.stem, ""))
@@ -143,6 +146,23 @@ class Gallery:
         own = self._group("Your own")
         for path in recent_levels():
             self._add_level(own, path)
+
+    def _add_lessons(self) -> None:
+        group = self._group("Lessons", "Try it, and see why.")
+        name, text = "Stiffer, until it explodes", "Hooke's spring beside the article's: the same spring, made stiffer."
+        card = self._add_card(group, name, text, self._app.start_lesson)
+        card.line, card.tags = "Find where Hooke's breaks", ("lesson", "article", "hooke")
+        card.show_picture(lesson_picture(card.picture_size, shown_theme()))
+        path = shipped_folder("levels") / f"{COMPARED}.json"
+        if path.is_file():
+            text = (
+                "A level twice, side by side: other springs for A and for B, one hand that pulls at both. F9 anywhere."
+            )
+            card = self._add_card(group, "Two settings at once", text, partial(self._app.start_pair, path))
+            card.line, card.tags = "Softer springs for B, then pull", ("lesson", "compare")
+            picture = find_picture(path, picture_key(path.read_bytes()), card.picture_size, shown_theme())
+            if picture is not None:
+                card.show_picture(twice(picture))
 
     def _add_own(self) -> None:
         group = self._group("")
@@ -197,21 +217,15 @@ class Gallery:
         picture = yield from draw_in_slices(level, theme, SECONDS if jit.COMPILED else 0.0)
         card.show_picture(pygame.transform.smoothscale(picture, size))
         if jit.COMPILED:
-            with suppress(OSError):
-                keep_picture(picture, kept_picture(key, theme))
-                forget_old_pictures(kept_picture(key, theme).parent)
+            keep_for_later(picture, kept_picture(key, theme))
 
     def _add_recordings(self) -> None:
-        width = min(self._width, ROW_WIDTH)
-        group = Group("", "", 1, width, ROW_HEIGHT)
-        self.groups.append(group)
+        group = self._group("")
         for path in saved_recordings():
-            stat = path.stat()
-            when = time.strftime("%d %B %Y, %H:%M", time.localtime(stat.st_mtime))
-            text = f"{when}, {stat.st_size / 1024:,.0f} KiB"
-            card = self._add_card(group, one_line(path.name), text, partial(self._app.files.open_replay, path))
-            card.has_picture = False
+            card = self._add_card(group, one_line(path.name), "", partial(self._app.files.open_replay, path))
+            card.line = date_of(path)
             card.repaint()
+            self._unfilled.append(fill_replay(card, path, lambda contacts: self._has_kernels(contacts)))
 
     # Where it stands.
 
@@ -319,7 +333,7 @@ class Gallery:
         if self._ui.top_sheet is not self.sheet:
             return
         for card in self._shown():
-            if card.is_pointed_at and not card.is_small and card.has_picture:
+            if card.is_pointed_at and not card.is_small:
                 picture = card.paint_open()
                 view = self.area.view.rect.inflate(0, -2)
                 place = picture.get_rect(midtop=card.rect.midtop).clamp(view)

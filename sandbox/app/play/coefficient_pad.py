@@ -48,14 +48,16 @@ class CoefficientPad(Painted):
 
     def __init__(
         self, ui: Ui, rect: pygame.Rect, changed: Callable[[float, float], None], done: Callable[[], None],
-        container: Any = None, name: str = "",
+        container: Any = None,
     ) -> None:  # fmt: skip
         super().__init__(ui, rect, container)
         self.state = PadState(0.1, 0.1, False, True)
         self.zones: CoefficientZones | None = None
         self.dragging = False
-        self._changed, self._done, self._name = changed, done, name
+        self._changed, self._done, self._name = changed, done, ""
         self._map: pygame.Surface | None = None
+        # Where another run's springs are, and what it is called.
+        self._ghost: tuple[str, tuple[float, float]] | None = None
         ui.add(self)
         self.repaint()
 
@@ -67,6 +69,13 @@ class CoefficientPad(Painted):
             return
         self.state = state
         self.repaint()
+
+    def show_ghost(self, own: str, name: str, pair: tuple[float, float] | None) -> None:
+        """Show where another run's springs are as well (None: nowhere), and what both are called."""
+        ghost = None if pair is None else (name, pair)
+        if (ghost, own) != (self._ghost, self._name):
+            self._ghost, self._name = ghost, own
+            self.repaint()
 
     @property
     def _inside(self) -> pygame.Rect:
@@ -143,6 +152,11 @@ class CoefficientPad(Painted):
         if not self.state.enabled:
             return surface
         inside, px = self._inside, self.ui.px
+        if self._ghost is not None:
+            there = self._at(*self._ghost[1])
+            pygame.draw.aacircle(surface, SURFACE, there, px(KNOB) + max(1, px(1.5)))
+            pygame.draw.aacircle(surface, MUTED, there, px(KNOB), max(2, px(2)))
+            self._paint_name(surface, self._ghost[0], there, MUTED)
         x, y = self._at(self.state.stiffness, self.state.damping)
         guide = mixed(FIELD, TEXT, 0.45)
         pygame.draw.line(surface, guide, (inside.left, y), (x, y))
@@ -151,10 +165,15 @@ class CoefficientPad(Painted):
         pygame.draw.aacircle(surface, TEXT, (x, y), px(KNOB))
         pygame.draw.aacircle(surface, SURFACE if self.state.is_mixed else self._knob_colour(), (x, y), px(KNOB - 3))
         if self._name:
-            font = self.ui.font(LABEL_SIZE, True)
-            name = font.render(self._name, True, TEXT)
-            surface.blit(name, name.get_rect(midbottom=(x, y - px(KNOB + 2))).clamp(inside))
+            self._paint_name(surface, self._name, (x, y), TEXT)
         return surface
+
+    def _paint_name(self, surface: pygame.Surface, name: str, at: tuple[float, float], colour: Colour) -> None:
+        picture = self.ui.font(WORD_SIZE, True).render(name, True, colour)
+        place = picture.get_rect(midbottom=(at[0], at[1] - self.ui.px(KNOB + 2)))
+        if place.top < 0:
+            place.midtop = (round(at[0]), round(at[1] + self.ui.px(KNOB + 2)))
+        surface.blit(picture, place.clamp(self._inside))
 
     def _knob_colour(self) -> Colour:
         """Of the zone that the knob stands in."""

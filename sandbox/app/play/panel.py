@@ -1,7 +1,7 @@
 """Panel: Cs and Cd by a pad or by sliders, with their Hz reading and what is proven; gravity, solver and settings."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,6 +49,7 @@ PAD_HEIGHT, CURVE_HEIGHT = 224.0, 84.0
 PAD_MORE = PAD_HEIGHT + CURVE_HEIGHT - 68.0
 WORLD_HEIGHT = 300.0
 SPRINGS_CHOICE = 118.0
+SIDES_HEIGHT = 38.0
 # Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
 LOOK_EVERY = 15
 ALL_MATERIALS = "All springs"
@@ -62,13 +63,15 @@ class PanelShape:
 
     springs: str | None = None
     world: bool | None = None
+    # Of two runs the one that it shows: "A" or "B".
+    side: str | None = None
 
 
 class Panel:
     """The panel at the right of a window; `say` shows a line to the person.
 
     choose: what is done with a strength of the "hand", with a "view" that is shown or no longer, with how "springs" are
-    set ("pad" or "sliders"), and with the "fold" of the world ("open" or "folded").
+    set ("pad" or "sliders"), the "fold" of the world ("open" or "folded"), and of two runs the "side" to show.
     """
 
     def __init__(
@@ -90,7 +93,7 @@ class Panel:
         self.firmness = FirmnessRows(playback, say)
         full = FULL_HEIGHT + (FIRMNESS_HEIGHT if self.firmness.bodies else 0.0)
         self.by_pad = height >= full + PAD_MORE if shape.springs is None else shape.springs == "pad"
-        full += PAD_MORE if self.by_pad else 0.0
+        full += (PAD_MORE if self.by_pad else 0.0) + (0.0 if shape.side is None else SIDES_HEIGHT)
         self.is_folded = (self.by_pad and height < TIGHTEST * full) if shape.world is None else not shape.world
         full -= WORLD_HEIGHT if self.is_folded else 0.0
         self._tight = min(1.0, max(height / full, TIGHTEST))
@@ -98,6 +101,8 @@ class Panel:
         # What does not fit is scrolled to.
         self.area = ScrollArea(ui, ui.rect(0, 0, PANEL_WIDTH, height), background)
         self.back = self.area.content
+        if shape.side is not None:
+            self._build_sides(shape.side)
         self._build_springs()
         if self.firmness.bodies:
             self._build_firmness()
@@ -130,6 +135,16 @@ class Panel:
             fields.append(self._ui.field(self._place(x, 19, width, ROW), "", commit, self.back, 24))
         self._row(19 + ROW, 6)
         return fields
+
+    def _build_sides(self, side: str) -> None:
+        """Which of two runs all below is of."""
+        options = [(name, name, f"Show and set the springs and the solver of {name}") for name in ("A", "B")]
+        self.sides = self._ui.choice(self._row(SIDES_HEIGHT - 8, 8), options, self._choose["side"], self.back)
+        self.sides.show(side)
+
+    def follow(self, playback: Playback) -> None:
+        """Show and change another run of the same level."""
+        self.playback = self.firmness.playback = playback
 
     def _build_springs(self) -> None:
         ui = self._ui
@@ -261,6 +276,11 @@ class Panel:
             self._limits = coefficient_limits(world, self.material)
             self._find_zones()
             self._show_springs()
+
+    def show_choices(self, strength: str, views: Set[str]) -> None:
+        """Show the strength of the hand, and which overlays are seen."""
+        self.hand.show(strength)
+        self.views.show(views)
 
     def _show_energy(self) -> None:
         world = self.playback.session.world

@@ -12,6 +12,7 @@ from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colou
 from sandbox.app.draw.detail import FULL, NO_EFFECTS
 from sandbox.app.draw.views.overlays import NAMES as OVERLAYS
 from sandbox.app.edit.bake_choice import ask_to_keep
+from sandbox.app.graphs.graph_dock import GraphDock
 from sandbox.app.loop import SPEEDS
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.hand_labels import draw_labels
@@ -22,6 +23,7 @@ from sandbox.app.play.out_of_view import OutOfView
 from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
 from sandbox.app.play.panel import PANEL_WIDTH, Panel, PanelShape
 from sandbox.app.play.playback import Playback
+from sandbox.app.play.side_panel import SidePanel
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
@@ -69,9 +71,10 @@ class PlayScreen:
         self.show_panel = app.ui.units[0] >= ROOM_FOR_PANEL
         self.show_palette = False
         self.palette: PartsPalette | None = None
-        self.panel: Panel | None = None
+        self.panel: SidePanel | None = None
         self.stage = Stage(playback, (0, 0, *app.ui.size), app.scale)
         self.time = TimeBar(app, lambda: self.playback)
+        self.graphs = GraphDock(app, self._measured)
         self.stage.place(self.viewport, app.scale)
         kept = preference(SPRINGS)
         self.shape = PanelShape(kept if kept in ("pad", "sliders") else None)
@@ -104,15 +107,25 @@ class PlayScreen:
     @property
     def viewport(self) -> tuple[int, int, int, int]:
         """The part of the window that shows the world, in pixels."""
+        return self.area
+
+    @property
+    def area(self) -> tuple[int, int, int, int]:
+        """What bar, panel, timeline and status line leave of the window, in pixels."""
         ui, (width, height) = self._ui, self._ui.size
         top, bottom = ui.px(BAR_HEIGHT), ui.px(STATUS_HEIGHT)
         right = ui.px(PANEL_WIDTH) if self.show_panel else 0
-        return 0, top, max(width - right, 1), max(height - top - bottom - ui.px(self.time.height), 1)
+        return 0, top, max(width - right, 1), max(height - top - bottom - ui.px(self._below), 1)
+
+    @property
+    def _below(self) -> float:
+        """What graphs and timeline take of the height [layout units]."""
+        return self.time.height + self.graphs.height(self._ui)
 
     @property
     def notices_corner(self) -> tuple[float, float]:
         """Where the notices are, from the left and above the status line [layout units]."""
-        return 16.0, self.time.height
+        return 16.0, self._below
 
     def build(self, ui: Ui) -> None:
         """Lay the bar and the panel out anew."""
@@ -122,7 +135,7 @@ class PlayScreen:
         self.stage.place(self.viewport, ui.scale)
         self.palette = None
         if self.show_palette:
-            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, self.viewport[3] / ui.scale)
+            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, self.area[3] / ui.scale)
         left = FREE_PLACE[0] if self.palette is None else self.palette.right + FREE_PLACE[1]
         place = ui.rect(left, BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
         self.free = ui.button(place, "Free it", self._free, tip=tip_of("free", "play"))
@@ -131,17 +144,21 @@ class PlayScreen:
         place = ui.rect(left, BAR_HEIGHT + AGAIN_TOP, *AGAIN_SIZE)
         self.again = ui.button(place, "Again", self._reset, style="@primary", tip=tip_of("reset", "play"))
         self.again.hide()
-        self.time.build(ui, self.viewport[2] / ui.scale, ui.units[1] - STATUS_HEIGHT)
+        self.graphs.build(ui, self.area[2] / ui.scale, ui.units[1] - STATUS_HEIGHT - self.time.height)
+        self.time.build(ui, self.area[2] / ui.scale, ui.units[1] - STATUS_HEIGHT)
         self.stage.renderer.follow_theme()
         before, self.panel = self.panel, None
         if self.show_panel:
             height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
-            choices = {
+            choices: dict[str, Callable[[str], None]] = {
                 "hand": self.choose_strength, "view": self._app.act, "springs": self._set_by, "fold": self._fold,
             }  # fmt: skip
-            self.panel = Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape)
-            if before is not None and before.playback is self.playback:
+            self.panel = self._make_panel(ui, choices, height)
+            if before is not None and before.playback.level is self.playback.level:
                 self.panel.choose_material(before.material)
+
+    def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> SidePanel:
+        return Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape)
 
     def _set_by(self, way: str) -> None:
         """Show the pad or the sliders from now on, in later runs too."""
@@ -173,6 +190,8 @@ class PlayScreen:
             "step": lambda: self.playback.clock.step_once(),
             "slow": lambda: self.playback.clock.next_speed(SPEEDS),
             **self.time.actions,
+            "graphs": self.graphs.toggle,
+            "pick": lambda: self.graphs.pick(self.stage.pointed),
             "reset": self._reset,
             "zoom_in": lambda: self._zoom(2),
             "zoom_out": lambda: self._zoom(-2),
@@ -252,12 +271,15 @@ class PlayScreen:
 
     def _reset(self) -> None:
         self.leave()
-        self.stage.replace_playback(self.playback.reset())
+        self._begin_again()
         self.stuck = StuckBodies()
         self.out_of_view = OutOfView()
         self._app.follow(self.playback)
         if self.panel is not None:
-            self.panel.playback = self.playback
+            self.panel.follow(self.playback)
+
+    def _begin_again(self) -> None:
+        self.stage.replace_playback(self.playback.reset())
 
     def _toggle_panel(self) -> None:
         self._wants_panel = not self.show_panel
@@ -274,6 +296,10 @@ class PlayScreen:
         stage, session = self.stage, self.playback.session
         span = self.playback.travel.span or last_ticks(session, seconds)
         return Film(session, stage.camera, stage.renderer, span, stage.fitted_box)
+
+    def drop_caches(self) -> None:
+        """Use kernels that have come about."""
+        self.playback.session.world.drop_caches()
 
     # Pointer and keys.
 
@@ -308,22 +334,19 @@ class PlayScreen:
 
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
         """Let time pass, where no page is open and the physics is ready."""
+        before = self.playback.session.tick
         self.stage.update(frame_time if ready and not self._ui.has_sheet else 0.0, pointer, profile)
+        self._measure(self.playback.session.tick - before, profile)
         self.stage.renderer.compiled = ready
         self._show_stuck()
         self._show_again()
-        for message in self.playback.messages:
-            self._app.say(message)
-        self.playback.messages.clear()
-        self._tell_breaks()
+        self._tell()
         if self.panel is not None and ready:
             self.panel.refresh()
-            self.panel.hand.show(self.stage.drag.strength)
+            self.panel.show_choices(self.stage.drag.strength, self.stage.renderer.overlays.shown)
         self.time.show()
         if self.palette is not None:
             self.palette.show(PaletteState(self.stage.tool_name, ready))
-        if self.panel is not None:
-            self.panel.views.show(self.stage.renderer.overlays.shown)
         self.toolbar.show(
             BarState(
                 self.playback.level.name,
@@ -335,9 +358,27 @@ class PlayScreen:
                 self.playback.session.can_redo,
                 self.show_panel,
                 self.show_palette,
+                self._app.chosen["sound"] == "on",
                 self.time.is_shown,
+                self.graphs.is_shown,
             )
         )
+
+    def _measured(self) -> list[tuple[str, Playback]]:
+        """The runs that graphs are of, each with what stands before its names."""
+        return [("", self.playback)]
+
+    def _measure(self, ticks: int, profile: Profile) -> None:
+        times = profile.milliseconds
+        frame = times["frame"][-1] if times["frame"] else None
+        self.graphs.update(times["ticks"][-1] / ticks if ticks > 0 else None, frame)
+
+    def _tell(self) -> None:
+        """Say what the run has to say."""
+        for message in self.playback.messages:
+            self._app.say(message)
+        self.playback.messages.clear()
+        self._tell_breaks()
 
     def _tell_breaks(self) -> None:
         """Say what broke; a line that has grown takes the place of what it was."""
@@ -376,6 +417,9 @@ class PlayScreen:
         self.stuck.draw(surface, self._ui, self.camera, self.playback.current)
         draw_key_caps(surface, self._ui, self._keys.shown(), self.viewport)
         draw_labels(surface, self._ui, self.camera, self.playback.current, self.stage.pulls())
+        surface.set_clip(None)
+        self.graphs.draw(surface)
+        surface.set_clip(self.viewport)
         renderer, (left, top, width, _) = self.stage.renderer, self.viewport
         solver = self.playback.current.settings.solver
         self._legend.draw(surface, self._ui, renderer.overlays, renderer.theme, solver, (left + width, top))

@@ -3,6 +3,7 @@
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from sandbox.app.play.travel import Travel
 from sandbox.level.format.model import Level
 from sandbox.physics.energy import Dissipation
 from sandbox.physics.snapshot import Snapshot, state_hash
+from sandbox.physics.world import World
 from sandbox.session.commands import Command, CommandError, Redo, Undo
 from sandbox.session.replay.recording import Replay
 from sandbox.session.session import Branch, Session, break_lines
@@ -20,6 +22,18 @@ from sandbox.tools.tool import Response
 # Wall time [s] that the ticks of one frame may take; the ticks beyond it are lost and the run falls behind real time,
 # but the window goes on answering.
 TICK_BUDGET = 0.05
+
+
+class Listener(Protocol):
+    """Who is told of every tick of a run; it reads and never writes."""
+
+    def hear(self, world: World) -> None:
+        """Take in the world after a tick."""
+        ...
+
+    def forget(self) -> None:
+        """Compare with nothing that was before: history is another."""
+        ...
 
 
 class Playback:
@@ -35,6 +49,7 @@ class Playback:
         self.behind = False
         self.verdict = ""
         self.messages: list[str] = []
+        self.listener: Listener | None = None
         self.current = self.previous = self.session.snapshot()
         self.travel = Travel(self.session, replay)
         self._equal = True
@@ -80,6 +95,8 @@ class Playback:
             self.clock.speed, self.clock.accumulator = 1.0, 0.0
         self.travel.target = None
         self._submitted = True
+        if self.listener is not None and isinstance(command, (Undo, Redo)):
+            self.listener.forget()
         session.submit(command, gesture)
 
     def respond(self, response: Response) -> None:
@@ -133,6 +150,8 @@ class Playback:
             session.seek(min(tick, session.last_tick))
         self.clock.accumulator = 0.0
         self.revision += 1
+        if self.listener is not None:
+            self.listener.forget()
         self.current = self.previous = session.snapshot()
 
     def return_to(self, branch: Branch) -> None:
@@ -230,6 +249,8 @@ class Playback:
                 self.session.advance()
                 self.dissipation.after(self.session.world)
                 self._note_breaks()
+                if self.listener is not None and self.travel.target is None:
+                    self.listener.hear(self.session.world)
         except CommandError as error:
             self._give_up(error)
             return False

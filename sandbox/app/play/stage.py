@@ -15,6 +15,7 @@ from sandbox.app.play.stability_paint import StabilityPaint
 from sandbox.app.profile import Profile
 from sandbox.physics.joints.pulls import Pull, pulls_of
 from sandbox.physics.query import nearest_particle, shown_particles
+from sandbox.physics.snapshot import Snapshot
 from sandbox.tools.blowing import PushTool, WindTool
 from sandbox.tools.cut import CutTool
 from sandbox.tools.drag import DragTool
@@ -147,8 +148,17 @@ class Stage:
         """Whether a pixel shows the world."""
         return pygame.Rect(self.camera.viewport).collidepoint(pixel)
 
-    def point(self, kind: Literal["down", "move", "up"], pixel: Pixel, modifiers: int, button: int = 1) -> None:
-        """Hand a pointer event to the tool."""
+    def share(self, other: "Stage") -> None:
+        """Have the tools and the overlays that another stage has."""
+        self.tools, self.tool_name = other.tools, other.tool_name
+        self.drag, self.cut, self.pin = other.drag, other.cut, other.pin
+        self.renderer.overlays.shown = other.renderer.overlays.shown
+
+    def point(
+        self, kind: Literal["down", "move", "up"], pixel: Pixel, modifiers: int, button: int = 1,
+        among: Snapshot | None = None,
+    ) -> None:  # fmt: skip
+        """Hand a pointer event to the tool; among: what it picks from, if not from the present state."""
         if self.playback.has_pending:
             self.playback.apply_pending()
         event = PointerEvent(
@@ -160,7 +170,7 @@ class Stage:
             bool(modifiers & pygame.KMOD_CTRL),
             pygame.time.get_ticks() / 1000.0,
         )
-        self.playback.respond(self.tool.handle(event, self.playback.current))
+        self.playback.respond(self.tool.handle(event, self.playback.current if among is None else among))
 
     def toggle_view(self, name: str) -> None:
         """Show an overlay, or no longer: one of views.overlays.NAMES."""
@@ -209,6 +219,14 @@ class Stage:
         self.cursor = self.camera.to_world(pixel)
         if self.pressed_by_key:
             self.point("move", pixel, modifiers)
+
+    @property
+    def pointed(self) -> int | None:
+        """The particle under the mouse, or else at the keyboard cursor."""
+        if self._hovered is not None or self.cursor is None:
+            return self._hovered
+        within = PICK_RADIUS * self.renderer.scale / self.camera.zoom
+        return nearest_particle(self.playback.current, self.cursor, within)
 
     # A frame.
 

@@ -22,8 +22,9 @@ ICON = 18.0
 SLOW_WIDTH = 46.0
 MARGIN = 14.0
 SHARE_WIDTH = 68.0
-# Narrower windows leave the level's name out, and the wider gaps between the groups.
+# Narrower windows leave the level's name out, and the wider gaps between the groups; and so does less room for it.
 ROOM_FOR_NAME = 1000.0
+LEAST_NAME = 90.0
 WIDE_GAP, NARROW_GAP = 16.0, 4.0
 # Groups of actions from the left, and those at the right end, with their pictures.
 LEFT = (
@@ -36,7 +37,10 @@ LEFT = (
 )  # fmt: skip
 RIGHT = (
     ("share", "share"),
+    ("graphs", "graphs"),
+    ("compare", "compare"),
     ("gallery", "levels"),
+    ("sound", "sound"),
     ("settings", "settings"),
     ("fit", "fit"),
     ("panel", "panel"),
@@ -48,9 +52,12 @@ WIDE_WORDS = {**WORDS, "share": "Share"}
 # What goes into the menu where the window is too narrow, first what is missed least.
 LEAVING = (
     "save",
+    "compare",
+    "graphs",
     "settings",
     "timeline",
     "record",
+    "sound",
     "fit",
     "redo",
     "step",
@@ -78,7 +85,9 @@ class BarState:
     can_redo: bool
     panel: bool
     palette: bool
+    sound: bool
     timeline: bool
+    graphs: bool
 
 
 def fitting(actions: Sequence[str], width: float) -> list[str]:
@@ -123,8 +132,9 @@ class Toolbar:
         at_end = [*at_right, *(["more"] if self.left_out else [])]
         self._x = width - MARGIN + GAP - sum(_width(action, is_wide) + GAP for action in at_end)
         self.title = None
-        if is_wide:
-            place = ui.rect(title_left, 0, self._x - title_left - 14, BAR_HEIGHT)
+        room = self._x - title_left - 14
+        if is_wide and room >= LEAST_NAME:
+            place = ui.rect(title_left, 0, room, BAR_HEIGHT)
             self.title = ui.label(place, "", self.back, "@title")
         for action in at_right:
             self._add(action)
@@ -150,7 +160,9 @@ class Toolbar:
         self._mark("record", DANGER, state.recording, "stop" if state.recording else "record")
         self._mark("panel", TEXT, state.panel)
         self._mark("palette", TEXT, state.palette)
+        self._mark("sound", TEXT if state.sound else DISABLED, False, "sound" if state.sound else "muted")
         self._mark("timeline", TEXT, state.timeline)
+        self._mark("graphs", TEXT, state.graphs)
         for name, on in (("undo", state.can_undo), ("redo", state.can_redo)):
             self._mark(name, TEXT if on else DISABLED, False)
             if name in self.buttons:

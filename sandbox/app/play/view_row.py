@@ -1,6 +1,6 @@
 """ViewRow: a row of small buttons that show overlays over the world, or no longer, each with its key in its tip."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from functools import partial
 from typing import Any
 
@@ -31,7 +31,7 @@ class ViewRow:
                 place, "", partial(toggle, name), container, style="@segment", icon=icon, tip=tip_of(name, "play")
             )
 
-    def show(self, shown: set[str]) -> None:
+    def show(self, shown: Set[str]) -> None:
         """Mark those that are shown."""
         for name in self._shown ^ shown:
             is_on = name in shown

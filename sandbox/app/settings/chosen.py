@@ -69,6 +69,8 @@ SETTINGS: tuple[Setting, ...] = (
           "Automatic: left out while frames come late"),
     OneOf("motion", "Motion", "Look", (("full", "Full"), ("less", "Reduced")),
           "Reduced: pictures of the gallery stand still, no dust and no sparks"),
+    OneOf("sound", "Sound", "Sound", (("on", "On"), ("off", "Off")), "M and the button in the bar as well"),
+    Amount("volume", "Volume", "Sound", 0.0, 1.0, 0.1, 0.6),
     OneOf("hints", "Hints", "Help", (("show", "Show"), ("hide", "Hide")),
           "What a level says of itself when it begins; F2 shows it again"),
 )  # fmt: skip

@@ -157,6 +157,34 @@ def _stability(pen: IconPen) -> None:
     pen.disc(12, 16, 2.2)
 
 
+def _graphs(pen: IconPen) -> None:
+    pen.line((4, 4), (4, 20), (20, 20), width=1.8)
+    pen.line((6.5, 15), (10, 9), (13.5, 13), (19.5, 5.5), width=1.8)
+
+
+def _compare(pen: IconPen) -> None:
+    pen.line((4, 5), (10, 5), (10, 19), (4, 19), (4, 5), width=1.8)
+    pen.line((14, 5), (20, 5), (20, 19), (14, 19), (14, 5), width=1.8)
+    pen.disc(7, 9, 1.7)
+    pen.disc(17, 14.5, 1.7)
+
+
+def _speaker(pen: IconPen) -> None:
+    pen.shape((3, 9), (7, 9), (12, 4.5), (12, 19.5), (7, 15), (3, 15))
+
+
+def _sound(pen: IconPen) -> None:
+    _speaker(pen)
+    pen.arc(12, 12, 4.6, -50, 50)
+    pen.arc(12, 12, 8.6, -50, 50)
+
+
+def _muted(pen: IconPen) -> None:
+    _speaker(pen)
+    pen.line((15.5, 9), (21, 15))
+    pen.line((21, 9), (15.5, 15))
+
+
 def _timeline(pen: IconPen) -> None:
     pen.line((3, 12), (21, 12), width=1.8)
     pen.disc(9, 12, 3.4)
@@ -204,7 +232,8 @@ ICONS: dict[str, Icon] = {
     "undo": _undo, "redo": _redo, "record": _record, "stop": _stop, "levels": _levels, "fit": _fit,
     "panel": _panel, "save": _save, "edit": _edit, "keep": _keep, "share": _share, "spring": draw_spring,
     "lattice": _lattice, "particles": _particles, "contacts": _contacts, "forces": _forces,
-    "velocities": _velocities, "stability": _stability, "parts": _parts,
+    "velocities": _velocities, "stability": _stability, "parts": _parts, "sound": _sound, "muted": _muted,
+    "compare": _compare, "graphs": _graphs,
     "timeline": _timeline, "back": _back, "backwards": _backwards, "bookmark": _bookmark, "loop": _loop,
     "next_mark": lambda pen: _mark_beside(pen, 1), "previous_mark": lambda pen: _mark_beside(pen, -1),
     "branch": _branch,

@@ -72,9 +72,10 @@ def rewired(level: Level, change: Rewire) -> tuple[Level, list[int]]:
             welds.append((a, b))
     checks = []
     for check in level.checks:
-        particle = None if check.particle is None else change(check.particle)
-        if particle == check.particle:
+        old = {field: name for field in ("particle", "other", "body") if (name := getattr(check, field)) is not None}
+        new = {field: change(name) for field, name in old.items()}
+        if new == old:
             checks.append(check)
-        elif particle is not None:
-            checks.append(replaced(check, particle=particle))
+        elif None not in new.values():
+            checks.append(replaced(check, **new))
     return replaced(level, springs=tuple(springs), welds=tuple(welds), checks=tuple(checks)), kept

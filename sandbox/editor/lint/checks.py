@@ -1,46 +1,53 @@
 """Checks that no run of their level can pass, or none can fail."""
 
-import math
-
 from sandbox.editor.items import Selection
 from sandbox.editor.lint.finding import Finding, Rule, Severity, place_of
 from sandbox.editor.scene import Scene
-from sandbox.level.checks import PARTICLE_METRICS, CheckDef, check_ticks
+from sandbox.level.checks import CheckDef, bounds_of, window_of
 from sandbox.level.format.model import Level
 
 # Metrics that are sums of squares, sizes or counts.
 NEVER_NEGATIVE = frozenset(
-    ["max_strain", "rms_strain", "kinetic_energy", "max_speed", "speed", "non_finite", "broken_springs"]
+    [
+        "max_strain",
+        "rms_strain",
+        "strain",
+        "kinetic_energy",
+        "max_speed",
+        "speed",
+        "non_finite",
+        "broken_springs",
+        "distance",
+        "settled",
+    ]
 )
-
+# What is known of a pinned particle.
+PINNED_METRICS = frozenset(["x", "y", "speed"])
 # Metrics that are 0 where nothing can move.
-STILL_WHERE_ALL_IS_PINNED = frozenset(["max_strain", "rms_strain", "kinetic_energy", "max_speed"])
+STILL_WHERE_ALL_IS_PINNED = frozenset(["max_strain", "rms_strain", "strain", "kinetic_energy", "max_speed"])
 
 
 def hopeless_checks(level: Level, scene: Scene) -> Rule:
     """Checks whose bounds cannot be met, contradict each other, or say nothing."""
-    bounds: dict[tuple[str, str | None, float], tuple[float, float, str]] = {}
-    for check in level.checks:
+    bounds: dict[tuple[object, ...], tuple[float, float, str]] = {}
+    for index, check in enumerate(level.checks):
         yield None
         slot = None if check.particle is None else scene.slot(check.particle)
         fault = _fault(check, scene, slot)
-        low, high = _bounds(check)
-        least, most, other = bounds.get((check.metric, check.particle, check.after), (low, high, ""))
+        low, high = bounds_of(check)
+        # What must hold at one of many ticks contradicts nothing.
+        key = (check.metric, check.particle, check.other, check.body, check.box, window_of(check),
+               index if check.eventually else -1)  # fmt: skip
+        least, most, other = bounds.get(key, (low, high, ""))
         if fault is None and max(low, least) > min(high, most):
             fault = "warning", f'contradicts check "{other}", so one of them fails; change a bound'
-        bounds[check.metric, check.particle, check.after] = max(low, least), min(high, most), check.name
-        if fault is None and check_ticks(check, level.settings.tick_rate) == 0:
+        bounds[key] = max(low, least), min(high, most), check.name
+        if fault is None and round(window_of(check)[1] * level.settings.tick_rate) == 0:
             fault = "hint", "is measured before the first tick, when nothing has happened yet; let it wait longer"
         if fault is not None:
             items: Selection = frozenset() if slot is None else frozenset([scene.items[int(scene.particle_item[slot])]])
             place = None if slot is None else place_of(scene, slot)
             yield Finding(fault[0], f'Check "{check.name}" {fault[1]}', items, place)
-
-
-def _bounds(check: CheckDef) -> tuple[float, float]:
-    low = -math.inf if check.at_least is None else check.at_least
-    high = math.inf if check.at_most is None else check.at_most
-    return low, high
 
 
 def _can_break(level: Level) -> bool:
@@ -50,14 +57,14 @@ def _can_break(level: Level) -> bool:
 
 def _fault(check: CheckDef, scene: Scene, slot: int | None) -> tuple[Severity, str] | None:
     """What is wrong with one check by itself."""
-    low, high = _bounds(check)
+    low, high = bounds_of(check)
     if check.metric in NEVER_NEGATIVE and high < 0.0:
         return "warning", f"can never hold: {check.metric} is never below 0; raise at_most"
     if check.metric == "broken_springs" and low > 0.0 and not _can_break(scene.level):
         return "warning", "can never hold: no spring breaks by itself; give a material a tension limit"
     if check.metric in STILL_WHERE_ALL_IS_PINNED and low > 0.0 and scene.pinned.all():
         return "warning", "can never hold: every particle is pinned, so nothing moves; unpin some"
-    if slot is None or check.metric not in PARTICLE_METRICS or not scene.pinned[slot]:
+    if slot is None or check.metric not in PINNED_METRICS or not scene.pinned[slot]:
         return None
     x, y = place_of(scene, slot)
     value = {"x": x, "y": y, "speed": 0.0}[check.metric]

@@ -43,6 +43,7 @@ _KEYS = ("key", "reverse_key")
 # Fields that are shown as nothing else is.
 _OWN_KINDS: dict[str, Kind] = {
     "material": "material", "shape": "form", "holes": "outlines", "extras": "extras", "skin": "choice",
+    "always": "list", "eventually": "list",
     "line": "choice", "ball": "choice", "colour": "colour", "panel": "colour",
 }  # fmt: skip
 # Names to choose from that the format takes as text, since one that it does not know counts as automatic.

@@ -11,7 +11,7 @@ from sandbox.editor.items import chosen_bodies, chosen_particles
 from sandbox.editor.panel.field_info import abouts
 from sandbox.editor.panel.property import Property, Section, part_properties, with_axes
 from sandbox.editor.scene import make_scene
-from sandbox.level.checks import PARTICLE_METRICS, CheckDef
+from sandbox.level.checks import METRICS, SUBJECTS, CheckDef
 from sandbox.level.format.model import Level, Settings
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
@@ -93,18 +93,26 @@ def check_properties(document: Document, index: int) -> tuple[Section, ...]:
     made = [
         Property(name, about, getattr(check, name), partial(_set_check, index, name))
         for name, about in abouts(CheckDef).items()
-        if name != "particle" or check.metric in PARTICLE_METRICS
+        if name not in SUBJECTS or METRICS[check.metric].takes(name)
     ]
     return (Section("Check", tuple(made)),)
 
 
 def _set_check(index: int, field: str, document: Document, value: Any) -> Document:
     checks = list(document.level.checks)
-    check = replaced(checks[index], **{field: value})
-    if field == "metric" and value in PARTICLE_METRICS and check.particle is None:
-        check = replaced(check, particle=_some_particle(document))
-    elif field == "metric" and value not in PARTICLE_METRICS:
-        check = replaced(check, particle=None)
+    windows = {"always": "eventually", "eventually": "always"}
+    check = replaced(checks[index], **{field: tuple(value) if isinstance(value, list) else value})
+    if field in windows and value is not None:
+        check = replaced(check, **{windows[field]: None})
+    if field == "metric":
+        measured = METRICS.get(value)
+        kept = {name: getattr(check, name) for name in SUBJECTS if measured is not None and measured.takes(name)}
+        for name in measured.needs if measured is not None else ():
+            if kept[name] is None:
+                kept[name] = FIRST_ROOM if name == "box" else _some_particle(document)
+        momentary = measured is None or measured.momentary
+        check = replaced(check, **{name: kept.get(name) for name in SUBJECTS})
+        check = check if momentary else replaced(check, always=None, eventually=None)
     checks[index] = check
     return set_checks(document, checks)
 

@@ -53,7 +53,7 @@ class PartFile:
 
 def catalogue(folder: Path | None = None) -> list[PartFile]:
     """All parts, shipped ones first, each by their files' names; folder: of own ones, None = in the person's data."""
-    shipped = sorted(shipped_folder("parts").glob("*.json"), key=_order)
+    shipped = sorted((shipped_folder("levels") / "parts").glob("*.json"), key=_order)
     own = _own_files(own_parts_folder(folder))[:LISTED]
     return [*(_part(path, is_own=False) for path in shipped), *(_part(path, is_own=True) for path in own)]
 

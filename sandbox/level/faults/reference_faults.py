@@ -1,9 +1,10 @@
 """References to nothing: materials and particles that the level does not have, and checks that say too little."""
 
 from collections.abc import Iterator
+from typing import Any
 
 from sandbox.level.build.layout import Layout
-from sandbox.level.checks import PARTICLE_METRICS, CheckDef
+from sandbox.level.checks import METRICS, SUBJECTS, CheckDef
 from sandbox.level.faults.level_error import Fault, shown, suggestion
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.model import Level
@@ -49,16 +50,53 @@ def _pair_faults(path: str, layout: Layout, references: dict[str, str]) -> Itera
 
 
 def _check_faults(path: str, check: CheckDef, layout: Layout) -> Iterator[Fault]:
-    if check.at_most is None and check.at_least is None:
+    measured = METRICS[check.metric]
+    if check.at_most is None and check.at_least is None and measured.at_least is None:
         yield path, "needs a bound: at_most, at_least or both"
     elif check.at_most is not None and check.at_least is not None and check.at_least > check.at_most:
         yield f"{path}.at_least", f"{shown(check.at_least)} is above at_most, {shown(check.at_most)}"
-    if check.metric in PARTICLE_METRICS and check.particle is None:
-        yield f"{path}.particle", f'is missing; "{check.metric}" is measured of a particle'
-    elif check.particle is not None and check.metric not in PARTICLE_METRICS:
-        yield f"{path}.particle", f'"{check.metric}" is measured of the whole level; take the particle out'
-    elif check.particle is not None:
+    for field in SUBJECTS:
+        given, where = getattr(check, field), f"{path}.{field}"
+        if given is None and field in measured.needs:
+            yield where, f'is missing; "{check.metric}" is measured of a {_NOUNS[field]}'
+        elif given is not None and not measured.takes(field):
+            owner = measured.needs[0] if measured.needs else "the whole level"
+            owner = f"a {owner}" if measured.needs else owner
+            yield where, f'"{check.metric}" is measured of {owner}; take the {field} out'
+        elif given is not None:
+            yield from _subject_faults(field, where, given, layout)
+    if check.particle is not None and check.body is not None and measured.takes("body"):
+        yield f"{path}.body", "name a particle or a body, not both"
+    yield from _window_faults(path, check)
+
+
+_NOUNS = {"particle": "particle", "other": "second particle", "body": "body", "box": "box"}
+
+
+def _subject_faults(field: str, where: str, given: Any, layout: Layout) -> Iterator[Fault]:
+    """Whether what a check is measured of exists."""
+    if field == "box":
+        if given[0] >= given[2] or given[1] >= given[3]:
+            yield where, "left and bottom come first: left, bottom, right, top"
+    elif field == "body":
+        owner = layout.owners.get(given)
+        if owner is None or owner.loose:
+            bodies = [name for name, each in layout.owners.items() if not each.loose]
+            yield where, f"there is no body {shown(given)}" + suggestion(given, bodies)
+    else:
         try:
-            layout.slot(check.particle)
+            layout.slot(given)
         except LookupError as error:
-            yield f"{path}.particle", str(error.args[0])
+            yield where, str(error.args[0])
+
+
+def _window_faults(path: str, check: CheckDef) -> Iterator[Fault]:
+    """Whether the times of a check make sense."""
+    if check.always is not None and check.eventually is not None:
+        yield f"{path}.eventually", "a check holds always or eventually, not both; make two of it"
+    for field in ("always", "eventually"):
+        window = getattr(check, field)
+        if window is not None and window[0] > window[1]:
+            yield f"{path}.{field}", "the earlier time comes first"
+        elif window is not None and not METRICS[check.metric].momentary:
+            yield f"{path}.{field}", f'"{check.metric}" is of the last 2 s before one time; take "strain"'

@@ -7,6 +7,7 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+from sandbox.level.checks import STILL
 from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format import limits
 from sandbox.level.format.parse import parse_level
@@ -179,6 +180,37 @@ _ACTUATORS = """\
 - `gravity_scale` of welded particles is their mean by mass.
 """
 
+_CHECKS = f"""\
+## Checks
+
+A check measures one thing of the level as it runs by itself, and holds it against `at_most`, `at_least` or both. It is
+measured once, `after` so many seconds; with `always` at every tick of a span of time, all of which must hold; with
+`eventually` likewise, of which one must hold. `sandbox check` and the editor's Checks page run them, and so does
+[pytest](testing.md). Four examples:
+
+```
+{{"name": "the rope never tears", "metric": "strain", "body": "rope", "always": [0, 10], "at_most": 0.2}}
+{{"name": "in the cup", "metric": "inside", "particle": "ball", "box": [4, 0, 5, 2], "eventually": [0, 20]}}
+{{"name": "the cube stands still", "metric": "settled", "body": "cube", "after": 15}}
+{{"name": "it stays together", "metric": "distance", "particle": "a", "other": "b", "always": [0, 10], "at_most": 1.5}}
+```
+
+| metric | unit | measured of | is |
+|---|---|---|---|
+| `strain` | 1 | the level, or a `body` | largest strain of a spring, stretched or compressed, that bears a load |
+| `max_strain`, `rms_strain` | 1 | the level | largest strain and root mean square of the last 2 s; with `after` only |
+| `x`, `y` | m | a `particle` | where it is |
+| `speed` | m/s | a `particle` | how fast it is |
+| `max_speed` | m/s | the level | the speed of the fastest |
+| `distance` | m | a `particle` | how far it is from the `other` |
+| `inside` | m | a `particle`, a `body`, all | how far the outermost centre is inside the `box`, below 0 outside |
+| `settled` | s | the level, or a `body` | for how long nothing has been faster than {STILL:g} m/s |
+| `energy` | J | the level | kinetic and potential energy together |
+| `kinetic_energy`, `potential_energy` | J | the level | each of them; gravity's zero is at y = 0 |
+| `broken_springs` | 1 | the level, or a `body` | springs that broke |
+| `non_finite` | 1 | the level | particles without a finite position and velocity |
+"""
+
 _LOOKS = """\
 ## Looks
 
@@ -211,7 +243,7 @@ _MISTAKES = [
 
 def format_reference() -> str:
     """The reference as Markdown."""
-    return "\n".join([_INTRO, *_tables(), _NAMES, _FIRMNESS, _ACTUATORS, _LOOKS, _limits(), _errors()])
+    return "\n".join([_INTRO, *_tables(), _NAMES, _FIRMNESS, _ACTUATORS, _CHECKS, _LOOKS, _limits(), _errors()])
 
 
 def _tables() -> Iterator[str]:

@@ -30,10 +30,10 @@ from sandbox.physics.world import GRAB_COUNT, GRAB_MATERIAL, Floats, Slots, Worl
 FASTEST_HAND = 30.0
 # Near the cursor a hand wants what it holds to be there in this time [s]; more lags behind.
 APPROACH = 0.03
-# It brakes with this part of its force, and no harder than [m/s^2]. More lets soft bodies swing past the cursor, since
-# what is held stops before the rest does; less makes hands slow.
-BRAKE_SHARE = 0.4
-HARDEST_BRAKE = 25.0
+# It brakes with this part of its force, and no harder than [m/s^2]. More lets swing past the cursor what is soft, or is
+# held off its middle and turns, since what is held stops before the rest does; less makes hands slow.
+BRAKE_SHARE = 0.25
+HARDEST_BRAKE = 17.0
 # In about this time [s] a hand brings a body that is free to the speed that it wants. With a quarter of APPROACH
 # nothing swings past the cursor by more than a few hundredths of its way; less is harder on what tears.
 YIELDING = 1.0 / 120.0

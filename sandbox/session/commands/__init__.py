@@ -21,6 +21,7 @@ from sandbox.session.commands.materials import SetCoefficients
 from sandbox.session.commands.pinning import Pin, Unpin
 from sandbox.session.commands.pushing import Push
 from sandbox.session.commands.removing import Remove
+from sandbox.session.commands.shaking import Shake
 from sandbox.session.commands.world_settings import SetAir, SetGravity, SetSolver
 
 __all__ = [
@@ -46,6 +47,7 @@ __all__ = [
     "SetGravity",
     "SetInflation",
     "SetSolver",
+    "Shake",
     "Undo",
     "Unpin",
     "apply",

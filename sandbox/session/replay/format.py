@@ -129,7 +129,7 @@ def decode_state(
     """The snapshot of a state line of a level's run; joined: what joined it until then. Raises ValueError, one line."""
     if set(state) != set(BY_STORED):
         raise ValueError(f"state: the arrays are {', '.join(BY_STORED)}")
-    arrays = {name: _decode_array(BY_STORED[name], text) for name, text in state.items()}
+    arrays = {name: decode_array(BY_STORED[name], text) for name, text in state.items()}
     for family in Family:
         names = [column.stored for column in FAMILIES[family]]
         if len({len(arrays[name]) for name in names}) != 1:
@@ -164,7 +164,8 @@ def decode_state(
     )
 
 
-def _decode_array(column: Column, text: str) -> Any:
+def decode_array(column: Column, text: str) -> Any:
+    """An array of a state line. Raises ValueError."""
     kind, name = np.dtype(column.dtype), column.stored
     try:
         inflater = zlib.decompressobj()

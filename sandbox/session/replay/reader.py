@@ -2,9 +2,10 @@
 
 import json
 import os
+from collections.abc import Generator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from pydantic import field_validator
 
@@ -25,6 +26,8 @@ from sandbox.session.replay.recording import Replay, ReplayError, StoredState, T
 # What a stored state may hold [bytes]: so much, and so much for each particle and spring. Shipped levels have up to 224
 # bytes a slot, and a third more as base64.
 STATE_BYTES, STATE_BYTES_A_SLOT = 2**20, 400
+# Lines that are read at a time, where somebody waits for what comes next.
+SLICE_LINES = 100
 
 
 class _Sealed(Line):
@@ -93,6 +96,7 @@ class _Gathered:
 
     version: int
     slots: int
+    retold: bool = False
     script: list[ScriptLine] = field(default_factory=list)
     hashes: list[TickHashes] = field(default_factory=list)
     states: dict[int, StoredState] = field(default_factory=dict)
@@ -130,7 +134,7 @@ class _Gathered:
     def _add_hashes(self, line: "_TickLine", where: str) -> None:
         before = {} if self.version == 1 else self._hashes_now
         now = {name: digest for name, digest in {**before, **line.arrays}.items() if digest is not None}
-        if not ALWAYS_STORED <= now.keys() <= BY_STORED.keys():
+        if not self.retold and not ALWAYS_STORED <= now.keys() <= BY_STORED.keys():
             raise ReplayError(
                 f"{where}: arrays: recorded by a version whose state has other arrays; record the run again"
             )
@@ -149,20 +153,31 @@ def begins_as_replay(path: str | os.PathLike[str]) -> bool:
     return start.startswith(GZIP_MAGIC) or FORMAT.encode() in start
 
 
-def read_replay(path: str | Path, partial: bool = False) -> Replay:
+def read_replay(path: str | Path, partial: bool = False, retold: bool = False) -> Replay:
     """Read a replay file. partial: accept one that is cut off, as far as it goes.
 
+    retold: accept one of another physics version, for its level and commands, which can be recorded again.
     Raises ReplayError, naming file and line, for anything that no Recorder wrote.
     """
+    slices = read_in_slices(path, partial, retold)
+    while True:
+        try:
+            next(slices)
+        except StopIteration as end:
+            return cast(Replay, end.value)
+
+
+def read_in_slices(path: str | Path, partial: bool = False, retold: bool = False) -> Generator[None, None, Replay]:
+    """As `read_replay`, some lines at a time."""
     source = str(path)
     lines = ReplayLines(Path(path))
     each = iter(lines)
     first = next(each, None)
     if first is None:
         raise ReplayError(f"{source}: the file is empty, not a replay")
-    head, digest = _read_header(source, first)
+    head, digest = _read_header(source, first, retold)
     level = _read_level(source, head)
-    gathered = _Gathered(head.version, _slots(level))
+    gathered = _Gathered(head.version, _slots(level), retold)
     number = 1
     lines.state_limit = gathered.state_limit
     for number, line in enumerate(each, 2):
@@ -177,6 +192,8 @@ def read_replay(path: str | Path, partial: bool = False) -> Replay:
         digest = sealed
         gathered.add(_parse(where, line), number, where)
         lines.state_limit = gathered.state_limit
+        if number % SLICE_LINES == 0:
+            yield
     _check_end(source, gathered, number, lines.cut, partial)
     return Replay(source, level, tuple(gathered.script), tuple(gathered.hashes), gathered.states, gathered.end_hash)
 
@@ -192,7 +209,7 @@ def _check_end(source: str, gathered: _Gathered, number: int, cut: bool, partial
         raise ReplayError(f"{source}: its last bytes are cut off; --partial verifies what is there")
 
 
-def _read_header(source: str, line: bytes) -> tuple[_Header, str]:
+def _read_header(source: str, line: bytes, retold: bool) -> tuple[_Header, str]:
     where = f"{source}: line 1"
     if line.count(b",") > FILE_LIMIT // 2:
         raise ReplayError(f"{where}: holds more than a level may; it is no recording")
@@ -207,7 +224,7 @@ def _read_header(source: str, line: bytes) -> tuple[_Header, str]:
         known = " and ".join(map(str, CHAIN_DIGITS))
         raise ReplayError(f"{where}: replay version {version!r:.40}; this program reads {known}{newer}")
     physics = values.get("physics_version")
-    if physics != PHYSICS_VERSION:
+    if physics != PHYSICS_VERSION and not retold:
         raise ReplayError(
             f"{where}: recorded with physics version {physics!r:.40}; this program has {PHYSICS_VERSION}, "
             "which steps differently: verify it with the version that recorded it"

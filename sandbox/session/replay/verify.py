@@ -1,18 +1,15 @@
-"""verify: runs a replay again and names the first bit that differs."""
+"""verify: runs a replay again and names the first bit that differs; compare: the same, with the runs at that tick."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from sandbox.level.format.model import Level
-from sandbox.physics.query import slot_name
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, state_hash
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.world import World
 from sandbox.session.commands import CommandError
+from sandbox.session.replay.divergence import Divergence, first_difference
+from sandbox.session.replay.format import decode_array
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.session import Session
 
@@ -21,26 +18,27 @@ PROGRESS_TICKS = 60
 
 
 @dataclass(frozen=True)
-class Divergence:
-    """The first difference between a recording and its verification.
+class Comparison:
+    """A run that diverged from its recording.
 
-    array: a state array, or `settings`; index: into that array, an int or (slot, component), None where the array's
-    length differs; name: of the particle or spring; note: where the difference was found, if not at `tick` itself.
+    actual: that run, at the tick of the divergence; expected: a run whose state at that tick is the recorded one, None
+    where this build cannot give it. before, after: ticks of the stored states on either side, None where there is none.
     """
 
-    tick: int
-    array: str
-    index: int | tuple[int, int] | None
-    expected: Any
-    actual: Any
-    name: str = ""
-    note: str = ""
+    divergence: Divergence
+    replay: Replay
+    actual: Session
+    expected: Session | None
+    before: int | None
+    after: int | None
 
-    def __str__(self) -> str:
-        index = "" if self.index is None else str(list(np.atleast_1d(self.index).tolist()))
-        name = f" ({self.name})" if self.name else ""
-        note = f"; {self.note}" if self.note else ""
-        return f"tick {self.tick}: {self.array}{index}{name}: expected {self.expected!r}, got {self.actual!r}{note}"
+    def lines(self) -> list[str]:
+        """What differs, and where the recording cannot give the values at that tick, which states it has stored."""
+        if self.expected is not None:
+            return self.divergence.lines()
+        last = "there is none before" if self.before is None else f"the last before is that of tick {self.before}"
+        first = "there is none after" if self.after is None else f"the first after that of tick {self.after}"
+        return [*self.divergence.lines(), f"of the stored states {last}, {first}"]
 
 
 def verify(
@@ -58,14 +56,29 @@ def verify(
     step, before it is compared. progress: called with ticks done and ticks in all. Raises ReplayError where the
     recording holds a command that cannot be carried out.
     """
+    found = compare(replay, start=start, level=level, on_tick=on_tick, progress=progress)
+    return None if found is None else found.divergence
+
+
+def compare(
+    replay: Replay,
+    *,
+    start: int = 0,
+    level: Level | None = None,
+    on_tick: Callable[[World], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Comparison | None:
+    """As `verify`, with both runs where they part."""
     if level is not None and start:
         raise ReplayError(f"{replay.source}: on another level it runs from the beginning, not from tick {start}")
     run = _Run(replay, level)
     session = run.session(start)
     while True:
-        difference = _compare(replay, session.world)
+        difference = _differing_array(replay, session.world)
         if difference:
-            return run.locate(session.tick, difference, session.world)
+            return run.locate(session, difference)
+        if changed := _differing_state(replay, session.world):
+            return run.comparison(session, changed, None)
         if session.tick == replay.ticks:
             break
         run.advance(session)
@@ -74,11 +87,20 @@ def verify(
         if progress is not None and session.tick % PROGRESS_TICKS == 0:
             progress(session.tick - start, replay.ticks - start)
     run.guard(session.apply_pending)
-    if replay.end_hash is not None and state_hash(session.world) != replay.end_hash:
-        return Divergence(
-            session.tick, "hash", None, replay.end_hash, state_hash(session.world), note="at the end line"
-        )
+    present = state_hash(session.world)
+    if replay.end_hash is not None and present != replay.end_hash:
+        end = Divergence(session.tick, "hash", None, replay.end_hash, present, note="at the end line")
+        return run.comparison(session, end, None)
     return None
+
+
+def recorded_run(replay: Replay, tick: int) -> Session | None:
+    """A run of a recording at one of its ticks, None where this build does not come to the recorded state there."""
+    try:
+        session = _Run(replay, None).clean_session(tick)
+    except ReplayError:
+        return None
+    return session if state_hash(session.world) == replay.hashes[tick].whole else None
 
 
 @dataclass(frozen=True)
@@ -106,35 +128,50 @@ class _Run:
         except CommandError as error:
             raise ReplayError(*(f"{self.replay.source}: {fault}" for fault in error.faults)) from None
 
-    def locate(self, tick: int, array: str, world: World) -> Divergence:
-        """Find index and values by stepping again, undisturbed, from the last stored state that was verified."""
-        replay = self.replay
+    def comparison(self, actual: Session, divergence: Divergence, expected: Session | None) -> Comparison:
+        """Both runs, and the stored states on either side."""
+        stored = self.replay.states
+        before = max((tick for tick in stored if tick < divergence.tick), default=None)
+        after = min((tick for tick in stored if tick >= divergence.tick), default=None)
+        return Comparison(divergence, self.replay, actual, expected, before, after)
+
+    def locate(self, actual: Session, array: str) -> Comparison:
+        """Find index and values by stepping the recorded run again, undisturbed, from the last stored state."""
+        replay, tick, world = self.replay, actual.tick, actual.world
+        expected = recorded_run(replay, tick)
         if array == "settings":
-            return Divergence(tick, array, None, replay.hashes[tick].whole, state_hash(world))
-        clean = self._clean_session(verified=tick - 1, tick=tick)
-        if not replay.hashes[tick].differs(array, hash_by_array(clean.world)):
-            return _first_difference(tick, array, getattr(clean.world, BY_STORED[array].name), world)
-        steps = f"this {'build' if self.level is None else 'level'} steps differently"
+            found = Divergence(tick, array, None, replay.hashes[tick].whole, state_hash(world))
+        elif expected is not None:
+            found = first_difference(tick, array, getattr(expected.world, BY_STORED[array].name), world)
+        else:
+            found = self._located_later(tick, array)
+        return self.comparison(actual, found, expected)
+
+    def _located_later(self, tick: int, array: str) -> Divergence:
+        """The same from the next stored state, where this build does not come to the recorded one."""
+        replay, steps = self.replay, "this build steps differently"
         later = min((stored for stored in replay.states if stored >= tick), default=None)
         if later is None:
             note = f"{steps}, and no later state is stored to show the values"
             return Divergence(tick, array, None, "unknown", "unknown", note=note)
         try:
-            clean = self._clean_session(verified=tick - 1, tick=later)
+            recorded = replay.state(later)
+            clean = _Run(replay, self.level).clean_session(later, tick - 1)
         except ReplayError:
             note = f"{steps}, and cannot reach the next stored state, tick {later}, to show the values"
             return Divergence(tick, array, None, "unknown", "unknown", note=note)
-        recorded = replay.state(later)
-        found = _first_difference(tick, array, getattr(recorded, BY_STORED[array].name), clean.world)
+        found = first_difference(tick, array, getattr(recorded, BY_STORED[array].name), clean.world)
         note = f"{steps}; the values are those of the next stored state, tick {later}"
         return Divergence(tick, array, found.index, found.expected, found.actual, found.name, note)
 
-    def _clean_session(self, verified: int, tick: int) -> Session:
-        """A fresh session at a tick, begun from the last state stored up to the verified tick.
+    def clean_session(self, tick: int, verified: int | None = None) -> Session:
+        """A fresh session at a tick, begun from the last state stored up to the verified tick, the one before it.
 
         It begins from the level where an undo reaches back behind that state, and where it is another level.
+        Raises ReplayError.
         """
-        stored = [] if self.level else [tick for tick in self.replay.states if tick <= verified]
+        known = tick - 1 if verified is None else verified
+        stored = [] if self.level else [each for each in self.replay.states if each <= known]
         for start in (max(stored, default=0), 0):
             try:
                 session = self.session(start)
@@ -146,7 +183,7 @@ class _Run:
         raise ReplayError(f"{self.replay.source}: tick {tick} cannot be reached")
 
 
-def _compare(replay: Replay, world: World) -> str | None:
+def _differing_array(replay: Replay, world: World) -> str | None:
     """The first array in hashing order that differs from the recording, or None."""
     recorded, present = replay.hashes[world.tick], hash_by_array(world)
     if state_hash(world, present) == recorded.whole:
@@ -154,16 +191,18 @@ def _compare(replay: Replay, world: World) -> str | None:
     return next((name for name in BY_STORED if recorded.differs(name, present)), "settings")
 
 
-def _first_difference(tick: int, array: str, expected: NDArray[Any], world: World) -> Divergence:
-    actual: NDArray[Any] = getattr(world, BY_STORED[array].name)
-    if len(expected) != len(actual):
-        return Divergence(tick, array, None, f"{len(expected)} values", f"{len(actual)} values")
-    size = actual.dtype.itemsize
-    pairs = [np.frombuffer(canonical_bytes(side), dtype=f"V{size}") for side in (expected, actual)]
-    flat = next((place for place, pair in enumerate(zip(*pairs, strict=True)) if pair[0] != pair[1]), None)
-    if flat is None:
-        return Divergence(tick, array, None, "equal", "equal", note="the two runs agree here")
-    place = tuple(int(part) for part in np.unravel_index(flat, actual.shape))
-    index = place[0] if len(place) == 1 else (place[0], place[1])
-    name = slot_name(world, array, place[0])
-    return Divergence(tick, array, index, expected[place].item(), actual[place].item(), name)
+def _differing_state(replay: Replay, world: World) -> Divergence | None:
+    """How a stored state belies the hash that stands at its tick, which is that of the world."""
+    stored = replay.states.get(world.tick)
+    for name, text in stored.arrays.items() if stored else ():
+        column = BY_STORED.get(name)
+        try:
+            array = None if column is None else decode_array(column, text)
+        except ValueError as error:
+            raise ReplayError(f"{replay.source}: line {stored.line if stored else 0}: {error}") from None
+        if column is None or array is None or canonical_bytes(array) == canonical_bytes(getattr(world, column.name)):
+            continue
+        note = "the stored state is not the one whose hash stands at its tick: changed, and sealed anew"
+        found = first_difference(world.tick, name, array, world)
+        return Divergence(world.tick, name, found.index, found.expected, found.actual, found.name, note)
+    return None

@@ -6,10 +6,13 @@ of how far inside and how lit gives the colour. All bodies of a layer are drawn 
 
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sandbox.app.draw.raster.coverage import add_outline, blur, clear, find_box
 from sandbox.app.draw.raster.mark_kernels import paint_segment
 from sandbox.app.draw.raster.pixels import Floats, Packed, Singles, Slots, laid_over
-from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.jit import inner_kernel, kernel, unsigned
 
 # Rows and columns of a table of colours: how far inside, how lit.
 INSIDE, LIT = 64, 256
@@ -18,6 +21,8 @@ GRAIN = 256
 # Pixels of a cell of the flush, and how fully it covers at most, of 256.
 FLUSH_CELL = 8
 FLUSH_FULL = 190.0
+# Coverage that is not seen.
+FAINT = 0.004
 # Widest that a skin is rounded [pixels].
 WIDEST = 80.0
 
@@ -57,7 +62,7 @@ class Skins(NamedTuple):
 
 
 class BodyScratch(NamedTuple):
-    """Cells for one body at a time, as many as the largest needs; box (4,)."""
+    """Cells for one body at a time, as many as the largest needs; middle .. tone: of one row of it; box (4,)."""
 
     cover: Singles
     high: Singles
@@ -65,6 +70,11 @@ class BodyScratch(NamedTuple):
     sums: Singles
     field: Singles
     weight: Singles
+    middle: Singles
+    fall: Singles
+    texel: NDArray[np.int32]
+    amount: NDArray[np.int32]
+    tone: Packed
     box: Floats
 
 
@@ -78,13 +88,11 @@ def _raise_skin(scratch, width, height, wide, tall):  # type: ignore[no-untyped-
         for k in range(y * stride, y * stride + width):
             total += cover[k]
             cover[k] = min(abs(total), 1.0)
-    for y in range(tall):
-        for x in range(wide):
+    clear(high, wide * tall)
+    for y in range(height // 2):
+        for x in range(width // 2):
             k = 2 * y * stride + 2 * x
-            if 2 * x + 1 < width and 2 * y + 1 < height:
-                high[y * wide + x] = 0.25 * (cover[k] + cover[k + 1] + cover[k + stride] + cover[k + stride + 1])
-            else:
-                high[y * wide + x] = 0.0
+            high[y * wide + x] = 0.25 * (cover[k] + cover[k + 1] + cover[k + stride] + cover[k + stride + 1])
 
 
 @inner_kernel
@@ -119,46 +127,94 @@ def _grainy(colour, amount):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _light_row(pixels, y, rows, b, skins, flush, scratch, place, clip):  # type: ignore[no-untyped-def]
-    """One row of pixels of a body. place: left, top, width, wide, tall, reach, wide and tall of the flush, 0."""
-    cover, high, field = scratch.cover, scratch.high, scratch.field
-    table, grain = rows.look[b, 0], rows.look[b, 1]
-    left, top, width, wide, tall, reach = place[0], place[1], place[2], place[3], place[4], place[5]
-    flush_wide, flush_tall, is_flushed = place[6], place[7], place[8] != 0
+def _find_texels(row, first, last, scratch, place):  # type: ignore[no-untyped-def]
+    """Where in its table the colour of each pixel of a run lies; place: see _light_row."""
+    high, middle, fall, texel = scratch.high, scratch.middle, scratch.fall, scratch.texel
+    wide, tall, reach = unsigned(place[3]), place[4], place[5]
     gain = 1.1 * reach * 256.0 / 3.0
     across, down = 0.42 * gain, 0.9 * gain
-    row = y - top
     half_y = 0.5 * row + 0.25
     iy = min(max(int(half_y - 0.5), 0), tall - 2)
     fy = min(max(half_y - 0.5 - iy, 0.0), 1.0)
-    begin, above, below = row * (width + 2), iy * wide, (iy + 1) * wide
-    jy = min(row // FLUSH_CELL, flush_tall - 2)
-    gy = row / FLUSH_CELL - jy
-    for x in range(max(clip[0], left), min(clip[2], left + width)):
-        column = x - left
-        share = cover[begin + column]
-        if share <= 0.004:
-            continue
-        ix = min(max((column - 1) >> 1, 0), wide - 2)
-        fx = 0.25 if column & 1 else 0.75
-        a, b1, c, d = high[above + ix], high[above + ix + 1], high[below + ix], high[below + ix + 1]
-        t0, t1 = a + (b1 - a) * fx, c + (d - c) * fx
-        lit = int(((b1 - a) + ((d - c) - (b1 - a)) * fy) * across + (t1 - t0) * down + 128.0)
-        inside = int((t0 + (t1 - t0) * fy - 0.45) * 120.0)
-        colour = int(skins.tables[table, min(max(inside, 0), INSIDE - 1), min(max(lit, 0), LIT - 1)])
-        if is_flushed:
-            jx = min(column // FLUSH_CELL, flush_wide - 2)
-            gx = column / FLUSH_CELL - jx
-            k = jy * flush_wide + jx
-            upper = field[k] + (field[k + 1] - field[k]) * gx
-            lower = field[k + flush_wide] + (field[k + flush_wide + 1] - field[k + flush_wide]) * gx
-            amount = int(upper + (lower - upper) * gy)
-            if abs(amount) > 2:
-                over = flush.colours[1] if amount > 0 else flush.colours[0]
-                colour = (laid_over(colour, over, abs(amount)) & 0xFFFFFF) | (colour & 0xFF000000)
-        if grain >= 0:
-            colour = _grainy(colour, skins.grains[grain, y & (GRAIN - 1), x & (GRAIN - 1)])
-        pixels[y, x] = laid_over(int(pixels[y, x]), colour, int(share * (colour >> 24) * 1.004))
+    above, below = unsigned(iy) * wide, unsigned(iy + 1) * wide
+    one, two = unsigned(1), unsigned(2)
+    begin, end = unsigned(max(first - 1, 0) // 2), unsigned(min(last // 2 + 1, place[3] - 1))
+    for k in range(begin, end + one):
+        fall[k] = high[below + k] - high[above + k]
+        middle[k] = high[above + k] + fall[k] * fy
+    # Two pixels lie between the middles of two cells.
+    for k in range(begin, end):
+        slope, bend = middle[k + one] - middle[k], fall[k + one] - fall[k]
+        light, inside = slope * across + fall[k] * down + 128.0, (middle[k] - 0.45) * 120.0
+        for half in range(two):
+            part = 0.25 + 0.5 * half
+            lit = min(max(int(light + bend * part * down), 0), LIT - 1)
+            texel[two * k + one + half] = min(max(int(inside + slope * part * 120.0), 0), INSIDE - 1) * LIT + lit
+    if first == 0:
+        texel[0] = texel[1]
+
+
+@inner_kernel
+def _find_amounts(row, scratch, place):  # type: ignore[no-untyped-def]
+    """How much of the flush lies over each pixel of a row, of 256; below 0 where it is squeezed."""
+    field, amount, wide = scratch.field, scratch.amount, place[6]
+    jy = min(row // FLUSH_CELL, place[7] - 2)
+    part = row / FLUSH_CELL - jy
+    above, below = jy * wide, (jy + 1) * wide
+    for j in range(min(place[2] // FLUSH_CELL + 1, wide - 1)):
+        begin = field[above + j] + (field[below + j] - field[above + j]) * part
+        end = field[above + j + 1] + (field[below + j + 1] - field[above + j + 1]) * part
+        step = (end - begin) / FLUSH_CELL
+        for x in range(FLUSH_CELL):
+            amount[j * FLUSH_CELL + x] = int(begin + step * x)
+
+
+@inner_kernel
+def _lay_flush(tone, amount, first, last, squeezed, stretched):  # type: ignore[no-untyped-def]
+    for x in range(unsigned(first), unsigned(last)):
+        share, colour = int(amount[x]), int(tone[x])
+        over = stretched if share > 0 else squeezed
+        by = abs(share) if abs(share) > 2 else 0
+        tone[x] = (laid_over(colour, over, by) & 0xFFFFFF) | (colour & 0xFF000000)
+
+
+@inner_kernel
+def _light_run(pixels, y, first, last, rows, b, skins, flush, scratch, place):  # type: ignore[no-untyped-def]
+    """Pixels of a row of a body that lie side by side."""
+    cover, tone, texel = scratch.cover, scratch.tone, scratch.texel
+    table, grain, left = rows.look[b, 0], rows.look[b, 1], place[0]
+    _find_texels(y - place[1], first, last, scratch, place)
+    for x in range(unsigned(first), unsigned(last)):
+        k = texel[x]
+        tone[x] = skins.tables[table, k // LIT, k % LIT]
+    if place[8]:
+        _lay_flush(tone, scratch.amount, first, last, flush.colours[0], flush.colours[1])
+    if grain >= 0:
+        for x in range(first, last):
+            tone[x] = _grainy(int(tone[x]), skins.grains[grain, y & (GRAIN - 1), (left + x) & (GRAIN - 1)])
+    row, start, at = unsigned(y), unsigned(left + first), unsigned((y - place[1]) * (place[2] + 2) + first)
+    for x in range(unsigned(last - first)):
+        colour = int(tone[unsigned(first) + x])
+        share = int(cover[at + x] * (colour >> 24) * 1.004)
+        pixels[row, start + x] = laid_over(int(pixels[row, start + x]), colour, share)
+
+
+@inner_kernel
+def _light_row(pixels, y, rows, b, skins, flush, scratch, place, clip):  # type: ignore[no-untyped-def]
+    """One row of pixels of a body. place: left, top, width, wide, tall, reach, wide and tall of the flush, 0."""
+    cover, left, width = scratch.cover, place[0], place[2]
+    begin = (y - place[1]) * (width + 2)
+    x, last = max(clip[0], left) - left, min(clip[2], left + width) - left
+    if place[8] and x < last:
+        _find_amounts(y - place[1], scratch, place)
+    while x < last:
+        while x < last and cover[begin + x] <= FAINT:
+            x += 1
+        first = x
+        while x < last and cover[begin + x] > FAINT:
+            x += 1
+        if first < x:
+            _light_run(pixels, y, first, x, rows, b, skins, flush, scratch, place)
 
 
 @inner_kernel

@@ -6,7 +6,7 @@ After R. Levien's font-rs and S. Barrett's stb_truetype 2: exact at the edges, f
 import math
 
 from sandbox.app.draw.raster.pixels import FAR
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inner_kernel, unsigned
 
 
 @inner_kernel
@@ -84,30 +84,30 @@ def add_outline(cells, width, height, point, first, last, x0, y0, scale):  # typ
 def blur(cells, spare, sums, width, height, reach, passes):  # type: ignore[no-untyped-def]
     """Blur cells (height, width) by boxes of 2 reach + 1, so many times; what lies outside counts as 0."""
     share = 1.0 / (2 * reach + 1)
+    ahead, wide = unsigned(reach), unsigned(width)
     for _ in range(passes):
-        for y in range(height):
-            begin = y * width
+        for y in range(unsigned(height)):
+            begin = y * wide
             total = 0.0
-            for x in range(min(reach, width)):
+            for x in range(min(ahead, wide)):
                 total += cells[begin + x]
-            for x in range(width):
-                if x + reach < width:
-                    total += cells[begin + x + reach]
+            for x in range(wide):
+                enters = cells[begin + x + ahead] if x + ahead < wide else 0.0
+                leaves = cells[begin + x - ahead - unsigned(1)] if x > ahead else 0.0
+                total += enters - leaves
                 spare[begin + x] = total * share
-                if x >= reach:
-                    total -= cells[begin + x - reach]
         # Down the columns a whole row at a time, as memory lies.
-        for x in range(width):
+        for x in range(wide):
             sums[x] = 0.0
-        for y in range(min(reach, height)):
-            for x in range(width):
-                sums[x] += spare[y * width + x]
-        for y in range(height):
-            if y + reach < height:
-                for x in range(width):
-                    sums[x] += spare[(y + reach) * width + x]
-            for x in range(width):
-                cells[y * width + x] = sums[x] * share
-            if y >= reach:
-                for x in range(width):
-                    sums[x] -= spare[(y - reach) * width + x]
+        for y in range(unsigned(min(reach, height))):
+            for x in range(wide):
+                sums[x] += spare[y * wide + x]
+        for y in range(unsigned(height)):
+            if y + ahead < unsigned(height):
+                for x in range(wide):
+                    sums[x] += spare[(y + ahead) * wide + x]
+            for x in range(wide):
+                cells[y * wide + x] = sums[x] * share
+            if y >= ahead:
+                for x in range(wide):
+                    sums[x] -= spare[(y - ahead) * wide + x]

@@ -9,6 +9,8 @@ from sandbox.physics.jit import inner_kernel, kernel
 STROKE, STRIP, HAIR, DISC, GLOW, STRIPED, MARBLED, STUDDED, PLAIN = range(9)
 # Texels of the tile of a strip, across and along; both powers of two.
 ACROSS, ALONG = 16, 32
+# Strips of less than this half width [pixels] have one colour: their tile would not be seen.
+THIN = 1.0
 
 
 class MarkArrays(NamedTuple):
@@ -193,8 +195,12 @@ def paint_marks(pixels, marks, tiles, clip):  # type: ignore[no-untyped-def]
         kind = marks.kind[m]
         if kind == STROKE:
             paint_segment(pixels, ax, ay, bx, by, marks.half[m], marks.colour[m], marks.alpha[m], clip)
-        elif kind == STRIP:
+        elif kind == STRIP and marks.half[m] >= THIN:
             _paint_strip(pixels, marks, m, tiles, clip)
+        elif kind == STRIP:
+            colour = int(tiles[marks.extra[m], ACROSS // 2 - 1, 0])
+            colour = laid_over(colour, marks.colour[m], int(marks.alpha[m] * 256.0))
+            paint_segment(pixels, ax, ay, bx, by, marks.half[m], colour, 1.0, clip)
         elif kind == HAIR:
             _paint_hair(pixels, ax, ay, bx, by, marks.colour[m], clip)
         elif kind <= GLOW:

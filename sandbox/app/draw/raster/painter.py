@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import pygame
@@ -36,7 +37,7 @@ class MarkList:
     """Collects marks of a layer, in the order in which they are drawn."""
 
     def __init__(self) -> None:
-        self._rows: list[tuple[Floats, ...]] = []
+        self._rows: list[tuple[NDArray[Any], ...]] = []
 
     def _add(
         self, ends: Floats, half: ArrayLike, colour: ArrayLike, alpha: ArrayLike, kind: ArrayLike,
@@ -76,6 +77,12 @@ class MarkList:
     def mixed(self, ends: Floats, half: ArrayLike, colour: ArrayLike, alpha: ArrayLike, kind: ArrayLike) -> None:
         """Strokes, discs and glows in any order."""
         self._add(ends, half, colour, alpha, kind)
+
+    def rows(
+        self, ends: Floats, half: Floats, colour: Slots, alpha: Floats, kind: Slots, extra: Slots, along: Floats
+    ) -> None:
+        """Marks of any kind, column by column as MarkArrays has them."""
+        self._rows.append((ends, half, colour, alpha, kind, extra, along))
 
     def arrays(self) -> MarkArrays | None:
         """All of them, None where there are none."""
@@ -159,7 +166,7 @@ class Painter:
         if not len(arrays.sheet):
             return
         if self.exact:
-            paint_cells(self.pixels(), arrays, sheets, self.clip)
+            paint_cells(self.pixels(), arrays, sheets, np.zeros(9), self.clip)
             return
         tones = sheets.reshape(len(sheets), -1)[:, 0].tolist()
         seen = (np.abs(arrays.corner) < FAR).all(axis=1)
@@ -197,9 +204,13 @@ class Painter:
                 size,
                 BodyScratch(
                     _cells((width + 2) * (height + 2)), _cells(half), _cells(half), _cells(width), _cells(flush),
-                    _cells(flush), np.zeros(4),
+                    _cells(flush), _cells(width), _cells(width), np.zeros(width + FLUSH_CELL, dtype=np.int32),
+                    np.zeros(width + 2 * FLUSH_CELL, dtype=np.int32), np.zeros(width, dtype=np.uint32), np.zeros(4),
                 ),
-                ShadowScratch(_cells(quarter), _cells(quarter), _cells(quarter), _cells(size[0]), np.zeros(4)),
+                ShadowScratch(
+                    _cells(quarter), _cells(quarter), _cells(quarter), _cells(size[0]),
+                    np.zeros(size[0] + 8 * FACTOR, dtype=np.int32), np.zeros(4),
+                ),
                 np.zeros(9, dtype=np.int64),
             )  # fmt: skip
         return self._scratch
@@ -280,7 +291,7 @@ def expect_painting() -> None:
         Flush(np.zeros((0, 4)), numbers), scratch.bodies, scratch.place, clip,
     )  # fmt: skip
     triangles = CellArrays(np.zeros((0, 6)), np.zeros((0, 6)), np.zeros((0, 3)), numbers)
-    jit.expect(paint_cells, pixels, triangles, np.zeros((1, SHEET, SHEET), dtype=np.int64), clip)
+    jit.expect(paint_cells, pixels, triangles, np.zeros((1, SHEET, SHEET), dtype=np.int64), np.zeros(9), clip)
     thrown = Thrown(np.zeros((0, 5)), np.zeros((0, 3)))
     jit.expect(paint_shadows, pixels, shapes, thrown, scratch.shadows, np.zeros(2), 0, 0.5, clip)
     loops = Loops(numbers, numbers, numbers, flat, numbers)

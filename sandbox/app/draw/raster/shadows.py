@@ -3,21 +3,28 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sandbox.app.draw.raster.coverage import add_outline, blur, clear, find_box
 from sandbox.app.draw.raster.pixels import FAR, Floats, Singles, laid_over
-from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.jit import inner_kernel, kernel, unsigned
 
 # Pixels of the screen to one of the shadow, each way.
 FACTOR = 4
+# How shadows are blurred: cells each way, how often; and how many cells beyond what throws it a shadow ends.
+REACH, PASSES = 2, 2
+MARGIN = REACH * PASSES + 1
 
 
 class ShadowScratch(NamedTuple):
-    """Cells of the shadow: mask, cover, spare as many as it has, sums as many as a row; box (4,)."""
+    """Cells of the shadow: mask, cover, spare: as many as it has; sums, dark: of one row, of its pixels; box (4,)."""
 
     mask: Singles
     cover: Singles
     spare: Singles
     sums: Singles
+    dark: NDArray[np.int32]
     box: Floats
 
 
@@ -83,30 +90,80 @@ def _add_discs(mask, discs, wide, tall, x0, y0):  # type: ignore[no-untyped-def]
                     mask[y * wide + x] = max(mask[y * wide + x], cover)
 
 
+@inner_kernel
+def _widen(box, x, y, by):  # type: ignore[no-untyped-def]
+    if abs(x) < FAR and abs(y) < FAR and by < FAR:
+        box[0], box[2] = min(box[0], x - by), max(box[2], x + by)
+        box[1], box[3] = min(box[1], y - by), max(box[3], y + by)
+
+
+@inner_kernel
+def _find_reach(outlines, thrown, box):  # type: ignore[no-untyped-def]
+    """Write the box (4,) [pixels] around all that throws shadows."""
+    box[0], box[1], box[2], box[3] = FAR, FAR, -FAR, -FAR
+    for k in range(outlines.point.shape[0]):
+        _widen(box, outlines.point[k, 0], outlines.point[k, 1], 0.0)
+    for m in range(thrown.lines.shape[0]):
+        _widen(box, thrown.lines[m, 0], thrown.lines[m, 1], 0.0)
+        _widen(box, thrown.lines[m, 2], thrown.lines[m, 3], 0.0)
+    for k in range(thrown.discs.shape[0]):
+        _widen(box, thrown.discs[k, 0], thrown.discs[k, 1], thrown.discs[k, 2])
+
+
+@inner_kernel
+def _lay_row(pixels, y, scratch, wide, at, down, left, colour, full, clip):  # type: ignore[no-untyped-def]
+    """Darken a row of pixels between two rows of cells, `down` (0..1) below the one that begins at `at`."""
+    mask, sums, dark = scratch.mask, scratch.sums, scratch.dark
+    above, below, count = unsigned(at), unsigned(at + wide), unsigned(wide)
+    most = 0.0
+    for k in range(count):
+        sums[k] = (mask[above + k] + (mask[below + k] - mask[above + k]) * down) * full
+        most = max(most, sums[k])
+    if most < 1.0:
+        return
+    for k in range(count - unsigned(1)):
+        step, first = (sums[k + unsigned(1)] - sums[k]) / FACTOR, unsigned(FACTOR) * k
+        for x in range(unsigned(FACTOR)):
+            dark[first + x] = int(sums[k] + step * (x + 0.5))
+    first, last = max(clip[0], left), min(clip[2], left + FACTOR * (wide - 1))
+    while first < last and dark[first - left] == 0:
+        first += 1
+    while first < last and dark[last - left - 1] == 0:
+        last -= 1
+    if first >= last:
+        return
+    row, begin, shift = unsigned(y), unsigned(first), unsigned(first - left)
+    for x in range(unsigned(last - first)):
+        under, share = pixels[row, begin + x], dark[shift + x]
+        pixels[row, begin + x] = laid_over(int(under), colour, int(share))
+
+
 @kernel
 def paint_shadows(pixels, outlines, thrown, scratch, offset, colour, strength, clip):  # type: ignore[no-untyped-def]
     """Lay shadows over pixels (h, w), offset (2,) [pixels] from what throws them, inside clip (4,)."""
-    wide = (clip[2] - clip[0]) // FACTOR + 3
-    tall = (clip[3] - clip[1]) // FACTOR + 3
-    mask = scratch.mask
-    clear(mask, wide * tall)
-    # The mask begins a cell before the view.
+    mask, box = scratch.mask, scratch.box
+    # Cells of the view begin one before it; of them only those count that a shadow reaches.
     x0, y0 = clip[0] - FACTOR - offset[0], clip[1] - FACTOR - offset[1]
+    _find_reach(outlines, thrown, box)
+    if box[0] > box[2]:
+        return
+    first = max(0, int(max(box[0] - x0, 0.0) / FACTOR) - MARGIN)
+    top = max(0, int(max(box[1] - y0, 0.0) / FACTOR) - MARGIN)
+    wide = min((clip[2] - clip[0]) // FACTOR + 3, int(max(box[2] - x0, 0.0) / FACTOR) + MARGIN + 2) - first
+    tall = min((clip[3] - clip[1]) // FACTOR + 3, int(max(box[3] - y0, 0.0) / FACTOR) + MARGIN + 2) - top
+    if wide < 2 or tall < 2:
+        return
+    x0, y0 = x0 + first * FACTOR, y0 + top * FACTOR
+    clear(mask, wide * tall)
     for loop in range(outlines.start.shape[0] - 1):
         _add_outline(scratch, outlines, loop, wide, tall, x0, y0)
     _add_lines(mask, thrown.lines, wide, tall, x0, y0)
     _add_discs(mask, thrown.discs, wide, tall, x0, y0)
-    blur(mask, scratch.spare, scratch.sums, wide, tall, 2, 2)
+    blur(mask, scratch.spare, scratch.sums, wide, tall, REACH, PASSES)
+    # Between the middles of cells.
+    left = clip[0] + (first - 1) * FACTOR + FACTOR // 2
     for row in range(tall - 1):
-        for column in range(wide - 1):
-            k = row * wide + column
-            a, b, c, d = mask[k], mask[k + 1], mask[k + wide], mask[k + wide + 1]
-            if a + b + c + d < 0.02:
-                continue
-            left, top = clip[0] + (column - 1) * FACTOR + FACTOR // 2, clip[1] + (row - 1) * FACTOR + FACTOR // 2
-            for y in range(max(clip[1], top), min(clip[3], top + FACTOR)):
-                down = (y - top + 0.5) / FACTOR
-                start, stop = a + (c - a) * down, b + (d - b) * down
-                for x in range(max(clip[0], left), min(clip[2], left + FACTOR)):
-                    dark = start + (stop - start) * (x - left + 0.5) / FACTOR
-                    pixels[y, x] = laid_over(int(pixels[y, x]), colour, int(dark * strength * 256.0))
+        above = clip[1] + (top + row - 1) * FACTOR + FACTOR // 2
+        for y in range(max(clip[1], above), min(clip[3], above + FACTOR)):
+            down = (y - above + 0.5) / FACTOR
+            _lay_row(pixels, y, scratch, wide, row * wide, down, left, colour, strength * 256.0, clip)

@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from functools import cached_property
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,8 @@ from sandbox.physics.changing.equipment import Joined
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
 Mask = NDArray[np.bool_]
+
+Drawn = TypeVar("Drawn")
 
 METALS = ("steel", "paint", "brass", "chain", "cable", "piston")
 
@@ -51,16 +54,27 @@ class Actor:
     pairs: Slots
     _filling: Filling | None = field(default=None, init=False)
     _spot: tuple[bytes, tuple[Floats, float]] | None = field(default=None, init=False)
+    _flesh: tuple[bytes, Any] | None = field(default=None, init=False)
 
     @property
     def ends(self) -> Slots:
         """Slots (m, 2) of the ends of its springs."""
         return self.slots[self.pairs]
 
-    @property
+    @cached_property
     def cell(self) -> float:
         """A usual length [m] of its springs."""
         return float(np.median(self.made.rest_length)) if len(self.pairs) else 1.0
+
+    @cached_property
+    def angle(self) -> float:
+        """How far [rad] it was turned when it was made."""
+        return float(self.body.__dict__.get("angle", 0.0))
+
+    @cached_property
+    def form(self) -> Floats:
+        """Places (n, 2) [m] of its particles about their middle, as it was made."""
+        return np.asarray(self.made.form - self.made.form.mean(axis=0))
 
     def filling(self, there: Mask) -> Filling:
         """What is left of it, where these springs (m,) are there: a triangle while those along all its sides are."""
@@ -74,6 +88,14 @@ class Actor:
             loops = [self.slots[loop] for loop in traced(left)] if len(left) else []
             self._filling = Filling(key, left, loops, np.asarray(filled[self.pairs].all(axis=1)))
         return self._filling
+
+    def flesh(self, there: Mask, make: Callable[[], Drawn]) -> Drawn:
+        """What `make` makes of it, where these springs (m,) are there."""
+        key = there.tobytes()
+        if self._flesh is None or self._flesh[0] != key:
+            self._flesh = key, make()
+        made: Drawn = self._flesh[1]
+        return made
 
     def spot(self, loop: Slots, find: Callable[["Actor", Slots], tuple[Floats, float]]) -> tuple[Floats, float]:
         """What `find` finds of it inside a loop of slots."""

@@ -106,7 +106,9 @@ class Ensemble:
         _, left, loops, inside = actor.filling(there)
         if len(left):
             if actor.look.skin != CLOTH:
-                self._shapes.append(shape_of(actor, loops, there & inside, self._radius(actor)))
+                self._shapes.append(
+                    actor.flesh(there, lambda: shape_of(actor, loops, there & inside, self._radius(actor)))
+                )
             if actor.look.skin == CLOTH or actor.look.skin in CRATES:
                 self.sheets.add(actor, left, loops, there)
             if actor.look.face and actor.look.skin in SOFT_SKINS:

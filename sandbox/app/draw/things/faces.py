@@ -1,5 +1,8 @@
 """Faces of jellies: in the largest circle inside their outline at rest, turning with them; all in a few arrays."""
 
+from itertools import pairwise
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -34,13 +37,13 @@ class Faces:
         self._slots = np.concatenate([actor.slots for actor, _ in rows])
         self._start = starts_of([len(actor.slots) for actor, _ in rows])
         self._size = np.diff(self._start)
-        forms = [actor.made.form - actor.made.form.mean(axis=0) for actor, _ in rows]
+        forms = [actor.form for actor, _ in rows]
         # As seen: pixels count downwards.
         self._form = np.concatenate(forms) * np.array([1.0, -1.0])
         spots = [actor.spot(loop, _spot) for actor, loop in rows]
         self._spot = np.array([place for place, _ in spots]) * np.array([1.0, -1.0])
         self._inner = np.array([radius for _, radius in spots])
-        angle = np.array([float(actor.body.__dict__.get("angle", 0.0)) for actor, _ in rows])
+        angle = np.array([actor.angle for actor, _ in rows])
         self._upright = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
         self._springs = np.concatenate([actor.springs for actor, _ in rows])
         self._spring_start = starts_of([len(actor.springs) for actor, _ in rows])
@@ -72,9 +75,8 @@ class Faces:
         load = np.add.reduceat(strain, self._spring_start[:-1]) / np.maximum(np.diff(self._spring_start), 1)
         velocity = np.add.reduceat(frame.state.velocity[self._slots], begins, axis=0) / self._size[:, None]
         velocity = np.nan_to_num(velocity * np.array([1.0, -1.0]))
-        pen = _Pen(centre[shown], turn[shown], size[shown])
-        pen.draw(load[shown], velocity[shown], self.blinks(frame.seconds)[shown])
-        pen.into(marks)
+        blinks = self.blinks(frame.seconds)
+        _draw_faces(marks, *(each[shown] for each in (centre, turn, size, load, velocity, blinks)))
 
     def blinks(self, seconds: float) -> NDArray[np.bool_]:
         """Which of them have their eyes shut at a time [s]."""
@@ -83,86 +85,101 @@ class Faces:
         return (seconds + 1.7 * number) % beat > beat - BLINK
 
 
-class _Pen:
-    """Draws in coordinates of faces (f,): right and down, in parts of their size."""
+class _Part(NamedTuple):
+    """A part of every face: a line or a disc between two places, right and down, in parts of the face's size.
 
-    def __init__(self, centre: Floats, turn: Floats, size: Floats) -> None:
-        self._centre, self._turn, self.size = centre, turn, size
-        self._rows: list[tuple[Floats, Floats, int, float, int]] = []
-        self._all = np.ones(len(size), dtype=np.bool_)
+    when: a row of what `_moods` gives; gaze: how far it follows what a face looks at; light: where it is seen of it,
+    however the face turns, in parts of the size.
+    """
 
-    def _place(self, x: Floats | float, y: Floats | float) -> Floats:
-        x, y = x * self.size, y * self.size
-        cosine, sine = self._turn[:, 0], self._turn[:, 1]
-        return self._centre + np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=1)
+    ends: tuple[float, float, float, float]
+    half: float
+    colour: int
+    alpha: float
+    kind: int
+    when: int
+    gaze: float = 0.0
+    light: tuple[float, float] = (0.0, 0.0)
 
-    def disc(
-        self, x: Floats | float, y: Floats | float, radius: float, colour: int, alpha: float = 1.0, kind: int = DISC,
-        only: NDArray[np.bool_] | None = None, moved: Floats | None = None,
-    ) -> None:  # fmt: skip
-        """A disc for each face, or those of a mask; moved (f, 2): as seen, in parts of its size."""
-        at = self._place(x, y)
-        if moved is not None:
-            at = at + moved * self.size[:, None]
-        chosen = self._all if only is None else only
-        self._rows.append((np.concatenate([at, at], axis=1)[chosen], (radius * self.size)[chosen], colour, alpha, kind))
 
-    def line(
-        self, start: tuple[Floats | float, Floats | float], end: tuple[Floats | float, Floats | float], half: float,
-        only: NDArray[np.bool_],
-    ) -> None:  # fmt: skip
-        """A line for each face of a mask."""
-        ends = np.concatenate([self._place(*start), self._place(*end)], axis=1)
-        self._rows.append((ends[only], np.maximum(half * self.size, 0.9)[only], INK, 1.0, STROKE))
+OPEN, SQUINTING, SHUT, ALWAYS, GASPING, SMILING = range(6)
 
-    def draw(self, load: Floats, velocity: Floats, blinks: NDArray[np.bool_]) -> None:
-        """Eyes that look where it moves, cheeks, and a mouth that says how it feels."""
-        speed = np.sqrt(np.sum(velocity * velocity, axis=1))
-        squeezed = load > SQUEEZED
-        open_eyes = ~squeezed & ~blinks
-        resting = speed <= 0.25
-        way = np.where(resting[:, None], np.array([0.0, 1.0]), velocity / np.maximum(speed, 1e-9)[:, None])
-        gaze = way * np.minimum(1.0, 0.3 + speed / 4.0)[:, None] * (0.42 * EYE_SIZE)
-        for side in (-1.0, 1.0):
-            x = side * GAP
-            self.disc(x, EYE_UP, 1.13 * EYE_SIZE, INK, 0.35, only=open_eyes)
-            self.disc(x, EYE_UP, EYE_SIZE, EYE, only=open_eyes)
-            self.disc(x, EYE_UP, 0.57 * EYE_SIZE, INK, only=open_eyes, moved=gaze)
-            glint = gaze + EYE_SIZE * np.array([-0.18, -0.24])
-            self.disc(x, EYE_UP, 0.2 * EYE_SIZE, EYE, 0.95, only=open_eyes, moved=glint)
-            for way_up in (-0.6, 0.6):
-                outer = (x + side * 0.55 * EYE_SIZE, EYE_UP + way_up * EYE_SIZE)
-                self.line(outer, (x - side * 0.45 * EYE_SIZE, EYE_UP), 0.2 * EYE_SIZE, squeezed)
-            lid = 0.8 * EYE_SIZE
-            self.line((x - lid, EYE_UP), (x + lid, EYE_UP), 0.18 * EYE_SIZE, blinks & ~squeezed)
-            self.disc(1.5 * x, 0.075, 0.085, CHEEK, 0.45, GLOW)
-        gasps = (speed > FAST) & ~squeezed
-        self.disc(0.0, MOUTH_DOWN + 0.02, 0.58 * MOUTH_WIDE, INK, only=gasps)
-        self.disc(0.0, MOUTH_DOWN + 0.02 + 0.2 * MOUTH_WIDE, 0.33 * MOUTH_WIDE, TONGUE, only=gasps)
-        smile = MOUTH_WIDE * (0.66 - np.minimum(9.0 * load, 0.8))
-        t = np.linspace(-1.0, 1.0, MOUTH_PIECES + 1)
-        bend = [
-            np.where(squeezed, 0.22 * MOUTH_WIDE * np.sin(3.0 * np.pi * each), smile * (1.0 - each * each))
-            for each in t
-        ]
-        for k in range(MOUTH_PIECES):
-            start = t[k] * MOUTH_WIDE, MOUTH_DOWN + bend[k]
-            self.line(start, (t[k + 1] * MOUTH_WIDE, MOUTH_DOWN + bend[k + 1]), 0.02, ~gasps)
 
-    def into(self, marks: MarkList) -> None:
-        """Add all of it to marks, in order."""
-        rows = [row for row in self._rows if len(row[1])]
-        if rows:
-            marks.mixed(
-                np.concatenate([ends for ends, *_ in rows]),
-                np.concatenate([half for _, half, *_ in rows]),
-                *(np.repeat([row[k] for row in rows], [len(row[1]) for row in rows]) for k in (2, 3, 4)),
-            )
+def _eye(side: float) -> list[_Part]:
+    x, size = side * GAP, EYE_SIZE
+    at = (x, EYE_UP) * 2
+    lashes = [
+        _Part((x + side * 0.55 * size, EYE_UP + up * size, x - side * 0.45 * size, EYE_UP), 0.2 * size, INK, 1.0,
+              STROKE, SQUINTING) for up in (-0.6, 0.6)
+    ]  # fmt: skip
+    return [
+        _Part(at, 1.13 * size, INK, 0.35, DISC, OPEN),
+        _Part(at, size, EYE, 1.0, DISC, OPEN),
+        _Part(at, 0.57 * size, INK, 1.0, DISC, OPEN, 1.0),
+        _Part(at, 0.2 * size, EYE, 0.95, DISC, OPEN, 1.0, (-0.18 * size, -0.24 * size)),
+        *lashes,
+        _Part((x - 0.8 * size, EYE_UP, x + 0.8 * size, EYE_UP), 0.18 * size, INK, 1.0, STROKE, SHUT),
+        _Part((1.5 * x, 0.075) * 2, 0.085, CHEEK, 0.45, GLOW, ALWAYS),
+    ]
+
+
+_MOUTH_X = np.linspace(-1.0, 1.0, MOUTH_PIECES + 1)
+_MOUTH = [
+    _Part((a * MOUTH_WIDE, MOUTH_DOWN, b * MOUTH_WIDE, MOUTH_DOWN), 0.02, INK, 1.0, STROKE, SMILING)
+    for a, b in pairwise(_MOUTH_X.tolist())
+]
+_PARTS = [
+    *_eye(-1.0), *_eye(1.0),
+    _Part((0.0, MOUTH_DOWN + 0.02) * 2, 0.58 * MOUTH_WIDE, INK, 1.0, DISC, GASPING),
+    _Part((0.0, MOUTH_DOWN + 0.02 + 0.2 * MOUTH_WIDE) * 2, 0.33 * MOUTH_WIDE, TONGUE, 1.0, DISC, GASPING),
+    *_MOUTH,
+]  # fmt: skip
+# The same as columns: (p, 2) both ends, and (p,).
+_X = np.array([part.ends[::2] for part in _PARTS])
+_Y = np.array([part.ends[1::2] for part in _PARTS])
+_HALF, _COLOUR, _ALPHA, _KIND, _WHEN, _GAZE, _LIGHT = (
+    np.array([part[k] for part in _PARTS]) for k in range(1, len(_Part._fields))
+)
+_LEAST = np.where(_KIND == STROKE, 0.9, 0.0)
+
+
+def _moods(load: Floats, speed: Floats, blinks: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which parts of faces (f,) are shown, by what their mean strain, speed [m/s] and time are."""
+    squeezed = load > SQUEEZED
+    gasps = (speed > FAST) & ~squeezed
+    return np.stack([~squeezed & ~blinks, squeezed, blinks & ~squeezed, np.ones_like(gasps), gasps, ~gasps])
+
+
+def _draw_faces(
+    marks: MarkList, centre: Floats, turn: Floats, size: Floats, load: Floats, velocity: Floats,
+    blinks: NDArray[np.bool_],
+) -> None:  # fmt: skip
+    """Eyes that look where it moves, cheeks, and a mouth that says how it feels, of faces (f,)."""
+    speed = np.sqrt(np.sum(velocity * velocity, axis=1))
+    way = np.where(speed[:, None] <= 0.25, np.array([0.0, 1.0]), velocity / np.maximum(speed, 1e-9)[:, None])
+    gaze = way * (np.minimum(1.0, 0.3 + speed / 4.0) * (0.42 * EYE_SIZE) * size)[:, None]
+    smile = MOUTH_WIDE * (0.66 - np.minimum(9.0 * load, 0.8))
+    t = _MOUTH_X[:, None]
+    bend = np.where(load > SQUEEZED, 0.22 * MOUTH_WIDE * np.sin(3.0 * np.pi * t), smile * (1.0 - t * t))
+    # By part, face, end.
+    x, y = _X[:, None] * size[:, None], np.repeat(_Y[:, None], len(size), axis=1)
+    y[-MOUTH_PIECES:] += np.stack([bend[:-1], bend[1:]], axis=-1)
+    y *= size[:, None]
+    cosine, sine = turn[:, :1], turn[:, 1:]
+    ends = np.empty((*x.shape, 2))
+    ends[..., 0] = centre[:, :1] + cosine * x - sine * y
+    ends[..., 1] = centre[:, 1:] + sine * x + cosine * y
+    seen = _GAZE[:, None, None] * gaze + _LIGHT[:, None] * size[:, None]
+    ends += seen[:, :, None]
+    shown = _moods(load, speed, blinks)[_WHEN]
+    half = np.maximum(_HALF[:, None] * size, _LEAST[:, None])[shown]
+    part = np.nonzero(shown)[0]
+    marks.mixed(ends[shown].reshape(-1, 4), half, _COLOUR[part], _ALPHA[part], _KIND[part])
 
 
 def _spot(actor: Actor, loop: Slots) -> tuple[Floats, float]:
     """Where a face sits, about the middle of the form, and how much room there is [m]."""
-    form = actor.made.form - actor.made.form.mean(axis=0)
+    form = actor.form
     index = {slot: k for k, slot in enumerate(actor.slots.tolist())}
     ring = form[[index[slot] for slot in loop.tolist()]]
     ring = np.concatenate([ring + (np.roll(ring, -1, axis=0) - ring) * k / 4 for k in range(4)])

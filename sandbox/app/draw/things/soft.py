@@ -1,6 +1,7 @@
 """Soft bodies and whatever else is filled: jellies, balloons, crates, panels and tyres, by their outlines."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +45,11 @@ class Shape:
     keep: float = 0.25
     line: bool = True
     flushed: tuple[Slots, Slots, float] | None = None
-    throws: bool = True
+
+    @cached_property
+    def flushed_slots(self) -> Slots:
+        """Slots (k,) whose strain shows."""
+        return np.unique(self.flushed[1]) if self.flushed is not None else np.zeros(0, dtype=np.int64)
 
 
 @dataclass(eq=False)
@@ -108,7 +113,7 @@ class Soft:
         if not chosen:
             return None
         parts = [self.shapes[k].flushed for k in chosen]
-        slots = [np.unique(part[1]) for part in parts if part is not None]
+        slots = [self.shapes[k].flushed_slots for k in chosen]
         ends = np.concatenate([part[1] for part in parts if part is not None])
         degree = np.maximum(np.bincount(ends.reshape(-1)), 1)
         return _Flushed(

@@ -21,6 +21,8 @@ USUAL_PERIOD = 6.5
 _LINES = {"rope": 0x5B3D20, "deck": 0x4A2E16, "cable": 0x3A4252}
 # Pieces that a curve has between two particles, from a length [pixels] on.
 PIECES, CURVED_FROM = 3, 6.0
+# Corners of its way from which on a stretch is a curve [pixels]: it leaves the straight line by a twelfth of that.
+LEAST_BEND = 2.5
 
 
 class Strands:
@@ -71,25 +73,38 @@ class Strands:
         for kind, width, stretches, metres, springs, step in self.groups():
             half = self.half(kind, width, step, frame)
             pieces = PIECES if step * frame.zoom > CURVED_FROM else 1
-            ends = _curved(frame.at, stretches, pieces)
-            period = PERIOD.get(kind, USUAL_PERIOD) * half / frame.zoom
-            share = np.arange(pieces + 1) / pieces
-            along = (metres[:, :1] + (metres[:, 1:] - metres[:, :1]) * share) / period
-            along = np.stack([along[:, :-1], along[:, 1:]], axis=-1).reshape(-1, 2)
+            along = metres * (frame.zoom / (PERIOD.get(kind, USUAL_PERIOD) * half))
+            tint, by = frame.flush(springs)
+            if pieces == 1:
+                ends = frame.ends(stretches[:, 1:3])
+            else:
+                ends, whose, part = _curved(frame.at, stretches, pieces)
+                first = along[whose, :1]
+                along, tint, by = first + (along[whose, 1:] - first) * part, tint[whose], by[whose]
             if kind in _LINES:
                 marks.strokes(ends, half + 0.9 * frame.scale, _LINES[kind])
-            tint, by = frame.flush(springs)
-            marks.strips(ends, half, TILE[kind], along, np.repeat(tint, pieces), np.repeat(by, pieces))
+            marks.strips(ends, half, TILE[kind], along, tint, by)
 
 
-def _curved(at: Floats, stretches: Slots, pieces: int) -> Floats:
-    """Lines (m pieces, 4) of Catmull-Rom curves through stretches (m, 4) of particles; -1 = goes straight on."""
-    b, c = at[stretches[:, 1]], at[stretches[:, 2]]
-    if pieces == 1:
-        return np.concatenate([b, c], axis=1)
-    a = np.where(stretches[:, :1] >= 0, at[stretches[:, 0]], 2.0 * b - c)
-    d = np.where(stretches[:, 3:] >= 0, at[stretches[:, 3]], 2.0 * c - b)
-    t = (np.arange(pieces + 1) / pieces)[None, :, None]
-    a, b, c, d = (points[:, None, :] for points in (a, b, c, d))
-    curve = 0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t**2 + (3 * b - a - 3 * c + d) * t**3)
-    return np.concatenate([curve[:, :-1], curve[:, 1:]], axis=2).reshape(-1, 4)
+def _curved(at: Floats, stretches: Slots, pieces: int) -> tuple[Floats, Slots, Floats]:
+    """Lines (k, 4) of Catmull-Rom curves through stretches (m, 4) of particles; -1 = goes straight on.
+
+    And whose they are (k,), and which part (k, 2) of it. One that would not be seen to bend is one line.
+    """
+    points = at[stretches]
+    a, b, c, d = (points[:, k] for k in range(4))
+    for missing, end, near, far in ((stretches[:, 0] < 0, a, b, c), (stretches[:, 3] < 0, d, c, b)):
+        end[missing] = 2.0 * near[missing] - far[missing]
+    bends = np.maximum(np.abs(a - 2.0 * b + c), np.abs(b - 2.0 * c + d)).max(axis=1)
+    bent = np.flatnonzero(bends > LEAST_BEND)
+    straight = np.flatnonzero(~(bends > LEAST_BEND))
+    t = np.arange(pieces + 1) / pieces
+    weights = 0.5 * np.stack([
+        -t + 2 * t**2 - t**3, 2 - 5 * t**2 + 3 * t**3, t + 4 * t**2 - 3 * t**3, t**3 - t**2
+    ], axis=1)  # fmt: skip
+    curve = (weights @ points[bent].transpose(1, 0, 2).reshape(4, -1)).reshape(pieces + 1, len(bent), 2)
+    lines = np.concatenate([curve[:-1], curve[1:]], axis=2).reshape(-1, 4)
+    ends = np.concatenate([np.concatenate([b[straight], c[straight]], axis=1), lines])
+    part = np.repeat(np.column_stack([t[:-1], t[1:]]), len(bent), axis=0)
+    whole = np.broadcast_to([0.0, 1.0], (len(straight), 2))
+    return ends, np.concatenate([straight, np.tile(bent, pieces)]), np.concatenate([whole, part])

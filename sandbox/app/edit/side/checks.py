@@ -11,12 +11,10 @@ from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.rows import Row, RowList
 from sandbox.editor.document import Document
 from sandbox.editor.panel.level_properties import add_check, check_properties, delete_check
-from sandbox.editor.panel.typed import number_text
-from sandbox.level.checks import CheckDef, CheckResult, check_ticks
+from sandbox.level.checks import CheckDef, CheckResult, subject_text, time_text, wanted_text
 from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format.model import Level
-from sandbox.level.format.quantities import replaced
-from sandbox.session.summary import run_checks
+from sandbox.session.check_run import checks_as_they_end
 
 # Part of the page that the list takes.
 LIST_PART = 0.38
@@ -24,7 +22,7 @@ NOTHING = "No checks yet. A check says what has to hold after some seconds of th
 
 
 class Trial:
-    """Runs a level's checks in a thread of its own; `results` fills up as they end, those of the longest run last."""
+    """Runs a level's checks in a thread of its own; `results` fills up as they are decided."""
 
     def __init__(self, level: Level) -> None:
         self.level = level
@@ -49,15 +47,12 @@ class Trial:
         self._thread.join()
 
     def _work(self) -> None:
-        by_ticks: dict[int, list[CheckDef]] = {}
-        for check in self.level.checks:
-            by_ticks.setdefault(check_ticks(check, self.level.settings.tick_rate), []).append(check)
         try:
-            for _, checks in sorted(by_ticks.items()):
+            for found in checks_as_they_end(self.level):
                 if self.is_stopped:
                     return
-                results = run_checks(replaced(self.level, checks=tuple(checks)))
-                self.results = {**self.results, **dict(zip(checks, results, strict=True))}
+                if found is not None:
+                    self.results = {**self.results, found[1].check: found[1]}
         except LevelError as error:
             self.fault = error.faults[0]
         except (ArithmeticError, MemoryError) as error:
@@ -139,13 +134,9 @@ class ChecksPage:
 
 
 def _row(check: CheckDef, result: CheckResult | None, is_running: bool) -> Row:
-    bounds = []
-    if check.at_least is not None:
-        bounds.append(f"at least {number_text(check.at_least)}")
-    if check.at_most is not None:
-        bounds.append(f"at most {number_text(check.at_most)}")
-    subject = check.metric if check.particle is None else f"{check.metric} of {check.particle}"
-    wanted = f"{subject} {' and '.join(bounds)}"
+    wanted = f"{subject_text(check)} {wanted_text(check)}"
+    if check.always or check.eventually:
+        wanted = f"{wanted} {time_text(check)}"
     if result is None:
         return Row(check.name, f"running: {wanted}" if is_running else wanted, DISABLED)
     verdict = "holds" if result.passed else "fails"

@@ -10,9 +10,8 @@ where it is foreseen to push, and has the same strength whatever Cs and Cd are: 
 """
 
 from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, area_of, evaluate
-from sandbox.physics.equation import capped, highest_coefficient, implicit_impulse, implicit_masses
+from sandbox.physics.equation import capped, implicit_impulse, implicit_masses
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.solvers.direct.energy_norm import load_range
 from sandbox.physics.solvers.direct.system import Constraints, Inputs, Matrix, Span, State, System
 from sandbox.physics.world import HIGHEST_OF_RING, TRIANGLE, Floats
 
@@ -42,21 +41,11 @@ def _error(k: int, constraints: Constraints, gradient: Floats) -> float:
 
 
 @inner_kernel
-def _load_constants(k: int, constraints: Constraints, state: State, inputs: Inputs, parts: int) -> None:
-    # What the step's own arrays say of a constraint; Cs and Cd capped for one of so many parts.
+def _load_constants(k: int, constraints: Constraints, state: State, inputs: Inputs) -> None:
+    # What the step's own arrays say of a constraint.
     s = constraints.slot[k]
-    stiffness = inputs.constraint_stiffness[s]
-    damping = inputs.constraint_damping[s]
-    if parts > 1:
-        stiffness, damping = capped(stiffness, damping, highest_coefficient(parts))
-    constraints.stiffness[k] = stiffness
-    constraints.damping[k] = damping
-    if parts > 0:
-        stiffness = state.constraint_stiffness[s]
-        damping = state.constraint_damping[s]
-        if constraints.first[k + 1] - constraints.first[k] > TRIANGLE:
-            stiffness, damping = capped(stiffness, damping, HIGHEST_OF_RING)
-        load_range(k, constraints, stiffness, damping, state.constraint_lowest_mode[s])
+    constraints.stiffness[k] = inputs.constraint_stiffness[s]
+    constraints.damping[k] = inputs.constraint_damping[s]
     for axis in range(2):
         constraints.rest[k, axis] = state.constraint_rest[s, axis]
     for c in range(constraints.first[k], constraints.first[k + 1]):
@@ -64,16 +53,26 @@ def _load_constants(k: int, constraints: Constraints, state: State, inputs: Inpu
 
 
 @inner_kernel
+def _whole_restoring(k: int, constraints: Constraints, state: State, mass: float) -> float:
+    # K beta [kg] of a constraint in a tick of one part.
+    stiffness = state.constraint_stiffness[constraints.slot[k]]
+    damping = state.constraint_damping[constraints.slot[k]]
+    if constraints.first[k + 1] - constraints.first[k] > TRIANGLE:
+        stiffness, damping = capped(stiffness, damping, HIGHEST_OF_RING)
+    _, restoring = implicit_masses(stiffness, damping, mass)
+    return restoring
+
+
+@inner_kernel
 def load_constraints(
     span: Span, system: System, state: State, inputs: Inputs, parts: int, h: float
-) -> tuple[bool, bool, float]:
+) -> tuple[bool, float]:
     """Bring a body's constraints into their scratch, and return what `load_springs` does of springs."""
     rows, constraints = system.rows, system.constraints
     underdamped = False
-    ranged = False
     moved = 0.0
     for k in range(span.first_constraint, span.last_constraint):
-        _load_constants(k, constraints, state, inputs, parts)
+        _load_constants(k, constraints, state, inputs)
         total = 0.0
         for c in range(constraints.first[k], constraints.first[k + 1]):
             total += rows.inverse_mass[constraints.row[c]] * constraints.weight[c]
@@ -87,12 +86,8 @@ def load_constraints(
         if restoring > stiff:
             underdamped = True
         constraints.norm[k] = restoring
-        constraints.norm_excess[k] = 0.0
-        if parts > 0:
-            constraints.norm[k] = mass * constraints.least[k] / (parts * parts)
-            constraints.norm_excess[k] = mass * (constraints.most[k] - constraints.least[k]) / (parts * parts)
-            if constraints.most[k] > constraints.least[k]:
-                ranged = True
+        if parts > 1:
+            constraints.norm[k] = _whole_restoring(k, constraints, state, mass) / (parts * parts)
         _look(k, constraints, rows.moved, rows.moved, 0.0)
         error = _error(k, constraints, constraints.spare)
         moved += _floor_energy(k, constraints, error, h)
@@ -100,7 +95,7 @@ def load_constraints(
         moved += 0.5 * constraints.norm[k] * error * error
         _look(k, constraints, rows.position, rows.position, 0.0)
         constraints.error[k] = _error(k, constraints, constraints.spare)
-    return underdamped, ranged, moved
+    return underdamped, moved
 
 
 @inner_kernel

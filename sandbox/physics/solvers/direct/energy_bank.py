@@ -1,7 +1,7 @@
 """The energy test of one body, and its energy bank: what its earlier losses still allow it."""
 
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.solvers.direct.families import potential, potential_excess, start_excess, start_potential
+from sandbox.physics.solvers.direct.families import potential, start_potential
 from sandbox.physics.solvers.direct.motion import kinetic
 from sandbox.physics.solvers.direct.system import Span, State, System
 from sandbox.physics.world import BANK_UNOPENED, Floats
@@ -59,13 +59,6 @@ def open_bank(body: int, span: Span, system: System, bank: Floats, moved: float,
         if p != lowest:
             bank[p] = 0.0
     held = bank[lowest] if begun else 0.0
-    if bodies.ranged[body]:
-        # Of the start, and of the work of grabs and drives.
-        excess = start_excess(span, system, h)
-        excess_moved = potential_excess(span, system, rows.moved, rows.moved, 0.0, h)
-        held += max(0.0, excess_moved - excess)
-        if not begun:
-            held += excess
     if not bodies.underdamped[body]:
         return held
     kinetic_after = kinetic(span, rows.mass, rows.target)
@@ -78,14 +71,10 @@ def open_bank(body: int, span: Span, system: System, bank: Floats, moved: float,
 
 
 @inner_kernel
-def bank_limit(body: int, span: Span, system: System, h: float) -> float:
+def bank_limit(body: int, system: System) -> float:
     """The most that a body's bank may hold after the step [J]."""
-    bodies, rows = system.bodies, system.rows
-    share = UNDERDAMPED_BANK_SHARE if bodies.underdamped[body] else BANK_SHARE
-    limit = share * bodies.before[body]
-    if bodies.ranged[body]:
-        limit += potential_excess(span, system, rows.position, rows.trial, h, h)
-    return limit
+    share = UNDERDAMPED_BANK_SHARE if system.bodies.underdamped[body] else BANK_SHARE
+    return share * system.bodies.before[body]
 
 
 @inner_kernel

@@ -67,8 +67,8 @@ def load_rows(system: System, state: State, inputs: Inputs, h: float) -> None:
 @inner_kernel
 def load(
     span: Span, system: System, state: State, inputs: Inputs, free: bool, parts: int, h: float
-) -> tuple[bool, bool, float]:
-    """Load a body's springs and constraints: whether one is underdamped, whether norms have a range, and their energy.
+) -> tuple[bool, float]:
+    """Load a body's springs and constraints: whether one is underdamped, and their energy.
 
     free: nothing of it is pinned. See `load_springs`.
     """
@@ -76,13 +76,12 @@ def load(
     # Gravity moves a body without anchors as a whole: started there, it falls without rounding.
     if free:
         copy(span, rows.target, rows.trial)
-    underdamped, ranged, moved = load_springs(span, system, state, inputs, parts, h)
+    underdamped, moved = load_springs(span, system, state, inputs, parts, h)
     if span.last_constraint > span.first_constraint:
-        more_underdamped, more_ranged, more_moved = load_constraints(span, system, state, inputs, parts, h)
+        more_underdamped, more_moved = load_constraints(span, system, state, inputs, parts, h)
         underdamped = underdamped or more_underdamped
-        ranged = ranged or more_ranged
         moved += more_moved
-    return underdamped, ranged, moved
+    return underdamped, moved
 
 
 @inner_kernel
@@ -191,27 +190,9 @@ def potential(span: Span, system: System, position: Floats, velocity: Floats, ti
 
 
 @inner_kernel
-def potential_excess(span: Span, system: System, position: Floats, velocity: Floats, time: float, h: float) -> float:
-    """What the most k adds to that energy [J] (energy_norm.py)."""
-    springs, constraints = system.springs, system.constraints
-    return spring_potential(
-        span, system, position, velocity, springs.norm_excess, springs.rest, time, h
-    ) + constraint_potential(span, system, position, velocity, constraints.norm_excess, time, h)
-
-
-@inner_kernel
 def start_potential(span: Span, system: System, h: float) -> float:
     """Energy of one body's springs and constraints before forces, pins and drives have moved [J]."""
     rows, springs = system.rows, system.springs
     return spring_potential(
         span, system, rows.position, rows.start, springs.norm, springs.start_rest, 0.0, h
     ) + _constraint_energy(span, system, rows.position, rows.start, 0.0, h)
-
-
-@inner_kernel
-def start_excess(span: Span, system: System, h: float) -> float:
-    """What the most k adds to that energy [J]."""
-    rows, springs, constraints = system.rows, system.springs, system.constraints
-    return spring_potential(
-        span, system, rows.position, rows.start, springs.norm_excess, springs.start_rest, 0.0, h
-    ) + constraint_potential(span, system, rows.position, rows.start, constraints.norm_excess, 0.0, h)

@@ -273,7 +273,8 @@ def damp_islands(touch: Touch, system: System, state: State, start: Floats, h: f
 
 @inner_kernel
 def _load_limits(contacts: Contacts, touch: Touch, system: System, state: State, h: float) -> None:
-    # The most that each bank may hold: a share of the member's energy, or what penetrations cost.
+    # The most that each bank may hold: a share of the member's energy; or what penetrations cost, of what it has itself
+    # lost: what a light body loses as it hits a heavy one would push that out of what it lies in, and give much back.
     islands, bodies = touch.islands, touch.islands.counts[BODIES]
     for k in range(islands.counts[MEMBERS]):
         islands.limit[k] = 0.0
@@ -286,13 +287,14 @@ def _load_limits(contacts: Contacts, touch: Touch, system: System, state: State,
         share = 0.0
         if k < bodies:
             span = span_of(system, islands.body[k])
-            share = bank_limit(islands.body[k], span, system, h)
+            share = bank_limit(islands.body[k], system)
             for r in range(span.first_row, span.last_row):
                 mass += system.rows.mass[r]
         else:
             share = BANK_SHARE * islands.before[k]
             mass = state.mass[islands.free[k - bodies]]
-        islands.limit[k] = max(share, min(islands.limit[k], 0.5 * mass * PAID_PUSH * PAID_PUSH))
+        lost = islands.held[k] + islands.before[k] - islands.after[k]
+        islands.limit[k] = max(share, min(islands.limit[k], 0.5 * mass * PAID_PUSH * PAID_PUSH, lost))
 
 
 @inner_kernel

@@ -278,7 +278,7 @@ def _lay_out_bodies(
     """The bodies; held: those of springs and constraints that something pinned holds."""
     count = len(first_rows)
     every_body = np.arange(count + 1)
-    flags, numbers = np.zeros((5, count), dtype=np.bool_), np.zeros((2, count))
+    flags, numbers = np.zeros((4, count), dtype=np.bool_), np.zeros((2, count))
     return Bodies(
         np.append(first_rows, free_count), np.searchsorted(spring_body, every_body),
         np.searchsorted(constraint_body, every_body), lowest, np.isin(every_body[:-1], np.concatenate(held)), *flags,
@@ -299,10 +299,7 @@ def _lay_out_springs(slots: Slots, row_a: Slots, row_b: Slots, block: Slots) -> 
 
 def _scratch(kind: Any, given: dict[str, Slots], shape: Any, shapes: dict[str, Any]) -> dict[str, Any]:
     """The fields of a named tuple: what is given, and scratch of the shapes of their names, or of the shape of all."""
-    scratch = {name: np.zeros(shapes.get(name, shape)) for name in kind._fields if name not in given}
-    # No Cs and Cd yet that a range of norms would be of.
-    scratch |= {name: np.full(shape, np.nan) for name in scratch if name in ("tick_stiffness", "tick_damping")}
-    return given | scratch
+    return given | {name: np.zeros(shapes.get(name, shape)) for name in kind._fields if name not in given}
 
 
 def _lay_out_goals(constraints: Constraints, body: Slots, bodies: int, form: Floats) -> Goals:

@@ -13,15 +13,12 @@ import math
 
 from sandbox.physics.equation import (
     SHORTEST,
-    capped,
     direction,
-    highest_coefficient,
     implicit_impulse,
     implicit_masses,
     reduced_mass,
 )
 from sandbox.physics.jit import inner_kernel, scalar_kernel
-from sandbox.physics.solvers.direct.energy_norm import load_range
 from sandbox.physics.solvers.direct.system import Inputs, Span, State, System
 from sandbox.physics.solvers.linear.fronts import add_block
 from sandbox.physics.world import Floats
@@ -35,40 +32,30 @@ ROUNDING_MISFIT = 1e-10
 
 
 @inner_kernel
-def load_springs(
-    span: Span, system: System, state: State, inputs: Inputs, parts: int, h: float
-) -> tuple[bool, bool, float]:
-    """Bring the springs of a body into their scratch; whether any has Cs > Cd, and any a norm that has a range.
+def load_springs(span: Span, system: System, state: State, inputs: Inputs, parts: int, h: float) -> tuple[bool, float]:
+    """Bring the springs of a body into their scratch; whether any has Cs > Cd.
 
     Also their energy [J] once pinned particles have moved. parts: 0, or those of a tick that chooses them.
     """
     rows, springs = system.rows, system.springs
     free_count = system.matrix.diagonal.shape[0]
-    highest = highest_coefficient(parts)
     underdamped = False
-    ranged = False
     moved = 0.0
     for k in range(span.first_spring, span.last_spring):
         s = springs.slot[k]
         a = springs.row_a[k]
         b = springs.row_b[k]
         mass = reduced_mass(rows.inverse_mass[a], rows.inverse_mass[b])
-        stiffness = inputs.stiffness[s]
-        damping = inputs.damping[s]
-        if parts > 1:
-            stiffness, damping = capped(stiffness, damping, highest)
-        stiff, restoring = implicit_masses(stiffness, damping, mass)
+        stiff, restoring = implicit_masses(inputs.stiffness[s], inputs.damping[s], mass)
         springs.stiff[k] = stiff
         springs.restoring[k] = restoring
         if restoring > stiff:
             underdamped = True
         springs.norm[k] = restoring
-        if parts > 0:
-            load_range(k, springs, state.stiffness[s], state.damping[s], state.lowest_mode[s])
-            springs.norm[k] = mass * springs.least[k] / (parts * parts)
-            springs.norm_excess[k] = mass * (springs.most[k] - springs.least[k]) / (parts * parts)
-            if springs.most[k] > springs.least[k]:
-                ranged = True
+        if parts > 1:
+            # Of the whole tick, to the bit: that of a part has other digits where Cd is near 1.
+            _, whole = implicit_masses(state.stiffness[s], state.damping[s], mass)
+            springs.norm[k] = whole / (parts * parts)
         rest = state.rest_length[s]
         springs.rest[k] = rest
         springs.start_rest[k] = inputs.start_length[s]
@@ -84,7 +71,7 @@ def load_springs(
             length = math.sqrt(dx * dx + dy * dy)
         error = (length - rest) / h
         moved += 0.5 * springs.norm[k] * error * error
-    return underdamped, ranged, moved
+    return underdamped, moved
 
 
 @inner_kernel

@@ -40,9 +40,8 @@ LINEAR_SOLVES = 3
 def open_body(body: int, span: Span, system: System, state: State, inputs: Inputs, parts: int, h: float) -> None:
     """Load a body's springs and constraints, its energies and its bank, and match its shape where it is inverted."""
     bodies, rows = system.bodies, system.rows
-    underdamped, ranged, moved = load(span, system, state, inputs, not bodies.anchored[body], parts, h)
+    underdamped, moved = load(span, system, state, inputs, not bodies.anchored[body], parts, h)
     bodies.underdamped[body] = underdamped
-    bodies.ranged[body] = ranged
     bodies.before[body] = kinetic(span, rows.mass, rows.target) + moved
     bodies.held[body] = open_bank(body, span, system, state.energy_bank, moved, h)
     bodies.inverted[body] = False
@@ -125,7 +124,7 @@ def step_body(body: int, span: Span, system: System, state: State, h: float) -> 
         after = body_energy(span, system, h)
         if not after <= allowed:
             after = _damp(span, system, allowed, h)
-    limit = bank_limit(body, span, system, h)
+    limit = bank_limit(body, system)
     saved = held + before - after
     # An inverted body keeps all that it lost for the way back to its form; one that grabs move, no more than others do.
     if saved > limit and not (bodies.inverted[body] and not bodies.anchored[body]):

@@ -76,9 +76,8 @@ class Inputs(NamedTuple):
 class Bodies(NamedTuple):
     """First row, spring and constraint of each body and one past the last; free particle of lowest slot; if anchored.
 
-    The rest is scratch: touched by contacts; underdamped: some Cs is above its Cd; ranged: some energy norm has a range
-    (energy_norm.py); inverted, matched: see shape_matching.py; before [J]: energy once forces, pins and drives have
-    moved; held [J]: what its energy bank holds.
+    The rest is scratch: touched by contacts; underdamped: some Cs is above its Cd; inverted, matched: see
+    shape_matching.py; before [J]: energy once forces, pins and drives have moved; held [J]: what its energy bank holds.
     """
 
     row_start: Slots
@@ -88,7 +87,6 @@ class Bodies(NamedTuple):
     anchored: Flags
     touched: Flags
     underdamped: Flags
-    ranged: Flags
     inverted: Flags
     matched: Flags
     before: Floats
@@ -123,9 +121,8 @@ class Springs(NamedTuple):
     """The springs of the matrix by body: ends as rows, the block they share (-1: one end is pinned), and scratch.
 
     rest, start_rest [m]: rest length, and at the start of the step; stiff = K [kg], restoring = K beta [kg],
-    transverse [kg] = the geometric stiffness h T / l; norm and norm_excess [kg]: see energy_norm.py, as least, most and
-    the tick's Cs, Cd and lowest mode that they are of; length, error, predicted [m]; normal; impulse, tangential,
-    tension [N s].
+    transverse [kg] = the geometric stiffness h T / l; norm [kg] = k h^2 of their energy, that of a tick in one part
+    where ticks choose their parts; length, error, predicted [m]; normal; impulse, tangential, tension [N s].
     """
 
     slot: Slots
@@ -138,12 +135,6 @@ class Springs(NamedTuple):
     restoring: Floats
     transverse: Floats
     norm: Floats
-    norm_excess: Floats
-    tick_stiffness: Floats
-    tick_damping: Floats
-    tick_lowest_mode: Floats
-    least: Floats
-    most: Floats
     length: Floats
     error: Floats
     predicted: Floats
@@ -183,12 +174,6 @@ class Constraints(NamedTuple):
     along: Floats
     floor: Floats
     norm: Floats
-    norm_excess: Floats
-    tick_stiffness: Floats
-    tick_damping: Floats
-    tick_lowest_mode: Floats
-    least: Floats
-    most: Floats
     error: Floats
     predicted: Floats
     impulse: Floats

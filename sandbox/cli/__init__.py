@@ -12,6 +12,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sandbox import __version__
+from sandbox.cli import comparing
+from sandbox.cli.inputs import (
+    EXIT_FAILED,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_REFUSED,
+    Refused,
+    level_of,
+    level_or_replay,
+    recording_of,
+)
 from sandbox.terminal import (
     Progress,
     count,
@@ -35,7 +46,6 @@ if TYPE_CHECKING:
     from sandbox.session.replay.recording import Replay
     from sandbox.session.session import Session
 
-EXIT_OK, EXIT_FAILED, EXIT_REFUSED, EXIT_INTERRUPTED = 0, 1, 2, 130
 # What `play` does where there is no display [s].
 HEADLESS_SECONDS = 10.0
 # Python searches for garbage after so many new objects, in place of 700: what is imported stays, and looking through it
@@ -45,14 +55,6 @@ SEARCH_AFTER = 200_000
 FILM_SECONDS, FILM_SIZE, PNG_SIZE = 6.0, (640, 360), (1280, 720)
 # A process that checks levels takes as long to start as a few levels take; fewer for each are not worth one.
 LEVELS_PER_PROCESS = 4
-
-
-class Refused(Exception):
-    """Something that cannot be done as asked; faults: one line each."""
-
-    def __init__(self, *faults: str) -> None:
-        super().__init__(*faults)
-        self.faults = faults
 
 
 def program() -> int:
@@ -130,11 +132,8 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--every", type=count, default=1, metavar="N", help="follow them every N ticks; default 1")
     run.add_argument("-o", "--output", type=Path, metavar="FILE.csv", help="where the probe's table goes")
 
-    replay = command("replay", _replay, "run recordings again and compare every bit")
-    replay.add_argument("files", nargs="+", metavar="FILE")
-    replay.add_argument("--json", action="store_true", help="print one JSON object a file")
-    replay.add_argument("--partial", action="store_true", help="verify what there is of a recording that is cut off")
-    replay.add_argument("--against", metavar="LEVEL", help="run their commands on this level, not on the recorded one")
+    _add_replay_options(command("replay", _replay, "run recordings again and compare every bit"))
+    _add_resume_options(command("resume", _resume, "go on with a recording that was cut off, and make it whole"))
 
     check = command("check", _check, "validate levels, report their stability, run the checks they carry")
     check.add_argument("levels", nargs="+", metavar="LEVEL")
@@ -142,7 +141,9 @@ def _parser() -> argparse.ArgumentParser:
         "--processes", type=processes, metavar="N", help="check so many at a time; default: by cores and levels"
     )
 
-    _add_render_options(command("render", _render, "draw a level or a replay into a PNG, GIF or MP4, off screen"))
+    comparing.add_diff_options(command("diff", comparing.diff, "say where two recordings or levels part"))
+    comparing.add_bisect_options(command("bisect", comparing.bisect, "find the edit or value that makes a level fail"))
+    _add_render_options(command("render", _render, "draw a level or a replay into a PNG, GIF, MP4 or HTML, off screen"))
 
     layout = command("format", _format, "rewrite a level file in its canonical form")
     layout.add_argument("file", type=Path, metavar="FILE")
@@ -159,6 +160,21 @@ def _add_look_options(app: argparse.ArgumentParser) -> None:
     app.add_argument("--theme", choices=("dark", "light", "system"), help="for this time; default: as in the settings")
 
 
+def _add_replay_options(replay: argparse.ArgumentParser) -> None:
+    replay.add_argument("files", nargs="+", metavar="FILE")
+    replay.add_argument("--json", action="store_true", help="print one JSON object a file")
+    replay.add_argument("--partial", action="store_true", help="verify what there is of a recording that is cut off")
+    replay.add_argument("--report", type=Path, metavar="OUT.html", help="where it diverges, play both side by side")
+    replay.add_argument("--against", metavar="LEVEL", help="run their commands on this level, not on the recorded one")
+
+
+def _add_resume_options(again: argparse.ArgumentParser) -> None:
+    again.add_argument("file", metavar="FILE")
+    length = again.add_mutually_exclusive_group()
+    length.add_argument("--seconds", type=seconds, help="simulated time in all; default: up to where it was cut off")
+    length.add_argument("--ticks", type=count, help="the same, in ticks")
+
+
 def _add_render_options(render: argparse.ArgumentParser) -> None:
     render.add_argument("level", metavar="LEVEL|REPLAY")
     text = "PNG: simulated time before the picture, default 0; GIF and MP4: how long they are, default 6"
@@ -167,7 +183,7 @@ def _add_render_options(render: argparse.ArgumentParser) -> None:
     render.add_argument("--fps", type=rate, help="pictures a second; default 20 for GIF, 30 for MP4")
     text = "in pixels; default 1280x720 for PNG, 640x360 for GIF and MP4"
     render.add_argument("--size", type=size, metavar="WxH", help=text)
-    render.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.png|gif|mp4")
+    render.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.png|gif|mp4|html")
 
 
 def _add_prepare_options(prepare: argparse.ArgumentParser) -> None:
@@ -175,40 +191,11 @@ def _add_prepare_options(prepare: argparse.ArgumentParser) -> None:
     prepare.add_argument("--processes", type=count, metavar="N", help="at a time; default: one a processor, at most 4")
 
 
-def _level(name: str) -> "Level":
-    from sandbox.level.format.files import LevelError, load_level
-
-    try:
-        return load_level(name)
-    except LevelError as error:
-        raise Refused(*error.faults) from None
-
-
-def _recording(name: str, partial: bool = False) -> "Replay":
-    from sandbox.session.replay.reader import read_replay
-    from sandbox.session.replay.recording import ReplayError
-
-    try:
-        return read_replay(name, partial)
-    except ReplayError as error:
-        raise Refused(*error.faults) from None
-
-
-def _is_replay(name: str) -> bool:
-    """Whether a file's first bytes are a recording's, plain or compressed; anything else is taken for a level."""
-    from sandbox.session.replay.reader import begins_as_replay
-
-    try:
-        return begins_as_replay(name)
-    except OSError:
-        return False
-
-
 def _play(options: argparse.Namespace) -> int:
     from sandbox.app.display import has_display
 
     if not has_display():
-        level, replay = _level_or_replay(options.level or "rope_bridge_jelly")
+        level, replay = level_or_replay(options.level or "rope_bridge_jelly")
         return _play_headless(level, replay)
     from sandbox.app.opening import open_app
     from sandbox.app.start_request import StartRequest
@@ -216,17 +203,11 @@ def _play(options: argparse.Namespace) -> int:
     def find() -> StartRequest:
         if options.level is None:
             return StartRequest()
-        level, replay = _level_or_replay(options.level)
+        level, replay = level_or_replay(options.level)
         source = Path(options.level) if not replay and Path(options.level).is_file() else None
         return StartRequest(None if replay else level, replay, source)
 
     return open_app(find, profile=options.profile, seconds=options.seconds, scale=options.scale, theme=options.theme)
-
-
-def _level_or_replay(name: str) -> "tuple[Level, Replay | None]":
-    """What a file holds: a level, or a replay and the level that it is of."""
-    replay = _recording(name) if _is_replay(name) else None
-    return (replay.level if replay else _level(name)), replay
 
 
 def _play_headless(level: "Level", replay: "Replay | None") -> int:
@@ -246,7 +227,7 @@ def _play_headless(level: "Level", replay: "Replay | None") -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    level = _with_overrides(_level(options.level), options)
+    level = _with_overrides(level_of(options.level), options)
     rate = level.settings.tick_rate
     ticks = options.ticks or round((10.0 if options.seconds is None else options.seconds) * rate)
     from sandbox.session.probe import dump, finite
@@ -287,15 +268,14 @@ def _keep_apart(options: argparse.Namespace) -> None:
 
 
 def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
-    from sandbox.level.format.files import LevelError, level_data, parse_level
+    from sandbox.level.faults.level_error import LevelError
+    from sandbox.session.replay.again import with_settings
 
     given = {name: getattr(options, name) for name in ("solver", "substeps") if getattr(options, name) is not None}
     if not given:
         return level
-    data = level_data(level)
-    data["settings"] = {**data.get("settings", {}), **given}
     try:
-        return parse_level(json.dumps(data).encode(), "command line")
+        return with_settings(level, given, "command line")
     except LevelError as error:
         raise Refused(*error.faults) from None
 
@@ -358,9 +338,11 @@ def _write_text(path: Path, text: str) -> None:
 
 def _replay(options: argparse.Namespace) -> int:
     worst = EXIT_OK
-    level = _level(options.against) if options.against else None
+    level = level_of(options.against) if options.against else None
+    if options.report and (len(options.files) > 1 or options.report.suffix.lower() != comparing.PAGE):
+        raise Refused("--report: is of one recording, into a file whose name ends in .html")
     for name in options.files:
-        code, outcome = _verify(name, options.partial, level)
+        code, outcome = _verify(name, options.partial, level, options.report)
         worst = max(worst, code)
         if options.json:
             print(json.dumps(outcome))
@@ -371,23 +353,54 @@ def _replay(options: argparse.Namespace) -> int:
     return worst
 
 
-def _verify(name: str, partial: bool, level: "Level | None") -> tuple[int, dict[str, Any]]:
+def _verify(name: str, partial: bool, level: "Level | None", report: Path | None) -> tuple[int, dict[str, Any]]:
     from sandbox.session.probe import finite
     from sandbox.session.replay.recording import ReplayError
-    from sandbox.session.replay.verify import verify
+    from sandbox.session.replay.verify import compare
 
     try:
-        replay = _recording(name, partial)
+        replay = recording_of(name, partial)
         with Progress(replay.ticks) as bar:
-            divergence = verify(replay, level=level, progress=lambda done, total: bar.update(done - bar.done))
+            found = compare(replay, level=level, progress=lambda done, total: bar.update(done - bar.done))
     except (Refused, ReplayError) as error:
         return EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)}
-    if divergence is None:
+    if found is None:
         cut = " (cut off: verified as far as it goes)" if replay.end_hash is None else ""
         text = f"equal, {replay.ticks} ticks{cut}"
         return EXIT_OK, {"file": name, "result": "equal", "ticks": replay.ticks, "text": text}
-    details = finite({**asdict(divergence), "text": f"diverged at {divergence}"})
+    if report is not None:
+        comparing.write_report(found, report)
+    details = finite({**asdict(found.divergence), "text": f"diverged at {found.divergence}"})
     return EXIT_FAILED, {"file": name, "result": "diverged", **details}
+
+
+def _resume(options: argparse.Namespace) -> int:
+    from sandbox.session.commands import CommandError
+    from sandbox.session.replay.recording import ReplayError
+    from sandbox.session.replay.resume import resume
+
+    try:
+        whole = recording_of(options.file)
+    except Refused:
+        replay = recording_of(options.file, partial=True)
+    else:
+        raise Refused(f"{options.file}: is whole, {whole.ticks} ticks: there is nothing to resume")
+    rate = replay.level.settings.tick_rate
+    ticks = options.ticks or (replay.ticks if options.seconds is None else round(options.seconds * rate))
+    if ticks < replay.ticks:
+        raise Refused(f"{options.file}: has {replay.ticks} ticks already; --seconds and --ticks are of the whole run")
+    try:
+        with interrupted_between_ticks() as look_up, Progress(ticks) as bar:
+
+            def show(tick: int) -> None:
+                bar.update(tick - bar.done)
+                look_up()
+
+            resume(replay, ticks, show)
+    except (CommandError, ReplayError) as error:
+        raise Refused(*error.faults) from None
+    print(f"{options.file}: whole, {ticks} ticks, {ticks - replay.ticks} of them new")
+    return EXIT_OK
 
 
 def _check(options: argparse.Namespace) -> int:
@@ -417,10 +430,12 @@ def _render(options: argparse.Namespace) -> int:
     from sandbox.session.session import Session
 
     kind = options.output.suffix.lower().removeprefix(".")
+    if kind == "html":
+        return _render_page(options)
     if kind not in ("png", "gif", "mp4"):
-        raise Refused(f"{options.output}: pictures are PNG, GIF or MP4; end the name in .png, .gif or .mp4")
+        raise Refused(f"{options.output}: end the name in .png, .gif, .mp4 or .html, for a page that plays it")
     _check_render_options(options, kind)
-    level, replay = _level_or_replay(options.level)
+    level, replay = level_or_replay(options.level)
     length = (0.0 if kind == "png" else FILM_SECONDS) if options.seconds is None else options.seconds
     ticks = round(((options.start or 0.0) + length) * level.settings.tick_rate)
     if replay and ticks > replay.ticks:
@@ -428,6 +443,26 @@ def _render(options: argparse.Namespace) -> int:
     session = Session(level, replay.script if replay else ())
     _run_with_bar(session, ticks, options.level)
     what = _draw_still(session, options) if kind == "png" else _draw_film(session, options, kind, length)
+    print(f"{options.output}: {what}, {options.output.stat().st_size / 1e6:.2f} MB")
+    return EXIT_OK
+
+
+def _render_page(options: argparse.Namespace) -> int:
+    """Write a page that plays a level or a replay; nothing is drawn here."""
+    from sandbox.session.session import Session
+
+    for name, value in (("from", options.start), ("fps", options.fps), ("size", options.size)):
+        if value is not None:
+            raise Refused(f"--{name}: is for pictures and films; a page has every tick, from the beginning")
+    level, replay = level_or_replay(options.level)
+    rate = level.settings.tick_rate
+    wanted = FILM_SECONDS * rate if options.seconds is None else options.seconds * rate
+    if replay and options.seconds is None:
+        wanted = replay.ticks
+    if replay and round(wanted) > replay.ticks:
+        raise Refused(f"{options.level}: is {replay.ticks / rate:g} s long")
+    session = Session(level, replay.script if replay else ())
+    what = comparing.write_run(session, round(wanted), options.output, level.name, replay)
     print(f"{options.output}: {what}, {options.output.stat().st_size / 1e6:.2f} MB")
     return EXIT_OK
 
@@ -507,7 +542,7 @@ def _schema(options: argparse.Namespace) -> int:
 
 
 def _prepare(options: argparse.Namespace) -> int:
-    level = _level(options.level) if options.level else None
+    level = level_of(options.level) if options.level else None
     from sandbox.app.compiling import GROUPS, compile_all, note_prepared, usual_processes
 
     groups = GROUPS if level is None or level.has_contacts else GROUPS[:1]

@@ -1,0 +1,1 @@
+"""Two runs side by side that the same hands work on."""

@@ -1,0 +1,226 @@
+"""CompareScreen: one level played twice side by side, A and B, with settings of their own and the same hands."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import ClassVar
+
+import pygame
+
+from sandbox.app.application import Application
+from sandbox.app.compare.difference import Difference, draw_chip, draw_pill
+from sandbox.app.compare.twin import TwinPlayback, coefficients_of
+from sandbox.app.draw.colours import LINE, TEXT
+from sandbox.app.play.panel import SOLVER_LABELS, Panel
+from sandbox.app.play.play_screen import PlayScreen
+from sandbox.app.play.playback import Playback
+from sandbox.app.play.side_panel import SidePanel
+from sandbox.app.play.stage import Stage
+from sandbox.app.play.toolbar import BAR_HEIGHT
+from sandbox.app.profile import Profile
+from sandbox.app.screen import Pixel, Pointer
+from sandbox.app.widgets.ui import Ui
+
+SIDES = ("A", "B")
+# Layout units: halves that are lower have no figures over them; how far down the line about both is.
+ROOM_FOR_FIGURES, PILL_TOP = 260.0, 76.0
+WELCOME = "The same level twice. Choose A or B in the panel and set its springs; what your hand does is done to both."
+
+
+class CompareScreen(PlayScreen):
+    """Two runs on the screen: A, which all that is of one run goes by, and B beside it, or below where it is narrow."""
+
+    welcome: ClassVar[str] = WELCOME
+
+    def __init__(self, app: Application, playback: TwinPlayback, other: TwinPlayback, source: Path | None) -> None:
+        playback.pair(other)
+        self.beside: Stage | None = None
+        self.side = SIDES[0]
+        super().__init__(app, playback, source)
+        self.beside = Stage(other, self.other_viewport, app.scale)
+        self.difference = Difference()
+        self._join_stages()
+        # The beginning is the same in both: they show the same part of it.
+        self.stage.place(self.viewport, app.scale)
+        app.follow(other)
+        if self.welcome:
+            app.say(self.welcome)
+
+    @property
+    def other(self) -> TwinPlayback:
+        """The run of B."""
+        assert self.beside is not None
+        playback = self.beside.playback
+        assert isinstance(playback, TwinPlayback)
+        return playback
+
+    def _join_stages(self) -> None:
+        """Let both stages have the same tools and views."""
+        assert self.beside is not None
+        self.beside.share(self.stage)
+
+    # Where the halves are.
+
+    @property
+    def _is_wide(self) -> bool:
+        return self.area[2] >= self.area[3]
+
+    @property
+    def viewport(self) -> tuple[int, int, int, int]:
+        """The part of the window that shows A, in pixels."""
+        left, top, width, height = self.area
+        return (left, top, max(width // 2, 1), height) if self._is_wide else (left, top, width, max(height // 2, 1))
+
+    @property
+    def other_viewport(self) -> tuple[int, int, int, int]:
+        """The part of the window that shows B, of the same size."""
+        left, top, width, height = self.viewport
+        return (left + width, top, width, height) if self._is_wide else (left, top + height, width, height)
+
+    def contains(self, pixel: Pixel) -> bool:
+        """Whether a pixel shows one of the worlds."""
+        return super().contains(pixel) or pygame.Rect(self.other_viewport).collidepoint(pixel)
+
+    def _in_first(self, pixel: Pixel) -> Pixel:
+        """Where in A the same place is as at a pixel of either half."""
+        if super().contains(pixel) or not pygame.Rect(self.other_viewport).collidepoint(pixel):
+            return pixel
+        (left, top, _, _), (other_left, other_top, _, _) = self.viewport, self.other_viewport
+        return pixel[0] - other_left + left, pixel[1] - other_top + top
+
+    # Building.
+
+    def build(self, ui: Ui) -> None:
+        """Lay the bar, the panel and both halves out anew."""
+        super().build(ui)
+        if self.beside is not None:
+            self.beside.place(self.other_viewport, ui.scale)
+            self.beside.renderer.follow_theme()
+
+    def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> SidePanel:
+        self.shape.side = self.side
+        playback = self.playback if self.side == SIDES[0] or self.beside is None else self.other
+        return Panel(ui, playback, self._app.say, {**choices, "side": self.choose_side}, BAR_HEIGHT, height, self.shape)
+
+    def choose_side(self, side: str) -> None:
+        """Let the panel show and set that run's springs and solver."""
+        self.side = side
+        self._app.rebuild()
+
+    def _next_runs(self) -> tuple[TwinPlayback, TwinPlayback]:
+        """Both runs from their beginning."""
+        assert isinstance(self.playback, TwinPlayback)
+        return self.playback.reset(), self.other.reset()
+
+    def _begin_again(self) -> None:
+        assert self.beside is not None
+        one, other = self._next_runs()
+        one.pair(other)
+        self.stage.replace_playback(one)
+        self.beside.replace_playback(other)
+        self._join_stages()
+        self.difference = Difference()
+        self._app.follow(other)
+
+    def _reset(self) -> None:
+        super()._reset()
+        if self.panel is not None and self.side == SIDES[1]:
+            self.panel.follow(self.other)
+
+    def drop_caches(self) -> None:
+        """Use kernels that have come about."""
+        super().drop_caches()
+        self.other.session.world.drop_caches()
+
+    # Pointer: a press picks from the half that it is in, and what it does is done to both.
+
+    def point(self, kind: Pointer, pixel: Pixel, modifiers: int, clicks: int = 1) -> None:
+        """Hand a pointer event to the tool."""
+        if kind == "down":
+            self.stage.cursor = None
+            self._picked_beside = not super().contains(pixel)
+        among = self.other.current if self._picked_beside else None
+        if self._picked_beside and self.other.has_pending:
+            self.other.apply_pending()
+            among = self.other.current
+        (left, top, _, _), (other_left, other_top, _, _) = self.viewport, self.other_viewport
+        shift = (other_left - left, other_top - top) if self._picked_beside else (0, 0)
+        self.stage.point(kind, (pixel[0] - shift[0], pixel[1] - shift[1]), modifiers, among=among)
+
+    _picked_beside = False
+
+    def turn_wheel(self, pixel: Pixel, steps: float) -> None:
+        """Make what is dropped larger, or zoom both."""
+        super().turn_wheel(self._in_first(pixel), steps)
+
+    # A frame.
+
+    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
+        """Let the same time pass in both."""
+        super().update(frame_time, None if pointer is None else self._in_first(pointer), profile, ready)
+        with profile.part("ticks"):
+            self.other.follow(self.playback.session.tick)
+        super()._measure(self._ticks_made, profile)
+        self.difference.update(self.playback.current, self.other.current)
+        self._show_ghost()
+
+    def _show_ghost(self) -> None:
+        """Show on the pad where the other side's springs are."""
+        panel = self.panel
+        if panel is not None and panel.pad is not None:
+            there = self.other if self.side == SIDES[0] else self.playback
+            name = SIDES[1] if self.side == SIDES[0] else SIDES[0]
+            panel.pad.show_ghost(self.side, name, coefficients_of(there.session.world, panel.material))
+
+    def draw(self, surface: pygame.Surface, profile: Profile) -> None:
+        """Draw both, what each is set to, and how far they are apart."""
+        assert self.beside is not None
+        super().draw(surface, profile)
+        mine, its = self.stage, self.beside
+        its.camera.centre, its.camera.zoom = mine.camera.centre, mine.camera.zoom
+        its.cursor = mine.cursor
+        its.renderer.compiled, its.renderer.detail = mine.renderer.compiled, mine.renderer.detail
+        its.renderer.has_effects = mine.renderer.has_effects
+        its.draw(surface, profile)
+        left, top, width, height = self.other_viewport
+        end = (left, top + height) if self._is_wide else (left + width, top)
+        pygame.draw.line(surface, LINE, (left, top), end, max(2, self._ui.px(2)))
+        for side, viewport, lines in zip(SIDES, (self.viewport, self.other_viewport), self.captions(), strict=True):
+            is_low = viewport[3] < self._ui.px(ROOM_FOR_FIGURES)
+            draw_chip(surface, self._ui, viewport, side, lines[:1] if is_low else lines)
+        if self.difference.text:
+            draw_pill(surface, self._ui, self._pill_place, self.difference.text, TEXT)
+
+    @property
+    def _pill_place(self) -> tuple[int, int]:
+        """Where the middle of the line about both is: on what divides them."""
+        left, top, width, height = self.area
+        across = left + width // 2
+        return across, top + (self._ui.px(PILL_TOP) if self._is_wide else height // 2)
+
+    def _measured(self) -> list[tuple[str, Playback]]:
+        if self.beside is None:
+            return super()._measured()
+        return [("A ", self.playback), ("B ", self.other)]
+
+    def _measure(self, ticks: int, profile: Profile) -> None:
+        """It is measured once both are at the same tick."""
+        self._ticks_made = ticks
+
+    _ticks_made = 0
+
+    def captions(self) -> tuple[list[str], list[str]]:
+        """What stands over each half: its settings, and what comes of them."""
+        return self._caption(self.playback), self._caption(self.other)
+
+    def _caption(self, playback: TwinPlayback | object) -> list[str]:
+        assert isinstance(playback, TwinPlayback)
+        world = playback.session.world
+        settings, pair = world.settings, coefficients_of(world, None if self.panel is None else self.panel.material)
+        springs = "several springs" if pair is None else f"Cs {pair[0]:.3g}  Cd {pair[1]:.3g}"
+        solver = SOLVER_LABELS[settings.solver]
+        parts = "" if settings.substeps == 1 else f", {settings.substeps} substeps"
+        return [f"{springs}   {solver}{parts}", self.difference.figures(playback.current)]
+
+    def title(self) -> list[str]:
+        """Words of the window's title."""
+        return [*super().title(), "two settings"]

@@ -1,0 +1,95 @@
+"""TwinPlayback: a run that passes on what is done to it to another one, but for the settings that the two differ in."""
+
+from typing import Self
+
+import numpy as np
+
+from sandbox.app.play.playback import Playback
+from sandbox.physics.world import LAW_HOOKE, World
+from sandbox.session.commands import Command, SetCoefficients, SetFirmness, SetSolver
+from sandbox.session.session import Branch
+
+# What is set on one side alone.
+OWN = (SetCoefficients, SetFirmness, SetSolver)
+# In the other run it counts as a gesture as well, so that undo takes the same back in both.
+NOTHING = SetSolver()
+
+
+class TwinPlayback(Playback):
+    """A run with a twin: every command goes to both, those of OWN to one; gestures pair, and so do undo and redo."""
+
+    twin: "TwinPlayback | None" = None
+
+    def pair(self, other: "TwinPlayback") -> None:
+        """Be twins from now on; the other one goes by the clock of this one, see `follow`."""
+        self.twin, other.twin = other, self
+        other.clock = self.clock
+        self._pairs: dict[int, int] = {}
+        other._pairs = {}
+
+    def submit(self, command: Command, gesture: int | None = None) -> None:
+        """Queue a command here and in the twin."""
+        super().submit(command, gesture)
+        twin = self.twin
+        if twin is None:
+            return
+        if gesture is not None and gesture not in self._pairs:
+            self._pairs[gesture] = twin.session.new_gesture()
+        paired = None if gesture is None else self._pairs[gesture]
+        Playback.submit(twin, NOTHING if isinstance(command, OWN) else command, paired)
+
+    def follow(self, tick: int) -> None:
+        """Come to the tick that the twin is at, after it has got there."""
+        self.apply_pending()
+        if tick < self.session.tick:
+            Playback.seek(self, tick)
+        while self.session.tick < tick:
+            if self.session.tick == tick - 1:
+                self.previous = self.session.snapshot()
+            self._tick()
+            if self.session.tick == tick:
+                self.current = self.session.snapshot()
+        if len(self.previous.mass) != len(self.current.mass):
+            self.previous = self.current
+        # It says the same as its twin.
+        self.session.messages.clear()
+        self.messages.clear()
+
+    def return_to(self, branch: Branch) -> None:
+        """Go back to where a branch begins in both."""
+        place, twin = self.session.branches.index(branch), self.twin
+        super().return_to(branch)
+        if twin is not None and place < len(twin.session.branches):
+            Playback.return_to(twin, twin.session.branches[place])
+
+    def reset(self) -> Self:
+        """The same level from its beginning, with the settings that it has now, at the same speed."""
+        fresh = type(self)(self.level)
+        fresh.clock.paused, fresh.clock.speed = self.clock.paused, abs(self.clock.speed)
+        fresh.travel.bookmarks, fresh.travel.span = self.travel.bookmarks, self.travel.span
+        for command in own_settings(self.session.world, fresh.session.world):
+            fresh.session.submit(command)
+        fresh.session.apply_pending()
+        fresh.current = fresh.previous = fresh.session.snapshot()
+        return fresh
+
+
+def coefficients_of(world: World, material: int | None) -> tuple[float, float] | None:
+    """Cs and Cd of a material's springs (None = all); None where there are none, or several."""
+    chosen = world.material >= 0 if material is None else world.material == material
+    chosen &= (world.law != LAW_HOOKE) & world.spring_active
+    pairs = np.unique(np.stack([world.stiffness[chosen], world.damping[chosen]], axis=1), axis=0)
+    return (float(pairs[0, 0]), float(pairs[0, 1])) if len(pairs) == 1 else None
+
+
+def own_settings(world: World, fresh: World) -> list[Command]:
+    """The commands that give a fresh world of the same level the settings and coefficients that a world has now."""
+    commands: list[Command] = []
+    now = world.settings
+    if now != fresh.settings:
+        commands.append(SetSolver(now.solver, now.iterations, now.substeps, now.warm_start))
+    for material in range(len(fresh.material_names)):
+        wanted = coefficients_of(world, material)
+        if wanted is not None and wanted != coefficients_of(fresh, material):
+            commands.append(SetCoefficients(*wanted, material))
+    return commands

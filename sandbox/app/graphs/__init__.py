@@ -1,0 +1,1 @@
+"""Live graphs of a run: what is measured, kept for a while, and drawn under the world."""

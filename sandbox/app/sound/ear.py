@@ -1,0 +1,290 @@
+"""Ear: hears what happens in a run: blows, breaks, jerks of strings, rubbing and motors. It reads and never writes."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.app.sound.bank import Note, note
+from sandbox.app.sound.timbre import Timbres, timbres_of
+from sandbox.physics.collision.narrow_phase import DISC, TERRAIN
+from sandbox.physics.state import Floats, Slots
+from sandbox.physics.substeps import substep_time
+from sandbox.physics.world import GRAB_COUNT, World
+
+# A blow is heard from this change of velocity on [m/s], and is as loud as any at the other.
+SOFTEST, HARDEST = 0.35, 9.0
+# A ball that no contact tells of was struck where its velocity changed by this much [m/s] and more.
+LEAP = 1.0
+# What goes on for longer than about this [s] is no event any more: a heap that settles, a wheel that rolls.
+MEMORY = 0.25
+# A blow is one where there is this many times more of it than there was of late.
+NEWS = 1.5
+# From what friction does to a body in a tick [m^2/s^2 a kg] a squeak is heard, and where it is loudest.
+RUB, HARD_RUB = 0.12, 1.2
+# From what jerk of a string [m/s] it sounds, and where it is loudest.
+JERK, HARD_JERK = 1.0, 8.0
+# Strings of the size of a level would be too low to hear: so many times higher, up to so many Hz.
+TUNED, HIGHEST_STRING = 24.0, 700.0
+# Pitches [Hz] of a break of a spring of 0.3 m, and of a motor that stands and one of 1 rad/s.
+SNAP_PITCH, MOTOR_PITCH, MOTOR_RISE = 420.0, 70.0, 9.0
+# Of one tick at most so many of each kind: the loudest.
+MOST = 4
+
+
+class Sounding(NamedTuple):
+    """Something to be heard: what, how loud 0..1, where [m], and whose, so that one thing does not repeat itself."""
+
+    note: Note
+    loudness: float
+    place: tuple[float, float]
+    source: int
+
+
+class _Touching(NamedTuple):
+    """What touches, k of them: its particle, the other disc or -1, push and rub = impulses [N s], is it the ground."""
+
+    particle: Slots
+    other: Slots
+    push: Floats
+    rub: Floats
+    is_ground: NDArray[np.bool_]
+
+
+@dataclass(eq=False)
+class _Before:
+    """What a tick is compared with."""
+
+    tick: int
+    velocity: Floats
+    spring_active: NDArray[np.bool_]
+    topology: int
+    held: list[tuple[int, float]]
+
+
+class _Onsets:
+    """Tells what is new, for each body, from what goes on."""
+
+    def __init__(self, count: int) -> None:
+        self._usual = np.full(count, np.inf)
+
+    def new(self, now: Floats, least: float, keep: float) -> Slots:
+        """Timbres of which there is much more now than of late; keep: what share of the past still counts."""
+        found = np.flatnonzero(now > NEWS * self._usual + least)
+        # At first what is there already is nothing new.
+        self._usual = np.where(np.isinf(self._usual), now, np.maximum(self._usual * keep, now))
+        return found
+
+
+class Ear:
+    """Told of every tick by `hear`, after it; what it heard waits in `heard`."""
+
+    def __init__(self) -> None:
+        self.heard: list[Sounding] = []
+        # Whether bodies have come that `likely_notes` has not told of.
+        self.has_new_bodies = False
+        self._before: _Before | None = None
+        self._bodies: Timbres | None = None
+        self._key: tuple[object, ...] = ()
+
+    def forget(self) -> None:
+        """Compare with nothing: time has jumped."""
+        self._before = None
+        self.heard.clear()
+
+    def likely_notes(self) -> list[Note]:
+        """What the bodies that there are sound like when they are struck, what is heaviest last."""
+        self.has_new_bodies = False
+        bodies = self._bodies
+        if bodies is None:
+            return []
+        order = np.argsort(bodies.mass, kind="stable").tolist()
+        notes = [note("thud", float(bodies.pitch[b]), bodies.stuff[b]) for b in order]
+        return list(dict.fromkeys(reversed(notes)))[::-1]
+
+    def hear(self, world: World) -> None:
+        """Take in a tick of the world."""
+        key = (world.particle_count, world.joined)
+        if self._bodies is None or self._key != key:
+            self._bodies, self._key, self._before = timbres_of(world), key, None
+            count, self.has_new_bodies = len(self._bodies.mass), True
+            self._blows, self._rubs, self._jerks = (_Onsets(count) for _ in range(3))
+        before = self._before
+        if before is not None and before.tick == world.tick - 1:
+            keep = float(np.exp(-1.0 / (MEMORY * world.settings.tick_rate)))
+            with np.errstate(all="ignore"):
+                self._hear_contacts(world, before, keep)
+                self._hear_breaks(world, before)
+                self._hear_strings(world, before, keep)
+        held = _held(world)
+        if before is None or before.topology != world.topology_version:
+            active = world.spring_active.copy()
+        else:
+            active = before.spring_active
+        self._before = _Before(world.tick, world.velocity.copy(), active, world.topology_version, held)
+
+    def _add(self, kind: str, pitch: float, stuff: str, loudness: float, place: Floats, body: int) -> None:
+        assert self._bodies is not None
+        if np.isfinite(loudness) and np.isfinite(pitch) and np.isfinite(place).all():
+            at = (float(place[0]), float(place[1]))
+            self.heard.append(
+                Sounding(note(kind, pitch, stuff), min(float(loudness), 1.0), at, int(self._bodies.owner[body]))
+            )
+
+    # Blows and rubbing.
+
+    def _hear_contacts(self, world: World, before: _Before, keep: float) -> None:
+        bodies = self._bodies
+        assert bodies is not None
+        count = len(bodies.mass)
+        felt, rub = np.zeros(count), np.zeros(count)
+        touch = _touching(world, self._leaping(world, before))
+        if len(touch.particle):
+            particle, body = touch.particle, bodies.body[touch.particle]
+            fall = np.array(world.settings.gravity) / world.settings.tick_rate
+            velocity = world.velocity[particle]
+            change = velocity - before.velocity[particle] - fall * world.gravity_scale[particle, None]
+            jump = np.where(world.inverse_mass[particle] > 0.0, np.hypot(change[:, 0], change[:, 1]), 0.0)
+            blow = np.maximum(jump * world.mass[particle], touch.push)
+            speed = np.zeros(count)
+            np.maximum.at(speed, body, jump)
+            # What a whole body feels of it, and its hardest hit part: the geometric mean.
+            felt = np.sqrt(speed * np.bincount(body, blow, count) / bodies.mass)
+            power = np.where(touch.is_ground, touch.rub * np.hypot(velocity[:, 0], velocity[:, 1]), 0.0)
+            rub = np.where(bodies.squeaks, np.bincount(body, power, count) / bodies.mass, 0.0)
+        for b in _loudest(self._blows.new(felt, SOFTEST, keep), felt):
+            hardest = int(np.argmax(np.where(body == b, blow, -1.0)))
+            other = int(touch.other[hardest])
+            # A bumper rings rather than what strikes it.
+            sounding = b if other < 0 or world.inverse_mass[other] > 0.0 else int(bodies.body[other])
+            loudness = (felt[b] / HARDEST) ** 0.75 * bodies.weight[b]
+            place = world.position[particle[hardest]]
+            self._add("thud", bodies.pitch[sounding], bodies.stuff[sounding], loudness, place, b)
+        for b in _loudest(self._rubs.new(rub, RUB, keep), rub):
+            place = world.position[particle[np.argmax(np.where(body == b, power, -1.0))]]
+            self._add("squeak", 2.5 * bodies.pitch[b], "", (rub[b] / HARD_RUB) ** 0.7 * bodies.weight[b], place, b)
+
+    def _leaping(self, world: World, before: _Before) -> Slots:
+        """Balls that were struck in a tick: some are apart again at its end, and no contact tells of it."""
+        assert self._bodies is not None
+        balls = self._bodies.balls
+        change = world.velocity[balls] - before.velocity[balls]
+        fast = (change[:, 0] * change[:, 0] + change[:, 1] * change[:, 1] > LEAP * LEAP) & world.particle_active[balls]
+        held = [particle for particle, _ in before.held]
+        return balls[fast & ~np.isin(balls, held)] if fast.any() else balls[:0]
+
+    # Breaks.
+
+    def _hear_breaks(self, world: World, before: _Before) -> None:
+        if before.topology == world.topology_version or len(before.spring_active) > world.spring_count:
+            return
+        active = world.spring_active
+        gone = np.flatnonzero(before.spring_active & ~active[: len(before.spring_active)])
+        ends = world.particle_active[world.particle_a[gone]] & world.particle_active[world.particle_b[gone]]
+        # Not those of hands, nor of what was taken out whole.
+        gone = gone[ends & (world.material[gone] >= 0)]
+        assert self._bodies is not None
+        body = self._bodies.body[world.particle_a[gone]]
+        for b in np.unique(body)[:MOST]:
+            springs = gone[body == b]
+            length = float(np.median(world.rest_length[springs]))
+            stiff = float(np.median(world.stiffness[springs]))
+            pitch = SNAP_PITCH * (0.3 / max(length, 1e-3)) ** 0.5 * (0.6 + stiff)
+            loudness = min(1.0, 0.55 + 0.12 * np.log2(len(springs))) * self._bodies.weight[b]
+            self._add("snap", pitch, "", loudness, world.position[world.particle_a[springs[0]]], int(b))
+
+    # Strings.
+
+    def _hear_strings(self, world: World, before: _Before, keep: float) -> None:
+        bodies = self._bodies
+        assert bodies is not None
+        for grab, (particle, pull) in enumerate(before.held):
+            if particle >= 0 and not world.is_held(grab) and particle < len(bodies.body):
+                b = int(bodies.body[particle])
+                if bodies.strand[b] or bodies.stuff[b] in ("metal", "wood"):
+                    loudness = 0.8 * (pull / (100.0 * bodies.mass[b])) ** 0.5
+                    self._add("pluck", self._string_pitch(world, b), "", loudness, world.position[particle], b)
+        if not len(bodies.strings):
+            return
+        mine = bodies.strings[world.spring_active[bodies.strings]]
+        body, most = bodies.body[world.particle_a[mine]], np.zeros(len(bodies.mass))
+        np.maximum.at(most, body, world.tension[mine])
+        jerk = most / bodies.mass
+        for b in _loudest(self._jerks.new(jerk, JERK, keep), jerk):
+            place = world.position[world.particle_a[mine[np.argmax(body == b)]]]
+            self._add("pluck", self._string_pitch(world, b), "", 0.8 * (jerk[b] / HARD_JERK) ** 0.8, place, b)
+
+    def _string_pitch(self, world: World, body: int) -> float:
+        """Pitch [Hz] of a string: f = sqrt(T L / m) / (2 L), many times higher, so that it can be heard."""
+        bodies = self._bodies
+        assert bodies is not None
+        springs = (bodies.body[world.particle_a] == body) & world.spring_active & (world.material >= 0)
+        length = max(float(world.rest_length[springs].sum()), 1e-3)
+        weight = float(bodies.mass[body]) * float(np.hypot(*world.settings.gravity) or 1.0)
+        pull = max(float(np.max(world.tension[springs], initial=0.0)) / substep_time(world.settings), 0.3 * weight)
+        return min(TUNED * float(np.sqrt(pull * length / bodies.mass[body])) / (2.0 * length), HIGHEST_STRING)
+
+    # Motors.
+
+    def motors(self, world: World) -> list[Sounding]:
+        """What motors and hydraulics are doing now; source: the number of the part."""
+        found = []
+        motors, hydraulics = world.actuators.motors, world.actuators.hydraulics
+        for k in np.flatnonzero(world.actuator_value[motors.part]):
+            hub, rim = int(motors.hub[k]), motors.rim[motors.rim_start[k] : motors.rim_start[k + 1]]
+            arm, way = world.position[rim] - world.position[hub], world.velocity[rim] - world.velocity[hub]
+            with np.errstate(all="ignore"):
+                turning = np.abs(np.mean((arm[:, 0] * way[:, 1] - arm[:, 1] * way[:, 0]) / np.sum(arm * arm, axis=1)))
+                load = abs(world.actuator_impulse[motors.part[k]]) / substep_time(world.settings) / motors.torque[k]
+                share = min(turning / (abs(motors.speed[k]) or 1.0), 1.0)
+                effort = (0.2 + 0.8 * share) * (0.6 + 0.4 * min(load, 1.0))
+            if np.isfinite(turning) and np.isfinite(effort) and np.isfinite(world.position[hub]).all():
+                x, y = world.position[hub].tolist()
+                pitch = MOTOR_PITCH + MOTOR_RISE * float(turning)
+                found.append(Sounding(note("motor", pitch), float(effort), (x, y), int(motors.part[k])))
+        for k in np.flatnonzero(world.actuator_value[hydraulics.part]):
+            spring, value = int(hydraulics.spring[k]), world.actuator_value[hydraulics.part[k]]
+            length = world.rest_length[spring]
+            moves = length < hydraulics.longest[k] if value > 0 else length > hydraulics.shortest[k]
+            place = world.position[world.particle_a[spring]]
+            if moves and world.spring_active[spring] and np.isfinite(place).all():
+                at = (float(place[0]), float(place[1]))
+                found.append(Sounding(note("motor", 1.6 * MOTOR_PITCH), 0.6, at, int(hydraulics.part[k])))
+        return found
+
+
+def _touching(world: World, others: Slots) -> _Touching:
+    """What contacts of the last step say, of two discs for each of them; and other particles that were struck."""
+    own = (world.contact_particle >= 0) & (world.contact_particle < world.particle_count)
+    particle, feature = world.contact_particle[own].astype(np.int64), world.contact_feature[own]
+    kind, number, impulse = feature % 3, feature // 3, np.abs(world.contact_impulse[own])
+    discs = (kind == DISC) & (number < world.particle_count)
+    other = np.where(discs, number, -1)
+    others = others[~np.isin(others, np.concatenate([particle, number[discs]]))] if len(others) else others
+    none = np.zeros(len(others))
+    return _Touching(
+        np.concatenate([particle, number[discs], others]),
+        np.concatenate([other, particle[discs], others - others - 1]),
+        np.concatenate([impulse[:, 0], impulse[discs, 0], none]),
+        np.concatenate([impulse[:, 1], impulse[discs, 1], none]),
+        np.concatenate([kind == TERRAIN, np.zeros(np.count_nonzero(discs) + len(others), dtype=np.bool_)]),
+    )
+
+
+def _held(world: World) -> list[tuple[int, float]]:
+    """The particle that each hand holds, -1: none, and its force [N]."""
+    if world.grab_spring < 0 or not len(world.hand_strength):
+        return []
+    return [
+        (int(world.particle_b[world.grab_spring + grab]), float(np.hypot(*world.hand_force[grab])))
+        if world.is_held(grab)
+        else (-1, 0.0)
+        for grab in range(GRAB_COUNT)
+    ]
+
+
+def _loudest(found: Slots, loudness: Floats) -> list[int]:
+    """At most MOST of what was found, the loudest."""
+    order = np.argsort(-loudness[found], kind="stable")[:MOST]
+    return [int(each) for each in found[order]]

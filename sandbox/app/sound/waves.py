@@ -1,0 +1,166 @@
+"""Waves: what things sound like, made of a few sines and a little noise; each in a millisecond or two.
+
+Every wave is mono, its peak is 1, and it begins and ends at 0, so that none clicks.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Wave = NDArray[np.float64]
+
+# Samples a second.
+RATE = 44_100
+# The pentatonic scale, in semitones above its root: whatever things sound together, they sound well.
+SCALE = (0, 2, 4, 7, 9)
+# Pitch [Hz] of the lowest step, a C, and how many steps there are: five octaves.
+LOWEST, STEPS = 65.41, 26
+# From so much of its peak on a wave is let go, and this long [s] it fades then.
+QUIET, FADE = 0.004, 0.008
+
+
+@dataclass(frozen=True)
+class Stuff:
+    """What is heard of a stuff that is struck: its modes and the noise of the blow.
+
+    pitch: of a thing of 1 m [Hz]. modes: frequency over the lowest, time [s] to fall to 1/e, strength. glide: how much
+    higher it begins. noise: strength of the blow, below cut [Hz], over in so many s.
+    """
+
+    pitch: float
+    modes: tuple[tuple[float, float, float], ...]
+    glide: float
+    noise: float
+    cut: float
+    blow: float = 0.012
+
+
+# Modes of what is hard are those of a free bar (1 : 2.76 : 5.40 : 8.93), of what is soft about those of a drum.
+STUFFS: dict[str, Stuff] = {
+    "jelly": Stuff(130.0, ((1.0, 0.10, 1.0), (1.59, 0.05, 0.35)), 1.7, 0.35, 420.0, 0.02),
+    "rubber": Stuff(165.0, ((1.0, 0.13, 1.0), (2.14, 0.06, 0.3)), 1.25, 0.3, 900.0),
+    "cloth": Stuff(150.0, ((1.0, 0.05, 0.4),), 1.3, 1.0, 700.0, 0.03),
+    "wood": Stuff(330.0, ((1.0, 0.07, 1.0), (2.76, 0.04, 0.5), (5.40, 0.02, 0.25)), 1.02, 0.5, 2600.0, 0.006),
+    "stone": Stuff(280.0, ((1.0, 0.045, 1.0), (2.76, 0.025, 0.6), (5.40, 0.012, 0.3)), 1.05, 0.9, 3200.0, 0.009),
+    "glass": Stuff(520.0, ((1.0, 0.09, 1.0), (2.76, 0.06, 0.6), (5.40, 0.03, 0.4)), 1.0, 0.3, 8000.0, 0.002),
+    "metal": Stuff(
+        440.0, ((1.0, 0.22, 1.0), (2.76, 0.15, 0.55), (5.40, 0.09, 0.35), (8.93, 0.05, 0.2)), 1.0, 0.25, 7000.0, 0.003
+    ),
+}
+
+
+def pitch_of(step: int) -> float:
+    """Frequency [Hz] of a step of the scale."""
+    return float(LOWEST * 2.0 ** ((12 * (step // len(SCALE)) + SCALE[step % len(SCALE)]) / 12.0))
+
+
+def step_of(frequency: float) -> int:
+    """The step of the scale that is nearest to a frequency [Hz]."""
+    pitches = np.array([pitch_of(step) for step in range(STEPS)])
+    return int(np.argmin(np.abs(np.log(pitches / max(frequency, 1e-9)))))
+
+
+def _seconds(length: float) -> Wave:
+    return np.arange(int(length * RATE)) / RATE
+
+
+def _noise(count: int, low: float, high: float, seed: int) -> Wave:
+    """Noise between two frequencies [Hz], the same each time; its peak is 1."""
+    # A length that is transformed fast.
+    length = 1 << (count - 1).bit_length()
+    spectrum = np.fft.rfft(np.random.default_rng(seed).standard_normal(length))
+    frequency = np.fft.rfftfreq(length, 1.0 / RATE)
+    shape = frequency**4 / (frequency**4 + low**4) / (1.0 + (frequency / high) ** 4)
+    noise = np.fft.irfft(spectrum * shape, length)[:count]
+    return np.asarray(noise / np.abs(noise).max())
+
+
+def _turns(frequency: Wave) -> Wave:
+    """Angle [rad] of a sine whose frequency [Hz] changes."""
+    return np.asarray(2.0 * np.pi * np.cumsum(frequency) / RATE)
+
+
+def _finished(wave: Wave, attack: float) -> Wave:
+    """A wave with its peak at 1, that rises in `attack` [s] and is cut where it is too quiet to be missed."""
+    loud = np.flatnonzero(np.abs(wave) > QUIET * np.abs(wave).max())
+    wave = wave[: min(len(wave), int(loud[-1]) + int(FADE * RATE))].copy()
+    rise, fall = max(int(attack * RATE), 2), int(FADE * RATE)
+    wave[:rise] *= 0.5 - 0.5 * np.cos(np.pi * np.arange(rise) / rise)
+    wave[-fall:] *= 0.5 + 0.5 * np.cos(np.pi * np.arange(1, fall + 1) / fall)
+    return np.asarray(wave / np.abs(wave).max())
+
+
+def thud(step: int, stuff: str) -> Wave:
+    """A thing of one of STUFFS that is struck."""
+    made, pitch = STUFFS[stuff], pitch_of(step)
+    longest = max(decay for _, decay, _ in made.modes)
+    t = _seconds(5.6 * longest + 0.05)
+    bend = 1.0 + (made.glide - 1.0) * np.exp(-t / 0.03)
+    wave = np.zeros_like(t)
+    for ratio, decay, strength in made.modes:
+        if pitch * ratio < 0.4 * RATE:
+            part = slice(0, int((5.6 * decay + 0.05) * RATE))
+            wave[part] += strength * np.exp(-t[part] / decay) * np.sin(_turns(pitch * ratio * bend[part]))
+    blow = t[: int(7.0 * made.blow * RATE)]
+    wave[: len(blow)] += made.noise * _noise(len(blow), 30.0, made.cut, step) * np.exp(-blow / made.blow)
+    return _finished(wave, 0.0012 if stuff in ("glass", "metal", "wood", "stone") else 0.003)
+
+
+def pluck(step: int) -> Wave:
+    """A string that is plucked, by the method of Karplus and Strong (1983)."""
+    pitch = pitch_of(step)
+    period = max(round(RATE / pitch), 2)
+    # A string that is plucked by a soft finger: little above the first overtones.
+    block = _noise(period, 1.0, 9.0 * pitch, step)
+    block -= np.linspace(block[0], block[-1], period)
+    block -= block.mean()
+    before, blocks = block[-1], []
+    # Time [s] to a thousandth: high strings fall silent sooner.
+    ring = min(1.6, 90.0 / pitch + 0.5)
+    loss = 0.5 * 0.001 ** (1.0 / (pitch * ring))
+    for _ in range(int(0.85 * ring * RATE / period)):
+        blocks.append(block)
+        delayed = np.concatenate([[before], block[:-1]])
+        before, block = block[-1], loss * (block + delayed)
+    wave = np.concatenate(blocks)
+    return _finished(wave - wave.mean(), 0.002)
+
+
+def snap(step: int) -> Wave:
+    """Something that breaks: three cracks close to each other, and a short tone that falls."""
+    t, pitch = _seconds(0.2), pitch_of(step)
+    rng = np.random.default_rng(step)
+    wave = 0.5 * np.exp(-t / 0.018) * np.sin(_turns(pitch * (1.0 + 1.5 * np.exp(-t / 0.012))))
+    noise = _noise(len(t), 700.0, min(5.0 * pitch + 2000.0, 9000.0), step)
+    for at, strength in zip((0.0, *rng.uniform(0.008, 0.05, 2)), (1.0, 0.6, 0.35), strict=True):
+        after = np.maximum(t - at, 0.0)
+        wave += strength * noise * np.where(t >= at, np.exp(-after / 0.009) * np.minimum(after / 0.0006, 1.0), 0.0)
+    return _finished(wave, 0.0008)
+
+
+def squeak(step: int) -> Wave:
+    """Something that rubs: a reedy tone that slides upward and trembles."""
+    t, pitch = _seconds(0.2), pitch_of(step)
+    slide = pitch * (1.0 + 0.22 * np.sin(np.pi * t / 0.2) + 0.02 * np.sin(2.0 * np.pi * 38.0 * t))
+    angle = _turns(slide)
+    wave = np.zeros_like(t)
+    for number, strength in enumerate((1.0, 0.45, 0.3, 0.12, 0.08), 1):
+        wave += strength * np.sin(number * angle)
+    wave += 0.1 * _noise(len(t), pitch, 6.0 * pitch, step)
+    return _finished(wave * np.sin(np.pi * t / 0.2) ** 1.5, 0.004)
+
+
+def motor(step: int) -> Wave:
+    """A motor that runs, for ever: its end goes on into its beginning."""
+    pitch = pitch_of(step) / 2.0
+    turns = max(round(0.5 * pitch), 1)
+    count = round(turns * RATE / pitch)
+    angle = 2.0 * np.pi * turns * np.arange(count) / count
+    wave = np.zeros(count)
+    for number in range(1, 13):
+        wave += np.sin(number * angle + 0.7 * number * number) / number**1.3
+    # Gears: a flutter that is whole in the loop as well.
+    beats = max(round(0.5 * 11.0), 1)
+    wave *= 1.0 + 0.18 * np.sin(2.0 * np.pi * beats * np.arange(count) / count)
+    return np.asarray(wave / np.abs(wave).max())

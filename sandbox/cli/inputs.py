@@ -1,0 +1,54 @@
+"""What commands read: levels and recordings; and how they end."""
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sandbox.level.format.model import Level
+    from sandbox.session.replay.recording import Replay
+
+EXIT_OK, EXIT_FAILED, EXIT_REFUSED, EXIT_INTERRUPTED = 0, 1, 2, 130
+
+
+class Refused(Exception):
+    """Something that cannot be done as asked; faults: one line each."""
+
+    def __init__(self, *faults: str) -> None:
+        super().__init__(*faults)
+        self.faults = faults
+
+
+def level_of(name: str) -> "Level":
+    """A level file, or a shipped level of that name. Raises Refused."""
+    from sandbox.level.format.files import LevelError, load_level
+
+    try:
+        return load_level(name)
+    except LevelError as error:
+        raise Refused(*error.faults) from None
+
+
+def recording_of(name: str, partial: bool = False) -> "Replay":
+    """A recording; partial: also one that is cut off. Raises Refused."""
+    from sandbox.session.replay.reader import read_replay
+    from sandbox.session.replay.recording import ReplayError
+
+    try:
+        return read_replay(name, partial)
+    except ReplayError as error:
+        raise Refused(*error.faults) from None
+
+
+def is_replay(name: str) -> bool:
+    """Whether a file's first bytes are a recording's, plain or compressed; anything else is taken for a level."""
+    from sandbox.session.replay.reader import begins_as_replay
+
+    try:
+        return begins_as_replay(name)
+    except OSError:
+        return False
+
+
+def level_or_replay(name: str) -> "tuple[Level, Replay | None]":
+    """What a file holds: a level, or a replay and the level that it is of. Raises Refused."""
+    replay = recording_of(name) if is_replay(name) else None
+    return (replay.level if replay else level_of(name)), replay

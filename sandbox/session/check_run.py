@@ -1,0 +1,171 @@
+"""Running a level by itself and holding its checks against what is measured."""
+
+from collections import deque
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.level.checks import STILL, CheckDef, CheckResult, excess, judge, window_of
+from sandbox.level.format.model import Level
+from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
+from sandbox.physics.query import load_bearing, shown_particles, shown_springs, strain
+from sandbox.physics.world import World
+from sandbox.session.session import Session
+from sandbox.session.summary import STRAIN_WINDOW, particle_metric, strain_sample
+
+
+def run_checks(level: Level) -> list[CheckResult]:
+    """Run the level by itself as long as its checks ask for, and judge; in the order of the file."""
+    results = dict(found for found in checks_as_they_end(level) if found is not None)
+    return [results[number] for number in sorted(results)]
+
+
+def checks_as_they_end(level: Level) -> Iterator[tuple[int, CheckResult] | None]:
+    """Run the level by itself and give each check's place and result as soon as it is known; None after every tick."""
+    session = Session(level)
+    world, rate = session.world, level.settings.tick_rate
+    gauge = _Gauge(world, level)
+    waiting = {number: _Waiting(check, rate) for number, check in enumerate(level.checks)}
+    while True:
+        with np.errstate(over="ignore", invalid="ignore"):
+            gauge.look(world)
+            for number, each in list(waiting.items()):
+                result = each.look(session.tick, gauge)
+                if result is not None:
+                    del waiting[number]
+                    yield number, result
+            if not waiting:
+                return
+            session.advance()
+        yield None
+
+
+class _Waiting:
+    """A check that is not decided yet, with the value that decides it as far as is known, and when that was [s]."""
+
+    def __init__(self, check: CheckDef, rate: int) -> None:
+        self._check, self._rate = check, rate
+        self._first, self._last = (round(at * rate) for at in window_of(check))
+        self._found: tuple[float, float] | None = None
+
+    def look(self, tick: int, gauge: "_Gauge") -> CheckResult | None:
+        """Measure, where it is time to; the result once it is known."""
+        check = self._check
+        if tick < self._first:
+            return None
+        value, at = gauge.value(check), tick / self._rate
+        beyond = excess(check, value)
+        before = None if self._found is None else excess(check, self._found[0])
+        if before is None or (beyond < before if check.eventually else beyond > before):
+            self._found = value, at
+        decided = check.eventually is not None and beyond <= 0.0
+        if not decided and tick < self._last:
+            return None
+        assert self._found is not None
+        once = not (check.always or check.eventually)
+        return judge(check, value) if once else judge(check, *self._found)
+
+
+class _Gauge:
+    """Measures a running level; what depends on more than the present tick is followed from the first one on."""
+
+    def __init__(self, world: World, level: Level) -> None:
+        self._world = world
+        metrics = {check.metric for check in level.checks}
+        self._follows_strain = bool(metrics & {"max_strain", "rms_strain"})
+        samples = max(1, round(STRAIN_WINDOW * level.settings.tick_rate))
+        self._strains: deque[tuple[float, float, int]] = deque(maxlen=samples)
+        bodies = {check.body for check in level.checks}
+        self._particles = {body: _of_body(world.particle_names, body, ".") for body in bodies}
+        self._springs = {body: _of_body(world.spring_names, body, ":") for body in bodies}
+        # For how many ticks each has been still.
+        self._still = {check.body: -1 for check in level.checks if check.metric == "settled"}
+        self._started = world.tick
+
+    def look(self, world: World) -> None:
+        """Follow one tick."""
+        if self._follows_strain and world.tick > self._started:
+            self._strains.append(strain_sample(world))
+        for body, ticks in self._still.items():
+            speed = np.sqrt(np.sum(world.velocity[self._shown(body)] ** 2, axis=1))
+            self._still[body] = ticks + 1 if bool(np.all(speed <= STILL)) else 0
+
+    def value(self, check: CheckDef) -> float:
+        """What a check measures now."""
+        return float(_VALUES[check.metric](self, self._world, check))
+
+    def _shown(self, body: str | None) -> NDArray[np.bool_]:
+        shown = shown_particles(self._world)
+        return shown & self._particles[body][: len(shown)]
+
+    def _max_strain(self, world: World, check: CheckDef) -> float:
+        return float(np.max([largest for largest, _, _ in self._strains], initial=0.0))
+
+    def _rms_strain(self, world: World, check: CheckDef) -> float:
+        count = sum(count for _, _, count in self._strains)
+        return float(np.sqrt(sum(squares for _, squares, _ in self._strains) / count)) if count else 0.0
+
+    def _strain(self, world: World, check: CheckDef) -> float:
+        return float(np.max(np.abs(strain(world))[load_bearing(world) & self._springs[check.body]], initial=0.0))
+
+    def _energy(self, world: World, check: CheckDef) -> float:
+        return kinetic_energy(world) + self._potential_energy(world, check)
+
+    def _potential_energy(self, world: World, check: CheckDef) -> float:
+        return spring_energy(world) + gravity_energy(world)
+
+    def _max_speed(self, world: World, check: CheckDef) -> float:
+        return float(np.max(np.sqrt(np.sum(world.velocity[self._shown(None)] ** 2, axis=1)), initial=0.0))
+
+    def _non_finite(self, world: World, check: CheckDef) -> int:
+        state = np.concatenate([world.position, world.velocity], axis=1)[shown_particles(world)]
+        return int(np.count_nonzero(~np.isfinite(state).all(axis=1)))
+
+    def _broken_springs(self, world: World, check: CheckDef) -> int:
+        of_body = self._springs[check.body]
+        hands = np.array([world.is_grab_spring(slot) for slot in range(world.spring_count)], dtype=np.bool_)
+        return int(np.count_nonzero(of_body & ~hands) - np.count_nonzero(shown_springs(world) & of_body))
+
+    def _of_particle(self, world: World, check: CheckDef) -> float:
+        return particle_metric(world, str(check.particle), check.metric)
+
+    def _distance(self, world: World, check: CheckDef) -> float:
+        ends = [world.position[world.particle_slot(str(name))] for name in (check.particle, check.other)]
+        return float(np.sqrt(np.sum((ends[0] - ends[1]) ** 2)))
+
+    def _inside(self, world: World, check: CheckDef) -> float:
+        """How far inside the box the outermost is, below 0 where it is outside."""
+        left, bottom, right, top = check.box or (0.0, 0.0, 0.0, 0.0)
+        if check.particle is not None:
+            position = world.position[world.particle_slot(check.particle)][None]
+        else:
+            position = world.position[self._shown(check.body)]
+        return float(np.min(np.concatenate([position - (left, bottom), (right, top) - position]), initial=np.inf))
+
+    def _settled(self, world: World, check: CheckDef) -> float:
+        return self._still[check.body] / world.settings.tick_rate
+
+
+_VALUES: dict[str, Callable[[_Gauge, World, CheckDef], float]] = {
+    "max_strain": _Gauge._max_strain,
+    "rms_strain": _Gauge._rms_strain,
+    "strain": _Gauge._strain,
+    "kinetic_energy": lambda gauge, world, check: kinetic_energy(world),
+    "potential_energy": _Gauge._potential_energy,
+    "energy": _Gauge._energy,
+    "max_speed": _Gauge._max_speed,
+    "non_finite": _Gauge._non_finite,
+    "broken_springs": _Gauge._broken_springs,
+    "x": _Gauge._of_particle,
+    "y": _Gauge._of_particle,
+    "speed": _Gauge._of_particle,
+    "distance": _Gauge._distance,
+    "inside": _Gauge._inside,
+    "settled": _Gauge._settled,
+}
+
+
+def _of_body(names: list[str], body: str | None, sign: str) -> NDArray[np.bool_]:
+    """Which of these slots are a body's; all of them where it is None."""
+    return np.array([body is None or name.startswith(f"{body}{sign}") for name in names], dtype=np.bool_)

@@ -1,0 +1,23 @@
+"""The whole world is shaken."""
+
+from dataclasses import dataclass
+
+from sandbox.level.format.quantities import Gravity
+from sandbox.physics.changing.shaking import shake
+from sandbox.physics.world import World
+from sandbox.session.commands.command import Command, CommandError
+
+
+@dataclass(frozen=True)
+class Shake(Command):
+    """Accelerate the frame of the world, with its terrain and pins, by this [m/s^2] for the coming tick.
+
+    What can move stays behind. A frame that starts and stops is as many commands of one gesture as it takes ticks.
+    """
+
+    type = "shake"
+    acceleration: Gravity
+
+    def carry_out(self, world: World) -> None:
+        if not shake(world, self.acceleration):
+            raise CommandError("there is nothing that moves to be shaken")

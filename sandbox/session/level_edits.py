@@ -1,0 +1,130 @@
+"""Edits of a level's data by the places of its fields: what lies between two levels, and single values set."""
+
+import copy
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from sandbox.level.faults.level_error import LevelError, suggestion
+from sandbox.level.format.files import level_data, parse_level
+from sandbox.level.format.model import Level
+
+# What a place holds that is not there.
+ABSENT = object()
+# Fields that say nothing about a run.
+SILENT = ("name", "description", "author", "licence", "tags", "view", "look", "extras", "checks")
+
+
+@dataclass(frozen=True)
+class Edit:
+    """A value of a level's data that is another: place by place from the top, names of parts where they have ids."""
+
+    path: tuple[str | int, ...]
+    before: Any
+    after: Any
+
+    def __str__(self) -> str:
+        return f"{path_text(self.path)}: {_shown(self.before)} -> {_shown(self.after)}"
+
+
+def path_text(path: Sequence[str | int]) -> str:
+    """A place as people write it: "bodies.deck.segments"."""
+    return ".".join(map(str, path))
+
+
+def edits_between(before: Any, after: Any, path: tuple[str | int, ...] = ()) -> list[Edit]:
+    """What has to be changed, value by value, to come from one level's data to another's; what only shows is left."""
+    if before == after and type(before) is type(after):
+        return []
+    if isinstance(before, dict) and isinstance(after, dict):
+        keys = [key for key in {**before, **after} if path or key not in SILENT]
+        return [edit for key in keys for edit in
+                edits_between(before.get(key, ABSENT), after.get(key, ABSENT), (*path, key))]  # fmt: skip
+    if isinstance(before, list) and isinstance(after, list):
+        left, right = _named(before), _named(after)
+        shared = [name for name in left if name in right]
+        if shared == [name for name in right if name in left] and list(left) == [*shared, *list(left)[len(shared) :]]:
+            return [edit for name in {**left, **right} for edit in
+                    edits_between(left.get(name, ABSENT), right.get(name, ABSENT), (*path, name))]  # fmt: skip
+    return [] if _equal(before, after) else [Edit(path, before, after)]
+
+
+def edited(level: Level, edits: Iterable[Edit]) -> Level:
+    """A level with these edits. Raises LevelError for one that is none."""
+    data = copy.deepcopy(level_data(level))
+    for edit in edits:
+        _put(data, edit.path, edit.after)
+    return parse_level(json.dumps(data).encode(), "the edited level")
+
+
+def with_value(level: Level, path: str, value: Any) -> Level:
+    """A level with another value at a place such as "settings.gravity.1" or "bodies.deck.segments".
+
+    Raises LevelError where there is no such place, or not for this value.
+    """
+    data = copy.deepcopy(level_data(level))
+    # What is left out has a value too.
+    data["settings"] = json.loads(level.settings.model_dump_json())
+    places: list[str | int] = list(path.split("."))
+    try:
+        _put(data, places, value)
+    except (KeyError, IndexError, TypeError, ValueError) as error:
+        part = str(error.args[0]) if error.args else path
+        near = suggestion(part, _names(data))
+        raise LevelError("the level", [(path, f"there is no such place{near}")]) from None
+    return parse_level(json.dumps(data).encode(), path)
+
+
+def _put(data: Any, path: Sequence[str | int], value: Any) -> None:
+    for number, part in enumerate(path):
+        is_last = number == len(path) - 1
+        if isinstance(data, list):
+            place = _index(data, part)
+            if is_last and value is ABSENT:
+                del data[place]
+            elif is_last:
+                data[place : place + 1] = [value]
+            else:
+                data = data[place]
+        elif not isinstance(data, dict):
+            raise KeyError(part)
+        elif is_last and value is ABSENT:
+            data.pop(part, None)
+        elif is_last:
+            data[part] = value
+        else:
+            data = data[part]
+
+
+def _index(parts: list[Any], name: str | int) -> int:
+    """The place of a part by its id or number; one beyond the last of an id that there is not."""
+    found = next((k for k, each in enumerate(parts) if isinstance(each, dict) and each.get("id") == name), None)
+    if found is not None:
+        return found
+    if str(name).isdecimal():
+        place = int(name)
+        if place > len(parts):
+            raise IndexError(name)
+        return place
+    return len(parts)
+
+
+def _named(parts: list[Any]) -> dict[str | int, Any]:
+    """Parts by their ids, or else by number."""
+    return {each["id"] if isinstance(each, dict) and "id" in each else k: each for k, each in enumerate(parts)}
+
+
+def _names(data: Any) -> list[str]:
+    return [*data, *data.get("settings", {}), *(each["id"] for each in data.get("bodies", []))]
+
+
+def _equal(before: Any, after: Any) -> bool:
+    return before is not ABSENT and after is not ABSENT and before == after
+
+
+def _shown(value: Any) -> str:
+    if value is ABSENT:
+        return "left out"
+    text = json.dumps(value)
+    return text if len(text) <= 80 else text[:77] + "..."

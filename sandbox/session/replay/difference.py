@@ -1,0 +1,145 @@
+"""Difference: where two runs part, each a recording, or a level with the commands of the other or none."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from sandbox.level.format.files import level_data
+from sandbox.level.format.model import Level
+from sandbox.physics.snapshot import hash_by_array, state_hash
+from sandbox.physics.state import BY_STORED
+from sandbox.session.commands import CommandError
+from sandbox.session.commands.records import ScriptLine
+from sandbox.session.level_edits import edits_between
+from sandbox.session.replay.divergence import Divergence, first_difference
+from sandbox.session.replay.recording import Replay, ReplayError, TickHashes
+from sandbox.session.replay.verify import recorded_run
+from sandbox.session.session import Session
+
+# Fields of levels that are listed as different, at most.
+MOST_LISTED = 10
+
+
+@dataclass(frozen=True)
+class ComparedRun:
+    """One of two runs. name: as a person calls it; replay: None of a level."""
+
+    name: str
+    level: Level
+    replay: Replay | None
+
+    def begin(self, other: "ComparedRun") -> Session:
+        """A run of it from the beginning, where it has no commands with those of the other."""
+        commands = self.replay or other.replay
+        return Session(self.level, script=commands.script if commands else ())
+
+
+@dataclass(frozen=True)
+class RunDifference:
+    """Where two runs part. level, commands: lines, none where they are equal; divergence: None where no tick differs.
+
+    left, right: the runs at that tick, None of a recording to whose state this build does not come. ticks: compared.
+    """
+
+    level: tuple[str, ...]
+    commands: tuple[str, ...]
+    divergence: Divergence | None
+    left: Session | None
+    right: Session | None
+    ticks: int
+
+    @property
+    def is_equal(self) -> bool:
+        """Whether nothing differs."""
+        return not self.level and not self.commands and self.divergence is None
+
+    def lines(self) -> list[str]:
+        """All that differs, a line each."""
+        found = [*self.level, *self.commands]
+        if self.divergence is not None:
+            return [*found, *self.divergence.lines("A", "B")]
+        return [*found, f"equal in every bit of {self.ticks} ticks"]
+
+
+def difference(
+    first: ComparedRun, second: ComparedRun, ticks: int, progress: Callable[[int, int], None] | None = None
+) -> RunDifference:
+    """Compare two runs for so many ticks, as far as recordings go. Raises ReplayError for commands that fail."""
+    for side in (first, second):
+        if side.replay is not None:
+            ticks = min(ticks, side.replay.ticks)
+    edits = edits_between(level_data(first.level), level_data(second.level))
+    told = [f"level: {edit}" for edit in edits[:MOST_LISTED]]
+    if len(edits) > MOST_LISTED:
+        told.append(f"level: and {len(edits) - MOST_LISTED} fields more")
+    commands = _command_lines(first, second, ticks)
+    sides = (first, second)
+    try:
+        for tick, hashes, sessions in _in_step(sides, ticks):
+            if hashes[0].whole[: len(hashes[1].whole)] != hashes[1].whole[: len(hashes[0].whole)]:
+                found = _located(sides, tick, hashes, sessions)
+                return RunDifference(tuple(told), commands, found[0], found[1], found[2], ticks)
+            if progress is not None:
+                progress(tick, ticks)
+    except CommandError as error:
+        raise ReplayError(*error.faults) from None
+    return RunDifference(tuple(told), commands, None, None, None, ticks)
+
+
+_Pair = tuple[Session | None, Session | None]
+
+
+def _in_step(
+    sides: tuple[ComparedRun, ComparedRun], ticks: int
+) -> Iterator[tuple[int, tuple[TickHashes, TickHashes], _Pair]]:
+    """Hashes of both after every tick: recordings have them, levels are run."""
+    runs = tuple(None if side.replay else side.begin(other) for side, other in (sides, sides[::-1]))
+    for tick in range(ticks + 1):
+        hashes = []
+        for side, run in zip(sides, runs, strict=True):
+            if run is None:
+                assert side.replay is not None
+                hashes.append(side.replay.hashes[tick])
+                continue
+            with np.errstate(over="ignore", invalid="ignore"):
+                while run.tick < tick:
+                    run.advance()
+            present = hash_by_array(run.world)
+            hashes.append(
+                TickHashes(state_hash(run.world, present), tuple(present.get(name, "") for name in BY_STORED))
+            )
+        yield tick, (hashes[0], hashes[1]), (runs[0], runs[1])
+
+
+def _located(
+    sides: tuple[ComparedRun, ComparedRun], tick: int, hashes: tuple[TickHashes, TickHashes], runs: _Pair
+) -> tuple[Divergence, Session | None, Session | None]:
+    """The first array that differs, its values, and both runs there."""
+    pairs = zip(BY_STORED, hashes[0].arrays, hashes[1].arrays, strict=True)
+    array = next((name for name, a, b in pairs if a[: len(b) or None] != b[: len(a) or None]), "settings")
+    left, right = (run or recorded_run(side.replay, tick) if side.replay else run
+                   for side, run in zip(sides, runs, strict=True))  # fmt: skip
+    if array == "settings":
+        return Divergence(tick, array, None, hashes[0].whole, hashes[1].whole, note="of the whole state"), left, right
+    if left is None or right is None:
+        lost = " and ".join(name for name, run in (("A", left), ("B", right)) if run is None)
+        note = f"this build does not come to the recorded state of {lost}, so that the values are not known"
+        return Divergence(tick, array, None, "unknown", "unknown", note=note), left, right
+    return first_difference(tick, array, getattr(left.world, BY_STORED[array].name), right.world), left, right
+
+
+def _command_lines(first: ComparedRun, second: ComparedRun, ticks: int) -> tuple[str, ...]:
+    """The first command in which two recordings differ."""
+    if first.replay is None or second.replay is None:
+        return ()
+    scripts = [[line for line in side.replay.script if line.tick <= ticks] for side in (first, second) if side.replay]
+    for number in range(max(map(len, scripts))):
+        a, b = (script[number] if number < len(script) else None for script in scripts)
+        if a is None or b is None or (a.tick, a.record) != (b.tick, b.record):
+            return f"command {number + 1} differs", f"A  {_told(a)}", f"B  {_told(b)}"
+    return ()
+
+
+def _told(line: ScriptLine | None) -> str:
+    return "there is none" if line is None else f"tick {line.tick}: {line.record}"

@@ -1,0 +1,82 @@
+"""Divergence: the first bit in which two runs differ, and how it is told."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.physics.query import slot_name
+from sandbox.physics.snapshot import canonical_bytes
+from sandbox.physics.state import BY_STORED
+from sandbox.physics.world import World
+
+
+@dataclass(frozen=True)
+class Divergence:
+    """The first difference between a recording and its verification.
+
+    array: a state array, or `settings`; index: into that array, an int or (slot, component), None where the array's
+    length differs; name: of the particle or spring; note: where the difference was found, if not at `tick` itself.
+    """
+
+    tick: int
+    array: str
+    index: int | tuple[int, int] | None
+    expected: Any
+    actual: Any
+    name: str = ""
+    note: str = ""
+
+    def __str__(self) -> str:
+        name = f" ({self.name})" if self.name else ""
+        note = f"; {self.note}" if self.note else ""
+        told = f"expected {self.expected!r}, got {self.actual!r}"
+        return f"tick {self.tick}: {self.array}{self.place}{name}: {told}{note}"
+
+    @property
+    def place(self) -> str:
+        """The index in brackets, or nothing."""
+        return "" if self.index is None else str(list(np.atleast_1d(self.index).tolist()))
+
+    def owner(self) -> str:
+        """Whose value it is: body and particle or spring by number, where the name says them; else the name."""
+        for sign, kind in ((".", "particle"), (":", "spring")):
+            body, found, number = self.name.partition(sign)
+            if found and " " not in kind and not body.startswith("contact of "):
+                return f"body {body}, {kind} {number}" if body else f"loose {kind} {number}"
+        return f"particle {self.name}" if self.name and " " not in self.name else self.name
+
+    def lines(self, expected: str = "expected", actual: str = "actual") -> list[str]:
+        """All that is known, a line each: place, owner, both values in decimal and hexadecimal, and the note."""
+        wide = max(len(expected), len(actual))
+        shown = [(expected, self.expected), (actual, self.actual)]
+        return [
+            f"first difference at tick {self.tick}, in {self.array}{self.place}",
+            *([f"of {self.owner()}"] if self.name else []),
+            *(f"{side:<{wide}}  {number_text(value)}" for side, value in shown),
+            *([self.note] if self.note else []),
+        ]
+
+
+def number_text(value: Any) -> str:
+    """A value in decimal and, where it is a float, in hexadecimal, which shows every bit."""
+    if isinstance(value, float):
+        return f"{value!r}  {value.hex()}"
+    return f"{value}  {value:#x}" if type(value) is int else str(value)
+
+
+def first_difference(tick: int, array: str, wanted: NDArray[Any], world: World) -> Divergence:
+    """The first bit of an array, by its name in files, in which a world differs from what is wanted."""
+    found: NDArray[Any] = getattr(world, BY_STORED[array].name)
+    if len(wanted) != len(found):
+        return Divergence(tick, array, None, f"{len(wanted)} values", f"{len(found)} values")
+    size = found.dtype.itemsize
+    left, right = (np.frombuffer(canonical_bytes(side), dtype=f"V{size}") for side in (wanted, found))
+    different = np.flatnonzero(left != right)
+    if not len(different):
+        return Divergence(tick, array, None, "equal", "equal", note="the two runs agree here")
+    place = tuple(int(part) for part in np.unravel_index(different[0], found.shape))
+    index = place[0] if len(place) == 1 else (place[0], place[1])
+    name = slot_name(world, array, place[0])
+    return Divergence(tick, array, index, wanted[place].item(), found[place].item(), name)

@@ -1,0 +1,59 @@
+"""Which files are tests, told without reading more than is needed."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+RECORDINGS = (".replay.jsonl", ".replay.gz", ".replay.jsonl.gz")
+LEVEL_FORMAT = "spring-sandbox/level"
+# A level file is no longer [bytes], see docs/level-format.md.
+LONGEST = 8 * 2**20
+
+_LEVELS = pytest.StashKey[frozenset[Path]]()
+
+
+def is_recording(path: Path) -> bool:
+    """Whether a file is called as recordings are."""
+    return path.name.endswith(RECORDINGS)
+
+
+def level_files(config: pytest.Config) -> frozenset[Path]:
+    """The files that the setting `sandbox_levels` names, from the root on. Raises UsageError."""
+    if _LEVELS not in config.stash:
+        found: set[Path] = set()
+        for pattern in config.getini("sandbox_levels"):
+            try:
+                found.update(config.rootpath.glob(pattern))
+            except (NotImplementedError, ValueError) as error:
+                raise pytest.UsageError(f"sandbox_levels: {pattern!r}: {error}") from None
+        config.stash[_LEVELS] = frozenset(found)
+    return config.stash[_LEVELS]
+
+
+def names_a_level(path: Path) -> bool:
+    """Whether a JSON file says that it is a level; one that is damaged does where it holds those words."""
+    try:
+        with path.open("rb") as file:
+            data = file.read(LONGEST + 1)
+    except OSError:
+        return False
+    if LEVEL_FORMAT.encode() not in data:
+        return False
+    try:
+        values = json.loads(data)
+    except (ValueError, RecursionError):
+        return True
+    return isinstance(values, dict) and values.get("format") == LEVEL_FORMAT
+
+
+def check_names(path: Path) -> list[str]:
+    """The names of a level's checks, as far as they can be read; numbers in place of others."""
+    try:
+        checks = json.loads(path.read_bytes()).get("checks", [])
+    except (OSError, ValueError, RecursionError, AttributeError):
+        return []
+    listed = checks if isinstance(checks, list) else []
+    return [
+        str(each.get("name", number)) if isinstance(each, dict) else str(number) for number, each in enumerate(listed)
+    ]

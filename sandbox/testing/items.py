@@ -1,0 +1,102 @@
+"""Tests that are files: a recording, and what a level promises of itself."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from sandbox.testing.failed import Failed
+from sandbox.testing.files import check_names
+
+if TYPE_CHECKING:
+    from sandbox.level.checks import CheckResult
+    from sandbox.level.format.model import Level
+
+
+class _Told(pytest.Item):
+    """A test whose failures are told in lines."""
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+        """The lines of a failure that this plugin has found; anything else with its traceback."""
+        if isinstance(excinfo.value, Failed):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, int | None, str]:
+        """Where it stands, and what it is called."""
+        return self.path, None, self.name
+
+
+class RecordingTest(pytest.File):
+    """A recording, which is one test."""
+
+    def collect(self) -> Iterator[pytest.Item]:
+        """The test."""
+        yield ReplayItem.from_parent(self, name="replay")
+
+
+class ReplayItem(_Told):
+    """A recording runs again, bit for bit."""
+
+    def runtest(self) -> None:
+        """Run it. Raises Failed."""
+        from sandbox.testing.replaying import replay_test
+
+        updated = replay_test(self.config, self.path)
+        if updated is not None:
+            self.user_properties.append(("sandbox_updated", f"{self.nodeid}: {updated}"))
+
+
+class LevelTests(pytest.File):
+    """A level file: that it can be built, and each of its checks."""
+
+    _results: "dict[int, CheckResult] | None" = None
+
+    def collect(self) -> Iterator[pytest.Item]:
+        """A test that it is a level, and one a check."""
+        yield LevelItem.from_parent(self, name="is valid")
+        for number, name in enumerate(check_names(self.path)):
+            yield CheckItem.from_parent(self, name=name, number=number)
+
+    def result(self, number: int) -> "CheckResult":
+        """What came of a check; all of the file are measured in the same run. Raises Failed."""
+        if self._results is None:
+            from sandbox.session.check_run import run_checks
+            from sandbox.testing.replaying import with_solver
+
+            level = with_solver(self.config, self.level())
+            self._results = dict(enumerate(run_checks(level)))
+        return self._results[number]
+
+    def level(self) -> "Level":
+        """The level. Raises Failed with its faults."""
+        from sandbox.testing.replaying import level_of
+
+        return level_of(self.path)
+
+
+class LevelItem(_Told):
+    """A level is read and built without a fault."""
+
+    def runtest(self) -> None:
+        """Run it. Raises Failed."""
+        from sandbox.level.build.build_world import build_world
+
+        assert isinstance(self.parent, LevelTests)
+        build_world(self.parent.level())
+
+
+class CheckItem(_Told):
+    """A check of a level holds."""
+
+    def __init__(self, *, number: int, **given: Any) -> None:
+        super().__init__(**given)
+        self.number = number
+
+    def runtest(self) -> None:
+        """Run it. Raises Failed."""
+        assert isinstance(self.parent, LevelTests)
+        result = self.parent.result(self.number)
+        if not result.passed:
+            raise Failed(result.text)

@@ -1,0 +1,137 @@
+"""What the test of a recording does: run it again, tell and draw where it parts, or record it again."""
+
+import os
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from sandbox.level.format.files import LevelError, load_level
+from sandbox.level.format.model import Level
+from sandbox.session.replay.again import record_again, with_settings
+from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.recording import Replay, ReplayError
+from sandbox.session.replay.verify import Comparison, compare
+from sandbox.testing.failed import Failed
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+def replay_test(config: pytest.Config, path: Path) -> str | None:
+    """Run a recording again as the options say; what changed where it was recorded again. Raises Failed."""
+    try:
+        if config.getoption("--replay-update"):
+            return _update(config, path)
+        replay = read_replay(path)
+        if config.getoption("--replay-solver"):
+            _run_twice(config, replay)
+            return None
+        found = compare(replay, level=level_against(config, replay))
+    except ReplayError as error:
+        raise Failed(*error.faults) from None
+    if found is not None:
+        raise Failed(f"{path.name}: diverged: {found.divergence}", *found.lines(), *_drawn(config, found, path))
+    return None
+
+
+def level_of(path: Path) -> Level:
+    """A level. Raises Failed with its faults."""
+    try:
+        return load_level(str(path))
+    except LevelError as error:
+        raise Failed(*error.faults) from None
+
+
+def level_against(config: pytest.Config, replay: Replay) -> Level | None:
+    """The level on which a recording runs instead of its own: one file, or that of the same name in a folder."""
+    given = config.getoption("--replay-against")
+    if given:
+        place = config.invocation_params.dir / given
+    elif config.getini("sandbox_against"):
+        place = (config.inipath.parent if config.inipath else config.rootpath) / config.getini("sandbox_against")
+    else:
+        return None
+    if not place.is_dir():
+        return level_of(place)
+    found = next(
+        (level for level in map(level_of, sorted(place.glob("*.json"))) if level.name == replay.level.name), None
+    )
+    if found is None:
+        raise Failed(f"{replay.source}: no level in {place} is called {replay.level.name!r}, as the recorded one is")
+    return found
+
+
+def with_solver(config: pytest.Config, level: Level) -> Level:
+    """A level with the solver of --replay-solver, where that is given. Raises Failed."""
+    solver = config.getoption("--replay-solver")
+    try:
+        return with_settings(level, {"solver": solver}, "--replay-solver") if solver else level
+    except LevelError as error:
+        raise Failed(*error.faults) from None
+
+
+def _run_twice(config: pytest.Config, replay: Replay) -> None:
+    """Run a recording's commands with another solver, and that run again. Raises Failed and ReplayError."""
+    level = with_solver(config, level_against(config, replay) or replay.level)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "again.replay.gz"
+        record_again(replay, level, path)
+        found = compare(read_replay(path))
+    if found is not None:
+        raise Failed(f"{replay.source}: two runs with {level.settings.solver} differ", *found.lines())
+
+
+def _update(config: pytest.Config, path: Path) -> str | None:
+    """Record again what diverges; what changed, None where nothing did. Raises ReplayError and Failed."""
+    try:
+        replay = read_replay(path)
+        level = level_against(config, replay)
+        found = compare(replay, level=level)
+        if found is None:
+            return None
+        changed = str(found.divergence)
+    except ReplayError as error:
+        replay = read_replay(path, retold=True)
+        level, changed = level_against(config, replay), error.faults[0]
+    fresh = path.with_name(f".{os.getpid()}-{path.name}")
+    try:
+        record_again(replay, level or replay.level, fresh)
+        fresh.replace(path)
+    except OSError as error:
+        raise Failed(f"{path}: cannot be written: {error.strerror or error}") from None
+    finally:
+        fresh.unlink(missing_ok=True)
+    return f"before: {changed}"
+
+
+def _drawn(config: pytest.Config, found: Comparison, path: Path) -> list[str]:
+    """Draw where a run parts, and say where that is."""
+    from sandbox.app.share.evidence import write_motion, write_picture
+    from sandbox.app.share.kinds import Missing
+
+    folder = _output(config)
+    name = "-".join(path.relative_to(config.rootpath).parts) if path.is_relative_to(config.rootpath) else path.name
+    lines = []
+    for kind, write in (("png", write_picture), ("gif", write_motion)):
+        drawing: Callable[[Comparison, Path], None] = write
+        target = folder / f"{name}.{kind}"
+        try:
+            drawing(found, target)
+        except (Missing, OSError) as error:
+            lines.append(f"{'picture' if kind == 'png' else 'motion'}: {error}")
+        else:
+            lines.append(f"{'picture' if kind == 'png' else 'motion'}: {target}")
+    return lines
+
+
+def _output(config: pytest.Config) -> Path:
+    """Where pictures go."""
+    given = config.getoption("--replay-output")
+    if given:
+        folder = config.invocation_params.dir / given
+        folder.mkdir(parents=True, exist_ok=True)
+        return folder
+    cache = config.cache
+    return cache.mkdir("replays") if cache is not None else Path(tempfile.mkdtemp(prefix="replays-"))

@@ -1,0 +1,123 @@
+"""The lesson: both begin as the same spring; made stiffer, Hooke's explodes and the article's never does."""
+
+from dataclasses import replace
+
+import numpy as np
+import pygame
+import pytest
+
+from sandbox.app.compare.compare_screen import CompareScreen
+from sandbox.app.compare.hooke_lesson import HookeLesson, has_exploded
+from sandbox.app.compare.hooke_level import MOST_DOUBLINGS, SpringTrial, lesson_level, words
+from sandbox.app.compare.lesson_panel import MASSES, RATES, SPRINGS
+from sandbox.session.session import Session
+
+TRIALS = [
+    SpringTrial(mass=mass, rate=rate, springs=springs) for mass in MASSES for rate in RATES for springs in SPRINGS
+]
+
+
+def run(trial, is_hooke, ticks):
+    session = Session(lesson_level(trial, is_hooke))
+    with np.errstate(over="ignore", invalid="ignore"):
+        for _ in range(ticks):
+            session.advance()
+            if has_exploded(session.world):
+                return session.tick
+    return None
+
+
+@pytest.fixture
+def lesson(open_app):
+    driver = open_app()
+    card = next(card for card in driver.app.gallery.cards if "explodes" in card.name)
+    card.press()
+    driver.frames(2)
+    assert isinstance(driver.app.play, HookeLesson)
+    return driver
+
+
+def test_both_sides_are_one_spring_until_cs_is_1():
+    for doublings in range(5):
+        trial = SpringTrial(doublings)
+        assert trial.are_equal
+        ends = []
+        for is_hooke in (True, False):
+            session = Session(lesson_level(trial, is_hooke))
+            for _ in range(60):
+                session.advance()
+            ends.append(session.world.position[1])
+        assert ends[0] == pytest.approx(ends[1], abs=1e-9)
+    assert not SpringTrial(5).are_equal and SpringTrial(5).cs == 1.0
+
+
+@pytest.mark.parametrize("trial", TRIALS, ids=str)
+def test_hooke_s_spring_explodes_beyond_the_limit_that_is_named_and_not_below(trial):
+    stiff = [replace(trial, doublings=doublings) for doublings in range(MOST_DOUBLINGS + 1)]
+    below = [each for each in stiff if each.k < 0.95 * each.highest_k]
+    beyond = next((each for each in stiff if each.k > 4.5 * each.highest_k), None)
+    if below:
+        assert run(below[-1], True, 240) is None
+    assert beyond is None or run(beyond, True, 400) is not None
+    assert run(stiff[-1], False, 240) is None
+
+
+def test_stiffer_again_and_again_ends_in_words_and_a_button_and_harms_nothing(lesson):
+    screen = lesson.app.play
+    before = words(screen.trial, None)
+    for _ in range(8):
+        lesson.click_widget(screen.panel.stiffer)
+    lesson.frames(60)
+    assert screen.exploded_at is not None and screen.again.visible
+    assert "exploded after" in screen.panel.text.text != before
+    assert np.abs(screen.other.session.world.position).max() < 3.0
+    lesson.app.display.window.size = (640, 480)
+    lesson.frames(30)
+    assert "exploded" in lesson.app.play.title()
+    lesson.click_widget(screen.again)
+    lesson.frames(1)
+    assert screen.playback.session.tick < 9
+    screen.try_out(SpringTrial())
+    lesson.frames(30)
+    assert screen.exploded_at is None and not screen.again.visible
+
+
+def test_another_weight_or_rate_begins_anew_with_another_limit(lesson):
+    panel = lesson.app.play.panel
+    limit = lesson.app.play.trial.highest_k
+    lesson.click_widget(panel.masses.buttons["10"])
+    assert lesson.app.play.trial.highest_k == pytest.approx(10.0 * limit, rel=0.1)
+    lesson.click_widget(panel.rates.buttons["240"])
+    assert lesson.world.settings.tick_rate == 240 == lesson.app.play.other.session.world.settings.tick_rate
+    lesson.key(pygame.K_F9)
+    lesson.frames(1)
+    assert not isinstance(lesson.app.play, HookeLesson) and lesson.app.play is not None
+
+
+def test_a_drag_moves_the_weights_of_both(lesson):
+    lesson.frames(30)
+    at = lesson.pixel_of("weight 1")
+    lesson.press(at)
+    lesson.move((at[0] + 60, at[1] - 30))
+    lesson.frames(5)
+    screen = lesson.app.play
+    assert screen.playback.session.world.any_held() and screen.other.session.world.any_held()
+    lesson.release((at[0] + 60, at[1] - 30))
+    one, other = screen.playback.session.world.position[1], screen.other.session.world.position[1]
+    assert one == pytest.approx(other, abs=1e-6) and one[0] > 0.1
+
+
+def test_the_gallery_offers_two_settings_of_a_shipped_level(open_app):
+    driver = open_app()
+    next(card for card in driver.app.gallery.cards if card.name == "Two settings at once").press()
+    driver.frames(2)
+    screen = driver.app.play
+    assert isinstance(screen, CompareScreen) and screen.panel.by_pad
+
+
+def test_every_trial_has_words_that_fit():
+    for trial in TRIALS:
+        for doublings in range(MOST_DOUBLINGS + 1):
+            each = replace(trial, doublings=doublings)
+            assert 20 < len(words(each, None)) < 330
+            assert len(words(each, 12)) < 480

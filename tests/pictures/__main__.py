@@ -1,0 +1,19 @@
+"""Draws every picture of README and docs anew, or those of some parts: `python -m tests.pictures [gallery ...]`."""
+
+import sys
+
+from tests.pictures import gallery, how_to, sharing
+from tests.pictures.photographer import own_home
+
+PARTS = {"gallery": gallery.draw, "how_to": how_to.draw, "sharing": sharing.draw}
+
+
+def main(names: list[str]) -> None:
+    """Draw them."""
+    for name in names or PARTS:
+        with own_home():
+            PARTS[name]()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,78 @@
+"""Photographer: a person at the app who takes pictures of its window, in folders of their own, alike each time."""
+
+import os
+
+os.environ["SDL_VIDEODRIVER"] = "dummy"
+
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import platformdirs
+import pygame
+from PIL import Image
+
+from sandbox.app.screen import Figures
+from tests.app.conftest import Driver
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs"
+COLOURS = 255
+
+
+def write_small(surface: pygame.Surface, path: Path, size: tuple[int, int], colours: int = COLOURS) -> None:
+    """Write a picture in a size [pixels] and so many colours, in few bytes."""
+    picture = Image.frombytes("RGB", surface.get_size(), pygame.image.tobytes(surface, "RGB"))
+    small = picture.resize(size, Image.Resampling.LANCZOS)
+    path.parent.mkdir(exist_ok=True)
+    small.quantize(colours, kmeans=1, dither=Image.Dither.NONE).save(path, optimize=True)
+
+
+class Photographer(Driver):
+    """A person who takes pictures of the window; size [pixels] of them."""
+
+    size = (640, 360)
+
+    def __init__(self, level=None, replay=None):
+        super().__init__(level, replay)
+        # How fast the machine is would show in the status line.
+        self.app._count = lambda *_: None
+        self.app._figures = Figures(60.0, 60.0, 5.0)
+
+    def take(self, path: Path) -> None:
+        """Keep what the window shows, small."""
+        self.frames()
+        write_small(self.app.display.surface, path, self.size)
+
+    def throw(self, name: str, by: tuple[float, float]) -> None:
+        """Throw what a particle belongs to, by so many metres."""
+        x, y = self.pixel_of(name)
+        zoom = self.stage.camera.zoom
+        self.press((x, y))
+        for step in range(1, 9):
+            self.move((x + by[0] * zoom * step / 8, y - by[1] * zoom * step / 8))
+        self.release((x + by[0] * zoom, y - by[1] * zoom))
+
+    def wait_for_gallery(self) -> None:
+        """Until all cards of the gallery are filled."""
+        while self.app.gallery is not None and self.app.gallery._unfilled:
+            self.frames()
+
+
+@contextmanager
+def own_home() -> Iterator[Path]:
+    """Folders of a person who has nothing yet, and whose name is ann; they are gone afterwards."""
+    before = dict(os.environ)
+    pictures, documents = platformdirs.user_pictures_dir, platformdirs.user_documents_dir
+    with tempfile.TemporaryDirectory() as folder:
+        home = Path(folder) / "ann"
+        os.environ |= {"HOME": str(home), "XDG_DATA_HOME": str(home / "data"), "XDG_CONFIG_HOME": str(home / "config")}
+        platformdirs.user_pictures_dir = lambda: str(home / "Pictures")
+        platformdirs.user_documents_dir = lambda: str(home / "Documents")
+        try:
+            yield home
+        finally:
+            platformdirs.user_pictures_dir, platformdirs.user_documents_dir = pictures, documents
+            os.environ.clear()
+            os.environ.update(before)

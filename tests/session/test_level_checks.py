@@ -1,0 +1,114 @@
+"""What a level promises of its own run: each metric at a time, always and eventually."""
+
+import json
+
+import pytest
+
+from sandbox.level.faults.level_error import LevelError
+from sandbox.level.format.files import parse_level
+from sandbox.session.check_run import checks_as_they_end, run_checks
+
+# A ball falls 4 m onto the ground in 0.9 s; a rope of two springs hangs beside it, of which the lower one is slack.
+LEVEL = {
+    "format": "spring-sandbox/level", "version": 1, "name": "Drop", "settings": {"solver": "iterative"},
+    "contacts": {"restitution": 0.0, "friction": 0.5},
+    "terrain": [{"id": "ground", "polygon": [[-9, -2], [9, -2], [9, 0], [-9, 0]]}],
+    "bodies": [
+        {"type": "rope", "id": "rope", "start": [4, 6], "end": [4, 4], "segments": 4, "pin": ["start"],
+         "material": "line"},
+    ],
+    "materials": {"line": {"stiffness": 0.4, "damping": 0.6}},
+    "particles": [{"id": "ball", "position": [0, 4.1], "radius": 0.1, "mass": 2.0}],
+}  # fmt: skip
+
+
+def level(*checks, **changes):
+    named = [{"name": f"c{k}", **each} for k, each in enumerate(checks)]
+    return parse_level(json.dumps({**LEVEL, **changes, "checks": named}).encode(), "drop.json")
+
+
+def results(*checks, **changes):
+    return run_checks(level(*checks, **changes))
+
+
+def test_always_fails_at_the_worst_tick_and_eventually_holds_at_the_first():
+    always, eventually, never, once = results(
+        {"metric": "y", "particle": "ball", "always": [0, 0.5], "at_least": 3.5},
+        {"metric": "y", "particle": "ball", "eventually": [0, 2], "at_most": 2.0},
+        {"metric": "y", "particle": "ball", "eventually": [0, 0.25], "at_most": 2.0},
+        {"metric": "y", "particle": "ball", "after": 0.5, "at_least": 3.5},
+    )
+    assert (always.passed, always.at, eventually.passed, never.passed) == (False, 0.5, True, False)
+    assert always.value == once.value == pytest.approx(4.1 - 0.5 * 9.81 * 0.25, abs=0.05)
+    assert eventually.value <= 2.0 and eventually.at == pytest.approx((2 * 2.1 / 9.81) ** 0.5, abs=0.02)
+    assert never.at == 0.25 and "eventually from 0 to 0.25 s is at best" in never.text
+    assert always.text.startswith("c0: FAILS: y of ball always from 0 to 0.5 s is at worst")
+
+
+def test_a_ball_lands_inside_a_box_settles_and_its_energy_falls():
+    landed, outside, settled, restless, least, most = results(
+        {"metric": "inside", "particle": "ball", "box": [-1, 0, 1, 1], "eventually": [0, 2]},
+        {"metric": "inside", "particle": "ball", "box": [-1, 0, 1, 1], "always": [0, 2]},
+        {"metric": "settled", "eventually": [0, 3], "at_least": 0.5, "body": "rope"},
+        {"metric": "settled", "after": 0.5},
+        {"metric": "energy", "always": [1.5, 2.0], "at_most": 200.0},
+        {"metric": "energy", "after": 0.0, "at_least": 2.0 * 9.81 * 4.1},
+    )
+    assert landed.passed and landed.value >= 0.0 and landed.at == pytest.approx((2 * 3.1 / 9.81) ** 0.5, abs=0.03)
+    assert not outside.passed and outside.value == pytest.approx(-3.1)
+    assert settled.passed and not restless.passed and "wanted at least 1" in restless.text
+    assert least.passed and most.passed and most.value > least.value
+
+
+def test_strain_and_breaks_are_measured_of_a_body_and_distance_between_two_particles():
+    materials = {"line": {"stiffness": 0.4, "damping": 0.6, "tension_limit": 0.001}}
+    whole, other, apart = results(
+        {"metric": "strain", "body": "rope", "always": [0, 0.5], "at_most": 0.0},
+        {"metric": "strain", "always": [0, 0.5], "at_most": 0.0},
+        {"metric": "distance", "particle": "ball", "other": "rope.start", "after": 0.0, "at_most": 9.0},
+    )
+    assert whole.value == other.value > 0.0 and apart.value == pytest.approx((4.0**2 + 1.9**2) ** 0.5)
+    broken, fine = results(
+        {"metric": "broken_springs", "body": "rope", "eventually": [0, 2], "at_least": 1.0},
+        {"metric": "broken_springs", "eventually": [0, 2], "at_least": 5.0},
+        materials=materials,
+    )
+    assert broken.passed and not fine.passed
+
+
+def test_results_come_as_soon_as_they_are_known_and_the_run_ends_with_the_last():
+    found = list(
+        checks_as_they_end(
+            level(
+                {"metric": "non_finite", "after": 1.0, "at_most": 0},
+                {"metric": "y", "particle": "ball", "eventually": [0, 9], "at_most": 3.9},
+            )
+        )
+    )
+    assert [each[0] for each in found if each is not None] == [1, 0]
+    assert sum(each is None for each in found) == 60
+
+
+FAULTS = {
+    "checks.0: needs a bound": {"metric": "energy"},
+    '"distance" is measured of a second particle': {"metric": "distance", "particle": "ball", "at_most": 1},
+    '"inside" is measured of a box': {"metric": "inside", "particle": "ball"},
+    '"energy" is measured of the whole level; take the body out': {"metric": "energy", "body": "rope", "at_most": 1},
+    '"speed" is measured of a particle; take the body out': {
+        "metric": "speed", "particle": "ball", "body": "rope", "at_most": 1},
+    'there is no body "ropes"; did you mean "rope"?': {"metric": "strain", "body": "ropes", "at_most": 1},
+    'there is no body "ball"': {"metric": "strain", "body": "ball", "at_most": 1},
+    "not both; make two": {"metric": "strain", "always": [0, 1], "eventually": [0, 1], "at_most": 1},
+    "the earlier time comes first": {"metric": "strain", "always": [2, 1], "at_most": 1},
+    'take "strain"': {"metric": "max_strain", "always": [0, 1], "at_most": 1},
+    "left and bottom come first": {"metric": "inside", "particle": "ball", "box": [1, 0, -1, 1]},
+    "a particle or a body, not both": {"metric": "inside", "particle": "ball", "body": "rope", "box": [0, 0, 1, 1]},
+    "not a list": {"metric": "strain", "always": 5, "at_most": 1},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("words", FAULTS)
+def test_a_check_that_makes_no_sense_is_refused_in_a_line(words):
+    with pytest.raises(LevelError) as refused:
+        level(FAULTS[words])
+    assert len(refused.value.faults) == 1 and words in refused.value.faults[0], refused.value.faults
