@@ -243,7 +243,16 @@ def test_what_is_only_shown_says_so(level):
     assert fields(chosen(level, "mesh"))["size"].value == "2 particles, 1 spring"
     with pytest.raises(EditError):
         joined.set(chosen(level, "deck"), "nothing")
-    assert fields(Document(level, frozenset([Item("spring", 1)])))["name"].value == ":1"
+    assert fields(Document(level, frozenset([Item("spring", 1)])))["number"].value == ":1"
+
+
+def test_a_loose_spring_is_given_a_name_and_loses_it_again(level):
+    spring = Document(level, frozenset([Item("spring", 1)]))
+    named = fields(spring)["name"].set(spring, "left knee")
+    assert named.level.springs[1].name == "left knee"
+    assert fields(named)["name"].set(named, None).level.springs[1].name is None
+    both = Document(level, frozenset([Item("spring", 0), Item("spring", 1)]))
+    assert "name" not in fields(both), "two of one name could not be told apart"
 
 
 def test_a_drive_is_added_with_values_that_fit_changed_and_taken_away(level):

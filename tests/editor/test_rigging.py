@@ -18,6 +18,7 @@ from sandbox.level.format.model import ParticleDef, SpringDef, TerrainDef
 from sandbox.level.format.parse import parse_level
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bridge import BridgeDef
+from sandbox.level.kinds.mesh import MeshDef
 from sandbox.level.kinds.rope import RopeDef
 from sandbox.physics.step import step
 
@@ -84,6 +85,20 @@ def test_welded_ends_get_none_and_a_bridge_is_hung_by_the_row_that_is_pointed_at
     level = replaced(ropes.level, bodies=(deck, bridge), welds=(("deck.0", "truss.11"),))
     document, *_ = hang(Document(level), (2.0, 2.0), (0.0, 2.0))
     assert [(s.a, s.b) for s in document.level.springs] == [("truss.13", "deck.2"), ("truss.12", "deck.1")]
+
+
+def test_a_mesh_that_is_one_strand_is_as_good_as_a_rope_and_one_that_is_none_is_refused(ropes):
+    bow = tuple((float(x), 3.0 + (x - 5) ** 2 / 10.0) for x in range(11))
+    order = [0, 2, 1, 3, 4, 5, 6, 7, 8, 10, 9]
+    links = [(order[k], order[k + 1]) for k in range(10)]
+    places = tuple(bow[order.index(index)] for index in range(11))
+    cable = MeshDef(type="mesh", id="cable", particles=places, springs=tuple(links))
+    level = replaced(ropes.level, bodies=(cable, ropes.level.bodies[1]))
+    document, *_ = hang(Document(level), bow[1], (9.0, 0.0))
+    assert [(s.a, s.b) for s in document.level.springs] == [(f"cable.{order[k]}", f"deck.{k}") for k in range(1, 10)]
+    net = replaced(cable, springs=(*links, (0, 5)))
+    with pytest.raises(EditError, match="begin on a rope"):
+        hang(Document(replaced(level, bodies=(net, level.bodies[1]))), bow[1], (9.0, 0.0))
 
 
 @pytest.mark.parametrize("end", [(3.0, 3.0), (3.0, 1.5)])

@@ -1,5 +1,6 @@
 """The hangers tool: many springs between two ropes, bridges or girders in one drag."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +22,7 @@ from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.bridge import BridgeDef
 from sandbox.level.kinds.girder import GirderDef
+from sandbox.level.kinds.mesh import MeshDef
 from sandbox.level.kinds.rope import RopeDef
 
 Slots = NDArray[np.int64]
@@ -77,7 +79,7 @@ class HangersDrawing(Drawing[HangersOptions]):
 
     def sizes(self, points: list[Snap]) -> str:
         """How many there are."""
-        return f"{self._made} {'hanger' if self._made == 1 else 'hangers'}"
+        return "" if self._ghost_fault else f"{self._made} {'hanger' if self._made == 1 else 'hangers'}"
 
     def _hung(self, document: Document, pairs: list[tuple[Snap, Snap]]) -> Document:
         level, material = document.level, known_material(document, self.options.material)
@@ -132,14 +134,16 @@ def _row(scene: Scene, point: Snap, verb: str) -> tuple[Slots, int]:
             start = int(np.searchsorted(scene.particle_item, item))
             found = next((row for row in _rows(scene.level.bodies[item]) if slot - start in row), None)
             if found is not None:
-                return np.arange(found.start, found.stop) + start, slot - start - found.start
+                return np.array(found) + start, found.index(slot - start)
     raise EditError(f"{verb} {WHERE}")
 
 
-def _rows(body: AnyBody) -> list[range]:
+def _rows(body: AnyBody) -> Sequence[Sequence[int]]:
     """The rows of a body, by the indices of its particles."""
     if isinstance(body, RopeDef):
         return [range(body.segments + 1)]
+    if isinstance(body, MeshDef):
+        return _strand(body)
     if isinstance(body, BridgeDef):
         return [range(body.segments + 1), range(body.segments + 1, 2 * body.segments + 2)]
     if isinstance(body, GirderDef):
@@ -147,9 +151,26 @@ def _rows(body: AnyBody) -> list[range]:
     return []
 
 
+def _strand(body: MeshDef) -> list[list[int]]:
+    """The particles of a mesh in their order along it, where its springs make it one strand, as a rope's do."""
+    beside: dict[int, list[int]] = {}
+    for a, b in body.springs:
+        beside.setdefault(a, []).append(b)
+        beside.setdefault(b, []).append(a)
+    ends = [particle for particle, others in beside.items() if len(others) == 1]
+    if len(ends) != 2 or max(map(len, beside.values())) > 2:
+        return []
+    row, before = [min(ends)], -1
+    while (onward := [other for other in beside[row[-1]] if other != before]) and len(row) <= len(beside):
+        before = row[-1]
+        row.append(onward[0])
+    return [row]
+
+
 def _nearest(scene: Scene, row: Slots, slot: int) -> int:
+    """Which particle of a row is beside another, measured along the row from end to end: a cable sags."""
     apart = scene.position[row] - scene.position[slot]
-    return int(np.argmin(np.sum(apart * apart, axis=1)))
+    return int(np.argmin(np.abs(apart @ (apart[-1] - apart[0]))))
 
 
 def _between(row: Slots, first: int, last: int) -> Slots:

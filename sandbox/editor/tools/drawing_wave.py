@@ -63,7 +63,8 @@ class WaveDrawing(Drawing[WaveOptions]):
 
     def sizes(self, points: list[Snap]) -> str:
         """How many muscles there are, and how many waves."""
-        return f"{self._count} {'muscle' if self._count == 1 else 'muscles'}, waves: {self.options.waves:g}"
+        muscles = f"{self._count} {'muscle' if self._count == 1 else 'muscles'}"
+        return "" if self._ghost_fault else f"{muscles}, waves: {self.options.waves:g}"
 
 
 def _draw_wave(pen: IconPen) -> None:
