@@ -38,27 +38,39 @@ def has_display() -> bool:
 class Display:
     """The window; surface: its real pixels; pixel_ratio: real pixels per unit of a mouse position (x, y)."""
 
+    scale: float
+
     def __init__(self, scale: float | None = None) -> None:
+        desktop = self._begin(scale)
+        size = [min(round(side * self.scale), most) for side, most in zip(WINDOW_SIZE, desktop, strict=True)]
+        self.window = pygame.Window("Spring Sandbox", size, resizable=True, allow_high_dpi=True)
+        self.window.minimum_size = SMALLEST_WINDOW
+        self._finish()
+        # A window in points of two pixels says so itself.
+        ratio = self.pixel_ratio[1]
+        if scale is None and ratio > 1.0:
+            self.scale = ratio
+
+    def _begin(self, scale: float | None) -> tuple[int, int]:
+        """What comes before the window is made; size of the desktop [pixels]."""
         pygame.display.init()
         pygame.font.init()
-        desktop = pygame.display.get_desktop_sizes()[0]
-        guess = scale or _guessed_scale(desktop)
-        size = [min(round(side * guess), most) for side, most in zip(WINDOW_SIZE, desktop, strict=True)]
+        width, height = pygame.display.get_desktop_sizes()[0]
+        self.scale = scale or _guessed_scale((width, height))
         if pygame.display.get_driver() == "x11":
             # A picture made by the processor goes to an X server faster as it is than by way of a texture: 0.6 ms
             # against 12 ms where OpenGL itself is done by software.
             os.environ.setdefault("SDL_FRAMEBUFFER_ACCELERATION", "0")
-        self.window = pygame.Window("Spring Sandbox", size, resizable=True, allow_high_dpi=True)
-        self.window.minimum_size = SMALLEST_WINDOW
+        return width, height
+
+    def _finish(self) -> None:
+        """What comes after the window is made."""
         self.window.set_icon(pygame.image.load(shipped_folder("assets") / "icon.png"))
         self.surface = self.window.get_surface()
         self._shown_size = self.size
         self.fullscreen = False
         # Whether nobody sees it, because it is minimised: then nothing is drawn.
         self.hidden = False
-        # A window in points of two pixels says so itself.
-        ratio = self.pixel_ratio[1]
-        self.scale = scale or (ratio if ratio > 1.0 else guess)
 
     @property
     def pixel_ratio(self) -> tuple[float, float]:

@@ -9,6 +9,7 @@ import pygame
 from sandbox.app.draw.colours import ACCENT, MUTED, TEXT
 from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.shortcuts import Mode, Shortcut, shortcuts
+from sandbox.app.widgets.layout import WindowLayout
 from sandbox.app.widgets.painted import Painted
 from sandbox.app.widgets.ui import Ui
 
@@ -21,6 +22,7 @@ HEADING = 27.0
 TOP = 56.0
 MARGIN = 28.0
 TEXT_SIZE = 12.5
+COLUMN_GAP = 16.0
 
 
 def show_help(ui: Ui, mode: Mode, tour: Callable[[], object]) -> None:
@@ -32,7 +34,9 @@ def show_help(ui: Ui, mode: Mode, tour: Callable[[], object]) -> None:
     entries = shortcuts(mode)
     most = max(1, min(int((width - 20) // NARROWEST_COLUMN), MOST_COLUMNS))
     # As few columns as the height allows: they are read from top to bottom.
-    layouts = [_columns(entries, count) for count in range(min(2, most), most + 1)]
+    layouts = [_columns(entries, count) for count in range(1, most + 1)]
+    layouts = [layout for layout in layouts if sum(_widths(ui, layout)) <= ui.px(width - 16 - 2 * MARGIN)][-2:]
+    layouts = layouts or [_columns(entries, 1)]
     room = height - 16 - TOP - MARGIN
     columns = next((layout for layout in layouts if max(map(_height, layout)) <= room), layouts[-1])
     box_width = min(len(columns) * COLUMN_WIDTH, width - 16)
@@ -81,6 +85,17 @@ def _height(column: Column) -> float:
     return sum(HEADING + ROW * len(entries) for entries in column.values())
 
 
+def _widths(ui: WindowLayout, columns: list[Column]) -> list[int]:
+    """How wide [pixels] the texts of each column are, with the gap behind it."""
+    bold, plain = ui.font(TEXT_SIZE, True), ui.font(TEXT_SIZE)
+    widths = []
+    for column in columns:
+        entries = [entry for members in column.values() for entry in members]
+        keys = max(bold.size(_keys(entry))[0] for entry in entries)
+        widths.append(keys + max(plain.size(entry.label)[0] for entry in entries) + ui.px(18 + COLUMN_GAP))
+    return widths
+
+
 def _keys(entry: Shortcut) -> str:
     return " or ".join(entry.keys[:2])
 
@@ -95,8 +110,11 @@ class ShortcutTable(Painted):
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """The whole table."""
         surface = pygame.Surface(size, pygame.SRCALPHA)
-        for index, column in enumerate(self.columns):
-            self._paint_column(surface, index * size[0] // len(self.columns), column)
+        left, widths = 0, _widths(self.ui, self.columns)
+        spare = max(0, size[0] - sum(widths)) // len(widths)
+        for column, width in zip(self.columns, widths, strict=True):
+            self._paint_column(surface, left, column)
+            left += width + spare
         return surface
 
     def _paint_column(self, surface: pygame.Surface, left: int, column: Column) -> None:

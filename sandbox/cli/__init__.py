@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sandbox import __version__
-from sandbox.cli import comparing
+from sandbox.cli import comparing, sweeping, toys
 from sandbox.cli.inputs import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
@@ -25,6 +25,7 @@ from sandbox.cli.inputs import (
 )
 from sandbox.terminal import (
     Progress,
+    cores,
     count,
     give_up_output,
     interrupted_between_ticks,
@@ -117,6 +118,10 @@ def _parser() -> argparse.ArgumentParser:
     play.add_argument("--seconds", type=seconds, help="close the app after so many seconds")
     _add_look_options(play)
 
+    toy = command("toy", toys.play_toy, "play a level in a small window that stays on top and feels how it is moved")
+    toys.add_toy_options(toy)
+    _add_look_options(toy)
+
     run = command("run", _run, "run a level headless and print what came of it")
     run.add_argument("level", metavar="LEVEL")
     length = run.add_mutually_exclusive_group()
@@ -143,6 +148,7 @@ def _parser() -> argparse.ArgumentParser:
 
     comparing.add_diff_options(command("diff", comparing.diff, "say where two recordings or levels part"))
     comparing.add_bisect_options(command("bisect", comparing.bisect, "find the edit or value that makes a level fail"))
+    sweeping.add_options(command("sweep", sweeping.sweep, "run a level over a grid of settings into a table"))
     _add_render_options(command("render", _render, "draw a level or a replay into a PNG, GIF, MP4 or HTML, off screen"))
 
     layout = command("format", _format, "rewrite a level file in its canonical form")
@@ -408,7 +414,7 @@ def _check(options: argparse.Namespace) -> int:
 
     worst = EXIT_OK
     names = options.levels
-    processes = min(options.processes or max(1, min(_cores(), len(names) // LEVELS_PER_PROCESS)), len(names))
+    processes = min(options.processes or max(1, min(cores(), len(names) // LEVELS_PER_PROCESS)), len(names))
     with Progress(len(names), "level") as bar, closing(check_levels(names, processes)) as reports:
         for found in reports:
             with bar.aside():
@@ -419,11 +425,6 @@ def _check(options: argparse.Namespace) -> int:
             worst = max(worst, EXIT_REFUSED if found.faults else EXIT_OK if found.passed else EXIT_FAILED)
             bar.update()
     return worst
-
-
-def _cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _render(options: argparse.Namespace) -> int:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.changing.equipment import Equipment
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.state import COLUMNS, StateArrays
+from sandbox.physics.state import COLUMNS, Column, StateArrays
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.world import World
 
@@ -90,29 +90,28 @@ def canonical_bytes(array: NDArray[Any]) -> bytes:
     return array.astype(array.dtype.newbyteorder("<"), copy=False).tobytes()
 
 
-# The bytes of each array that was hashed last, by its name in files, and their hash: most arrays are those of the tick
-# before. Arrays larger than so much [bytes] are hashed anew rather than kept.
-_LAST: dict[str, tuple[bytes, str]] = {}
+# The bytes of each array that was hashed last, by its name in files, and their hash, None where the array is as usual:
+# most arrays are those of the tick before. Arrays larger than so much [bytes] are hashed anew rather than kept.
+_LAST: dict[str, tuple[bytes, str | None]] = {}
 _LARGEST_KEPT = 1_000_000
 
 
-def _digest(name: str, array: NDArray[Any]) -> str:
+def _digest(column: Column, array: NDArray[Any]) -> str | None:
+    """Hash of an array, None of one that is left out as it is as usual."""
     present = array.tobytes()
-    last, digest = _LAST.get(name, (None, ""))
+    last, digest = _LAST.get(column.stored, (None, None))
     if present != last:
-        digest = hashlib.blake2b(canonical_bytes(array), digest_size=8).hexdigest()
+        is_usual = column.sparse and not (array != column.usual).any()
+        digest = None if is_usual else hashlib.blake2b(canonical_bytes(array), digest_size=8).hexdigest()
         if len(present) <= _LARGEST_KEPT:
-            _LAST[name] = present, digest
+            _LAST[column.stored] = present, digest
     return digest
 
 
 def hash_by_array(world: World | Snapshot) -> dict[str, str]:
     """blake2b of each state array in use, 16 hexadecimal digits, by its name in files."""
-    return {
-        column.stored: _digest(column.stored, getattr(world, column.name))
-        for column in COLUMNS
-        if not column.sparse or (getattr(world, column.name) != column.usual).any()
-    }
+    hashes = {column.stored: _digest(column, getattr(world, column.name)) for column in COLUMNS}
+    return {name: digest for name, digest in hashes.items() if digest is not None}
 
 
 def state_hash(world: World | Snapshot, arrays: Mapping[str, str] | None = None) -> str:
@@ -121,9 +120,21 @@ def state_hash(world: World | Snapshot, arrays: Mapping[str, str] | None = None)
     arrays: the result of `hash_by_array` for this state, where the caller has it already.
     """
     by_array = hash_by_array(world) if arrays is None else arrays
-    settings = (text for setting in fields(world.settings) for text in _canonical(setting, world.settings))
-    text = "\n".join([*by_array.values(), str(world.tick), *settings])
+    text = "\n".join([*by_array.values(), str(world.tick), *_settings_text(world.settings)])
     return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()
+
+
+# Settings, which nobody writes to, that were hashed last, and their texts.
+_LAST_SETTINGS: list[tuple[WorldSettings, tuple[str, ...]]] = []
+
+
+def _settings_text(settings: WorldSettings) -> tuple[str, ...]:
+    for last, texts in _LAST_SETTINGS:
+        if last is settings:
+            return texts
+    texts = tuple(text for setting in fields(settings) for text in _canonical(setting, settings))
+    _LAST_SETTINGS[:] = [(settings, texts)]
+    return texts
 
 
 def _canonical(setting: Field[Any], settings: WorldSettings) -> Iterator[str]:

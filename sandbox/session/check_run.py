@@ -24,21 +24,38 @@ def run_checks(level: Level) -> list[CheckResult]:
 def checks_as_they_end(level: Level) -> Iterator[tuple[int, CheckResult] | None]:
     """Run the level by itself and give each check's place and result as soon as it is known; None after every tick."""
     session = Session(level)
-    world, rate = session.world, level.settings.tick_rate
-    gauge = _Gauge(world, level)
-    waiting = {number: _Waiting(check, rate) for number, check in enumerate(level.checks)}
+    watch = CheckWatch(level, session.world)
     while True:
         with np.errstate(over="ignore", invalid="ignore"):
-            gauge.look(world)
-            for number, each in list(waiting.items()):
-                result = each.look(session.tick, gauge)
-                if result is not None:
-                    del waiting[number]
-                    yield number, result
-            if not waiting:
+            yield from watch.look()
+            if not watch.waiting:
                 return
             session.advance()
         yield None
+
+
+class CheckWatch:
+    """Holds a level's checks against a run of it, from the first tick on."""
+
+    def __init__(self, level: Level, world: World) -> None:
+        self._world = world
+        self._gauge = _Gauge(world, level)
+        rate = level.settings.tick_rate
+        self._waiting = {number: _Waiting(check, rate) for number, check in enumerate(level.checks)}
+
+    @property
+    def waiting(self) -> int:
+        """How many checks are not decided yet."""
+        return len(self._waiting)
+
+    def look(self) -> list[tuple[int, CheckResult]]:
+        """Measure at this tick, once; the checks that are decided by it, by their places, with their results."""
+        self._gauge.look(self._world)
+        found = [(number, each.look(self._world.tick, self._gauge)) for number, each in self._waiting.items()]
+        decided = [(number, result) for number, result in found if result is not None]
+        for number, _ in decided:
+            del self._waiting[number]
+        return decided
 
 
 class _Waiting:

@@ -85,8 +85,10 @@ def _put(data: Any, path: Sequence[str | int], value: Any) -> None:
                 del data[place]
             elif is_last:
                 data[place : place + 1] = [value]
-            else:
+            elif place < len(data):
                 data = data[place]
+            else:
+                raise IndexError(part)
         elif not isinstance(data, dict):
             raise KeyError(part)
         elif is_last and value is ABSENT:

@@ -43,9 +43,14 @@ def small_level(**changes):
 class Driver:
     """A person at the app: moves, clicks, types, and lets frames pass."""
 
-    def __init__(self, level=None, replay=None):
+    def __init__(self, level=None, replay=None, edit=False):
         self.app = App(Display(1.0))
-        self.app.open(StartRequest(level, replay))
+        if edit and level is None:
+            self.app.documents.new()
+        elif edit:
+            self.app.documents.edit_level(level)
+        else:
+            self.app.open(StartRequest(level, replay))
         self.frames(2)
 
     @property
@@ -73,9 +78,22 @@ class Driver:
         return [notice.text for notice in self.app.status.notices]
 
     def frames(self, count=1):
-        for _ in range(count):
-            self.app.preparation.finish(self.app.play is not None and self.app.play.has_contacts)
-            self.app.frame(FRAME)
+        """Let frames pass, of which the last is drawn."""
+        self.pass_unseen(count - 1)
+        self._frame()
+
+    def pass_unseen(self, count=1):
+        """Let frames pass that nobody looks at."""
+        self.app._draw = lambda: None
+        try:
+            for _ in range(count):
+                self._frame()
+        finally:
+            del self.app._draw
+
+    def _frame(self):
+        self.app.preparation.finish(self.app.play is not None and self.app.play.has_contacts)
+        self.app.frame(FRAME)
 
     def rest(self):
         """Do nothing for long enough that the app finds what it needs no more."""
@@ -86,15 +104,19 @@ class Driver:
         pygame.event.post(pygame.event.Event(kind, **data))
 
     def move(self, pixel):
+        self._point_at(pixel)
+        self.frames()
+
+    def _point_at(self, pixel):
         at = tuple(round(value) for value in pixel)
         before = pygame.mouse.get_pos()
         pygame.mouse.set_pos(at)
         pygame.event.get(pygame.MOUSEMOTION)
         self.post(pygame.MOUSEMOTION, pos=at, rel=(at[0] - before[0], at[1] - before[1]), buttons=(0, 0, 0))
-        self.frames()
 
     def press(self, pixel, button=1):
-        self.move(pixel)
+        self._point_at(pixel)
+        self.pass_unseen()
         self.post(pygame.MOUSEBUTTONDOWN, pos=tuple(round(value) for value in pixel), button=button)
         self.frames()
 
@@ -111,7 +133,7 @@ class Driver:
 
     def key(self, key, mod=0):
         self.post(pygame.KEYDOWN, key=key, mod=mod, unicode="", scancode=0)
-        self.frames()
+        self.pass_unseen()
         self.post(pygame.KEYUP, key=key, mod=mod, unicode="", scancode=0)
         self.frames(2)
 
@@ -183,11 +205,11 @@ def documents(tmp_path, monkeypatch):
 
 @pytest.fixture
 def open_app(documents):
-    """Open the app on a level, a replay, or (None) its gallery."""
+    """Open the app on a level, a replay, or (None) its gallery; edit: in the editor, None = an empty sheet."""
     drivers = []
 
-    def open_(level=None, replay=None):
-        drivers.append(Driver(level, replay))
+    def open_(level=None, replay=None, edit=False):
+        drivers.append(Driver(level, replay, edit))
         return drivers[-1]
 
     yield open_
@@ -201,16 +223,7 @@ def open_app(documents):
 def edit(open_app):
     """Open the editor on a level, or (None) an empty sheet."""
 
-    def open_(level=None):
-        driver = open_app(level or small_level())
-        if level is None:
-            driver.app.documents.new()
-        else:
-            driver.app.documents.edit_level(level)
-        driver.frames(2)
-        return driver
-
-    return open_
+    return lambda level=None: open_app(level, edit=True)
 
 
 @pytest.fixture

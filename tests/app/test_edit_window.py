@@ -18,8 +18,8 @@ from tests.support.person import DEADLINE, Person, needs_a_screen
 
 pytestmark = needs_a_screen
 
-# Ticks after which what was drawn hardly moves.
-REST = 400
+# What was drawn rests where it moves less than this in so many ticks [m], and does so before the last of these.
+STILL, REST_TICKS, LAST = 0.03, 60, 900
 
 
 class Maker:
@@ -144,9 +144,7 @@ class Maker:
         self.person.wait_for("tick", "playing")
         self.twin.app.act("play")
         # Nobody sees the twin: it draws what has come to rest alone.
-        session = self.twin.playback.session
-        while session.tick < REST:
-            session.advance()
+        advance_to_rest(self.twin.playback.session)
         self.twin.frames(2)
         self.person.wait_for_tick(self.twin.playback.session.tick)
         self.press("record")
@@ -168,6 +166,17 @@ class Maker:
         self.twin.app.act("edit")
         self.twin.frames(2)
         self.person.wait_for("Untitled - editing")
+
+
+def advance_to_rest(session):
+    """Advance a run until nothing in it moves any more to speak of."""
+    moved = STILL
+    while moved >= STILL:
+        assert session.tick < LAST
+        before = session.world.position.copy()
+        for _ in range(REST_TICKS):
+            session.advance()
+        moved = abs(session.world.position - before).max()
 
 
 def draw_rope(maker):

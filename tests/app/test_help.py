@@ -39,3 +39,14 @@ def test_a_small_window_scrolls_to_the_last_key_by_the_keyboard(edit):
     assert shown.rect.top < top and shown.rect.bottom <= bar.rect.bottom + 1
     driver.key(pygame.K_ESCAPE)
     assert not driver.app.ui.has_sheet
+
+
+@pytest.mark.parametrize("width", [700, 860, 1000, 1150])
+def test_no_line_is_cut_in_any_window(edit, width):
+    driver = edit()
+    driver.app.display.window.size = (width, 720)
+    driver.frames(2)
+    driver.key(pygame.K_F1)
+    shown = table(driver)
+    picture = pygame.surfarray.array_alpha(shown.image)
+    assert picture.any() and not picture[-3:].any()

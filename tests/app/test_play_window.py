@@ -3,7 +3,7 @@
 import pygame
 import pytest
 
-from sandbox.app.play.toolbar import LEFT, RIGHT, fitting
+from sandbox.app.play.toolbar import LEAST_NAME, LEFT, RIGHT, fitting
 from tests.app.conftest import small_level
 
 SHIFT = pygame.KMOD_SHIFT
@@ -38,6 +38,15 @@ def test_the_bar_lies_inside_the_window_nothing_over_another_and_all_can_be_reac
     assert all(rect.collidelist(rects[:index]) < 0 for index, rect in enumerate(rects))
     assert bool(bar.left_out) == (size[0] < 1280)
     assert driver.app.play.show_panel == (size[0] >= 800)
+
+
+@pytest.mark.parametrize("width", [1000, 1100, 1280, 1600])
+def test_the_level_s_name_has_room_to_be_read_or_is_left_out(driver, width):
+    driver.app.display.window.size = (width, 720)
+    driver.frames(2)
+    title = driver.app.play.toolbar.title
+    assert title is None or title.rect.width >= LEAST_NAME
+    assert width < 1600 or title is not None
 
 
 def test_what_has_no_room_is_done_from_the_menu(driver):

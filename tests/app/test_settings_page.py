@@ -218,5 +218,6 @@ def test_shadows_and_effects_are_left_out_by_choice(driver):
     driver.frames(2)
     assert renderer.detail == FULL and not renderer.has_effects
     driver.app.chosen.choose("effects", "off")
-    driver.frames(2)
+    driver.frames()
+    driver.frames()
     assert renderer.detail == NO_EFFECTS

@@ -2,7 +2,8 @@
 
 Some of its springs yield and break.
 
-python kernel_script.py SOLVER SUBSTEPS TICKS [--without-numba | --broken-numba | --without-cache | --switch TICK]
+python kernel_script.py SOLVER SUBSTEPS[,SUBSTEPS..] TICKS
+    [--without-numba | --broken-numba | --without-cache | --switch TICK]
 
 --without-cache: only of a rope, which comes last else: to compile all that a busy world needs takes a minute.
 --switch: kernels are interpreted until this tick, counted over all worlds that follow one another.
@@ -245,17 +246,18 @@ def blow_up(advance, solver: str, ticks: int):
 
 if __name__ == "__main__":
     warnings.simplefilter("error")
-    chosen, substeps, ticks, *mode = sys.argv[1:]
+    chosen, all_substeps, ticks, *mode = sys.argv[1:]
     if mode:
         prepare(mode[0])
     from sandbox.physics.jit import COMPILED
 
     advance = Ticks(int(mode[1]) if mode[:1] == ["--switch"] else -1).advance
-    print("compiled" if COMPILED else "interpreted")
-    given = advance, chosen, substeps if substeps == "auto" else int(substeps), int(ticks)
-    if mode != ["--without-cache"]:
-        print("\n".join(hashes(*given)))
-        print("\n".join(touches(*given)))
-        print("\n".join(modes()))
-        print("\n".join(blow_up(advance, chosen, 2 * int(ticks))))
-    print("\n".join(swings(*given)))
+    for substeps in all_substeps.split(","):
+        print("compiled" if COMPILED else "interpreted")
+        given = advance, chosen, substeps if substeps == "auto" else int(substeps), int(ticks)
+        if mode != ["--without-cache"]:
+            print("\n".join(hashes(*given)))
+            print("\n".join(touches(*given)))
+            print("\n".join(modes()))
+            print("\n".join(blow_up(advance, chosen, 2 * int(ticks))))
+        print("\n".join(swings(*given)))

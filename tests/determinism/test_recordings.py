@@ -11,27 +11,38 @@ import pytest
 
 from sandbox.level.format.files import read_level, shipped_levels
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.settings import AUTO
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
 from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.play import play
 
-# Where things touch, the wild person makes ticks of many contacts: there, a part of it has to do.
+# The person does everything there is to do in two seconds, and begins again.
+CYCLE = 120  # [ticks]
+# Where things touch, the wild person makes ticks of many contacts: there, a part of it has to do; and no more than so
+# many elements times substeps times ticks where they are many.
 SECONDS, TOUCHING_SECONDS = 20, 5
+WORK = 600_000
 # Interpreted kernels are some hundred times slower, those of contacts most of all: runs there are cut to the ticks that
-# the promise names, and those of many particles further, to so many particles times ticks.
+# the promise names, and those of many elements further; where things touch, to so many particles times ticks.
 INTERPRETED_TICKS = 120
-INTERPRETED_WORK = 8_000
+INTERPRETED_WORK = 24_000
 INTERPRETED_TOUCHES = 2_000
 # Levels that share a fresh process, which takes seconds to start.
 SHARING = 6
 SHARES = [shipped_levels()[first::SHARING] for first in range(SHARING)]
 
 
-def _interpreted_ticks(level) -> int:
-    work = INTERPRETED_TOUCHES if level.has_contacts else INTERPRETED_WORK
-    return min(INTERPRETED_TICKS, work // Session(level).world.particle_count)
+def _lengths(level) -> tuple[int, int]:
+    """For how many ticks a level is played with compiled kernels, and with interpreted ones."""
+    world, rate = Session(level).world, level.settings.tick_rate
+    if level.has_contacts:
+        return TOUCHING_SECONDS * rate, min(INTERPRETED_TICKS, INTERPRETED_TOUCHES // world.particle_count)
+    substeps = 1 if world.settings.substeps == AUTO else world.settings.substeps
+    work = substeps * (world.particle_count + len(world.particle_a) + 2 * len(world.constraint_kind))
+    seconds = min(SECONDS, max(TOUCHING_SECONDS, WORK // work // rate))
+    return seconds * rate, min(INTERPRETED_TICKS, INTERPRETED_WORK // work)
 
 
 @pytest.mark.parametrize("paths", SHARES, ids=lambda paths: "+".join(path.stem for path in paths))
@@ -39,9 +50,8 @@ def test_played_levels_verify_in_every_way(paths, tmp_path):
     recordings, short_ones = [], []
     for path in paths:
         level = read_level(path)
-        few = _interpreted_ticks(level)
-        seconds = TOUCHING_SECONDS if level.has_contacts else SECONDS
-        ticks = seconds * level.settings.tick_rate if COMPILED else few
+        many, few = _lengths(level)
+        ticks = many if COMPILED else few
         long, short = tmp_path / f"{path.stem}.replay.gz", tmp_path / f"{path.stem}.short.replay.gz"
         for name, length in ((long, ticks), (short, few)):
             session = Session(level)
@@ -59,8 +69,10 @@ def test_played_levels_verify_in_every_way(paths, tmp_path):
 
 
 def _verifies_from_the_middle(replay) -> bool:
-    """From the first stored state past the middle behind which nothing is undone that was done before it."""
-    for start in sorted(tick for tick in replay.states if tick >= replay.ticks // 2):
+    """From the last stored state before which nothing lies that is undone after it, and which all acts follow."""
+    middle, late = replay.ticks // 2, max(replay.ticks - CYCLE, replay.ticks // 2)
+    stored = [tick for tick in replay.states if tick >= middle]
+    for start in sorted(stored, key=lambda tick: (tick > late, abs(tick - late))):
         try:
             return verify(replay, start=start) is None
         except ReplayError as error:

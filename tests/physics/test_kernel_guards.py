@@ -1,5 +1,6 @@
 """Inner parts of numba that kernels use: where one is missing or does something else, the same bits without it."""
 
+import json
 import os
 import subprocess
 import sys
@@ -38,11 +39,33 @@ LIBRARY = (
     "_finalize_final_module",
 )  # fmt: skip
 
+# Runs files, a line of standard input each: in a copy of itself where the system can, which spares importing numba,
+# else in itself, and ends. Answers a line of JSON: what the file calls `outcome`, or a text of what was raised.
 PROGRAMME = """
-import importlib, sys
-from typing import NamedTuple
+import json, os, runpy, sys, traceback
 import numpy as np
 import numba, numba.core.caching, numba.core.serialize, numba.core.compiler, llvmlite.binding, llvmlite.ir
+
+# A first kernel makes numba import what it needs itself.
+numba.njit(lambda values: values[0] + 1.0)(np.zeros(1))
+for line in sys.stdin:
+    folder = line.rstrip("\\n")
+    if hasattr(os, "fork") and os.fork():
+        os.wait()
+        continue
+    numba.config.CACHE_DIR = folder
+    try:
+        answer = runpy.run_path(os.path.join(folder, "programme.py"))["outcome"]
+    except BaseException:
+        answer = traceback.format_exc()
+    print(json.dumps(answer), flush=True)
+    os._exit(0)
+"""
+
+KERNELS = """
+import sys
+from typing import NamedTuple
+import numpy as np
 
 def remove(name):
     owner, _, last = name.rpartition(".")
@@ -65,8 +88,6 @@ class Whole(NamedTuple):
     part: Part
     total: np.ndarray
 
-# A first kernel makes numba import what it needs itself.
-numba.njit(lambda values: values[0] + 1.0)(np.zeros(1))
 {change}
 from sandbox.physics import jit
 
@@ -90,19 +111,42 @@ def of_tuple(whole, share):
 assert jit.COMPILED
 whole = Whole(Part(np.array([0.1, 0.2, 0.7]), np.array([0.3])), np.zeros(3))
 of_bundle(jit.bundle(whole), 1.1)
-first = whole.total.tobytes().hex()
+outcome = [whole.total.tobytes().hex()]
 of_tuple(whole, 1.1)
-print(first, whole.total.tobytes().hex())
+outcome.append(whole.total.tobytes().hex())
 """
 
 
-def outcome(tmp_path, change):
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(tmp_path)}
-    (tmp_path / "programme.py").write_text(PROGRAMME.replace("{change}", change))
-    command = [sys.executable, str(tmp_path / "programme.py")]
-    ended = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-    assert ended.returncode == 0, ended.stderr
-    return ended.stdout.split()
+@pytest.fixture(scope="module")
+def processes():
+    """Processes that were started so far, of which the last may be at work."""
+    started = []
+    yield started
+    for process in started:
+        process.stdin.close()
+        process.stdout.close()
+        process.wait()
+
+
+@pytest.fixture
+def outcome(tmp_path, processes):
+    """What kernels give in a process in which something was changed before physics was imported."""
+
+    def run(change):
+        (tmp_path / "programme.py").write_text(KERNELS.replace("{change}", change))
+        if not processes or processes[-1].poll() is not None:
+            environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+            pipe = subprocess.PIPE
+            command = [sys.executable, "-c", PROGRAMME]
+            processes.append(subprocess.Popen(command, env=environment, stdin=pipe, stdout=pipe, text=True))
+        processes[-1].stdin.write(f"{tmp_path}\n")
+        processes[-1].stdin.flush()
+        answer = json.loads(processes[-1].stdout.readline())
+        if not hasattr(os, "fork"):
+            processes[-1].wait()
+        return answer
+
+    return run
 
 
 def expected():
@@ -110,12 +154,12 @@ def expected():
 
 
 @pytest.mark.parametrize("name", [*IMPORTED, *USED])
-def test_without_an_inner_part_of_numba_kernels_give_the_same_bits(tmp_path, name):
-    assert outcome(tmp_path, f"remove({name!r})") == expected()
+def test_without_an_inner_part_of_numba_kernels_give_the_same_bits(outcome, name):
+    assert outcome(f"remove({name!r})") == expected()
 
 
 @pytest.mark.parametrize("name", LIBRARY)
-def test_where_a_code_library_lacks_what_ours_calls_kernels_give_the_same_bits(tmp_path, name):
+def test_where_a_code_library_lacks_what_ours_calls_kernels_give_the_same_bits(outcome, name):
     change = f"""
 from sandbox.physics.jit import linking
 def missing(self):
@@ -123,11 +167,11 @@ def missing(self):
 setattr(linking._EntryLibrary, {name!r}, property(missing, lambda self, value: None))
 assert not linking.links_once()
 """
-    assert outcome(tmp_path, change) == expected()
+    assert outcome(change) == expected()
 
 
 @pytest.mark.parametrize("attribute", ["_cache", "get_call_template"])
-def test_where_dispatchers_are_others_kernels_give_the_same_bits(tmp_path, attribute):
+def test_where_dispatchers_are_others_kernels_give_the_same_bits(outcome, attribute):
     change = f"""
 from sandbox.physics.jit import cache, lending
 for module, name in ((cache, "keep"), (lending, "lend_to")):
@@ -143,12 +187,12 @@ for module, name in ((cache, "keep"), (lending, "lend_to")):
         return given(Other(), *others)
     setattr(module, name, guarded)
 """
-    assert outcome(tmp_path, change) == expected()
+    assert outcome(change) == expected()
 
 
-def test_with_all_of_them_parts_are_linked_once_and_tuples_lent(tmp_path):
+def test_with_all_of_them_parts_are_linked_once_and_tuples_lent(outcome):
     change = "from sandbox.physics.jit import linking, lending\nassert linking.links_once()"
-    assert outcome(tmp_path, change) == expected()
+    assert outcome(change) == expected()
 
 
 class Mixed(NamedTuple):

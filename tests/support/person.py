@@ -18,8 +18,9 @@ from sandbox.app.display import WINDOW_SIZE
 DEADLINE = 90.0
 # A movement that changes no pixel is given up after this [s].
 PATIENCE = 1.0
-# Between two looks at the window [s]: whoever looks without a pause takes the processor from what is looked at.
-BLINK = 0.02
+# Between two looks at the window's pixels, and at its title, which takes a process [s]: whoever looks without a pause
+# takes the processor from what is looked at.
+BLINK, GLANCE = 0.02, 0.1
 
 # So long a drag is held on to where it ends.
 HELD_TICKS = 20
@@ -29,12 +30,12 @@ needs_a_screen = pytest.mark.skipif(
 )
 
 
-def looks(patience: float) -> Iterator[None]:
-    """Moments to look at something, until it was looked at for so long [s]."""
+def looks(patience: float, pause: float) -> Iterator[None]:
+    """Moments to look at something, until it was looked at for so long [s]; pause: between two [s]."""
     give_up = time.monotonic() + patience
     while time.monotonic() < give_up:
         yield
-        time.sleep(BLINK)
+        time.sleep(pause)
 
 
 class VirtualScreen:
@@ -96,7 +97,7 @@ class Person:
     def wait_for(self, *words: str, without: str = "\0") -> None:
         """Poll the title until it has the words."""
         title = ""
-        for _ in looks(DEADLINE):
+        for _ in looks(DEADLINE, GLANCE):
             title = self.title()
             if all(word in title for word in words) and without not in title:
                 return
@@ -107,7 +108,7 @@ class Person:
         """Do something and poll the pixels until they change; whether they did."""
         before = self.screen.pixels()
         self.do(*arguments)
-        return any(not np.array_equal(before, self.screen.pixels()) for _ in looks(patience))
+        return any(not np.array_equal(before, self.screen.pixels()) for _ in looks(patience, BLINK))
 
     def move(self, pixel: tuple[float, float]) -> None:
         """Move the mouse; the app has seen it once what is under the mouse looks otherwise."""
@@ -125,7 +126,7 @@ class Person:
 
     def wait_for_tick(self, tick: int) -> None:
         """Wait until the run is that far."""
-        for _ in looks(DEADLINE):
+        for _ in looks(DEADLINE, GLANCE):
             if self.tick() >= tick:
                 return
             assert self.app.poll() is None

@@ -74,7 +74,7 @@ class Backdrop:
         layer = pygame.Surface((width, height), 0, 32)
         own = Camera(camera.centre, camera.zoom, (0, 0, width, height))
         pixels = pygame.surfarray.pixels2d(layer).T
-        bare, gridded = _stage_pictures((width, height), theme)
+        bare, gridded = stage_pictures((width, height), theme)
         pixels[:] = bare
         columns, rows = _grid_lines(own, scale)
         pixels[:, columns] = gridded[:, columns]
@@ -190,7 +190,7 @@ def _grid_lines(camera: Camera, scale: float) -> tuple[list[int], list[int]]:
 
 
 @functools.lru_cache(maxsize=1)
-def _stage_pictures(size: tuple[int, int], theme: Theme) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+def stage_pictures(size: tuple[int, int], theme: Theme) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
     """The stage (h, w) without and with its grid everywhere: takes 0.1 s, and the next run has mostly the same."""
     width, height = size
     y, x = np.mgrid[0:height, 0:width].astype(np.float32)

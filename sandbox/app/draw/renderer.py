@@ -7,7 +7,7 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.backdrop import GRID_STEP as GRID_STEP
-from sandbox.app.draw.backdrop import Backdrop
+from sandbox.app.draw.backdrop import Backdrop, stage_pictures
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import ACCENT, DANGER, WARNING, packed
 from sandbox.app.draw.detail import FULL, NO_EFFECTS, NO_SHADOWS
@@ -81,6 +81,9 @@ class Renderer:
         self.overlays = Overlays()
         self.detail = FULL
         self.has_effects = True
+        # Whether faces sleep, and what they look at while they rest [pixels].
+        self.asleep = False
+        self.pointer: tuple[float, float] | None = None
         self.non_finite = 0
         self.level = level
         self.follow_theme()
@@ -118,6 +121,11 @@ class Renderer:
     def lattice(self, is_shown: bool) -> None:
         (self.overlays.shown.add if is_shown else self.overlays.shown.discard)("lattice")
 
+    def expect(self, camera: Camera) -> None:
+        """Make what takes longest of the first picture of a view of this size."""
+        width, height = camera.viewport[2:]
+        stage_pictures((width, height), self.theme)
+
     def draw(
         self,
         surface: pygame.Surface,
@@ -140,6 +148,7 @@ class Renderer:
             frame = Frame(
                 current, pixels, current.angle - behind * current.spin, strain_of(current, position), camera.zoom,
                 self.scale, self.theme, self._tiles_now(), (current.tick + alpha) / current.settings.tick_rate,
+                self.asleep, self.pointer,
             )  # fmt: skip
             particles, springs = shown_particles(current), shown_springs(current)
             self.non_finite = int(np.count_nonzero(particles & ~np.isfinite(pixels).all(axis=1)))
@@ -177,7 +186,7 @@ class Renderer:
             self._ground, self._grounds = current.terrain, self._grounds + 1
         key = (
             (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail,
-             self.has_effects),
+             self.has_effects, self.asleep, self.pointer),
             (overlay.hovered, tuple(overlay.trail), overlay.cursor, tuple(map(tuple, overlay.ghost))),
             tuple(pull.cursor for pull in overlay.pulls if pull.at_limit), frozenset(shown),
             self._grounds, (frame.seconds if moves else 0.0), (current.tick if shown & CHANGING else 0),

@@ -30,6 +30,7 @@ SECTIONS = (
     GallerySection("Soft things", "Jellies, cloth and creatures.", {
         "jelly_cube": "Lower Cs, and it softens",
         "trampoline": "Pull the bed down and let go",
+        "desk_toy": "Ctrl+T puts it on the desktop",
         "walker": "Hold it back, or lift it over",
         "beating_heart": "Pull at one, or cut its cord",
         "jelly_wheel": "Spin it by its rim",

@@ -125,7 +125,7 @@ class PlayScreen:
     @property
     def notices_corner(self) -> tuple[float, float]:
         """Where the notices are, from the left and above the status line [layout units]."""
-        return 16.0, self._below
+        return (16.0 if self.palette is None else self.palette.right + 10.0), self._below
 
     def build(self, ui: Ui) -> None:
         """Lay the bar and the panel out anew."""

@@ -39,8 +39,8 @@ class Listener(Protocol):
 class Playback:
     """A level being played, or a replay being watched; `previous` and `current` are what the renderer draws between."""
 
-    def __init__(self, level: Level, replay: Replay | None = None) -> None:
-        self.session = Session(level, script=replay.script if replay else ())
+    def __init__(self, level: Level, replay: Replay | None = None, start: Snapshot | None = None) -> None:
+        self.session = Session(level, replay.script if replay else (), start)
         self.level = level
         self.replay = replay
         self.clock = TickClock()

@@ -89,8 +89,9 @@ class StatusLine:
     def _draw_notices_above(self, surface: pygame.Surface, bottom: int, left: float) -> None:
         ui = self.ui
         y = bottom - ui.px(12)
+        widest = min(ui.px(520), surface.get_width() - ui.px(left + 46))
         for notice in reversed(self.notices):
-            lines = [self._text(line, TEXT) for line in wrapped(notice.text, ui.font(13), ui.px(520), 6)]
+            lines = [self._text(line, TEXT) for line in wrapped(notice.text, ui.font(13), widest, 6)]
             height = sum(line.get_height() for line in lines) + ui.px(16)
             width = max(line.get_width() for line in lines) + ui.px(30)
             y -= height

@@ -37,6 +37,7 @@ LEFT = (
 )  # fmt: skip
 RIGHT = (
     ("share", "share"),
+    ("toy", "toy"),
     ("graphs", "graphs"),
     ("compare", "compare"),
     ("gallery", "levels"),
@@ -51,6 +52,7 @@ WORDS = {"slow": "1x", "help": "?"}
 WIDE_WORDS = {**WORDS, "share": "Share"}
 # What goes into the menu where the window is too narrow, first what is missed least.
 LEAVING = (
+    "toy",
     "save",
     "compare",
     "graphs",

@@ -1,11 +1,10 @@
 """Sounds: what is heard of the run on the screen."""
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Any, Protocol
 
 from sandbox.app.draw.camera import Camera
 from sandbox.app.play.playback import Playback
-from sandbox.app.settings.chosen import Chosen
 from sandbox.app.sound.bank import Bank, Note
 from sandbox.app.sound.device import Device
 from sandbox.app.sound.ear import Ear, Sounding
@@ -13,6 +12,14 @@ from sandbox.app.sound.voices import Cue, Voices
 
 # What is outside the view is quieter by this factor for each width of the view that it is away.
 FAR = 0.25
+
+
+class SoundChoices(Protocol):
+    """What is chosen, by name."""
+
+    def __getitem__(self, name: str) -> Any:
+        """The value that was chosen."""
+        ...
 
 
 class SoundingRun(Protocol):
@@ -32,7 +39,7 @@ class SoundingRun(Protocol):
 class Sounds:
     """Listens to one run at a time; chosen: whether there is sound, and how loud. clock: now [s]."""
 
-    def __init__(self, chosen: Chosen, clock: Callable[[], float], device: Device | None = None) -> None:
+    def __init__(self, chosen: SoundChoices, clock: Callable[[], float], device: Device | None = None) -> None:
         self._chosen, self._clock = chosen, clock
         self.device = device or Device()
         self.bank = Bank()

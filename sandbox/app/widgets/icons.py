@@ -226,6 +226,13 @@ def _branch(pen: IconPen) -> None:
         pen.disc(19, y, 2.6)
 
 
+def _toy(pen: IconPen) -> None:
+    pen.line((4, 4), (20, 4), (20, 20), (4, 20), (4, 4), width=1.8)
+    for x in (9.5, 14.5):
+        pen.disc(x, 10.5, 1.6)
+    pen.arc(12, 13, 3.6, 200, 340)
+
+
 ICONS: dict[str, Icon] = {
     "settings": _settings, "more": _more,
     "drag": _drag, "pin": draw_pin, "cut": _cut, "play": _play, "pause": _pause, "step": _step, "reset": _reset,
@@ -233,7 +240,7 @@ ICONS: dict[str, Icon] = {
     "panel": _panel, "save": _save, "edit": _edit, "keep": _keep, "share": _share, "spring": draw_spring,
     "lattice": _lattice, "particles": _particles, "contacts": _contacts, "forces": _forces,
     "velocities": _velocities, "stability": _stability, "parts": _parts, "sound": _sound, "muted": _muted,
-    "compare": _compare, "graphs": _graphs,
+    "compare": _compare, "graphs": _graphs, "toy": _toy,
     "timeline": _timeline, "back": _back, "backwards": _backwards, "bookmark": _bookmark, "loop": _loop,
     "next_mark": lambda pen: _mark_beside(pen, 1), "previous_mark": lambda pen: _mark_beside(pen, -1),
     "branch": _branch,

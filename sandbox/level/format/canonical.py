@@ -47,9 +47,13 @@ def _broken_body(body: dict[str, Any], indent: int) -> str:
 
 def _fitted(value: Any, indent: int, column: int) -> str:
     """Text of a value that begins at a column, on one line if it fits."""
-    line = _dump(value)
-    if not isinstance(value, list | dict) or not value or column + len(line) < _WIDTH:
-        return line
+    if not isinstance(value, list | dict) or not value:
+        return _dump(value)
+    # An item takes three columns at least, with what parts it from the next.
+    if column + 3 * len(value) < _WIDTH:
+        line = _dump(value)
+        if column + len(line) < _WIDTH:
+            return line
     if isinstance(value, dict):
         items = [_fitted(item, indent + 2, indent + len(_dump(key)) + 4) for key, item in value.items()]
     else:
@@ -68,7 +72,15 @@ def _broken(value: list[Any] | dict[str, Any], indent: int, items: list[str]) ->
 
 
 def _dump(value: Any) -> str:
-    # Most values are numbers, and the encoder takes long to begin.
-    if type(value) is float and math.isfinite(value):
+    """Text of a value on one line."""
+    # The encoder takes long to begin, and most values are numbers, or short lists of them.
+    kind = type(value)
+    if kind is float and math.isfinite(value):
         return float.__repr__(value)
+    if kind is int:
+        return int.__repr__(value)
+    if kind is list:
+        return f"[{', '.join(map(_dump, value))}]"
+    if kind is dict:
+        return f"{{{', '.join([f'{_dump(key)}: {_dump(item)}' for key, item in value.items()])}}}"
     return _encoded(value)

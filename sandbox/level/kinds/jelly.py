@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -278,14 +278,7 @@ class Jelly(Expansion[JellyDef]):
         body, shape = self.body, self.body.shape
         if isinstance(shape, BoxShape):
             return 0, 0, np.ones(self._box_grid()[::-1], dtype=np.bool_)
-        if isinstance(shape, CircleShape):
-            reach = self._reach()
-            steps = np.arange(-reach, reach + 1, dtype=np.float64)
-            ratio = shape.circle / body.spacing + BORDER
-            inside = steps[:, None] * steps[:, None] + steps[None, :] * steps[None, :] <= ratio * ratio
-            return -reach, -reach, largest_part(inside)
-        left, bottom, points = polygon_grid(shape.polygon, body.spacing)
-        return left, bottom, largest_part(points)
+        return _grid_in(shape.circle if isinstance(shape, CircleShape) else shape.polygon, body.spacing)
 
     @cached_property
     def _numbers(self) -> Pairs:
@@ -304,7 +297,7 @@ class Jelly(Expansion[JellyDef]):
     def _reach(self) -> int:
         """Points of the grid on either side of the centre of a circle."""
         assert isinstance(self.body.shape, CircleShape)
-        return math.floor(self.body.shape.circle / self.body.spacing + BORDER)
+        return _reach(self.body.shape.circle, self.body.spacing)
 
     def _farthest(self) -> float:
         """Largest absolute coordinate [m] of the outline."""
@@ -319,6 +312,26 @@ class Jelly(Expansion[JellyDef]):
         cosine, sine = turn(body.angle)
         across, up = body.position
         return max(max(abs(across + x * cosine - y * sine), abs(up + x * sine + y * cosine)) for x, y in corners)
+
+
+def _reach(radius: float, spacing: float) -> int:
+    return math.floor(radius / spacing + BORDER)
+
+
+# The same bodies are looked at again at every edit of any other.
+@lru_cache(maxsize=64)
+def _grid_in(outline: tuple[Point, ...] | float, spacing: float) -> tuple[int, int, NDArray[np.bool_]]:
+    """Left, bottom, and the points of the grid (rows, columns) inside a polygon or a circle of that radius [m]."""
+    if isinstance(outline, float | int):
+        reach = _reach(outline, spacing)
+        steps = np.arange(-reach, reach + 1, dtype=np.float64)
+        ratio = outline / spacing + BORDER
+        left, bottom, points = -reach, -reach, steps[:, None] * steps[:, None] + steps * steps <= ratio * ratio
+    else:
+        left, bottom, points = polygon_grid(outline, spacing)
+    inside = largest_part(points)
+    inside.setflags(write=False)
+    return left, bottom, inside
 
 
 _NOT_SIMPLE = "its sides touch or cross, or a corner comes twice; draw it without"

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,6 +99,12 @@ def largest_part(points: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def is_simple(corners: Corners) -> bool:
     """Whether no two corners coincide and no two sides touch, but neighbours in their common corner."""
+    return _is_simple(tuple((float(x), float(y)) for x, y in corners))
+
+
+# What a body is made of is asked for again at every edit of any other.
+@lru_cache(maxsize=64)
+def _is_simple(corners: tuple[tuple[float, float], ...]) -> bool:
     a = np.array(corners, dtype=np.float64)
     b = np.roll(a, -1, axis=0)
     count = len(a)

@@ -75,8 +75,12 @@ class Faces:
         load = np.add.reduceat(strain, self._spring_start[:-1]) / np.maximum(np.diff(self._spring_start), 1)
         velocity = np.add.reduceat(frame.state.velocity[self._slots], begins, axis=0) / self._size[:, None]
         velocity = np.nan_to_num(velocity * np.array([1.0, -1.0]))
-        blinks = self.blinks(frame.seconds)
-        _draw_faces(marks, *(each[shown] for each in (centre, turn, size, load, velocity, blinks)))
+        shut = self.blinks(frame.seconds) | frame.asleep
+        centre, turn, size, load, velocity, shut = (
+            each[shown] for each in (centre, turn, size, load, velocity, shut)
+        )  # fmt: skip
+        at_rest = None if frame.pointer is None else _towards(frame.pointer, centre, size)
+        _draw_faces(marks, centre, turn, size, load, velocity, shut, at_rest)
 
     def blinks(self, seconds: float) -> NDArray[np.bool_]:
         """Which of them have their eyes shut at a time [s]."""
@@ -152,12 +156,14 @@ def _moods(load: Floats, speed: Floats, blinks: NDArray[np.bool_]) -> NDArray[np
 
 def _draw_faces(
     marks: MarkList, centre: Floats, turn: Floats, size: Floats, load: Floats, velocity: Floats,
-    blinks: NDArray[np.bool_],
+    blinks: NDArray[np.bool_], at_rest: Floats | None = None,
 ) -> None:  # fmt: skip
-    """Eyes that look where it moves, cheeks, and a mouth that says how it feels, of faces (f,)."""
+    """Eyes that look where it moves, or at_rest (f, 2), cheeks, and a mouth that says how it feels, of faces (f,)."""
     speed = np.sqrt(np.sum(velocity * velocity, axis=1))
     way = np.where(speed[:, None] <= 0.25, np.array([0.0, 1.0]), velocity / np.maximum(speed, 1e-9)[:, None])
     gaze = way * (np.minimum(1.0, 0.3 + speed / 4.0) * (0.42 * EYE_SIZE) * size)[:, None]
+    if at_rest is not None:
+        gaze = np.where(speed[:, None] <= 0.25, at_rest * (0.42 * EYE_SIZE * size)[:, None], gaze)
     smile = MOUTH_WIDE * (0.66 - np.minimum(9.0 * load, 0.8))
     t = _MOUTH_X[:, None]
     bend = np.where(load > SQUEEZED, 0.22 * MOUTH_WIDE * np.sin(3.0 * np.pi * t), smile * (1.0 - t * t))
@@ -175,6 +181,12 @@ def _draw_faces(
     half = np.maximum(_HALF[:, None] * size, _LEAST[:, None])[shown]
     part = np.nonzero(shown)[0]
     marks.mixed(ends[shown].reshape(-1, 4), half, _COLOUR[part], _ALPHA[part], _KIND[part])
+
+
+def _towards(pointer: tuple[float, float], centre: Floats, size: Floats) -> Floats:
+    """How far faces turn their eyes (f, 2) to a pointer, 0..1: the farther the more."""
+    way = (np.array(pointer) - centre) / size[:, None]
+    return np.asarray(way / np.maximum(np.sqrt(np.sum(way * way, axis=1)), 1.0)[:, None])
 
 
 def _spot(actor: Actor, loop: Slots) -> tuple[Floats, float]:

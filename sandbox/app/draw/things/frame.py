@@ -36,7 +36,8 @@ class Frame:
     """One picture of a state.
 
     at (n, 2) [pixels], angle (n,) [rad] by which particles have turned, strain (m,); zoom [pixels/m], scale [pixels a
-    layout unit]; seconds: time of the picture.
+    layout unit]; seconds: time of the picture; asleep: faces have their eyes shut; pointer [pixels]: what those look at
+    that rest, None = straight ahead.
     """
 
     state: Seen
@@ -48,6 +49,8 @@ class Frame:
     theme: Theme
     tiles: Tiles
     seconds: float = 0.0
+    asleep: bool = False
+    pointer: tuple[float, float] | None = None
 
     def ends(self, pairs: NDArray[np.int64]) -> Floats:
         """Lines (m, 4) [pixels] between pairs of particles."""

@@ -149,10 +149,13 @@ class Form:
             self._keep(TextBlock(ui, place, self._empty, self.area.content, 12.5))
         for number, section in enumerate(sections):
             style = "@title" if number == 0 else "@heading"
-            title = section.title if number == 0 else section.title.upper()
             self._y += SECTION_GAP if number else 0.0
-            self._keep(ui.label(self._rect(0, self._inside, HEADING - 4), title, self.area.content, style))
-            self._y += HEADING
+            # What several selected things are may take two lines.
+            widest = ui.px(self._inside)
+            lines = [section.title.upper()] if number else wrapped(section.title, ui.font(15, True), widest, 2)
+            for line in lines:
+                self._keep(ui.label(self._rect(0, self._inside, HEADING - 4), line, self.area.content, style))
+                self._y += HEADING
             for each in section.properties:
                 self._add(each)
         self.area.set_height(ui.px(self._y + 8))

@@ -1,0 +1,59 @@
+"""Starting toys: in this process, or each in one of its own."""
+
+import contextlib
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sandbox.editor.storage.level_file import data_folder
+from sandbox.level.format.files import write_level
+from sandbox.physics import jit
+
+if TYPE_CHECKING:
+    from sandbox.level.format.model import Level
+
+# The level of a toy that names none.
+USUAL = "desk_toy"
+
+
+def run_toy(
+    find: "Callable[[], Level]", tell: Callable[[str], object], record: Path | None, seconds: float | None,
+    scale: float | None, theme: str | None,
+) -> None:  # fmt: skip
+    """Open a toy and run it until it is closed, or for so many seconds.
+
+    find: the level. tell: told in one line where the system cannot do what a toy needs. record: a file that it is
+    recorded to. scale, theme: in place of what is remembered of the person.
+    """
+    # A process that has compiled kernels already goes on with them.
+    with contextlib.suppress(RuntimeError):
+        jit.start_interpreted()
+    from sandbox.app.settings.chosen import Chosen
+    from sandbox.app.toy.toy import Toy
+    from sandbox.app.toy.toy_window import ToyWindow
+
+    level, chosen = find(), Chosen(theme=theme)
+    left, bottom, right, top = level.view or (0.0, 0.0, 1.0, 1.0)
+    window = ToyWindow(scale or chosen["scale"], (right - left) / max(top - bottom, 1e-9))
+    for line in (*chosen.faults, window.refusal):
+        if line:
+            tell(line)
+    toy = Toy(window, level, chosen, record)
+    try:
+        toy.run(seconds)
+    finally:
+        toy.close()
+
+
+def start_toy(level: "Level") -> str | None:
+    """Open a level as a toy in a process of its own, which goes on when this one ends; why not, where it cannot be."""
+    file = data_folder() / "toy.json"
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_level(level, file)
+        subprocess.Popen([sys.executable, "-m", "sandbox", "toy", str(file)], start_new_session=True)
+    except OSError as error:
+        return f"The desk toy cannot be started: {error.strerror or error}."
+    return None

@@ -1,0 +1,33 @@
+"""`sandbox toy`."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sandbox.cli.inputs import EXIT_OK, Refused, level_of
+from sandbox.terminal import seconds, tell
+
+if TYPE_CHECKING:
+    from sandbox.level.format.model import Level
+
+
+def add_toy_options(toy: argparse.ArgumentParser) -> None:
+    """What `sandbox toy` takes, beside how it looks."""
+    toy.add_argument("level", nargs="?", metavar="LEVEL", help="a level file or a shipped level's name")
+    toy.add_argument("--record", type=Path, metavar="FILE", help="write a replay; .gz compresses")
+    toy.add_argument("--seconds", type=seconds, help="close it after so many seconds")
+
+
+def play_toy(options: argparse.Namespace) -> int:
+    """Play a level in a small window that stays on top. Raises Refused where there is no display."""
+    from sandbox.app.display import has_display
+
+    if not has_display():
+        raise Refused("the desk toy needs a display; `sandbox run` plays a level without one")
+    from sandbox.app.toy.toy_start import USUAL, run_toy
+
+    def find() -> "Level":
+        return level_of(options.level or USUAL)
+
+    run_toy(find, lambda line: tell([line]), options.record, options.seconds, options.scale, options.theme)
+    return EXIT_OK
