@@ -570,7 +570,8 @@ class World(StateArrays):
         cursor, spring = self.grab_particle + grab, self.grab_spring + grab
         self.change("particle_active", False, cursor)
         self.energy_bank[self.energy_bank > 0.0] = BANK_EMPTIED
-        self.disturb(self.particle_b[spring])
+        # Not begun anew: what overlaps where a hand lets go is no start, at which parting costs nothing.
+        self.energy_bank[self.particle_b[spring]] = BANK_EMPTIED
         self.position[cursor] = 0.0
         self.velocity[cursor] = 0.0
         self.slow_velocity[cursor] = 0.0

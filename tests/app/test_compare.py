@@ -91,6 +91,14 @@ def test_the_beginning_comes_back_with_the_settings_of_both(pair):
     pair.release(at)
 
 
+def test_a_recording_holds_one_run_and_says_which(pair):
+    pair.app.act("record")
+    pair.frames(3)
+    screen = pair.app.play
+    assert screen.playback.session.recording is not None and screen.other.session.recording is None
+    assert any("holds A alone" in notice for notice in pair.notices)
+
+
 def test_pause_single_ticks_and_the_camera_are_of_both(pair):
     pair.key(pygame.K_SPACE)
     before = [world.tick for world in worlds(pair)]

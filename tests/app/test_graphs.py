@@ -114,6 +114,19 @@ def test_graphs_and_world_share_the_window_with_nothing_cut(driver, size):
     assert right <= span.rect.left and chart.contains(screen.graphs._place)
 
 
+def test_where_there_is_no_room_for_tabs_a_button_asks(driver):
+    driver.app.display.window.size = (640, 480)
+    driver.key(pygame.K_F8)
+    driver.app.act("panel")
+    driver.frames(2)
+    graphs = driver.app.play.graphs
+    assert graphs._tabs is None
+    driver.click_widget(graphs._one)
+    driver.choose("Strain")
+    driver.frames(2)
+    assert graphs.shown == "strain" and graphs._one.text == "Strain"
+
+
 def test_two_runs_have_the_colours_of_their_quantities_and_dashes_of_their_own(driver):
     driver.key(pygame.K_F9)
     driver.key(pygame.K_F8)

@@ -10,7 +10,7 @@ def test_random_mouse_and_keyboard_fail_nowhere_and_stay_in_a_folder(tmp_path, m
         monkeypatch.setenv(name, os.environ.get(name, ""))
     monkeypatch.chdir(tmp_path)
     hide_home(tmp_path)
-    assert soak(3, 150, tmp_path, stretch=25) == []
+    assert soak(3, 120, tmp_path, stretch=20) == []
     begun = capsys.readouterr().out
     assert all(f"begun: {screen} 1" in begun for screen in ("gallery", "palette", "edit", "settings", "share", "help"))
     assert list(tmp_path.glob("soak-*.replay"))

@@ -49,7 +49,8 @@ def test_in_random_scenes_of_the_softest_springs_no_energy_appears(seed):
     assert found.growth <= 0.05
 
 
-@pytest.mark.parametrize(("stiffness", "damping", "seed"), [(0.1, 0.5, 0), (0.9, 0.99, 1)])
+# At Cs 0.9 and Cd 0.99 a cloth may stay stretched between bodies that hold it by friction (docs/physics.md).
+@pytest.mark.parametrize(("stiffness", "damping", "seed"), [(0.1, 0.5, 0), (0.5, 0.9, 1)])
 def test_a_stirred_heap_lies_in_no_knots_five_seconds_later(stiffness, damping, seed):
     found = stir(heap(stiffness, damping, seed), 20.0, seed)
     assert found.deepest <= 1.5

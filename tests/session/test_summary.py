@@ -3,9 +3,10 @@
 import pytest
 
 from sandbox.physics.energy import total_energy
+from sandbox.session.check_run import run_checks
 from sandbox.session.commands import CutSprings, Grab, Release, SetDrive
 from sandbox.session.session import Session
-from sandbox.session.summary import run, run_checks
+from sandbox.session.summary import run
 from tests.support.rope_level import rope_level
 
 

@@ -1,6 +1,7 @@
 """CompareScreen: one level played twice side by side, A and B, with settings of their own and the same hands."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
@@ -57,6 +58,15 @@ class CompareScreen(PlayScreen):
         """Let both stages have the same tools and views."""
         assert self.beside is not None
         self.beside.share(self.stage)
+
+    def _actions(self) -> dict[str, Callable[[], object]]:
+        of_one, files = super()._actions(), self._app.files
+        recorders = {"record": files.toggle_recording, "save": files.save_run}
+        return {**of_one, **{name: partial(self._record_one, do) for name, do in recorders.items()}}
+
+    def _record_one(self, do: Callable[[], object]) -> None:
+        self._app.say(f"A recording is of one run: it holds {SIDES[0]} alone.")
+        do()
 
     # Where the halves are.
 

@@ -3,6 +3,7 @@
 import csv
 import io
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from sandbox.app.graphs.tracks import Track
 from sandbox.app.play.playback import Playback
 from sandbox.app.recordings import free_path, pictures_folder, plain_name, recordings_folder
 from sandbox.app.shortcuts import tip_of
+from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.fields import Choice
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
@@ -26,6 +28,7 @@ from sandbox.level.format.writing import write_file
 # Layout units: the dock's share of the window's height and its bounds, and the row of buttons.
 SHARE, LOWEST, HIGHEST = 0.30, 172.0, 270.0
 ROW, GAP, EDGE, FILE_WIDTH, SPAN_WIDTH, TAB = 26.0, 6.0, 10.0, 46.0, 54.0, 70.0
+ONE_WIDTH = 92.0
 # Times [s] that can be seen at once.
 SPANS = (10.0, 30.0, 60.0, 5.0)
 # Particles that are followed at most.
@@ -53,6 +56,7 @@ class GraphDock:
         self._before = -1
         self._place = self._back = pygame.Rect(0, 0, 1, 1)
         self._tabs: Choice | None = None
+        self._one: Any = None
 
     def height(self, ui: Ui) -> float:
         """The room that it takes [layout units]."""
@@ -62,7 +66,7 @@ class GraphDock:
 
     def build(self, ui: Ui, width: float, bottom: float) -> None:
         """Lay it out anew, width wide, above a lower edge [layout units]."""
-        self._tabs, self._ui = None, ui
+        self._tabs, self._one, self._ui = None, None, ui
         if not self.is_shown:
             return
         height = self.height(ui)
@@ -80,9 +84,13 @@ class GraphDock:
             ui.button(ui.rect(right, GAP, wide, ROW), text, do, back, tip=tip, style="@segment")
             right -= GAP
         options = [(name, measure.title, f"{measure.title} [{measure.unit}]") for name, measure in MEASURES.items()]
-        wide = min(TAB * len(options), right - EDGE)
-        self._tabs = ui.choice(ui.rect(EDGE, GAP, wide, ROW), options, self.show, back)
-        self._tabs.show(self.shown)
+        if TAB * len(options) <= right - EDGE:
+            self._tabs = ui.choice(ui.rect(EDGE, GAP, TAB * len(options), ROW), options, self.show, back)
+            self._tabs.show(self.shown)
+        else:
+            # Where there is no room for all, one button asks.
+            place = ui.rect(EDGE, GAP, min(ONE_WIDTH, right - EDGE), ROW)
+            self._one = ui.button(place, MEASURES[self.shown].title, self._ask, back, tip="Another graph")
         top = bottom - height + ROW + 2 * GAP
         self._place = ui.rect(EDGE, top, width - 2 * EDGE, bottom - GAP - top)
 
@@ -101,6 +109,12 @@ class GraphDock:
         set_preference(WANTED, name)
         if self._tabs is not None:
             self._tabs.show(name)
+        elif self._one is not None:
+            self._one.set_text(MEASURES[name].title)
+
+    def _ask(self) -> None:
+        """Ask which graph is shown."""
+        choose(self._ui, "Graph", "", [(each.title, partial(self.show, name)) for name, each in MEASURES.items()])
 
     def pick(self, particle: int | None) -> None:
         """Follow a particle, or no longer; shows the graph of speeds where none of particles is seen."""

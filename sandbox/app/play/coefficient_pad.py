@@ -171,7 +171,7 @@ class CoefficientPad(Painted):
     def _paint_name(self, surface: pygame.Surface, name: str, at: tuple[float, float], colour: Colour) -> None:
         picture = self.ui.font(WORD_SIZE, True).render(name, True, colour)
         place = picture.get_rect(midbottom=(at[0], at[1] - self.ui.px(KNOB + 2)))
-        if place.top < 0:
+        if place.top < self._inside.top:
             place.midtop = (round(at[0]), round(at[1] + self.ui.px(KNOB + 2)))
         surface.blit(picture, place.clamp(self._inside))
 

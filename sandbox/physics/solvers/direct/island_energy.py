@@ -33,7 +33,7 @@ from sandbox.physics.world import BANK_UNOPENED, Floats
 INNER_HALVINGS = 3
 # What banks save for pushing apart what penetrates lets a body have this speed [m/s] as a whole. More lets what a crash
 # has lost come back, less leaves what lies deep in terrain there for longer.
-PAID_PUSH = 0.5
+PAID_PUSH = 0.4
 
 
 @inner_kernel
@@ -274,7 +274,7 @@ def damp_islands(touch: Touch, system: System, state: State, start: Floats, h: f
 @inner_kernel
 def _load_limits(contacts: Contacts, touch: Touch, system: System, state: State, h: float) -> None:
     # The most that each bank may hold: a share of the member's energy; or what penetrations cost, of what it has itself
-    # lost: what a light body loses as it hits a heavy one would push that out of what it lies in, and give much back.
+    # lost: what a light body loses as it hits a heavy one would push that out of what it lies in.
     islands, bodies = touch.islands, touch.islands.counts[BODIES]
     for k in range(islands.counts[MEMBERS]):
         islands.limit[k] = 0.0
