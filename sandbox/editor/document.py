@@ -35,12 +35,16 @@ class Document:
     selection: Selection = frozenset()
 
 
+# What a level is called that nobody has named.
+UNTITLED = "Untitled"
+
+
 def empty_level() -> Level:
     """A level to begin with: nothing in it but materials ready to use."""
     return Level(
         format="spring-sandbox/level",
         version=VERSION,
-        name="Untitled",
+        name=UNTITLED,
         materials={
             "steel": NissenMaterial(stiffness=1.0, damping=1.0),
             "rubber": NissenMaterial(stiffness=0.2, damping=0.3),
@@ -117,7 +121,7 @@ def all_validated(definitions: Sequence[Described]) -> tuple[Described, ...]:
 
 def subject(definition: Description) -> str:
     """What messages call a definition: its id in quotes, or what a spring joins."""
-    name = getattr(definition, "id", None)
+    name = getattr(definition, "id", None) or getattr(definition, "name", None)
     return shown(name) if name is not None else "the spring"
 
 
@@ -134,7 +138,8 @@ def _named(level: Level, fault: str) -> str:
     if match is None:
         return fault
     about = getattr(level, match[1])[int(match[2])]
-    name = f"the spring :{match[2]}" if match[1] == "springs" else shown(getattr(about, "id", None) or about.name)
+    spring = match[1] == "springs" and about.name is None
+    name = f"the spring :{match[2]}" if spring else shown(getattr(about, "id", None) or about.name)
     return f"{name}: {match[3]}"
 
 

@@ -352,3 +352,17 @@ def test_a_file_whose_name_is_no_text_is_opened_and_saved(edit, tmp_path):
     driver.app.act("save_as")
     driver.frames(2)
     assert driver.app.ui.has_sheet
+
+
+def test_a_level_that_nobody_has_named_is_called_as_its_file_and_others_keep_their_name(edit, tmp_path):
+    driver = edit()
+    for name, wanted in (("bridge one", "bridge one"), ("bridge two", "bridge one")):
+        draw(driver)
+        driver.key(pygame.K_s, CTRL | SHIFT)
+        driver.app.ui.focus.set_text(str(tmp_path / name))
+        driver.key(pygame.K_RETURN)
+        driver.frames(2)
+        assert read_level(tmp_path / f"{name}.json").name == wanted == driver.editor.document.level.name
+        assert driver.editor.history.is_saved
+    driver.editor.step_to(1)
+    assert driver.editor.document.level.name == "Untitled"

@@ -27,7 +27,7 @@ def thread_level(**changes):
 
 def told(level, *springs_by_tick):
     """What is said of springs that break tick by tick."""
-    world, breaks, lines = Session(level).world, Breaks(), []
+    world, breaks, lines = Session(level).world, Breaks(level), []
     for springs in springs_by_tick:
         world.tick += 1
         world.broken = np.array([world.spring_names.index(name) for name in springs], dtype=np.int64)

@@ -243,7 +243,16 @@ def test_what_is_only_shown_says_so(level):
     assert fields(chosen(level, "mesh"))["size"].value == "2 particles, 1 spring"
     with pytest.raises(EditError):
         joined.set(chosen(level, "deck"), "nothing")
-    assert fields(Document(level, frozenset([Item("spring", 1)])))["name"].value == ":1"
+    assert fields(Document(level, frozenset([Item("spring", 1)])))["number"].value == ":1"
+
+
+def test_a_loose_spring_is_given_a_name_and_loses_it_again(level):
+    spring = Document(level, frozenset([Item("spring", 1)]))
+    named = fields(spring)["name"].set(spring, "left knee")
+    assert named.level.springs[1].name == "left knee"
+    assert fields(named)["name"].set(named, None).level.springs[1].name is None
+    both = Document(level, frozenset([Item("spring", 0), Item("spring", 1)]))
+    assert "name" not in fields(both), "two of one name could not be told apart"
 
 
 def test_a_drive_is_added_with_values_that_fit_changed_and_taken_away(level):
@@ -390,7 +399,21 @@ def test_whatever_is_typed_gives_a_level_that_can_be_saved_or_one_line(index, da
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_a_number_is_shown_without_becoming_another(value):
-    assert float(number_text(value)) == value
+    assert math.isclose(float(number_text(value)), value, rel_tol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.1 + 0.2, "0.3"),
+        (-1.4000000000000001, "-1.4"),
+        (3.0999999999999996, "3.1"),
+        (1 / 3, repr(1 / 3)),
+        (1e-9, "1e-09"),
+    ],
+)
+def test_the_dust_of_arithmetic_is_not_shown(value, text):
+    assert number_text(value) == text
 
 
 @given(st.text(alphabet="ab\\nt\n\t ", max_size=12))

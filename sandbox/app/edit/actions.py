@@ -13,13 +13,14 @@ from sandbox.app.edit.clipboard import Clipboard
 from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.part_keeping import ask_to_keep_part
 from sandbox.app.edit.side.rows import Row
-from sandbox.app.shortcuts import shortcuts
+from sandbox.app.shortcuts import shortcuts, tip_of
 from sandbox.app.widgets.dialogs import choose, choose_row, fill_in
 from sandbox.editor.document import Document
 from sandbox.editor.edits.copying import array_circle, array_line, duplicate
 from sandbox.editor.edits.deleting import break_apart, delete
 from sandbox.editor.edits.grouping import group, reorder, ungroup
 from sandbox.editor.edits.moving import align, distribute, mirror
+from sandbox.editor.edits.phase_wave import wave_in_order
 from sandbox.editor.edits.placing import unweld
 from sandbox.editor.items import Item
 from sandbox.editor.pick import items_of_material
@@ -31,8 +32,8 @@ COPY_LIMIT = 1_000
 
 # Actions that have no button in the bar.
 MENU = (
-    "copy", "cut", "paste", "copy_level", "keep_part", "select_all", "select_material", "forward", "backward",
-    "recent", "open_file", "save_as", "revert", "settings",
+    "copy", "cut", "paste", "copy_level", "keep_part", "wave_in_order", "select_all", "select_material", "forward",
+    "backward", "recent", "open_file", "save_as", "revert", "settings",
 )  # fmt: skip
 
 Edge = Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]
@@ -80,6 +81,8 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
         "backward": lambda: _reorder(screen, "backward"),
         "snap": lambda: _toggle_snap(screen),
         "forecast": screen.toggle_forecast,
+        "rest": screen.begin_at_rest,
+        "wave_in_order": lambda: _ask_wave(screen),
         "numbers": screen.focus_numbers,
         "next_item": lambda: _visit(screen, 1),
         "previous_item": lambda: _visit(screen, -1),
@@ -97,8 +100,8 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
 
 def _show_menu(screen: Editing, app: Application) -> None:
     """Offer what has no button of its own."""
-    entries = [entry for entry in shortcuts("edit") if entry.action in MENU]
-    choices = [(f"{entry.label}  [{entry.keys[0]}]", partial(app.act, entry.action)) for entry in entries]
+    entries = [entry for entry in shortcuts("edit") if entry.action in (*MENU, *screen.without_button)]
+    choices = [(tip_of(entry.action, "edit"), partial(app.act, entry.action)) for entry in entries]
     choose(screen.ui, "More", "", choices, columns=2)
 
 
@@ -256,6 +259,21 @@ def _ask_circle(screen: Editing) -> None:
         return None if done else "Not possible."
 
     fill_in(screen.ui, "Array along a circle", "The selection is the first of them.", fields, "Make", make)
+
+
+def _ask_wave(screen: Editing) -> None:
+    """Ask for a wave through muscles in their order."""
+
+    def make(texts: list[str]) -> str | None:
+        try:
+            waves = _number(texts[0])
+        except ValueError as error:
+            return str(error)
+        done = screen.edit("Phase wave", lambda document: wave_in_order(document, waves))
+        return None if done else "Not possible."
+
+    hint = "Phases of the selected muscles, or of all, from first to last."
+    fill_in(screen.ui, "Phase wave", hint, [("Waves along them", "1")], "Make", make)
 
 
 def _number(text: str) -> float:

@@ -24,11 +24,18 @@ LEFT = (
         ("duplicate", "duplicate"), ("delete", "delete"), ("mirror", "mirror"), ("array", "array"), ("parts", "group"),
         ("align", "align"), ("order", "order"),
     ),
-    (("snap", "snap"), ("forecast", "forecast")),
+    (("snap", "snap"), ("forecast", "forecast"), ("rest", "rest")),
 )  # fmt: skip
 RIGHT = (("menu", "menu"), ("fit", "fit"), ("panel", "panel"))
+# What goes into the menu where the window is too narrow, first what is missed least.
+LEAVING = ("order", "align", "array", "fit", "open", "new", "mirror", "parts", "snap", "rest", "duplicate", "delete")
+# Buttons are no smaller than this; more of them go into the menu, or into a second column.
+LEAST_PITCH = 33.0
+LEAST_TOOL_PITCH = 26.0
+TOOL_COLUMN = 34.0
 NEEDS_SELECTION = ("duplicate", "delete", "mirror", "array", "parts", "align", "order")
 MARGIN = 14.0
+PALETTE_WIDTH = 52.0
 GROUP_GAP = 14.0
 
 
@@ -90,30 +97,39 @@ class Bar:
     def __init__(self, ui: Ui, press: Callable[[str], None]) -> None:
         width = ui.units[0]
         self.back = ui.panel(ui.rect(0, 0, width, BAR_HEIGHT))
-        count = sum(map(len, LEFT)) + len(RIGHT) + 1
         gaps = GROUP_GAP * len(LEFT) if width >= ROOM_FOR_NAME else 4.0 * len(LEFT)
-        pitch = min(BUTTON + GAP, (width - 2 * MARGIN - gaps) / count)
+        room = width - 2 * MARGIN - gaps
+        count = sum(map(len, LEFT)) + len(RIGHT) + 1
+        self.left_out = LEAVING[: max(0, count - int(room // LEAST_PITCH))]
+        pitch = min(BUTTON + GAP, room / (count - len(self.left_out)))
         size = min(BUTTON, pitch - 2)
         self.buttons = _Buttons(ui, press, self.back, size)
         x, y = MARGIN, (BAR_HEIGHT - size) / 2
         for group in LEFT:
             for action, picture in group:
-                self.buttons.add(action, EDIT_ICONS[picture], x, y)
-                x += pitch
+                if action not in self.left_out:
+                    self.buttons.add(action, EDIT_ICONS[picture], x, y)
+                    x += pitch
             x += gaps / len(LEFT)
-        right = width - MARGIN - (len(RIGHT) + 1) * pitch
+        at_right = [entry for entry in RIGHT if entry[0] not in self.left_out]
+        right = width - MARGIN - (len(at_right) + 1) * pitch
         self.title = None
         if width >= ROOM_FOR_NAME:
             self.title = ui.label(ui.rect(x + 8, 0, right - x - 16, BAR_HEIGHT), "", self.back, "@title")
         self._name = ""
-        for action, picture in RIGHT:
+        for action, picture in at_right:
             self.buttons.add(action, EDIT_ICONS[picture], right, y)
             right += pitch
         self.buttons.add_text("help", "?", right, y)
 
     def show(self, screen: Editing) -> None:
         """Show what is possible now."""
-        history, show = screen.history, self.buttons.show
+        history = screen.history
+
+        def show(action: str, enabled: bool = True, on: bool = False) -> None:
+            if action not in self.left_out:
+                self.buttons.show(action, enabled, on)
+
         show("undo", history.can_undo)
         show("redo", history.can_redo)
         for action in NEEDS_SELECTION:
@@ -128,16 +144,32 @@ class Bar:
             self.title.set_text(name)
 
 
-class Palette:
-    """The tools, at the left edge below the bar; lower windows have smaller buttons."""
+def palette_columns(height: float) -> int:
+    """Columns of tools that a palette of that height [layout units] has: as few as leave its buttons large enough."""
+    return min(3, max(1, -(-len(TOOLS) // max(1, int((height - 8) // LEAST_TOOL_PITCH)))))
 
-    def __init__(self, ui: Ui, press: Callable[[str], None], top: float, width: float, height: float) -> None:
+
+def palette_width(height: float) -> float:
+    """Width [layout units] of a palette of that height."""
+    columns = palette_columns(height)
+    return PALETTE_WIDTH if columns == 1 else 8.0 + columns * TOOL_COLUMN
+
+
+class Palette:
+    """The tools, at the left edge below the bar; lower windows have more columns of them."""
+
+    def __init__(self, ui: Ui, press: Callable[[str], None], top: float, height: float) -> None:
+        width, columns = palette_width(height), palette_columns(height)
         self.back = ui.panel(ui.rect(0, top, width, height))
-        pitch = min(BUTTON + GAP, (height - 8) / len(TOOLS))
-        size = min(BUTTON, pitch - 2)
+        rows = -(-len(TOOLS) // columns)
+        pitch = min(BUTTON + GAP, (height - 8) / rows)
+        across = (width - 8.0) / columns
+        size = min(BUTTON, pitch - 2, across - 2)
         self._buttons = _Buttons(ui, press, self.back, size)
         for index, tool in enumerate(TOOLS.values()):
-            self._buttons.add(tool.action, tool.icon, (width - size) / 2, 6 + index * pitch)
+            column, row = divmod(index, rows)
+            x = 4.0 + column * across + (across - size) / 2
+            self._buttons.add(tool.action, tool.icon, x, 6 + row * pitch)
         self.tools = {name: self._buttons.by_action[tool.action] for name, tool in TOOLS.items()}
 
     def show(self, tool: str) -> None:

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from sandbox.app.edit.edit_screen import EditScreen
 from sandbox.app.play.playback import Playback
 from sandbox.app.recordings import plain_name, recordings_folder
 from sandbox.app.widgets.dialogs import ask, choose, show_lines
-from sandbox.editor.document import Document, empty_level
+from sandbox.editor.document import UNTITLED, Document, empty_level
 from sandbox.editor.history import History
 from sandbox.editor.storage.autosave import Autosave, Orphan, orphans
 from sandbox.editor.storage.level_file import ChangedOnDisk, FileExists, LevelFile, LevelInUse, StorageError
@@ -18,6 +19,7 @@ from sandbox.editor.storage.recent import remember
 from sandbox.level.faults.level_error import LevelError, one_line
 from sandbox.level.format.files import load_level
 from sandbox.level.format.model import Level
+from sandbox.level.format.quantities import replaced
 
 # Longest name of a level's file [characters].
 NAME_LIMIT = 200
@@ -196,7 +198,18 @@ class DocumentActions:
 
         def write(typed: str) -> None:
             path = path_of(typed)
-            self._write(lambda replace: editor.level_file.save_as(editor.document.level, path, replace), then)
+
+            def save_as(over: bool) -> str | None:
+                # A level that nobody has named is called as its file.
+                level = editor.document.level
+                if level.name == UNTITLED:
+                    level = replaced(level, name=one_line(path.stem))
+                warning = editor.level_file.save_as(level, path, over)
+                if level is not editor.document.level:
+                    editor.apply("Name it as its file", replace(editor.document, level=level))
+                return warning
+
+            self._write(save_as, then)
 
         ask(
             self.app.ui,

@@ -74,6 +74,13 @@ def _forecast(pen: IconPen) -> None:
     pen.disc(12, 18, 3)
 
 
+def _rest(pen: IconPen) -> None:
+    pen.line((3.5, 5), (20.5, 5), width=1.8)
+    pen.line((4, 5), (12, 15), (20, 5))
+    pen.disc(12, 15, 3)
+    pen.line((6, 21), (18, 21), width=1.8)
+
+
 def _menu(pen: IconPen) -> None:
     for y in (6, 12, 18):
         pen.line((4, y), (20, y), width=2.2)
@@ -83,5 +90,5 @@ EDIT_ICONS: dict[str, Icon] = {
     **ICONS,
     "new": _new,
     "open": _open, "duplicate": _duplicate, "delete": _delete, "mirror": _mirror, "array": _array, "group": _group,
-    "align": _align, "order": _order, "snap": _snap, "forecast": _forecast, "menu": _menu,
+    "align": _align, "order": _order, "snap": _snap, "forecast": _forecast, "rest": _rest, "menu": _menu,
 }  # fmt: skip

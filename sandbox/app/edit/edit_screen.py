@@ -13,7 +13,7 @@ from sandbox.app.application import Application
 from sandbox.app.draw.camera import Box, Camera, Point, grid_spacing
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, SURFACE, TEXT, WARNING, Colour
 from sandbox.app.edit.actions import edit_actions
-from sandbox.app.edit.bar import Bar, Palette
+from sandbox.app.edit.bar import Bar, Palette, palette_width
 from sandbox.app.edit.canvas.canvas import SNAP_STEP
 from sandbox.app.edit.canvas.overlay import draw_snap
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
@@ -43,7 +43,6 @@ from sandbox.editor.tools.selecting import LASSO
 from sandbox.editor.tools.snap import Snap, snap
 
 # Sizes in layout units.
-PALETTE_WIDTH = 52.0
 SIDE_WIDTH = 292.0
 # A nudge with Shift is this many steps of the grid.
 NUDGE_LEAP = 10
@@ -59,7 +58,6 @@ class EditScreen:
     """Edits a level; panels and tools change it by `edit` alone, so that every change can be undone."""
 
     mode: Mode = "edit"
-    notices_corner = (PALETTE_WIDTH + RULER + 12.0, 0.0)
 
     def __init__(self, app: Application, history: History, level_file: LevelFile) -> None:
         self.app = app
@@ -165,6 +163,10 @@ class EditScreen:
         """Whether it is shown where everything will hang."""
         return self.watch.forecasts
 
+    def begin_at_rest(self) -> None:
+        """Let everything begin where it will hang."""
+        self.watch.begin_at_rest()
+
     def toggle_forecast(self) -> None:
         """Show where everything will hang, or no more."""
         self.watch.toggle_forecast()
@@ -189,9 +191,23 @@ class EditScreen:
         """Pixels per layout unit."""
         return self.ui.scale
 
+    @property
+    def _palette_width(self) -> float:
+        return palette_width(self.ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT)
+
+    @property
+    def notices_corner(self) -> tuple[float, float]:
+        """Where notices begin, from the lower left corner [layout units]."""
+        return self._palette_width + RULER + 12.0, 0.0
+
+    @property
+    def without_button(self) -> tuple[str, ...]:
+        """Actions whose buttons have no room."""
+        return self.bar.left_out
+
     def _viewport(self) -> tuple[int, int, int, int]:
         ui, (width, height) = self.ui, self.ui.size
-        left, top = ui.px(PALETTE_WIDTH) + ui.px(RULER), ui.px(BAR_HEIGHT + OPTIONS_HEIGHT) + ui.px(RULER)
+        left, top = ui.px(self._palette_width) + ui.px(RULER), ui.px(BAR_HEIGHT + OPTIONS_HEIGHT) + ui.px(RULER)
         right = ui.px(SIDE_WIDTH) if self.show_side else 0
         return left, top, max(width - left - right, 1), max(height - top - ui.px(STATUS_HEIGHT), 1)
 
@@ -203,8 +219,9 @@ class EditScreen:
         self.camera.zoom *= math.sqrt(self.camera.viewport[2] * self.camera.viewport[3] / max(before[2] * before[3], 1))
         width, height = ui.units
         self.bar = Bar(ui, self.app.act)
-        self.palette = Palette(ui, self.app.act, BAR_HEIGHT, PALETTE_WIDTH, height - BAR_HEIGHT - STATUS_HEIGHT)
-        self.options = OptionsRow(self, ui.rect(PALETTE_WIDTH, BAR_HEIGHT, width - PALETTE_WIDTH, OPTIONS_HEIGHT))
+        self.palette = Palette(ui, self.app.act, BAR_HEIGHT, height - BAR_HEIGHT - STATUS_HEIGHT)
+        left = self._palette_width
+        self.options = OptionsRow(self, ui.rect(left, BAR_HEIGHT, width - left, OPTIONS_HEIGHT))
         self.rulers = Rulers(ui)
         self.side = Side(ui, self, self._side_place()) if self.show_side else None
 

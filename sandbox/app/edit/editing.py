@@ -190,6 +190,11 @@ class Editing(Protocol):
     # What is shown.
 
     @property
+    def without_button(self) -> tuple[str, ...]:
+        """Actions whose buttons have no room."""
+        ...
+
+    @property
     def ready(self) -> bool:
         """Whether the physics is prepared."""
         ...
@@ -234,6 +239,10 @@ class Editing(Protocol):
     @property
     def shows_forecast(self) -> bool:
         """Whether it is shown where everything will hang."""
+        ...
+
+    def begin_at_rest(self) -> None:
+        """Let everything begin where it will hang."""
         ...
 
     def toggle_forecast(self) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.edit.editing import Editing
+from sandbox.editor.edits.bake import begin_at_rest
 from sandbox.editor.forecast import Forecast
 from sandbox.editor.lint.lint import Finding, findings
 from sandbox.level.format.model import Level
@@ -29,10 +30,41 @@ class Watch:
         self._lint: Iterator[Finding | None] | None = None
         self._found: list[Finding] = []
         self._is_told = False
+        # Whether the level is to begin as the forecast has it, and whether that was shown before.
+        self._is_wanted = self._was_shown = False
+
+    def begin_at_rest(self) -> None:
+        """Let the level begin as it will hang: at once where that is known, else once it is."""
+        if not self._screen.scene.items:
+            self._screen.say("There is nothing on the sheet yet.")
+            return
+        self._is_wanted, self._was_shown = True, self.forecasts
+        if not self.forecasts:
+            self.toggle_forecast()
+        self._take_forecast()
+        if self._is_wanted:
+            self._screen.say("Working out where it hangs; then it begins so.")
+
+    def _take_forecast(self) -> None:
+        """Make the forecast the pose, where it is known and wanted."""
+        forecast, screen = self.forecast, self._screen
+        if not self._is_wanted or forecast is None or forecast.at_rest is None:
+            return
+        self._is_wanted = False
+        if forecast.position is None:
+            screen.say(f"{forecast.text}.")
+        elif self._level is screen.document.level:
+            position, falling, before = forecast.position, forecast.falling, screen.document.level
+            if screen.edit("Begin at rest", lambda document: begin_at_rest(document, position, falling)):
+                same = screen.document.level is before
+                screen.say("It hangs at rest already." if same else "It begins at rest now; undo takes it back.")
+        if not self._was_shown:
+            self.toggle_forecast()
 
     def toggle_forecast(self) -> None:
         """Work out where everything will hang, or no longer."""
         self.forecasts = not self.forecasts
+        self._is_wanted = self._is_wanted and self.forecasts
         self.forecast = None
         self._level = None
 
@@ -52,7 +84,10 @@ class Watch:
         self._look()
         if ready and self.forecast is not None and self.forecast.advance(SLICE) and not self._is_told:
             self._is_told = True
-            self._screen.say(f"{self.forecast.text}.")
+            if self._is_wanted:
+                self._take_forecast()
+            else:
+                self._screen.say(f"{self.forecast.text}.")
 
     def _look(self) -> None:
         if self._lint is None:

@@ -2,6 +2,7 @@
 
 from collections import Counter
 
+from sandbox.level.format.model import Level
 from sandbox.physics.world import World
 
 # After so long [s] without a break a new line begins.
@@ -11,9 +12,11 @@ NAMED = 2
 
 
 class Breaks:
-    """Counts what breaks, by the thing that it is a part of."""
+    """Counts what breaks in runs of a level, by the thing that it is a part of."""
 
-    def __init__(self) -> None:
+    def __init__(self, level: Level) -> None:
+        # What loose springs are called that have a name.
+        self._called = {f":{index}": spring.name for index, spring in enumerate(level.springs) if spring.name}
         self._counts: Counter[str] = Counter()
         self._last = -1
 
@@ -25,7 +28,16 @@ class Breaks:
         if not self._last <= world.tick <= self._last + QUIET * world.settings.tick_rate:
             self._counts.clear()
         self._last = world.tick
-        self._counts.update(_thing(world, spring) for spring in broken)
+        self._counts.update(self._thing(world, spring) for spring in broken)
+
+    def _thing(self, world: World, spring: int) -> str:
+        """The body that a spring is a part of, or its own name, or else what it is made of."""
+        name = world.spring_names[spring]
+        body = name.rpartition(":")[0] or self._called.get(name, "")
+        if body:
+            return f"the {body}"
+        material = world.material_names[int(world.material[spring])]
+        return "a spring" if material == "default" else f"the {material}"
 
     @property
     def text(self) -> str:
@@ -37,15 +49,6 @@ class Breaks:
             parts.append(f"{others} more {'thing' if others == 1 else 'things'} broke")
         text = "; ".join(parts)
         return f"{text[:1].upper()}{text[1:]}." if text else ""
-
-
-def _thing(world: World, spring: int) -> str:
-    """The body that a spring is a part of, or else what it is made of."""
-    body = world.spring_names[spring].rpartition(":")[0]
-    if body:
-        return f"the {body}"
-    material = world.material_names[int(world.material[spring])]
-    return "a spring" if material == "default" else f"the {material}"
 
 
 def _told(name: str, count: int) -> str:

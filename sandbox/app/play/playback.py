@@ -45,7 +45,7 @@ class Playback:
         self.replay = replay
         self.clock = TickClock()
         self.dissipation = Dissipation()
-        self.breaks = Breaks()
+        self.breaks = Breaks(level)
         self.behind = False
         self.verdict = ""
         self.messages: list[str] = []

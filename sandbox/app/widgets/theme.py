@@ -25,6 +25,8 @@ _SCALED = {
 gui_font_pygame.Font = SafeFont  # type: ignore[assignment, misc]
 # The theme of the last window, by scale and colours: it takes 30 ms to read, and the next window has mostly the same.
 _THEMES: dict[tuple[float, str], UIAppearanceTheme] = {}
+# A tip beside a panel is this far from it [pixels].
+TIP_GAP = 8
 # Pictures of buttons and the like that are kept; most have 10 kB, none has more than 160.
 MOST_SHAPES = 500
 
@@ -55,7 +57,35 @@ class Manager(pygame_gui.UIManager):
 
     def __init__(self, size: tuple[int, int], scale: float) -> None:
         self._scale = scale
+        self._tip: Any = None
         super().__init__(size, enable_live_theme_updates=False)
+
+    def create_tool_tip(self, *arguments: Any, **options: Any) -> Any:
+        """The only tip; that of a widget in a panel at a side lies beside the panel, not over the next widget."""
+        if self._tip is not None and self._tip.alive():
+            self._tip.kill()
+        self._tip = tip = super().create_tool_tip(*arguments, **options)
+        owner = options.get("parent_element", arguments[3] if len(arguments) > 3 else None)
+        holder: Any = owner
+        while holder is not None and holder.ui_container not in (None, self.get_root_container()):
+            holder = holder.ui_container
+        if tip is not None and owner is not None and holder is not owner:
+            self._lay_beside(tip, owner.rect, holder.rect)
+        return tip
+
+    def _lay_beside(self, tip: Any, owner: pygame.Rect, holder: pygame.Rect) -> None:
+        """Move a tip to the side of a panel that takes less than half of the window's width, where there is room."""
+        window = pygame.Rect((0, 0), self.window_resolution)
+        place = tip.rect.copy()
+        place.top = max(min(owner.top, window.bottom - place.height), 0)
+        if holder.centerx > window.centerx:
+            place.right = holder.left - TIP_GAP
+        else:
+            place.left = holder.right + TIP_GAP
+        if 2 * holder.width < window.width and window.contains(place):
+            tip.set_position(place.topleft)
+            if tip.text_block is not None:
+                tip.text_block.set_position(place.topleft)
 
     def create_new_theme(self, theme_path: Any = None) -> UIAppearanceTheme:
         """The theme that the manager looks widgets up in: that of the window before, if it is the same."""

@@ -7,9 +7,10 @@ import numpy as np
 from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.edits.materials import set_material
 from sandbox.editor.edits.placing import repinned, without_springs
-from sandbox.editor.items import with_same
+from sandbox.editor.items import Definition, Selection, changed, items_of, with_same
 from sandbox.editor.panel.typed import significant
 from sandbox.editor.scene import Mask, Scene, Slots, make_scene
+from sandbox.editor.tools.snap import PLACE_DECIMALS
 from sandbox.level.format.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL
 from sandbox.level.format.model import NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.quantities import replaced
@@ -71,12 +72,38 @@ def _keep_firmness(document: Document, world: World) -> tuple[Document, Mask]:
 
 def keep_pose(document: Document, world: World) -> Document:
     """Let everything start where it is in the played world; all rest lengths stay. Raises EditError."""
-    level = document.level
-    scene = make_scene(level)
+    scene = make_scene(document.level)
     slots = _slots(scene, world)
-    now, angle = world.position[slots], world.angle[slots]
+    now = world.position[slots]
     if not np.all(np.abs(now) <= COORDINATE_LIMIT):
         raise EditError("something has flown out of the world; go back to before it did")
+    return _posed(document, scene, now, world.angle[slots])
+
+
+def begin_at_rest(document: Document, position: Points, falling: Selection = frozenset()) -> Document:
+    """Let everything start where a forecast has it, and at rest; all rest lengths stay. Raises EditError.
+
+    position [m] (n, 2): by the particles of the level's Scene. falling: items that stay as they are.
+    """
+    level = document.level
+    still = frozenset(items_of(level)) - falling
+    level = changed(level, still, _at_rest)
+    scene = make_scene(level)
+    angle = np.array([*[0.0] * (len(position) - len(level.particles)), *(part.angle for part in level.particles)])
+    # To micrometres, so that a file has no more digits than mean something.
+    return _posed(replace(document, level=level), scene, np.round(position, PLACE_DECIMALS) + 0.0, angle)
+
+
+def _at_rest(part: Definition) -> Definition:
+    """A body or particle that does not move at the start."""
+    wanted = {"velocity": (0.0, 0.0), "velocities": None, "spin": 0.0}
+    changes = {name: value for name, value in wanted.items() if part.__dict__.get(name, value) != value}
+    return replaced(part, **changes) if changes else part
+
+
+def _posed(document: Document, scene: Scene, now: Points, angle: Points) -> Document:
+    """The document with everything at places [m] (n, 2) and turned by angles [rad] (n,), by the scene's particles."""
+    level = document.level
     moved = np.any(now != scene.position, axis=1)
     turned = angle != [*[0.0] * (len(angle) - len(level.particles)), *(particle.angle for particle in level.particles)]
     firsts = np.cumsum([0, *scene.parts.bodies.counts]).tolist()

@@ -49,7 +49,11 @@ def delete_material(document: Document, name: str) -> Document:
     level = document.level
     _exists(level, name)
     users = [shown(body.id) for body in level.bodies if body.material == name]
-    users += [f"the spring :{index}" for index, spring in enumerate(level.springs) if spring.material == name]
+    users += [
+        f"the spring :{index}" if spring.name is None else shown(spring.name)
+        for index, spring in enumerate(level.springs)
+        if spring.material == name
+    ]
     if users:
         others = f" and {len(users) - NAMED_USERS} more" if len(users) > NAMED_USERS else ""
         raise EditError(f"{shown(name)} is used by {', '.join(users[:NAMED_USERS])}{others}; give them another first")

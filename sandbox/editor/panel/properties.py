@@ -95,7 +95,7 @@ def _common(kinds: Iterable[Any], number: int) -> dict[str, FieldInfo]:
     first, *others = (abouts(kind) for kind in kinds)
     found = {}
     for name in file_order(first):
-        if name in ("type", *_OUTLINES) or (name == "id" and number > 1) or first[name].kind == "part":
+        if name in ("type", *_OUTLINES) or (name in ("id", "name") and number > 1) or first[name].kind == "part":
             continue
         same = [other[name] for other in others if name in other and _alike(other[name], first[name])]
         if len(same) == len(others):
@@ -178,7 +178,7 @@ def _facts(level: Level, item: Item, part: Definition) -> list[Property]:
     """What a single item is that its fields do not say."""
     facts = []
     if isinstance(part, SpringDef):
-        facts.append(("name", "Name", f":{item.key}", "Name of the spring."))
+        facts.append(("number", "Number", f":{item.key}", "What commands and recordings call the spring."))
     elif not isinstance(part, ParticleDef | TerrainDef):
         particles, springs = expansion(part).count
         facts.append(

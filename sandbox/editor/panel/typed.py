@@ -10,15 +10,23 @@ from sandbox.level.faults.level_error import shown
 
 # Digits that a number is shown with where they say all of it.
 DIGITS = 9
+# What differs by less than this share is one number, as 0.30000000000000004 and 0.3 are.
+DUST = 1e-14
 # What is typed for all groups, and for none.
 EVERYTHING, NOTHING = "everything", "nothing"
 
 
 def number_text(value: float) -> str:
-    """A number as short as it can be without becoming another one."""
+    """A number as short as it can be without becoming another one, but for the dust of arithmetic: 0.3, 1e+100."""
     if isinstance(value, int):
         return str(value)
     text = f"{value:.{DIGITS}g}"
+    return text if math.isclose(float(text), value, rel_tol=DUST) else repr(value)
+
+
+def exact_text(value: float) -> str:
+    """A number as short as it can be without becoming another one; of lists, all of which are read when one changes."""
+    text = number_text(value)
     return text if float(text) == value else repr(value)
 
 
@@ -51,7 +59,7 @@ def list_text(values: Sequence[Any]) -> str:
 def _entry(value: Any) -> str:
     if isinstance(value, list | tuple):
         return "[" + ", ".join(_entry(part) for part in value) + "]"
-    return number_text(value)
+    return exact_text(value)
 
 
 def line_text(text: str) -> str:

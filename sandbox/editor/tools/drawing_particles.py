@@ -21,7 +21,7 @@ class ParticleOptions(Options):
     """A loose particle."""
 
     mass: float = mass_option(1.0, text="Mass.")
-    radius: float = option(0.05, OptionInfo("number", "radius", "Radius of the drawn disc.", "m"))
+    radius: float = option(0.05, OptionInfo("number", "radius", "Radius, as drawn and where it touches.", "m"))
     pinned: bool = flag_option(False, "pinned", "Hold it where it is.")
 
 

@@ -188,6 +188,7 @@ class SpringDef(Description):
 
     a: Name = Field(description="One end: `id`, `id.k`, or a name such as `id.start`.")
     b: Name = Field(description="The other end.")
+    name: Name | None = Field(default=None, description="What it is called in the window; null = by its number.")
     rest_length: Length | None = Field(
         default=None, description="Rest length; null = as placed, of a hydraulic its shortest."
     )

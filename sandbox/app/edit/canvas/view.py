@@ -13,7 +13,8 @@ from sandbox.app.edit.canvas.marks import DriveMarks
 from sandbox.app.edit.canvas.overlay import SPOT_SECONDS, draw_cursor, draw_label, draw_spot
 from sandbox.app.edit.canvas.pointer import SelectTool
 from sandbox.app.edit.editing import Editing
-from sandbox.editor.items import Selection
+from sandbox.editor.items import Item, Selection
+from sandbox.editor.panel.typed import number_text
 from sandbox.editor.scene import Scene, make_scene
 
 # What will hang nearer than this [pixels] to where it is drawn is not shown again.
@@ -87,12 +88,25 @@ class View:
         self._painter.paint_ground(surface, screen.camera, Ground(drawn, drawn.chosen(new), ghost=True))
         self._painter.paint_ghost(surface, screen.camera, Part(drawn, drawn.particles_of(new), drawn.springs_of(new)))
 
+    def _name_of(self, item: Item | None) -> str:
+        """What a loose spring or particle under the pointer is called, and of a particle its mass and radius."""
+        level = self._screen.document.level
+        if item is None or item.kind not in ("spring", "particle"):
+            return ""
+        if item.kind == "spring":
+            return level.springs[int(item.key)].name or ""
+        particle = next(part for part in level.particles if part.id == item.key)
+        return f"{particle.id}: {number_text(particle.mass)} kg, radius {number_text(particle.radius)} m"
+
     def _draw_marks(self, surface: pygame.Surface) -> None:
         screen, tool = self._screen, self._screen.pointer_tool
         tool.draw(surface)
         under = tool.hovered if isinstance(tool, SelectTool) and tool.matrix is None else None
         if under is not None and under not in screen.document.selection:
             self._painter.paint_hovered(surface, screen.camera, screen.scene, under)
+        named = self._name_of(under)
+        if named and screen.pointer is not None and not tool.measure:
+            draw_label(surface, screen.ui, screen.pointer, named, screen.camera.viewport)
         if screen.cursor is not None:
             draw_cursor(surface, screen.camera.to_pixels(screen.cursor), screen.scale)
         if self._spot is not None:

@@ -1,0 +1,77 @@
+"""The wave tool: a drag along muscles lets them swing one after another, the way it goes."""
+
+from dataclasses import dataclass, replace
+
+from sandbox.editor.document import Document, EditError
+from sandbox.editor.edits.phase_wave import muscles, wave_along
+from sandbox.editor.tools.drawing_options import OptionInfo, Options, option
+from sandbox.editor.tools.drawing_tool import Drawing
+from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.icons import IconPen
+from sandbox.editor.tools.snap import Snap
+from sandbox.level.format.quantities import Point
+
+
+@dataclass(frozen=True)
+class WaveOptions(Options):
+    """How often muscles swing alike along the drag."""
+
+    waves: float = option(1.0, OptionInfo("number", "waves", "Waves along the drag.", "", 0.0, 1000.0))
+
+
+class WaveDrawing(Drawing[WaveOptions]):
+    """Phases from places along a drag, of the selected muscles or of all."""
+
+    defaults = WaveOptions()
+    start_hint = "Drag along muscles, the way their wave is to run; selected ones alone, or all"
+    end_hint = "Release where the wave ends"
+
+    def __init__(self, options: WaveOptions | None = None, reach: float = 0.0) -> None:
+        super().__init__(options, reach)
+        self._count = 0
+
+    @property
+    def step(self) -> str:
+        """What it is called in the history."""
+        return "Phase wave"
+
+    @property
+    def outline(self) -> list[Point]:
+        """The way of the drag."""
+        return [point.point for point in self._so_far()] if self.points else []
+
+    def joins(self, index: int) -> bool:
+        """It joins nothing."""
+        return False
+
+    def ghost(self, document: Document) -> Document | None:
+        """Nothing is added; why it cannot be done is said before."""
+        points = self._so_far()
+        self._ghost_fault = ""
+        if self._sound(points):
+            self._count = len(muscles(document))
+            try:
+                self.placed(document, points)
+            except EditError as error:
+                self._ghost_fault = str(error)
+        return None
+
+    def placed(self, document: Document, points: list[Snap]) -> Document:
+        """The document with the phases; the selection stays. Raises EditError."""
+        start, end = points[0].point, points[1].point
+        return replace(wave_along(document, start, end, self.options.waves), selection=document.selection)
+
+    def sizes(self, points: list[Snap]) -> str:
+        """How many muscles there are, and how many waves."""
+        muscles = f"{self._count} {'muscle' if self._count == 1 else 'muscles'}"
+        return "" if self._ghost_fault else f"{muscles}, waves: {self.options.waves:g}"
+
+
+def _draw_wave(pen: IconPen) -> None:
+    pen.arc(7.5, 12, 4.5, 0, 180)
+    pen.arc(16.5, 12, 4.5, 180, 360)
+    pen.line((3, 12), (3, 15))
+    pen.shape((21, 5.5), (24, 11.5), (18, 11.5))
+
+
+WAVE = EditorTool("wave", "Shift+W", "Phase wave through muscles, along a drag", _draw_wave, WaveDrawing, word="wave")

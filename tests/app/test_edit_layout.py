@@ -1,0 +1,49 @@
+"""Small windows and tips in the editor: nothing is too small to hit, nothing lies over what is needed next."""
+
+import pygame
+import pytest
+
+
+@pytest.fixture
+def driver(edit):
+    return edit()
+
+
+def resize(driver, width, height):
+    driver.app.display.window.size = (width, height)
+    driver.frames(2)
+
+
+def test_tools_stay_large_enough_in_a_low_window_and_do_not_overlap(driver):
+    resize(driver, 640, 480)
+    places = [button.rect for button in driver.editor.palette.tools.values()]
+    assert min(min(place.size) for place in places) >= 24
+    assert all(place.collidelist(places[:index]) < 0 for index, place in enumerate(places))
+    assert all(driver.editor.palette.back.rect.contains(place) for place in places)
+    assert not driver.editor.palette.back.rect.colliderect(pygame.Rect(driver.editor.camera.viewport))
+
+
+def test_what_has_no_room_on_the_bar_is_in_its_menu(driver):
+    assert driver.editor.without_button == ()
+    resize(driver, 640, 480)
+    left_out = driver.editor.without_button
+    assert "align" in left_out and "undo" not in left_out
+    driver.key(pygame.K_F10)
+    labels = [button.text for button in driver.app.ui.buttons()]
+    assert any(label.startswith("Align") for label in labels)
+
+
+def test_a_tip_of_the_panel_lies_beside_it_and_there_is_one_at_a_time(driver):
+    side, manager = driver.editor.side, driver.app.ui.manager
+    tips = []
+    for tab in ("materials", "level"):
+        owner = side._tab_button(tab)
+        tips.append(
+            manager.create_tool_tip(
+                text="A long line about it", position=owner.rect.center, hover_distance=(0, 20), parent_element=owner,
+                object_id=None,
+            )
+        )  # fmt: skip
+        assert not tips[-1].rect.colliderect(side.back.rect)
+        assert pygame.Rect((0, 0), driver.app.ui.size).contains(tips[-1].rect)
+    assert not tips[0].alive() and tips[1].alive()
