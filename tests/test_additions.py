@@ -224,7 +224,7 @@ def test_an_editor_tool_is_one_file_and_its_place_in_the_palette(package):
     put(package / "editor/tools/drawing_triangle.py", TRIANGLE)
     palette = package / "editor/tools/palette.py"
     put(palette, "from sandbox.editor.tools.drawing_triangle import TRIANGLE\n", before="import LASSO")
-    palette.write_text(palette.read_text(encoding="utf-8").replace(" PIN, GROUND", " TRIANGLE, PIN, GROUND"))
+    palette.write_text(palette.read_text(encoding="utf-8").replace(" PIN, WAVE", " TRIANGLE, PIN, WAVE"))
     script = f"""
 import sys
 sys.path.append({str(ROOT)!r})
@@ -238,7 +238,8 @@ driver = Driver(parse_level(level(), "level"))
 driver.app.documents.new()
 driver.frames(2)
 driver.click_widget(driver.editor.palette.tools["triangle"])
-assert list(driver.editor.palette.tools).index("triangle") == 15
+tools = list(driver.editor.palette.tools)
+assert tools[tools.index("triangle") + 1] == "pin"
 driver.fill(driver.editor.options.fields["mass"], "3")
 driver.drag((0, 0), (1, 0), (2, 0))
 driver.key(pygame.K_v)

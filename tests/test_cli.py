@@ -398,8 +398,10 @@ def test_prepare_that_does_not_succeed_says_so(monkeypatch, capsys):
 
 
 COMMANDS = {
-    "play": ["rope"], "run": ["rope", "--ticks", "1"], "replay": ["x.jsonl"], "check": ["rope"],
-    "render": ["rope", "-o", "x.png"], "format": ["x.json"], "edit": [], "prepare": [], "schema": [],
+    "play": ["rope"], "toy": [], "run": ["rope", "--ticks", "1"], "replay": ["x.jsonl"], "resume": ["x.jsonl"],
+    "check": ["rope"], "diff": ["x.jsonl", "y.jsonl"], "bisect": ["x.json", "y.json"],
+    "sweep": ["rope", "--cs", "0.1:1:2", "-o", "x.csv"], "render": ["rope", "-o", "x.png"], "format": ["x.json"],
+    "edit": [], "prepare": [], "schema": [],
 }  # fmt: skip
 
 

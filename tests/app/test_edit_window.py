@@ -117,7 +117,7 @@ class Maker:
         self.person.click(self.place_of_label("Save"))
         self.twin.type(name)
         self.twin.choose("Save")
-        self.person.wait_for("Untitled - editing", without="dialog")
+        self.person.wait_for(f"{name} - editing", without="dialog")
 
     def reopen(self, name):
         """Begin a new level, and open the saved one among the person's own."""
@@ -135,7 +135,7 @@ class Maker:
         card = self.twin.app.gallery.cards[0]
         self.person.click(card.rect.center)
         self.twin.click_widget(card)
-        self.person.wait_for("Untitled - editing")
+        self.person.wait_for(f"{name} - editing")
         self.picture(f"{name} reopened")
 
     def record(self, name, particle):
@@ -160,12 +160,12 @@ class Maker:
         self.twin.frames(2)
         self.picture("name the recording")
         self.person.click(self.place_of_label("Save"))
-        self.person.wait_for("Untitled", without="dialog")
+        self.person.wait_for(name, without="dialog")
         self.twin.key(27)
         self.press("edit")
         self.twin.app.act("edit")
         self.twin.frames(2)
-        self.person.wait_for("Untitled - editing")
+        self.person.wait_for(f"{name} - editing")
 
 
 def advance_to_rest(session):
@@ -248,8 +248,8 @@ def test_three_levels_are_built_by_mouse_saved_reopened_played_and_their_recordi
     for name, build in BUILDS.items():
         particle = build(maker)
         maker.picture(name)
-        drawn = maker.twin.editor.document.level
         maker.save(name)
+        drawn = maker.twin.editor.document.level
         assert read_level(documents / f"{name}.json") == drawn
         maker.reopen(name)
         maker.record(name, particle)
