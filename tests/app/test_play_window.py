@@ -49,6 +49,13 @@ def test_the_level_s_name_has_room_to_be_read_or_is_left_out(driver, width):
     assert width < 1600 or title is not None
 
 
+def test_a_level_s_name_that_is_longer_than_its_room_ends_in_an_ellipsis(open_app):
+    driver = open_app(small_level(name="A name of many words " * 6))
+    driver.app.display.window.size = (1600, 720)
+    driver.frames(2)
+    assert driver.app.play.toolbar.title.text.startswith("A name of many") and "…" in driver.app.play.toolbar.title.text
+
+
 def test_what_has_no_room_is_done_from_the_menu(driver):
     driver.app.display.window.size = (640, 480)
     driver.frames(2)

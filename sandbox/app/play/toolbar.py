@@ -12,6 +12,7 @@ from sandbox.app.play.speeds import words_of
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.icons import ICONS, painted_icon
+from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui, set_icon
 
 # Sizes in layout units.
@@ -22,6 +23,7 @@ ICON = 18.0
 SLOW_WIDTH = 46.0
 MARGIN = 14.0
 SHARE_WIDTH = 68.0
+TITLE_SIZE = 15.0
 # Narrower windows leave the level's name out, and the wider gaps between the groups; and so does less room for it.
 ROOM_FOR_NAME = 1000.0
 LEAST_NAME = 90.0
@@ -174,7 +176,9 @@ class Toolbar:
             slow.set_text(words_of(state.speed))
             (slow.unselect if state.speed == 1.0 else slow.select)()
         if self.title is not None:
-            self.title.set_text(state.name)
+            font = self._ui.font(TITLE_SIZE, True)
+            (name,) = wrapped(state.name, font, self.title.rect.width - self._ui.px(GAP), 1)
+            self.title.set_text(name)
 
     def _mark(self, action: str, colour: Colour, on: bool, picture: str | None = None) -> None:
         """Show an action's button in a colour, on or off, where it is on the bar."""
