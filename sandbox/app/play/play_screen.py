@@ -432,7 +432,7 @@ class PlayScreen:
         if playback.session.recording is not None:
             parts.append((f"recording {playback.session.recording.name}", DANGER))
         if playback.replay is not None:
-            parts.append((playback.verdict or f"replay, {playback.replay.ticks:,} ticks", TEXT))
+            parts.append((playback.outcome or f"replay, {playback.replay.ticks:,} ticks", TEXT))
         parts.append((f"tick {playback.session.tick:,}", MUTED))
         counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
         world = playback.session.world
@@ -452,5 +452,5 @@ class PlayScreen:
         if self.playback.session.recording is not None:
             words.append("recording")
         if self.playback.replay is not None:
-            words.append(self.playback.verdict or "watching")
+            words.append(self.playback.outcome or "watching")
         return words

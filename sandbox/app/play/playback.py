@@ -70,6 +70,11 @@ class Playback:
         return self.replay is not None and not self._taken_over
 
     @property
+    def outcome(self) -> str:
+        """What came of a replay that was watched, while the run is at its end or no longer follows it; else ""."""
+        return self.verdict if self._taken_over or self.session.tick == self.length else ""
+
+    @property
     def length(self) -> int:
         """The last tick that can be gone to."""
         return self.travel.length(self.watching)

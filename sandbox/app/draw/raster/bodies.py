@@ -25,6 +25,8 @@ FLUSH_FULL = 190.0
 FAINT = 0.004
 # Widest that a skin is rounded [pixels].
 WIDEST = 80.0
+# Of that, how far the skin is blurred, a box's reach in cells of two pixels.
+SOFTNESS = 0.85
 
 
 class Outlines(NamedTuple):
@@ -79,8 +81,8 @@ class BodyScratch(NamedTuple):
 
 
 @inner_kernel
-def _raise_skin(scratch, width, height, wide, tall):  # type: ignore[no-untyped-def]
-    """Coverage from areas, and from it a quarter as many cells of the skin."""
+def _raise_skin(scratch, width, height, wide, tall, edge):  # type: ignore[no-untyped-def]
+    """Coverage from areas, and from it a quarter as many cells of the skin, inside an empty edge of so many cells."""
     cover, high = scratch.cover, scratch.high
     stride = width + 2
     for y in range(height):
@@ -88,11 +90,14 @@ def _raise_skin(scratch, width, height, wide, tall):  # type: ignore[no-untyped-
         for k in range(y * stride, y * stride + width):
             total += cover[k]
             cover[k] = min(abs(total), 1.0)
-    clear(high, wide * tall)
+    across = wide + 2 * edge
+    clear(high, across * (tall + 2 * edge))
     for y in range(height // 2):
         for x in range(width // 2):
             k = 2 * y * stride + 2 * x
-            high[y * wide + x] = 0.25 * (cover[k] + cover[k + 1] + cover[k + stride] + cover[k + stride + 1])
+            high[(y + edge) * across + edge + x] = 0.25 * (
+                cover[k] + cover[k + 1] + cover[k + stride] + cover[k + stride + 1]
+            )
 
 
 @inner_kernel
@@ -130,13 +135,15 @@ def _grainy(colour, amount):  # type: ignore[no-untyped-def]
 def _find_texels(row, first, last, scratch, place):  # type: ignore[no-untyped-def]
     """Where in its table the colour of each pixel of a run lies; place: see _light_row."""
     high, middle, fall, texel = scratch.high, scratch.middle, scratch.fall, scratch.texel
-    wide, tall, reach = unsigned(place[3]), place[4], place[5]
-    gain = 1.1 * reach * 256.0 / 3.0
+    tall, reach, edge = place[4], place[5], place[9]
+    gain = 1.3 * reach * 256.0 / 3.0
     across, down = 0.42 * gain, 0.9 * gain
     half_y = 0.5 * row + 0.25
     iy = min(max(int(half_y - 0.5), 0), tall - 2)
     fy = min(max(half_y - 0.5 - iy, 0.0), 1.0)
-    above, below = unsigned(iy) * wide, unsigned(iy + 1) * wide
+    stride = place[3] + 2 * edge
+    above = unsigned((iy + edge) * stride + edge)
+    below = above + unsigned(stride)
     one, two = unsigned(1), unsigned(2)
     begin, end = unsigned(max(first - 1, 0) // 2), unsigned(min(last // 2 + 1, place[3] - 1))
     for k in range(begin, end + one):
@@ -201,7 +208,7 @@ def _light_run(pixels, y, first, last, rows, b, skins, flush, scratch, place):  
 
 @inner_kernel
 def _light_row(pixels, y, rows, b, skins, flush, scratch, place, clip):  # type: ignore[no-untyped-def]
-    """One row of pixels of a body. place: left, top, width, wide, tall, reach, wide and tall of the flush, 0."""
+    """One row of pixels of a body. place: left, top, width, wide, tall, reach, wide and tall of the flush, 0, edge."""
     cover, left, width = scratch.cover, place[0], place[2]
     begin = (y - place[1]) * (width + 2)
     x, last = max(clip[0], left) - left, min(clip[2], left + width) - left
@@ -232,7 +239,7 @@ def _paint_lines(pixels, outlines, rows, b, clip):  # type: ignore[no-untyped-de
 
 @kernel
 def paint_bodies(pixels, outlines, rows, skins, flush, scratch, place, clip):  # type: ignore[no-untyped-def]
-    """Draw bodies into pixels (h, w), one after the other, inside clip (4,); place (9,): scratch of a row."""
+    """Draw bodies into pixels (h, w), one after the other, inside clip (4,); place (10,): scratch of a row."""
     for b in range(rows.loops.shape[0]):
         first, last = rows.loops[b, 0], rows.loops[b, 1]
         box = scratch.box
@@ -253,9 +260,12 @@ def paint_bodies(pixels, outlines, rows, skins, flush, scratch, place, clip):  #
                 outlines.start[loop], outlines.start[loop + 1], left * 1.0, top * 1.0, 1.0,
             )  # fmt: skip
         wide, tall = (width + 1) // 2 + 2, (height + 1) // 2 + 2
-        _raise_skin(scratch, width, height, wide, tall)
         reach = max(1, int(rounding * 0.5))
-        blur(scratch.high, scratch.spare, scratch.sums, wide, tall, max(1, int(reach * 0.85)), 3)
+        # Blurred once, the skin reaches so far beyond its box: the second time must find it, or the light has a step.
+        edge = max(1, int(reach * SOFTNESS))
+        _raise_skin(scratch, width, height, wide, tall, edge)
+        blur(scratch.high, scratch.spare, scratch.sums, wide + 2 * edge, tall + 2 * edge, edge, 3)
+        place[9] = edge
         place[0], place[1], place[2], place[3], place[4], place[5] = left, top, width, wide, tall, reach
         place[6], place[7], place[8] = width // FLUSH_CELL + 3, height // FLUSH_CELL + 3, 0
         if rows.flush[b, 0] < rows.flush[b, 1]:

@@ -13,6 +13,7 @@ from sandbox.app.draw.raster.bodies import (
     GRAIN,
     INSIDE,
     LIT,
+    SOFTNESS,
     WIDEST,
     BodyRows,
     BodyScratch,
@@ -197,7 +198,8 @@ class Painter:
         if self._scratch is None or self._scratch.size != size:
             pad = 2 * int(WIDEST) + 16
             width, height = size[0] + pad, size[1] + pad
-            half = (width // 2 + 4) * (height // 2 + 4)
+            edge = int(WIDEST * SOFTNESS) + 4
+            half = (width // 2 + edge) * (height // 2 + edge)
             flush = (width // FLUSH_CELL + 5) * (height // FLUSH_CELL + 5)
             quarter = (size[0] // FACTOR + 8) * (size[1] // FACTOR + 8)
             self._scratch = _Scratch(
@@ -211,7 +213,7 @@ class Painter:
                     _cells(quarter), _cells(quarter), _cells(quarter), _cells(size[0]),
                     np.zeros(size[0] + 8 * FACTOR, dtype=np.int32), np.zeros(4),
                 ),
-                np.zeros(9, dtype=np.int64),
+                np.zeros(10, dtype=np.int64),
             )  # fmt: skip
         return self._scratch
 
