@@ -1,8 +1,6 @@
 """Gallery: levels as cards with pictures, by sections, found by what is typed; and saved recordings as a list."""
 
 import json
-import time
-from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -29,6 +27,7 @@ from sandbox.app.picture_cache import (
     picture_key,
 )
 from sandbox.app.recordings import saved_recordings
+from sandbox.app.slice_queue import SliceQueue
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.recent import played_levels, recent_levels
@@ -77,7 +76,7 @@ class Gallery:
         self.groups: list[Group] = []
         self.section = section
         # What is still to be found out or drawn for cards: each goes on by a slice, False where it has to wait.
-        self._unfilled: deque[Iterator[bool]] = deque()
+        self._unfilled = SliceQueue()
         self._has_kernels: Callable[[bool], bool] = lambda contacts: False
         self._paths: dict[Card, Path] = {}
         self._preview: tuple[Card, Preview, pygame.Surface | None] | None = None
@@ -186,7 +185,7 @@ class Gallery:
         else:
             card.repaint()
         self._paths[card] = path
-        self._unfilled.append(self._fill(card, path, content, is_shipped))
+        self._unfilled.add(self._fill(card, path, content, is_shipped))
 
     def _add_card(self, group: Group, name: str, text: str, action: Callable[[], object]) -> Card:
         place = self._ui.rect(6, 0, group.width, group.height)
@@ -225,7 +224,7 @@ class Gallery:
             card = self._add_card(group, one_line(path.name), "", partial(self._app.files.open_replay, path))
             card.line = date_of(path)
             card.repaint()
-            self._unfilled.append(fill_replay(card, path, lambda contacts: self._has_kernels(contacts)))
+            self._unfilled.add(fill_replay(card, path, lambda contacts: self._has_kernels(contacts)))
 
     # Where it stands.
 
@@ -283,16 +282,7 @@ class Gallery:
     def update(self, has_kernels: Callable[[bool], bool], frame_time: float) -> None:
         """Go on filling cards for a while, those whose kernels are there (see Preparation); show what has the focus."""
         self._has_kernels = has_kernels
-        end, waiting = time.perf_counter() + FILL_BUDGET, 0
-        while waiting < len(self._unfilled):
-            went_on = next(self._unfilled[0], None)
-            if went_on is None:
-                self._unfilled.popleft()
-            elif not went_on:
-                self._unfilled.rotate(-1)
-                waiting += 1
-            if time.perf_counter() > end:
-                break
+        self._unfilled.go_on(FILL_BUDGET)
         self._search(self.header.search.entry.get_text())
         self._mark_section()
         self._play(frame_time)

@@ -8,7 +8,7 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.colours import ACCENT, DANGER, DECADE, FIELD, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
-from sandbox.app.widgets.painted import Painted
+from sandbox.app.widgets.painted import Draggable
 from sandbox.app.widgets.sliders import FINE_KEY_STEP, HIGHEST, KEY_STEP, LOWEST, fraction_of, value_at
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.coefficient_zones import CoefficientZones
@@ -43,7 +43,7 @@ def critical_stiffness(damping: np.ndarray) -> np.ndarray:
     return np.asarray((1.0 - np.sqrt(1.0 - damping)) ** 2)
 
 
-class CoefficientPad(Painted):
+class CoefficientPad(Draggable):
     """The pad; changed(Cs, Cd) is called as it is dragged, done() at the end of each drag or key press."""
 
     def __init__(
@@ -53,7 +53,6 @@ class CoefficientPad(Painted):
         super().__init__(ui, rect, container)
         self.state = PadState(0.1, 0.1, False, True)
         self.zones: CoefficientZones | None = None
-        self.dragging = False
         self._changed, self._done, self._name = changed, done, ""
         self._map: pygame.Surface | None = None
         # Where another run's springs are, and what it is called.
@@ -97,20 +96,13 @@ class CoefficientPad(Painted):
 
     # Mouse and keys.
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Follow the mouse."""
-        if self.state.enabled and self.is_press(event):
-            self.dragging = True
-            self._follow(event.pos)
-            return True
-        if event.type == pygame.MOUSEMOTION and self.dragging:
-            self._follow(event.pos)
-            return True
-        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self.dragging:
-            self.dragging = False
-            self._done()
-            return True
-        return False
+    def can_drag(self) -> bool:
+        """Whether there is anything to set."""
+        return self.state.enabled
+
+    def end_drag(self) -> None:
+        """What is set counts."""
+        self._done()
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """Arrows move by a step, with Shift by a fine one; Home and End go to the softest and the most rigid."""
@@ -135,7 +127,8 @@ class CoefficientPad(Painted):
         self._done()
         return True
 
-    def _follow(self, pos: tuple[int, int]) -> None:
+    def follow(self, pos: tuple[int, int]) -> None:
+        """Set what lies under the mouse."""
         x, y = self.ui.manager.calculate_scaled_mouse_position(pos)
         inside = self._inside
         across = (x - self.rect.left - inside.left) / max(1, inside.width - 1)

@@ -19,7 +19,7 @@ LEAP = 60
 
 
 class TimeTrack(Painted):
-    """A rail from tick 0 to the last; go(tick) is called while the mouse drags on it, and rest(True) while it is held.
+    """A rail from tick 0 to the last; go(tick) is called as the mouse drags on it, hold(held) as it takes and lets go.
 
     With Shift held a drag chooses the range. Shapes tell marks apart: lines are commands, triangles breaks, flags
     bookmarks, forks branches.

@@ -13,9 +13,9 @@ from sandbox.app.draw.renderer import Renderer
 from sandbox.app.share.kinds import require
 from sandbox.app.widgets.fonts import plain_font
 from sandbox.level.format.model import Level
-from sandbox.physics.snapshot import Snapshot
+from sandbox.physics.snapshot import Snapshot, take
 from sandbox.physics.state import BY_STORED, Family
-from sandbox.session.commands import CommandError
+from sandbox.session.player.reel import told_states
 from sandbox.session.replay.divergence import Divergence, number_text
 from sandbox.session.replay.format import decode_state
 from sandbox.session.replay.verify import Comparison
@@ -172,17 +172,6 @@ def _pictures(comparison: Comparison) -> Iterator[pygame.Surface]:
 def _states(run: Session, first: int, last: int, step: int) -> Iterator[tuple[int, Snapshot]]:
     """States of a run every so many ticks, those before its present tick told again."""
     present = run.tick
-    beginning = max(first, run.keyframes(0, present)[0].tick)
-    past = run.retold(beginning)
-    for tick in range(first, last + 1):
-        told = past if tick < present else run
-        if tick < beginning:
-            continue
-        try:
-            with np.errstate(over="ignore", invalid="ignore"):
-                while told.tick < tick:
-                    told.advance()
-        except CommandError:
-            return
-        if (tick - first) % step == 0 or tick == present:
-            yield tick, told.snapshot()
+    for world in told_states(run, first, last):
+        if (world.tick - first) % step == 0 or world.tick == present:
+            yield world.tick, take(world)

@@ -68,6 +68,39 @@ class Pressable(Painted):
         return True
 
 
+class Draggable(Painted):
+    """A painted widget on which the mouse drags something."""
+
+    dragging = False
+
+    def can_drag(self) -> bool:
+        """Whether the mouse may take it."""
+        return True
+
+    def follow(self, pos: tuple[int, int]) -> None:
+        """The mouse drags to a place in the window."""
+        raise NotImplementedError
+
+    def end_drag(self) -> None:
+        """The mouse has let go."""
+        raise NotImplementedError
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Follow the mouse."""
+        if self.can_drag() and self.is_press(event):
+            self.dragging = True
+            self.follow(event.pos)
+            return True
+        if event.type == pygame.MOUSEMOTION and self.dragging:
+            self.follow(event.pos)
+            return True
+        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self.dragging:
+            self.dragging = False
+            self.end_drag()
+            return True
+        return False
+
+
 class Lit(Painted):
     """A painted widget that looks otherwise while it is `hovered`, under the mouse."""
 

@@ -7,7 +7,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DECADE, LINE, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
-from sandbox.app.widgets.painted import Painted
+from sandbox.app.widgets.painted import Draggable
 from sandbox.app.widgets.ui import Ui
 
 # Exponents of the smallest and largest value on the scale.
@@ -32,7 +32,7 @@ def value_at(fraction: float) -> float:
     return float(f"{10.0**exponent:.3g}")
 
 
-class LogSlider(Painted):
+class LogSlider(Draggable):
     """A slider; changed(value) is called as it moves and done() at the end of each drag or key press."""
 
     def __init__(
@@ -48,7 +48,6 @@ class LogSlider(Painted):
         self.limit: float | None = None
         self.mixed = False
         self.enabled = True
-        self.dragging = False
         self._changed, self._done = changed, done
         ui.add(self)
         self.repaint()
@@ -65,20 +64,13 @@ class LogSlider(Painted):
         margin = self.ui.px(MARGIN)
         return round(self.rect.left + margin + fraction_of(value) * (self.rect.width - 2 * margin))
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Follow the mouse."""
-        if self.enabled and self.is_press(event):
-            self.dragging = True
-            self._follow(event.pos)
-            return True
-        if event.type == pygame.MOUSEMOTION and self.dragging:
-            self._follow(event.pos)
-            return True
-        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self.dragging:
-            self.dragging = False
-            self._done()
-            return True
-        return False
+    def can_drag(self) -> bool:
+        """Whether there is anything to set."""
+        return self.enabled
+
+    def end_drag(self) -> None:
+        """What is set counts."""
+        self._done()
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """Left and right move by a step, with Shift by a fine one; Home and End go to the ends."""
@@ -98,7 +90,8 @@ class LogSlider(Painted):
         self._done()
         return True
 
-    def _follow(self, pos: tuple[int, int]) -> None:
+    def follow(self, pos: tuple[int, int]) -> None:
+        """Set what lies under the mouse."""
         x = self.ui.manager.calculate_scaled_mouse_position(pos)[0]
         margin = self.ui.px(MARGIN)
         fraction = (x - self.rect.left - margin) / max(1, self.rect.width - 2 * margin)

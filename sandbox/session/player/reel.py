@@ -117,7 +117,7 @@ def steps_between(ticks: int, particles: int, sides: int) -> int:
     return max(1, -(-ticks * particles * sides * 4 // MOST_BYTES))
 
 
-def told_states(run: Session, first: int, last: int) -> Iterator[State]:
+def told_states(run: Session, first: int, last: int) -> Iterator[World]:
     """States of a run at every tick of first..last, those before its present tick told again; it is advanced.
 
     The world itself is given, where it has to be looked at before the next. Ends early where a command fails.

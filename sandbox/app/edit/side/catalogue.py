@@ -1,7 +1,5 @@
 """CataloguePage: ready parts and a person's own, with pictures, to be put on the sheet by a click or a drag."""
 
-import time
-from collections import deque
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -18,6 +16,7 @@ from sandbox.app.picture_cache import draw_in_slices, find_picture, forget_old_p
 from sandbox.app.picture_cache import picture_key as key_of_level
 from sandbox.app.screen import Pixel
 from sandbox.app.shortcuts import tip_of
+from sandbox.app.slice_queue import SliceQueue
 from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.editor.storage.level_file import StorageError
@@ -70,7 +69,7 @@ class CataloguePage:
         self._labels: list[TextBlock] = []
         self._files: list[PartFile] = []
         self._chosen: PartFile | None = None
-        self._unfilled: deque[Iterator[bool]] = deque()
+        self._unfilled = SliceQueue()
         self._looked = 0
 
     # What there is.
@@ -81,7 +80,7 @@ class CataloguePage:
             self._looked = LOOK_EVERY
             self._look()
         self._looked -= 1
-        self._fill_some()
+        self._unfilled.go_on(FILL_BUDGET)
         drawing = self._drawing()
         for card in self.cards:
             card.mark(card.part == self._chosen and (drawing is not None or card.part.is_own))
@@ -106,7 +105,7 @@ class CataloguePage:
             return
         for widget in (*self.cards, *self._labels):
             self._ui.remove(widget)
-        self.cards, self._labels, self._unfilled, self._files = [], [], deque(), files
+        self.cards, self._labels, self._unfilled, self._files = [], [], SliceQueue(), files
         if self._chosen not in files:
             # The file in hand may have another name or another content.
             same = (part for part in files if self._chosen is not None and part.path == self._chosen.path)
@@ -141,20 +140,8 @@ class CataloguePage:
             place = ui.rect(3 + column * (width + GAP), y + row * (height + GAP), width, height)
             card = PartCard(ui, place, part, self, self.area.content)
             self.cards.append(card)
-            self._unfilled.append(self._fill(card))
+            self._unfilled.add(self._fill(card))
         return y + -(-len(parts) // COLUMNS) * (height + GAP)
-
-    def _fill_some(self) -> None:
-        end, waiting = time.perf_counter() + FILL_BUDGET, 0
-        while waiting < len(self._unfilled):
-            went_on = next(self._unfilled[0], None)
-            if went_on is None:
-                self._unfilled.popleft()
-            elif not went_on:
-                self._unfilled.rotate(-1)
-                waiting += 1
-            if time.perf_counter() > end:
-                return
 
     def _fill(self, card: PartCard) -> Iterator[bool]:
         """Read a card's part and draw its picture, a slice at each turn; False where it has to wait."""
