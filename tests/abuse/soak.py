@@ -277,18 +277,18 @@ def soak(seed: int, frames: int, folder: Path, seconds: float | None = None, str
     return found
 
 
-def main() -> None:
-    """Print what was found."""
+def main(arguments: list[str] | None = None) -> int:
+    """Print what was found; 1 where that is anything."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--frames", type=int, default=36_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--seconds", type=float)
     parser.add_argument("--screen", action="store_true", help="in a window on a virtual screen, where Xvfb is")
     parser.add_argument("--all", action="store_true", help="the usual; for make abuse")
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     if given.screen and not shutil.which("Xvfb"):
         print("needs Xvfb (apt install xvfb)")
-        return
+        return 0
     with tempfile.TemporaryDirectory() as folder:
         screen = VirtualScreen(Path(folder)) if given.screen else None
         os.environ |= {"SDL_VIDEODRIVER": "x11", "DISPLAY": screen.display} if screen else {}
@@ -300,8 +300,8 @@ def main() -> None:
             if screen is not None:
                 screen.close()
     print("\n".join(found) or "nothing was found")
-    sys.exit(1 if found else 0)
+    return int(bool(found))
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
