@@ -238,11 +238,16 @@ class App:
             return
         level, source = play.playback.level, play.source
         if isinstance(play, CompareScreen):
-            self.start(Playback(level), source)
+            back = play.single or Playback(level)
+            # Kernels may have come about meanwhile.
+            back.session.world.drop_caches()
+            self.start(back, source)
         elif play.of_document:
             self.say("Save the level and open it from its file to play it twice: this run belongs to the editor.")
         else:
-            self.show_screen(CompareScreen(self, TwinPlayback(level), TwinPlayback(level), source))
+            pair = CompareScreen(self, TwinPlayback(level), TwinPlayback(level), source)
+            pair.single = play.playback
+            self.show_screen(pair)
 
     @property
     def actions(self) -> dict[str, Callable[[], object]]:
