@@ -94,8 +94,8 @@ def compare(
     run.guard(session.apply_pending)
     present = state_hash(session.world)
     if replay.end_hash is not None and present != replay.end_hash:
-        end = Divergence(session.tick, "hash", None, replay.end_hash, present, note="at the end line")
-        return run.comparison(session, end, None)
+        belied = Divergence(session.tick, "hash", None, replay.end_hash, present, note="at the end line")
+        return run.comparison(session, belied, None)
     return None
 
 
