@@ -4,8 +4,8 @@ import pygame
 import pytest
 
 from sandbox.app.draw.colours import ACCENT
+from sandbox.app.draw.part_pictures import PartGhost
 from sandbox.app.play.palette import NAMES
-from sandbox.app.play.part_pictures import PartGhost
 from sandbox.session.commands import AddBody, AddParticle, Push, Remove, SetAir
 from tests.support.parts import furnished
 

@@ -8,7 +8,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, TEXT, Colour
-from sandbox.app.play.part_pictures import picture_of
+from sandbox.app.draw.part_pictures import picture_of
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.ui import Ui, set_icon

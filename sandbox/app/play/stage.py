@@ -8,9 +8,9 @@ import pygame
 
 from sandbox.app.draw.camera import Box, Camera, bounds
 from sandbox.app.draw.detail import Detail
+from sandbox.app.draw.part_pictures import PartGhost
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Overlay, Renderer
-from sandbox.app.play.part_pictures import PartGhost
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.stability_paint import StabilityPaint
 from sandbox.app.profile import Profile
