@@ -225,7 +225,7 @@ def test_a_sweep_that_makes_no_sense_is_refused_in_a_line(level, tmp_path, capsy
         (["--cs", "0,1", "-o", "x.txt"], ".csv, for a table"),
         (["--cs", "0,1", "-o", "x.png"], "give --cs and --cd"),
         (["--cs", "0,1", "--cd", "0,1", "--measure", "joy", "-o", "x.png"], "no 'joy'; there are: settle_time"),
-        (["--cs", "0,1", "--cd", "0,1", "--set", "rope.segments=5:40:20", "-o", "x.png"], "choose some"),
+        (["--cs", "0,1", "--cd", "0,1", "--set", "rope.segments=5:24:20", "-o", "x.png"], "choose some"),
     ],
 )
 def test_a_map_that_cannot_be_is_refused_in_a_line(level, tmp_path, monkeypatch, capsys, arguments, words):

@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
-from sandbox.app.sweeps.measures import Measure, measure_of, scale_of, shown_values
+from sandbox.app.sweeps.sweep_measures import SweepMeasure, measure_of, scale_of, shown_values
 from sandbox.physics.coefficient_zones import CoefficientZones
 from sandbox.physics.world import Floats
 from sandbox.session.sweep.grid import CD, CS, SweepGrid
@@ -89,7 +89,7 @@ def _draw_measure(figure: Figure, grid: SweepGrid, panels: list[SweepPanel], nam
         bar.update_ticks()
 
 
-def _colours(measure: Measure, name: str, values: Floats) -> tuple[Any, Any, Any]:
+def _colours(measure: SweepMeasure, name: str, values: Floats) -> tuple[Any, Any, Any]:
     """Colours of a measure, what they are put on, and where numbers stand (None: as usual)."""
     if measure.is_flag:
         pair = [GREY, BLOWN] if name == "blew_up" else [BAD, GOOD]

@@ -49,7 +49,7 @@ def swept_by_dask(
             for number in missing
         }
         try:
-            for done in as_completed(list(numbers)):
+            for done in as_completed(list(numbers), loop=client.loop):
                 yield numbers.pop(done), done.result()
                 done.release()
         except KilledWorker as error:

@@ -12,7 +12,7 @@ from sandbox.physics.world import Floats
 WIDE, NOTHING = 50.0, 1e-6
 
 
-class Measure(NamedTuple):
+class SweepMeasure(NamedTuple):
     """title: with its unit; missing: what a run without a value has done; is_flag: whether it is only 0 or 1."""
 
     title: str
@@ -23,17 +23,17 @@ class Measure(NamedTuple):
 
 
 MEASURES = {
-    "settle_time": Measure("settles after [s]", "never settles"),
-    "max_strain": Measure("largest strain"),
-    "energy_drift": Measure("energy gained [J]"),
-    "broken_springs": Measure("broken springs"),
-    "blew_up": Measure("blew up", is_flag=True),
+    "settle_time": SweepMeasure("settles after [s]", "never settles"),
+    "max_strain": SweepMeasure("largest strain"),
+    "energy_drift": SweepMeasure("energy gained [J]"),
+    "broken_springs": SweepMeasure("broken springs"),
+    "blew_up": SweepMeasure("blew up", is_flag=True),
 }
 
 
-def measure_of(figure: str) -> Measure:
+def measure_of(figure: str) -> SweepMeasure:
     """A measure by the name that it has in the table; all that are not listed are checks."""
-    return MEASURES.get(figure) or Measure(figure.removeprefix("check: "), "", True, ("fails", "holds"))
+    return MEASURES.get(figure) or SweepMeasure(figure.removeprefix("check: "), "", True, ("fails", "holds"))
 
 
 def shown_values(figure: str, values: Mapping[str, Floats]) -> Floats:
