@@ -8,6 +8,8 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.colours import ACCENT, DANGER, DECADE, FIELD, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
+from sandbox.app.sweeps.layer_paint import limits_of, paint_cells, paint_line, paint_scale
+from sandbox.app.sweeps.sweep_layer import SweepLayer
 from sandbox.app.widgets.painted import Draggable
 from sandbox.app.widgets.sliders import FINE_KEY_STEP, HIGHEST, KEY_STEP, LOWEST, fraction_of, value_at
 from sandbox.app.widgets.ui import Ui
@@ -57,7 +59,20 @@ class CoefficientPad(Draggable):
         self._map: pygame.Surface | None = None
         # Where another run's springs are, and what it is called.
         self._ghost: tuple[str, tuple[float, float]] | None = None
+        # What a sweep has measured, shown in place of the zones, how far it is, and where the mouse asks for a number.
+        self._layer: SweepLayer | None = None
+        self._note = ""
+        self._pointed: tuple[float, float] | None = None
         ui.add(self)
+        self.repaint()
+
+    def show_layer(self, layer: SweepLayer | None, note: str) -> None:
+        """Show what a sweep has measured (None: what theory says), and a note about it."""
+        if layer is not self._layer:
+            self._layer, self._map = layer, None
+        elif note == self._note:
+            return
+        self._note = note
         self.repaint()
 
     def show_state(self, state: PadState, zones: CoefficientZones | None) -> None:
@@ -127,13 +142,26 @@ class CoefficientPad(Draggable):
         self._done()
         return True
 
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Follow the mouse, and tell the number under it."""
+        if event.type == pygame.MOUSEMOTION and self._layer is not None:
+            pointed = self._pair_at(event.pos) if self.hover_point(*event.pos) else None
+            if pointed != self._pointed:
+                self._pointed = pointed
+                self.repaint()
+        return super().process_event(event)
+
     def follow(self, pos: tuple[int, int]) -> None:
         """Set what lies under the mouse."""
+        self._changed(*self._pair_at(pos))
+
+    def _pair_at(self, pos: tuple[int, int]) -> tuple[float, float]:
+        """The Cs and the Cd at a place in the window."""
         x, y = self.ui.manager.calculate_scaled_mouse_position(pos)
         inside = self._inside
         across = (x - self.rect.left - inside.left) / max(1, inside.width - 1)
         up = (inside.bottom - 1 - (y - self.rect.top)) / max(1, inside.height - 1)
-        self._changed(value_at(across), value_at(up))
+        return value_at(across), value_at(up)
 
     # Painting.
 
@@ -142,6 +170,7 @@ class CoefficientPad(Draggable):
         if self._map is None or self._map.get_size() != size:
             self._map = self._painted_map(size)
         surface = self._map.copy()
+        self._paint_reading(surface)
         if not self.state.enabled:
             return surface
         inside, px = self._inside, self.ui.px
@@ -181,12 +210,42 @@ class CoefficientPad(Draggable):
     def _painted_map(self, size: tuple[int, int]) -> pygame.Surface:
         surface = pygame.Surface(size, pygame.SRCALPHA)
         inside = self._inside
+        if self._layer is not None:
+            self._paint_layer(surface, inside, self._layer)
+            pygame.draw.rect(surface, DECADE, inside, 1)
+            return surface
         self._paint_zones(surface, inside)
         self._paint_axes(surface, inside)
+        self._paint_stiffness_words(surface, inside)
         self._paint_critical(surface, inside)
         pygame.draw.rect(surface, DECADE, inside, 1)
         self._paint_words(surface, inside)
         return surface
+
+    def _paint_layer(self, surface: pygame.Surface, inside: pygame.Rect, layer: SweepLayer) -> None:
+        """What a sweep has measured, with its scale and with the lines up to which a single pass is proven stable."""
+        px = self.ui.px
+        paint_cells(surface, inside, layer, (LOWEST, HIGHEST), self.ui)
+        surface.set_clip(inside)
+        for line in limits_of(self.zones) if self.zones is not None else []:
+            paint_line(surface, [self._at(cs, cd) for cs, cd in line], max(1, px(1)))
+        surface.set_clip(None)
+        self._paint_axes(surface, inside)
+        self._paint_stiffness_name(surface, inside)
+        place = pygame.Rect(inside.left, inside.bottom + px(18), inside.width, px(BOTTOM - 18))
+        paint_scale(surface, layer, place, self.ui)
+
+    def _paint_reading(self, surface: pygame.Surface) -> None:
+        """The number under the mouse, else that of the knob; before it how far the runs are."""
+        if self._layer is None and not self._note:
+            return
+        text = self._note
+        if self._layer is not None:
+            at = self._pointed or (self.state.stiffness, self.state.damping)
+            where = f"Cs {at[0]:.2g}, Cd {at[1]:.2g}: " if self._pointed is not None else ""
+            text = ", ".join(filter(None, (self._note, where + self._layer.text_at(*at))))
+        picture = self.ui.font(NUMBER_SIZE).render(text, True, TEXT)
+        surface.blit(picture, picture.get_rect(topright=(self._inside.right, 0)))
 
     def _paint_zones(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
         """Fill each zone in its tone; what is not proven is hatched as well, since colour alone tells nobody enough."""
@@ -242,19 +301,21 @@ class CoefficientPad(Draggable):
             surface.blit(number, place.clamp(surface.get_rect()))
         name = self.ui.font(NUMBER_SIZE, True).render("Cd  damping", True, TEXT)
         surface.blit(name, (inside.left, 0))
-        self._paint_stiffness_words(surface, inside)
 
     def _paint_stiffness_words(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
         """What values of Cs are called, each over its part of the axis."""
         font, px = self.ui.font(WORD_SIZE), self.ui.px
         y = inside.bottom + px(18)
-        name = self.ui.font(NUMBER_SIZE, True).render("Cs", True, TEXT)
-        surface.blit(name, name.get_rect(topright=(inside.left - px(4), y + px(1))))
+        self._paint_stiffness_name(surface, inside)
         for word, low, high in STIFFNESS_WORDS:
             start, end = self._at(low, 1.0)[0], self._at(high, 1.0)[0]
             pygame.draw.line(surface, DECADE, (start + px(2), y), (end - px(2), y), max(1, px(1.5)))
             text = font.render(word, True, TEXT)
             surface.blit(text, text.get_rect(midtop=((start + end) / 2, y + px(2))))
+
+    def _paint_stiffness_name(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
+        px, name = self.ui.px, self.ui.font(NUMBER_SIZE, True).render("Cs", True, TEXT)
+        surface.blit(name, name.get_rect(topright=(inside.left - px(4), inside.bottom + px(19))))
 
     def _paint_critical(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
         """Where one spring neither swings nor creeps, and what lies on either side; where 1/(n+1) ends."""

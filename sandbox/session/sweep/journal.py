@@ -22,20 +22,23 @@ class Journal:
         self._table, self._grid = table, grid
         self.rows: dict[int, list[Any]] = {}
         self.replaced = False
-        first = json.dumps({"level": grid.digest, "ticks": grid.ticks, "columns": dict(grid.columns),
-                            "figures": grid.figures})  # fmt: skip
+        self._first = json.dumps({"level": grid.digest, "ticks": grid.ticks, "columns": dict(grid.columns),
+                                  "figures": grid.figures})  # fmt: skip
         lines: list[str] = []
         if not fresh and self.path.exists():
             lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines(keepends=True)
-            self.replaced = bool(lines) and lines[0] != first + "\n"
-        whole = [first + "\n"]
+            self.replaced = bool(lines) and lines[0] != self._first + "\n"
         for line in [] if self.replaced else lines[1:]:
             # What was cut off in the middle of a line is no row.
             with contextlib.suppress(ValueError):
                 number, row = json.loads(line)
                 self.rows[number] = row
-                whole.append(line)
-        write_file(self.path, "".join(whole).encode())
+        self.save()
+
+    def save(self) -> None:
+        """Write the file anew with all rows that are known."""
+        lines = [self._first, *(json.dumps([number, row]) for number, row in self.rows.items())]
+        write_file(self.path, "".join(f"{line}\n" for line in lines).encode())
 
     def add(self, number: int, row: list[Any]) -> None:
         """Keep a row, on the disk too."""

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,20 +54,28 @@ def edges(values: Floats) -> Floats:
 def sweep_panels(grid: SweepGrid, rows: Rows) -> Iterator[SweepPanel]:
     """The panels of a grid that has Cs and Cd, in order; rows may lack some runs."""
     others = [name for name in grid.columns if name not in (CS, CD)]
-    names = list(grid.columns)
-    axes = [np.argsort(np.array(grid.columns[name], dtype=np.float64)) for name in (CD, CS)]
-    figures = np.full((grid.runs, len(grid.figures)), math.nan)
-    for number, row in rows.items():
-        figures[number] = [math.nan if value is None else value for value in row]
-    table = figures.reshape(*map(len, grid.columns.values()), -1)
-    places = {name: {value: k for k, value in enumerate(grid.columns[name])} for name in others}
     for case in itertools.product(*(grid.columns[name] for name in others)):
         chosen = dict(zip(others, case, strict=True))
-        at = tuple(slice(None) if name in (CS, CD) else places[name][chosen[name]] for name in names)
-        part = table[at] if names.index(CD) < names.index(CS) else table[at].swapaxes(0, 1)
-        part = part[np.ix_(*axes)]
-        values = {name: part[:, :, k] for k, name in enumerate(grid.figures)}
-        yield SweepPanel(_title(chosen), values, _zones(grid, others, case))
+        yield SweepPanel(_title(chosen), panel_values(grid, rows, chosen)[1], _zones(grid, others, case))
+
+
+def panel_values(
+    grid: SweepGrid, rows: Rows, chosen: Mapping[str, object]
+) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Rising values of Cs and of Cd, and by measure values (cd, cs) where all else has chosen values.
+
+    NaN where there is none, of every measure where rows lack a run.
+    """
+    axes = {name: np.sort(np.array(grid.columns[name], dtype=np.float64)) for name in (CS, CD)}
+    values = {name: np.full((len(axes[CD]), len(axes[CS])), math.nan) for name in grid.figures}
+    names = list(grid.columns)
+    for number, row in rows.items():
+        point = dict(zip(names, grid.cases[number], strict=True))
+        if all(point[name] == value for name, value in chosen.items()):
+            at = tuple(int(np.searchsorted(axes[name], point[name])) for name in (CD, CS))
+            for name, value in zip(grid.figures, row, strict=True):
+                values[name][at] = math.nan if value is None else value
+    return axes, values
 
 
 def _zones(grid: SweepGrid, others: list[str], case: tuple[Value, ...]) -> CoefficientZones | None:
@@ -79,7 +87,7 @@ def _zones(grid: SweepGrid, others: list[str], case: tuple[Value, ...]) -> Coeff
     return coefficient_zones(world, material, np.unique(both)) if high > low else None
 
 
-def _title(chosen: dict[str, Value]) -> str:
+def _title(chosen: Mapping[str, Value]) -> str:
     words = []
     for name, value in chosen.items():
         field = name.removeprefix("settings.").removeprefix("bodies.")
