@@ -60,7 +60,7 @@ class CoefficientPad(Draggable):
         # Where another run's springs are, and what it is called.
         self._ghost: tuple[str, tuple[float, float]] | None = None
         # What a sweep has measured, shown in place of the zones, how far it is, and where the mouse asks for a number.
-        self._layer: SweepLayer | None = None
+        self._sweep: SweepLayer | None = None
         self._note = ""
         self._pointed: tuple[float, float] | None = None
         ui.add(self)
@@ -68,8 +68,8 @@ class CoefficientPad(Draggable):
 
     def show_layer(self, layer: SweepLayer | None, note: str) -> None:
         """Show what a sweep has measured (None: what theory says), and a note about it."""
-        if layer is not self._layer:
-            self._layer, self._map = layer, None
+        if layer is not self._sweep:
+            self._sweep, self._map = layer, None
         elif note == self._note:
             return
         self._note = note
@@ -144,7 +144,7 @@ class CoefficientPad(Draggable):
 
     def process_event(self, event: pygame.event.Event) -> bool:
         """Follow the mouse, and tell the number under it."""
-        if event.type == pygame.MOUSEMOTION and self._layer is not None:
+        if event.type == pygame.MOUSEMOTION and self._sweep is not None:
             pointed = self._pair_at(event.pos) if self.hover_point(*event.pos) else None
             if pointed != self._pointed:
                 self._pointed = pointed
@@ -210,8 +210,8 @@ class CoefficientPad(Draggable):
     def _painted_map(self, size: tuple[int, int]) -> pygame.Surface:
         surface = pygame.Surface(size, pygame.SRCALPHA)
         inside = self._inside
-        if self._layer is not None:
-            self._paint_layer(surface, inside, self._layer)
+        if self._sweep is not None:
+            self._paint_layer(surface, inside, self._sweep)
             pygame.draw.rect(surface, DECADE, inside, 1)
             return surface
         self._paint_zones(surface, inside)
@@ -237,13 +237,13 @@ class CoefficientPad(Draggable):
 
     def _paint_reading(self, surface: pygame.Surface) -> None:
         """The number under the mouse, else that of the knob; before it how far the runs are."""
-        if self._layer is None and not self._note:
+        if self._sweep is None and not self._note:
             return
         text = self._note
-        if self._layer is not None:
+        if self._sweep is not None:
             at = self._pointed or (self.state.stiffness, self.state.damping)
             where = f"Cs {at[0]:.2g}, Cd {at[1]:.2g}: " if self._pointed is not None else ""
-            text = ", ".join(filter(None, (self._note, where + self._layer.text_at(*at))))
+            text = ", ".join(filter(None, (self._note, where + self._sweep.text_at(*at))))
         picture = self.ui.font(NUMBER_SIZE).render(text, True, TEXT)
         surface.blit(picture, picture.get_rect(topright=(self._inside.right, 0)))
 

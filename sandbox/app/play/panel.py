@@ -11,10 +11,10 @@ from sandbox.app.draw.colours import WARNING
 from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.play.coefficient_pad import STIFFNESSES, CoefficientPad, PadState
 from sandbox.app.play.firmness_rows import ALL_BODIES, FirmnessRows
-from sandbox.app.play.pad_maps import PadMaps
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.response_curve import ResponseCurve
 from sandbox.app.play.view_row import ViewRow
+from sandbox.app.sweeps.pad_maps import PadMaps
 from sandbox.app.sweeps.pad_sweeps import PadSweeps
 from sandbox.app.widgets.fields import Field, typed_number
 from sandbox.app.widgets.fold import FoldHeading

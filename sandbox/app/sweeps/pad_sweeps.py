@@ -4,11 +4,14 @@ import contextlib
 import json
 import os
 from collections.abc import Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import platformdirs
 
+from sandbox.app.compiling import usual_processes
 from sandbox.app.sweeps.sweep_layer import SweepLayer
 from sandbox.app.sweeps.sweep_measures import measure_of
 from sandbox.app.widgets.sliders import HIGHEST, LOWEST
@@ -21,17 +24,23 @@ from sandbox.session.sweep.grid import CD, CS, SweepError, SweepGrid
 from sandbox.session.sweep.journal import Journal
 from sandbox.session.sweep.sweep_map import panel_values
 from sandbox.session.sweep.table import Rows, read_table
-from sandbox.terminal import cores
 
 # Values on each axis of the pad, and how long each run is [s].
 SIDE, SECONDS = 13, 10.0
 # Sweeps that are kept, those used last.
 KEPT = 60
-# Most children: the window and other programs come first.
-MOST_PROCESSES = 4
 # Settings of a world that a person may change while it runs, and that a level has.
 SETTINGS = ("solver", "substeps", "iterations", "warm_start", "gravity")
 SOLVER, SUBSTEPS = "settings.solver", "settings.substeps"
+
+
+class _Found(NamedTuple):
+    """A sweep, the file that it was opened from, its journal where it is not whole, and its rows."""
+
+    file: Path | None
+    grid: SweepGrid
+    journal: Journal | None
+    rows: Rows
 
 
 class PadSweeps:
@@ -47,6 +56,8 @@ class PadSweeps:
         self._journal: Journal | None = None
         self._rows: Rows = {}
         self._work: BackgroundSweep | None = None
+        self._thread = ThreadPoolExecutor(1)
+        self._finding: Future[_Found] | None = None
 
     @property
     def progress(self) -> tuple[int, int]:
@@ -81,14 +92,18 @@ class PadSweeps:
             return
         self.stop()
         self._of, self.error = (level, settings, material), None
-        try:
-            self._begin(_present(level, settings), settings, material)
-        except (SweepError, LevelError, OSError) as error:
-            self.error = str(error)
+        self._journal, self._grid, self._rows = None, None, {}
+        # Files may take their time.
+        self._finding = self._thread.submit(_find, self._file, level, settings, material)
         self._paint()
 
     def update(self) -> bool:
-        """Take up what the children have found; whether there is anything new."""
+        """Take up what has been found; whether there is anything new."""
+        if self._finding is not None and self._finding.done():
+            self._begin(self._finding)
+            self._finding = None
+            self._paint()
+            return True
         if self._work is None or self._journal is None:
             return False
         found = self._work.new_rows()
@@ -99,8 +114,7 @@ class PadSweeps:
         if self._work.is_done:
             self._work.stop()
             self._work = None
-            with contextlib.suppress(OSError):
-                self._journal.finish()
+            self._thread.submit(self._journal.finish)
         if found:
             self._paint()
         return bool(found) or before != self.error
@@ -109,33 +123,18 @@ class PadSweeps:
         """Let no child run on; what is known stays."""
         if self._work is not None:
             self._work.stop()
-            self._work = None
-        self._of = None
+        self._work = self._finding = self._of = None
 
-    def _begin(self, level: Level, settings: WorldSettings, material: str | None) -> None:
-        self._grid, self._rows = None, {}
-        if self._file is not None and self._take(self._file, level, settings, material):
-            return
-        self._file = None
-        values = tuple(float(f"{each:.9g}") for each in 10.0 ** np.linspace(LOWEST, HIGHEST, SIDE))
-        grid = SweepGrid(level, {CS: values, CD: values}, round(SECONDS * level.settings.tick_rate), material)
-        table = _kept_table(grid)
-        if self._take(table, level, settings, material):
-            os.utime(table)
-            return
-        journal = Journal(table, grid)
-        self._grid, self._journal, self._rows = grid, journal, journal.rows
-        numbers = [number for number in coarse_first(SIDE) if number not in journal.rows]
-        self._work = BackgroundSweep(grid, numbers, max(1, min(MOST_PROCESSES, cores() - 1)))
-
-    def _take(self, table: Path, level: Level, settings: WorldSettings, material: str | None) -> bool:
-        """Show a table that is there, if it is one of this level with these settings."""
-        with contextlib.suppress(SweepError, OSError, UnicodeDecodeError):
-            grid, rows = read_table(table, level, (material,))
-            _place_in(grid, settings)
-            self._grid, self._rows = grid, rows
-            return True
-        return False
+    def _begin(self, finding: "Future[_Found]") -> None:
+        """Show what was found, and let children find the rest."""
+        try:
+            found = finding.result()
+            self._file, self._grid, self._journal, self._rows = found
+            if found.journal is not None:
+                numbers = [number for number in coarse_first(SIDE) if number not in found.rows]
+                self._work = BackgroundSweep(found.grid, numbers, max(1, usual_processes() - 1))
+        except (SweepError, LevelError, OSError) as error:
+            self.error = str(error)
 
     def _paint(self) -> None:
         self.layer = None
@@ -145,6 +144,25 @@ class PadSweeps:
         figure = self.measure if self.measure in grid.figures else grid.figures[0]
         axes, values = panel_values(grid, self._rows, _place_in(grid, self._of[1]))
         self.layer = SweepLayer(figure, axes[CS], axes[CD], values)
+
+
+def _find(file: Path | None, level: Level, settings: WorldSettings, material: str | None) -> _Found:
+    """The sweep in a file that was opened, else one that is kept, else one that is to be made."""
+    level = _present(level, settings)
+    if file is not None:
+        with contextlib.suppress(SweepError, OSError, UnicodeDecodeError):
+            grid, rows = read_table(file, level, (material,))
+            _place_in(grid, settings)
+            return _Found(file, grid, None, rows)
+    values = tuple(float(f"{each:.9g}") for each in 10.0 ** np.linspace(LOWEST, HIGHEST, SIDE))
+    grid = SweepGrid(level, {CS: values, CD: values}, round(SECONDS * level.settings.tick_rate), material)
+    table = _kept_table(grid)
+    with contextlib.suppress(SweepError, OSError, UnicodeDecodeError):
+        found = read_table(table, level, (material,))
+        os.utime(table)
+        return _Found(None, found[0], None, found[1])
+    journal = Journal(table, grid)
+    return _Found(None, grid, journal, journal.rows)
 
 
 def coarse_first(side: int) -> list[int]:

@@ -91,7 +91,9 @@ class BackgroundSweep:
 
 
 def _leave_with_parent() -> None:
-    sys.stdin.read()
+    # Not by sys.stdin, whose lock would be held where this process comes to its own end.
+    while os.read(0, 4096):
+        pass
     os._exit(0)
 
 
