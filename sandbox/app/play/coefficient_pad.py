@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sandbox.app.draw.colours import ACCENT, DANGER, DECADE, FIELD, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
 from sandbox.app.sweeps.layer_paint import limits_of, paint_cells, paint_line, paint_scale
 from sandbox.app.sweeps.sweep_layer import SweepLayer
-from sandbox.app.widgets.painted import Draggable
+from sandbox.app.widgets.painted import Draggable, wrapped
 from sandbox.app.widgets.sliders import FINE_KEY_STEP, HIGHEST, KEY_STEP, LOWEST, fraction_of, value_at
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.coefficient_zones import CoefficientZones
@@ -20,6 +20,7 @@ LEFT, RIGHT, TOP, BOTTOM = 38.0, 8.0, 18.0, 40.0
 NUMBER_SIZE, WORD_SIZE, LABEL_SIZE = 10.5, 12.5, 10.5
 KNOB = 7.0
 HATCH = 7.0
+UP_NAME = "Cd  damping"
 DECADES = tuple(range(int(LOWEST), int(HIGHEST) + 1))
 # What values of Cs are called, from the lowest on (Nissen 2019, re-introducing coefficients).
 STIFFNESS_WORDS = (("soft", 1e-5, 1e-3), ("firm", 1e-3, 1e-2), ("rigid", 1e-2, 1.0))
@@ -236,16 +237,17 @@ class CoefficientPad(Draggable):
         paint_scale(surface, layer, place, self.ui)
 
     def _paint_reading(self, surface: pygame.Surface) -> None:
-        """The number under the mouse, else that of the knob; before it how far the runs are."""
-        if self._sweep is None and not self._note:
-            return
-        text = self._note
-        if self._sweep is not None:
-            at = self._pointed or (self.state.stiffness, self.state.damping)
-            where = f"Cs {at[0]:.2g}, Cd {at[1]:.2g}: " if self._pointed is not None else ""
-            text = ", ".join(filter(None, (self._note, where + self._sweep.text_at(*at))))
-        picture = self.ui.font(NUMBER_SIZE).render(text, True, TEXT)
-        surface.blit(picture, picture.get_rect(topright=(self._inside.right, 0)))
+        """The number under the mouse; else how far the runs are, and the number of the knob."""
+        texts = [self._note]
+        if self._sweep is not None and self._pointed is not None:
+            cs, cd = self._pointed
+            texts = [f"Cs {cs:.2g}, Cd {cd:.2g}: {self._sweep.text_at(cs, cd)}"]
+        elif self._sweep is not None:
+            texts.append(self._sweep.text_at(self.state.stiffness, self.state.damping))
+        font, inside = self.ui.font(NUMBER_SIZE), self._inside
+        widest = inside.width - self.ui.font(NUMBER_SIZE, True).size(UP_NAME)[0] - self.ui.px(6)
+        picture = font.render(wrapped(", ".join(filter(None, texts)), font, widest, 1)[0], True, TEXT)
+        surface.blit(picture, picture.get_rect(topright=(inside.right, 0)))
 
     def _paint_zones(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
         """Fill each zone in its tone; what is not proven is hatched as well, since colour alone tells nobody enough."""
@@ -299,7 +301,7 @@ class CoefficientPad(Draggable):
             surface.blit(number, place.clamp(surface.get_rect()))
             place = number.get_rect(midright=(inside.left - px(4), y))
             surface.blit(number, place.clamp(surface.get_rect()))
-        name = self.ui.font(NUMBER_SIZE, True).render("Cd  damping", True, TEXT)
+        name = self.ui.font(NUMBER_SIZE, True).render(UP_NAME, True, TEXT)
         surface.blit(name, (inside.left, 0))
 
     def _paint_stiffness_words(self, surface: pygame.Surface, inside: pygame.Rect) -> None:

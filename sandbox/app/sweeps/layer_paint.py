@@ -90,8 +90,8 @@ def _paint_swatches(
 ) -> None:
     font, size = ui.font(NUMBER_SIZE), ui.px(SWATCH)
     texts = [(font.render(word, True, MUTED), hatched) for word, hatched in swatches]
-    gap = ui.px(4)
-    width = sum(size + gap + text.get_width() for text, _ in texts) + 2 * gap * (len(texts) - 1)
+    gap = ui.px(3)
+    width = sum(size + gap + text.get_width() for text, _ in texts) + gap * (len(texts) - 1)
     x = room.centerx - width // 2
     for text, hatched in texts:
         box = pygame.Rect(x, room.centery - size // 2, size, size)
@@ -101,4 +101,4 @@ def _paint_swatches(
             pygame.draw.line(surface, BLOWN, box.topright, box.bottomleft)
         pygame.draw.rect(surface, DECADE, box, 1)
         surface.blit(text, (box.right + gap, room.top))
-        x = box.right + text.get_width() + 3 * gap
+        x = box.right + text.get_width() + 2 * gap

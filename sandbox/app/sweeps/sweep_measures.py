@@ -16,7 +16,7 @@ class SweepMeasure(NamedTuple):
     """title: with its unit; missing: what a run without a value has done; is_flag: whether it is only 0 or 1."""
 
     title: str
-    missing: str = "beyond all numbers"
+    missing: str = "no number"
     is_flag: bool = False
     # What 0 and 1 are called.
     words: tuple[str, str] = ("no", "yes")
