@@ -20,7 +20,7 @@ ROOMS = ("physics", "level", "session", *PUBLIC, "tools", "editor", "app", "test
 LIBRARIES = {
     "physics": {"numpy", "numba", "llvmlite"},
     "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},
-    "session": {"numpy", "pydantic", "filelock"},
+    "session": {"numpy", "pydantic", "filelock", "distributed"},
     **{name: set() for name in PUBLIC},
     "tools": {"numpy"},
     "editor": {"numpy", "pydantic", "platformdirs", "filelock"},

@@ -48,12 +48,13 @@ def test_an_installed_wheel_finds_its_levels_parts_and_assets_from_another_folde
     assert int(assets) == len(list((ROOT / "assets").iterdir()))
 
 
-def test_make_play_installs_what_gif_and_mp4_need_and_dev_contains_it():
+def test_make_play_installs_what_shared_files_need_and_dev_contains_it_and_what_sweeps_need():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
-    assert f"{project['name']}[export]" in extras["dev"]
-    packages = {re.split(r"[<>=]", needed)[0] for needed in extras["export"]}
-    assert packages == {kind.package for kind in KINDS.values() if kind.package}
+    assert {f"{project['name']}[{name}]" for name in ("export", "sweep")} <= set(extras["dev"])
+    packages = {name: {re.split(r"[<>=]", needed)[0] for needed in extras[name]} for name in ("export", "sweep")}
+    assert packages["export"] == {kind.package for kind in KINDS.values() if kind.package} | {"matplotlib"}
+    assert packages["sweep"] == {"dask", "distributed"}
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     recipe = makefile.split("$(VENV)/installed:")[1].split("\n\n")[0]
     assert '--editable ".[export]"' in recipe

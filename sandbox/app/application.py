@@ -32,6 +32,10 @@ class Run(Screen, Protocol):
         """Its last seconds [s], as it is seen now."""
         ...
 
+    def show_sweep(self, path: Path) -> None:
+        """Show a table that `sandbox sweep` made of its level. Raises SweepError and OSError."""
+        ...
+
 
 class Documents(Protocol):
     """What is done with the level that the editor has open; editor: its screen, also while it is played."""

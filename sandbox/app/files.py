@@ -14,6 +14,10 @@ from sandbox.level.format.files import load_level, read_level, shipped_folder
 from sandbox.level.format.writing import refusal_of
 from sandbox.session.replay.reader import begins_as_replay, read_replay
 from sandbox.session.replay.recording import ReplayError
+from sandbox.session.sweep.grid import SweepError
+
+# How the name of a sweep's table ends.
+TABLE = ".csv"
 
 
 class FileActions:
@@ -26,6 +30,8 @@ class FileActions:
 
     def open_path(self, path: str | Path) -> bool:
         """Open a level or a replay, whichever the file is; True where it could be."""
+        if Path(path).suffix.lower() == TABLE:
+            return self.open_sweep(Path(path))
         try:
             is_replay = begins_as_replay(path)
         except OSError as error:
@@ -46,6 +52,20 @@ class FileActions:
             return False
         self.app.start(playback, None if shipped else Path(path))
         remember_played(path)
+        return True
+
+    def open_sweep(self, path: Path) -> bool:
+        """Show a table of `sandbox sweep` behind the pad, if it is of the level that runs."""
+        try:
+            if self.app.play is None:
+                raise SweepError(f"{path}: play the level that it is of, then open it again")
+            self.app.play.show_sweep(path)
+        except (SweepError, UnicodeDecodeError) as error:
+            self._refuse(path, [str(error)])
+            return False
+        except OSError as error:
+            self._refuse(path, [one_line(f"{path}: cannot be read: {refusal_of(error)}")])
+            return False
         return True
 
     def open_replay(self, path: str | Path) -> bool:

@@ -3,71 +3,183 @@
 import argparse
 import json
 import math
+from collections.abc import Generator
 from contextlib import closing
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from sandbox.cli.inputs import EXIT_INTERRUPTED, EXIT_OK, Refused, level_of
 from sandbox.terminal import Progress, cores, processes, seconds, tell
 
+if TYPE_CHECKING:
+    from sandbox.level.format.model import Level
+    from sandbox.session.sweep.grid import SweepGrid, Value
+    from sandbox.session.sweep.table import Rows
+
 SWEEP_SECONDS = 10.0
 MOST_RUNS = 100_000
+TABLE, MAP = ".csv", ".png"
 
 
 def add_options(sweep: argparse.ArgumentParser) -> None:
     """Options of `sandbox sweep`."""
     sweep.add_argument("level", metavar="LEVEL")
-    sweep.add_argument("--cs", metavar="A:B:N[:log]", help="Cs of all materials: N values from A to B, or a,b,..")
-    sweep.add_argument("--cd", metavar="A:B:N[:log]", help="Cd of all materials, likewise")
+    sweep.add_argument("--cs", metavar="A:B:N[:log]", help="Cs: N values from A to B, or a,b,..")
+    sweep.add_argument("--cd", metavar="A:B:N[:log]", help="Cd, likewise")
+    sweep.add_argument("--material", metavar="NAME", help="whose springs have them; default: all")
     sweep.add_argument("--solver", help="names with commas between, or all")
-    sweep.add_argument("--substeps", help="numbers with commas between")
+    sweep.add_argument("--substeps", help="numbers with commas between, and auto")
     sweep.add_argument(
-        "--set", action="append", default=[], metavar="FIELD=VALUES", help="any field: bodies.deck.height=0.1:1:5"
+        "--set", action="append", default=[], metavar="FIELD=VALUES", help="any field of the level: deck.height=0.1:1:5"
     )
     sweep.add_argument("--seconds", type=seconds, default=SWEEP_SECONDS, help="simulated time of each run; default 10")
+    sweep.add_argument("--measure", metavar="NAMES", help="what the map shows, with commas between; default: all")
     sweep.add_argument("--processes", type=processes, metavar="N", help="at a time; default: one a processor")
-    sweep.add_argument("--fresh", action="store_true", help="begin anew where a sweep was interrupted")
-    sweep.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.csv", help="where the table goes")
+    sweep.add_argument(
+        "--dask", metavar="ADDRESS", help="run by the scheduler of dask there; local: by one of this machine"
+    )
+    sweep.add_argument("--fresh", action="store_true", help="run anew what is known already")
+    sweep.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="OUT.csv|png", help="table; or map, with the table beside"
+    )
 
 
 def sweep(options: argparse.Namespace) -> int:
-    """Run the grid and write its table."""
-    from sandbox.session.sweep import Journal, SweepError, SweepGrid, case_level, swept
+    """Run the grid, write its table, and draw its map where that is wanted."""
+    from sandbox.session.sweep.grid import SweepError
 
-    if options.output.suffix.lower() != ".csv":
-        raise Refused(f"{options.output}: a table is CSV; end the name in .csv")
+    kind = options.output.suffix.lower()
+    if kind not in (TABLE, MAP):
+        raise Refused(f"{options.output}: end the name in .csv, for a table, or in .png, for a map")
+    if options.measure and kind != MAP:
+        raise Refused("--measure: is of a map; end the name of -o in .png")
+    _require(options, kind)
+    try:
+        grid = _grid(options)
+        panels = _panels(grid, options) if kind == MAP else []
+        table = options.output.with_suffix(TABLE) if kind == MAP else options.output
+        rows = None if options.fresh else _known(table, grid, kind == MAP)
+        if rows is None:
+            rows = _run(table, grid, options)
+            if rows is None:
+                return EXIT_INTERRUPTED
+            print(f"{table}: {grid.runs} runs")
+        else:
+            tell([f"{table}: holds these {grid.runs} runs already; --fresh runs them again"])
+    except SweepError as error:
+        raise Refused(str(error)) from None
+    if kind == MAP:
+        from sandbox.app.sweeps.sweep_chart import draw_map
+
+        draw_map(grid, rows, panels, options.output)
+        print(f"{options.output}: {len(panels)} measures")
+    return EXIT_OK
+
+
+def _require(options: argparse.Namespace, kind: str) -> None:
+    from sandbox.app.share.kinds import Missing, require_module
+
+    try:
+        if kind == MAP:
+            require_module("a map", "matplotlib", "matplotlib")
+        if options.dask:
+            require_module("--dask", "distributed", "dask and distributed", "sweep")
+    except Missing as missing:
+        raise Refused(str(missing)) from None
+
+
+def _grid(options: argparse.Namespace) -> "SweepGrid":
+    """The grid that is asked for. Raises Refused and SweepError."""
+    from sandbox.session.sweep.grid import SweepGrid, case_level
+
     level = level_of(options.level)
-    grid = SweepGrid(level, _columns(options), max(1, round(options.seconds * level.settings.tick_rate)))
-    runs = math.prod(map(len, grid.columns.values()))
-    if not grid.columns:
+    columns = _columns(options, level)
+    runs = math.prod(map(len, columns.values()))
+    if not columns:
         raise Refused("nothing varies: give --cs, --cd, --solver, --substeps or --set")
     if runs > MOST_RUNS:
         raise Refused(f"{runs:,} runs: at most {MOST_RUNS:,} are possible; take coarser steps")
+    for name, values in columns.items():
+        for value in values:
+            case_level(level, [name], [value])
+    ticks = max(1, round(options.seconds * level.settings.tick_rate))
+    return SweepGrid(level, columns, ticks, options.material)
+
+
+def _panels(grid: "SweepGrid", options: argparse.Namespace) -> list[str]:
+    """The measures that the map shows. Raises Refused where it cannot."""
+    from sandbox.session.sweep.sweep_map import MOST_MAPS, panel_count
+
+    if not {"cs", "cd"} <= set(grid.columns):
+        raise Refused("a map has Cs across and Cd up: give --cs and --cd, or end the name in .csv")
+    wanted = options.measure.split(",") if options.measure else grid.figures
+    for name in wanted:
+        if name not in grid.figures:
+            raise Refused(f"--measure: there is no {name!r}; there are: {', '.join(grid.figures)}")
+    maps = panel_count(grid) * len(wanted)
+    if maps > MOST_MAPS:
+        raise Refused(f"{maps} maps in one picture: at most {MOST_MAPS} can be read; choose some with --measure")
+    return wanted
+
+
+def _known(table: Path, grid: "SweepGrid", is_beside: bool) -> "Rows | None":
+    """The rows of a table that holds this very sweep; is_beside: it is not what was named. Raises Refused."""
+    from sandbox.session.sweep.grid import SweepError
+    from sandbox.session.sweep.table import read_table
+
+    if not table.is_file():
+        return None
     try:
-        for name, values in grid.columns.items():
-            for value in values:
-                case_level(level, [name], [value])
-        journal = Journal(options.output, grid, options.fresh)
-        if journal.rows:
-            tell([f"{len(journal.rows)} of {runs} runs are known already; --fresh runs them again"])
-        rows = swept(grid, list(journal.rows), min(options.processes or cores(), runs))
-        with Progress(runs, "run") as bar, closing(rows):
+        found, rows = read_table(table, grid.level, (grid.material,))
+        if found == grid:
+            return rows
+    except (SweepError, UnicodeDecodeError):
+        pass
+    if is_beside:
+        raise Refused(f"{table}: would be written over, but is not of this sweep; move it, or begin anew with --fresh")
+    return None
+
+
+def _run(table: Path, grid: "SweepGrid", options: argparse.Namespace) -> "Rows | None":
+    """Run what is not known yet and write the table; its rows, None where it was interrupted. Raises SweepError."""
+    from sandbox.session.sweep.journal import Journal
+
+    journal = Journal(table, grid, options.fresh)
+    if journal.replaced:
+        tell([f"{journal.path}: was of another level or grid; all runs begin anew"])
+    if journal.rows:
+        tell([f"{len(journal.rows)} of {grid.runs} runs are known already; --fresh runs them again"])
+    try:
+        with Progress(grid.runs, "run") as bar, closing(_rows(grid, journal.rows, options)) as rows:
             bar.update(len(journal.rows))
             for number, row in rows:
                 journal.add(number, row)
                 bar.update()
-    except SweepError as error:
-        raise Refused(str(error)) from None
     except KeyboardInterrupt:
-        tell([f"{len(journal.rows)} of {runs} runs are done; the same command goes on from there"])
-        return EXIT_INTERRUPTED
-    journal.finish(options.output, grid)
-    print(f"{options.output}: {runs} runs")
-    return EXIT_OK
+        tell([f"{len(journal.rows)} of {grid.runs} runs are done; the same command goes on from there"])
+        return None
+    journal.finish()
+    return journal.rows
 
 
-def _columns(options: argparse.Namespace) -> dict[str, tuple[float | int | str, ...]]:
+def _rows(
+    grid: "SweepGrid", known: "Rows", options: argparse.Namespace
+) -> Generator[tuple[int, list[Any]], None, None]:
+    workers = min(options.processes or cores(), grid.runs)
+    if options.dask:
+        from sandbox.session.sweep.cluster import swept_by_dask
+
+        return swept_by_dask(grid, list(known), options.dask, workers)
+    from sandbox.session.sweep.pool import swept
+
+    return swept(grid, list(known), workers)
+
+
+def _columns(options: argparse.Namespace, level: "Level") -> "dict[str, tuple[Value, ...]]":
     """The values of every column, Cs and Cd last. Raises Refused."""
-    columns: dict[str, tuple[float | int | str, ...]] = {}
+    from sandbox.session.sweep.grid import field_place
+
+    columns: dict[str, tuple[Value, ...]] = {}
     if options.solver:
         from sandbox.physics.solvers import SOLVERS
 
@@ -78,7 +190,7 @@ def _columns(options: argparse.Namespace) -> dict[str, tuple[float | int | str, 
         name, sign, values = text.partition("=")
         if not sign:
             raise Refused(f"--set: {text!r}: write FIELD=A:B:N, or FIELD=a,b,..")
-        columns[name] = values_of("--set", values)
+        columns[field_place(level, name)] = values_of("--set", values)
     for name in ("cs", "cd"):
         given = getattr(options, name)
         if given:

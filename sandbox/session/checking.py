@@ -1,18 +1,13 @@
 """Checking: what is to be said of level files, one after another or in processes."""
 
-import multiprocessing
-import signal
-import threading
-from collections.abc import Generator, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.files import LevelError, load_level
 from sandbox.physics.stability import report
 from sandbox.session.check_run import run_checks
+from sandbox.session.worker_pool import interrupts_ignored, worker_pool
 
 
 @dataclass(frozen=True)
@@ -51,36 +46,7 @@ def check_levels(names: Sequence[str], processes: int) -> Generator[LevelReport,
     if processes == 1:
         yield from map(check_level, names)
         return
-    # A new interpreter each: one that is copied would have threads that are not running any more.
-    spawn = multiprocessing.get_context("spawn")
-    workers = ProcessPoolExecutor(processes, spawn, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN))
-    try:
-        with _interrupts_ignored():
+    with worker_pool(processes) as workers:
+        with interrupts_ignored():
             waiting = [workers.submit(check_level, name) for name in names]
-        yield from map(_answer, waiting)
-        workers.shutdown()
-    except BaseException:
-        workers.shutdown(wait=False, cancel_futures=True)
-        for child in multiprocessing.active_children():
-            child.terminate()
-        raise
-
-
-def _answer(waiting: "Future[LevelReport]") -> LevelReport:
-    try:
-        return waiting.result()
-    except BrokenProcessPool:
-        raise OSError(0, "a process that checked a level has ended before its time; is there memory for all?") from None
-
-
-@contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    """An interrupt goes to all processes: those that are started in here leave it to this one."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    previous = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, previous)
+        yield from (each.result() for each in waiting)

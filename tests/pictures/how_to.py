@@ -1,9 +1,16 @@
 """Draws the pictures of README and of the how-tos: what these pages describe, done in a window that nobody sees."""
 
+from contextlib import closing
+
+import numpy as np
 import pygame
 
+from sandbox.app.sweeps.sweep_chart import draw_map
 from sandbox.level.format.files import load_level
-from tests.pictures.photographer import DOCS, ROOT, Photographer
+from sandbox.session.sweep.grid import SweepGrid
+from sandbox.session.sweep.pool import swept
+from sandbox.terminal import cores
+from tests.pictures.photographer import DOCS, ROOT, Photographer, write_small
 from tests.support.machines import build_car, build_walker
 
 FOLDER, BUILT = DOCS / "how-to", DOCS / "built-by-mouse"
@@ -13,6 +20,11 @@ DRAWN = (
     ("tool_bridge", (-3.5, -0.5), (3.5, -0.5)), ("tool_box", (-2.0, 1.5), (-0.5, 2.7)),
     ("tool_circle", (1.6, 2.0), (2.3, 2.0)),
 )  # fmt: skip
+# What a rope is swept over.
+SWEPT = {
+    "settings.solver": ("single_pass", "iterative", "direct"), "cs": tuple(map(float, np.geomspace(0.001, 1.0, 16))),
+    "cd": tuple(map(float, np.linspace(0.0, 1.0, 12))),
+}  # fmt: skip
 
 
 def _played(level: str, ticks: int) -> Photographer:
@@ -104,8 +116,19 @@ def test() -> None:
     driver.app.close()
 
 
+def sweep() -> None:
+    """What a tester looks up: how a rope does with each Cs and Cd."""
+    grid = SweepGrid(load_level("rope"), SWEPT, 600)
+    with closing(swept(grid, [], cores())) as rows:
+        known = dict(rows)
+    picture = FOLDER / "sweep.png"
+    draw_map(grid, known, ["max_strain", "check: the rope hardly stretches"], picture)
+    write_small(pygame.image.load(picture), picture, pygame.image.load(picture).get_size())
+
+
 def draw() -> None:
     """Draw them all."""
+    sweep()
     design()
     build()
     machines()

@@ -8,7 +8,9 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.colours import ACCENT, DANGER, DECADE, FIELD, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
-from sandbox.app.widgets.painted import Draggable
+from sandbox.app.sweeps.layer_paint import limits_of, paint_cells, paint_line, paint_scale
+from sandbox.app.sweeps.sweep_layer import SweepLayer
+from sandbox.app.widgets.painted import Draggable, wrapped
 from sandbox.app.widgets.sliders import FINE_KEY_STEP, HIGHEST, KEY_STEP, LOWEST, fraction_of, value_at
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.coefficient_zones import CoefficientZones
@@ -18,6 +20,7 @@ LEFT, RIGHT, TOP, BOTTOM = 38.0, 8.0, 18.0, 40.0
 NUMBER_SIZE, WORD_SIZE, LABEL_SIZE = 10.5, 12.5, 10.5
 KNOB = 7.0
 HATCH = 7.0
+UP_NAME = "Cd  damping"
 DECADES = tuple(range(int(LOWEST), int(HIGHEST) + 1))
 # What values of Cs are called, from the lowest on (Nissen 2019, re-introducing coefficients).
 STIFFNESS_WORDS = (("soft", 1e-5, 1e-3), ("firm", 1e-3, 1e-2), ("rigid", 1e-2, 1.0))
@@ -57,7 +60,20 @@ class CoefficientPad(Draggable):
         self._map: pygame.Surface | None = None
         # Where another run's springs are, and what it is called.
         self._ghost: tuple[str, tuple[float, float]] | None = None
+        # What a sweep has measured, shown in place of the zones, how far it is, and where the mouse asks for a number.
+        self._sweep: SweepLayer | None = None
+        self._note = ""
+        self._pointed: tuple[float, float] | None = None
         ui.add(self)
+        self.repaint()
+
+    def show_layer(self, layer: SweepLayer | None, note: str) -> None:
+        """Show what a sweep has measured (None: what theory says), and a note about it."""
+        if layer is not self._sweep:
+            self._sweep, self._map = layer, None
+        elif note == self._note:
+            return
+        self._note = note
         self.repaint()
 
     def show_state(self, state: PadState, zones: CoefficientZones | None) -> None:
@@ -127,13 +143,26 @@ class CoefficientPad(Draggable):
         self._done()
         return True
 
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Follow the mouse, and tell the number under it."""
+        if event.type == pygame.MOUSEMOTION and self._sweep is not None:
+            pointed = self._pair_at(event.pos) if self.hover_point(*event.pos) else None
+            if pointed != self._pointed:
+                self._pointed = pointed
+                self.repaint()
+        return super().process_event(event)
+
     def follow(self, pos: tuple[int, int]) -> None:
         """Set what lies under the mouse."""
+        self._changed(*self._pair_at(pos))
+
+    def _pair_at(self, pos: tuple[int, int]) -> tuple[float, float]:
+        """The Cs and the Cd at a place in the window."""
         x, y = self.ui.manager.calculate_scaled_mouse_position(pos)
         inside = self._inside
         across = (x - self.rect.left - inside.left) / max(1, inside.width - 1)
         up = (inside.bottom - 1 - (y - self.rect.top)) / max(1, inside.height - 1)
-        self._changed(value_at(across), value_at(up))
+        return value_at(across), value_at(up)
 
     # Painting.
 
@@ -142,6 +171,7 @@ class CoefficientPad(Draggable):
         if self._map is None or self._map.get_size() != size:
             self._map = self._painted_map(size)
         surface = self._map.copy()
+        self._paint_reading(surface)
         if not self.state.enabled:
             return surface
         inside, px = self._inside, self.ui.px
@@ -181,12 +211,43 @@ class CoefficientPad(Draggable):
     def _painted_map(self, size: tuple[int, int]) -> pygame.Surface:
         surface = pygame.Surface(size, pygame.SRCALPHA)
         inside = self._inside
+        if self._sweep is not None:
+            self._paint_layer(surface, inside, self._sweep)
+            pygame.draw.rect(surface, DECADE, inside, 1)
+            return surface
         self._paint_zones(surface, inside)
         self._paint_axes(surface, inside)
+        self._paint_stiffness_words(surface, inside)
         self._paint_critical(surface, inside)
         pygame.draw.rect(surface, DECADE, inside, 1)
         self._paint_words(surface, inside)
         return surface
+
+    def _paint_layer(self, surface: pygame.Surface, inside: pygame.Rect, layer: SweepLayer) -> None:
+        """What a sweep has measured, with its scale and with the lines up to which a single pass is proven stable."""
+        px = self.ui.px
+        paint_cells(surface, inside, layer, (LOWEST, HIGHEST), self.ui)
+        surface.set_clip(inside)
+        for line in limits_of(self.zones) if self.zones is not None else []:
+            paint_line(surface, [self._at(cs, cd) for cs, cd in line], max(1, px(1)))
+        surface.set_clip(None)
+        self._paint_axes(surface, inside)
+        self._paint_stiffness_name(surface, inside)
+        place = pygame.Rect(inside.left, inside.bottom + px(18), inside.width, px(BOTTOM - 18))
+        paint_scale(surface, layer, place, self.ui)
+
+    def _paint_reading(self, surface: pygame.Surface) -> None:
+        """The number under the mouse; else how far the runs are, and the number of the knob."""
+        texts = [self._note]
+        if self._sweep is not None and self._pointed is not None:
+            cs, cd = self._pointed
+            texts = [f"Cs {cs:.2g}, Cd {cd:.2g}: {self._sweep.text_at(cs, cd)}"]
+        elif self._sweep is not None:
+            texts.append(self._sweep.text_at(self.state.stiffness, self.state.damping))
+        font, inside = self.ui.font(NUMBER_SIZE), self._inside
+        widest = inside.width - self.ui.font(NUMBER_SIZE, True).size(UP_NAME)[0] - self.ui.px(6)
+        picture = font.render(wrapped(", ".join(filter(None, texts)), font, widest, 1)[0], True, TEXT)
+        surface.blit(picture, picture.get_rect(topright=(inside.right, 0)))
 
     def _paint_zones(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
         """Fill each zone in its tone; what is not proven is hatched as well, since colour alone tells nobody enough."""
@@ -240,21 +301,23 @@ class CoefficientPad(Draggable):
             surface.blit(number, place.clamp(surface.get_rect()))
             place = number.get_rect(midright=(inside.left - px(4), y))
             surface.blit(number, place.clamp(surface.get_rect()))
-        name = self.ui.font(NUMBER_SIZE, True).render("Cd  damping", True, TEXT)
+        name = self.ui.font(NUMBER_SIZE, True).render(UP_NAME, True, TEXT)
         surface.blit(name, (inside.left, 0))
-        self._paint_stiffness_words(surface, inside)
 
     def _paint_stiffness_words(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
         """What values of Cs are called, each over its part of the axis."""
         font, px = self.ui.font(WORD_SIZE), self.ui.px
         y = inside.bottom + px(18)
-        name = self.ui.font(NUMBER_SIZE, True).render("Cs", True, TEXT)
-        surface.blit(name, name.get_rect(topright=(inside.left - px(4), y + px(1))))
+        self._paint_stiffness_name(surface, inside)
         for word, low, high in STIFFNESS_WORDS:
             start, end = self._at(low, 1.0)[0], self._at(high, 1.0)[0]
             pygame.draw.line(surface, DECADE, (start + px(2), y), (end - px(2), y), max(1, px(1.5)))
             text = font.render(word, True, TEXT)
             surface.blit(text, text.get_rect(midtop=((start + end) / 2, y + px(2))))
+
+    def _paint_stiffness_name(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
+        px, name = self.ui.px, self.ui.font(NUMBER_SIZE, True).render("Cs", True, TEXT)
+        surface.blit(name, name.get_rect(topright=(inside.left - px(4), inside.bottom + px(19))))
 
     def _paint_critical(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
         """Where one spring neither swings nor creeps, and what lies on either side; where 1/(n+1) ends."""

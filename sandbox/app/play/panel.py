@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import pygame
@@ -14,6 +14,8 @@ from sandbox.app.play.firmness_rows import ALL_BODIES, FirmnessRows
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.response_curve import ResponseCurve
 from sandbox.app.play.view_row import ViewRow
+from sandbox.app.sweeps.pad_maps import PadMaps
+from sandbox.app.sweeps.pad_sweeps import PadSweeps
 from sandbox.app.widgets.fields import Field, typed_number
 from sandbox.app.widgets.fold import FoldHeading
 from sandbox.app.widgets.painted import TextBlock
@@ -65,6 +67,8 @@ class PanelShape:
     world: bool | None = None
     # Of two runs the one that it shows: "A" or "B".
     side: str | None = None
+    # What is measured of the level for the pad.
+    sweeps: PadSweeps = field(default_factory=PadSweeps)
 
 
 class Panel:
@@ -81,6 +85,8 @@ class Panel:
         self._ui, self.playback, self._say, self._choose = ui, playback, say, choose
         self.pad: CoefficientPad | None = None
         self.curve: ResponseCurve | None = None
+        self.maps: PadMaps | None = None
+        self._sweeps = shape.sweeps
         self._zones: CoefficientZones | None = None
         self._zones_of: tuple[object, ...] = ()
         self.material = self._first_material()
@@ -155,8 +161,12 @@ class Panel:
         self.ways.show("pad" if self.by_pad else "sliders")
         names = [ALL_MATERIALS, *self._material_names()]
         chosen = ALL_MATERIALS if self.material is None else self._material_names()[self.material]
-        self.menu = ui.menu(self._row(30, 10), names, chosen, self._choose_material, self.back)
+        width = INSIDE / 2 - 4 if self.by_pad else INSIDE
         if self.by_pad:
+            place = self._place(MARGIN + INSIDE - width, 0, width, 30)
+        self.menu = ui.menu(self._row(30, 10, width=width), names, chosen, self._choose_material, self.back)
+        if self.by_pad:
+            self.maps = PadMaps(ui, place, self.playback, self._sweeps, self.back)
             self._build_pad()
         else:
             self._build_sliders()
@@ -264,6 +274,8 @@ class Panel:
         if self._refreshes % LOOK_EVERY == 0 or self.playback.clock.paused:
             self._show_energy()
         self._refreshes += 1
+        if self.maps is not None and self.pad is not None:
+            self.maps.refresh(self.playback, self.material, self.pad)
         self.firmness.refresh(self._refreshes % LOOK_EVERY == 0)
         fresh = (self.playback.revision, self.material)
         if fresh == self._refreshed_at and self._refreshes % LOOK_EVERY:
@@ -302,8 +314,8 @@ class Panel:
             self._show_on_pad(stiffness, damping)
         else:
             self._show_on_sliders(stiffness, damping, limits)
-        for values, field in ((stiffness, self.stiffness_field), (damping, self.damping_field)):
-            field.show(DASH if not len(values) else "mixed" if values.min() != values.max() else f"{values[0]:.6g}")
+        for values, entry in ((stiffness, self.stiffness_field), (damping, self.damping_field)):
+            entry.show(DASH if not len(values) else "mixed" if values.min() != values.max() else f"{values[0]:.6g}")
         if not len(chosen):
             self.frequency.show(DASH)
             self.ratio.show(DASH)

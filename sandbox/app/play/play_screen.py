@@ -166,6 +166,16 @@ class PlayScreen:
         set_preference(SPRINGS, way)
         self._app.rebuild()
 
+    def show_sweep(self, path: Path) -> None:
+        """Show a table that `sandbox sweep` made of this level behind the pad. Raises SweepError and OSError."""
+        world = self.playback.session.world
+        names = list(world.material_names)
+        material = self.shape.sweeps.load(path, self.playback.level, world.settings, names)
+        self._wants_panel, self.shape.springs = True, "pad"
+        self._app.rebuild()
+        if self.panel is not None:
+            self.panel.choose_material(None if material is None else names.index(material))
+
     def _fold(self, how: str) -> None:
         self.shape.world = how == "open"
         self._app.rebuild()
@@ -286,7 +296,8 @@ class PlayScreen:
         self._app.rebuild()
 
     def leave(self) -> None:
-        """End a recording that is being made; its file is complete."""
+        """End a recording that is being made, whose file is complete, and what is measured for the pad."""
+        self.shape.sweeps.stop()
         path = self.playback.stop_recording()
         if path is not None:
             self._app.say(f"Saved as {path}")

@@ -35,8 +35,14 @@ KINDS = {
 def require(kind: str) -> None:
     """Raises Missing where a kind of file cannot be written here."""
     needed = KINDS[kind]
-    if needed.module and importlib.util.find_spec(needed.module) is None:
-        raise Missing(f'{kind.upper()} needs {needed.package}: pip install "spring-sandbox[export]"')
+    if needed.module:
+        require_module(kind.upper(), needed.module, needed.package)
+
+
+def require_module(what: str, module: str, packages: str, extra: str = "export") -> None:
+    """Raises Missing where something needs a module that is not installed; packages: what it comes with."""
+    if importlib.util.find_spec(module) is None:
+        raise Missing(f'{what} needs {packages}: pip install "spring-sandbox[{extra}]"')
 
 
 def possible_size(size: Size, kind: str) -> Size:

@@ -1,0 +1,1 @@
+"""Sweeps as maps: in a picture, and behind the pad."""

@@ -1,0 +1,47 @@
+"""PadMaps: the menu of what the pad shows: theory, or what runs of this level at every Cs and Cd have measured."""
+
+from typing import Any
+
+import pygame
+
+from sandbox.app.play.coefficient_pad import CoefficientPad
+from sandbox.app.play.playback import Playback
+from sandbox.app.sweeps.pad_sweeps import PadSweeps, measures_of
+from sandbox.app.widgets.ui import Ui
+
+THEORY = "Theory"
+
+
+class PadMaps:
+    """Keeps a pad at what is chosen; sweeps: outlives it when the panel is laid out anew."""
+
+    def __init__(self, ui: Ui, place: pygame.Rect, playback: Playback, sweeps: PadSweeps, container: Any) -> None:
+        self._ui, self.sweeps = ui, sweeps
+        self._figures = {THEORY: None, **measures_of(playback.level)}
+        self.menu = ui.menu(place, list(self._figures), self._chosen, self._choose, container)
+
+    @property
+    def _chosen(self) -> str:
+        return next((name for name, figure in self._figures.items() if figure == self.sweeps.measure), THEORY)
+
+    def _choose(self, name: str) -> None:
+        self.sweeps.show(self._figures[name])
+
+    @property
+    def note(self) -> str:
+        """How far the runs are."""
+        known, runs = self.sweeps.progress
+        if self.sweeps.error is not None:
+            return self.sweeps.error
+        return "" if known == runs else f"{known} of {runs} runs"
+
+    def refresh(self, playback: Playback, material: int | None, pad: CoefficientPad) -> None:
+        """Take up what is new, for the springs of a material (None = all) as a run has its settings now."""
+        world = playback.session.world
+        name = None if material is None else list(world.material_names)[material]
+        self.sweeps.follow(playback.level, world.settings, name)
+        self.sweeps.update()
+        if self.menu.selected_option[0] != self._chosen:
+            self._ui.replace_menu(self.menu, self._chosen)
+        showing = self.sweeps.measure is not None
+        pad.show_layer(self.sweeps.layer if showing else None, self.note if showing else "")

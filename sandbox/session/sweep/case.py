@@ -1,0 +1,72 @@
+"""One run of a sweep, and what is measured of it."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from sandbox.level.checks import STILL
+from sandbox.physics.energy import total_energy
+from sandbox.physics.query import load_bearing, shown_particles, shown_springs, strain
+from sandbox.physics.step import PHYSICS_VERSION
+from sandbox.physics.world import World
+from sandbox.session.check_run import CheckWatch
+from sandbox.session.commands import SetCoefficients
+from sandbox.session.session import Session
+from sandbox.session.sweep.grid import CD, CS, SweepError, SweepRequest, Value, case_level
+
+# Whatever is faster [m/s] has blown up: nothing that a person builds gets there.
+FASTEST = 1e4
+
+
+def run_case(request: SweepRequest, case: Sequence[Value]) -> list[Any]:
+    """Run one point of a sweep; its figures, and 1 or 0 for each check. Raises SweepError."""
+    if request.physics_version != PHYSICS_VERSION:
+        raise SweepError(f"a process has physics version {PHYSICS_VERSION}, this one {request.physics_version}")
+    level = case_level(request.level, request.columns, case)
+    session = Session(level)
+    _set_coefficients(session, dict(zip(request.columns, case, strict=True)), request.material)
+    world, watch = session.world, CheckWatch(level, session.world)
+    held: dict[int, int] = {}
+    most_strain, settled, blew_up = 0.0, 0, False
+    with np.errstate(over="ignore", invalid="ignore"):
+        start = highest = total_energy(world)
+        while True:
+            held.update((number, int(result.passed)) for number, result in watch.look())
+            speed = _fastest(world)
+            blew_up = blew_up or bool(world.contained) or not speed < FASTEST
+            most_strain = max(most_strain, float(np.max(np.abs(strain(world))[load_bearing(world)], initial=0.0)))
+            highest = max(highest, total_energy(world))
+            settled = world.tick + 1 if not speed <= STILL else settled
+            if world.tick >= request.ticks and not watch.waiting:
+                break
+            session.advance()
+    settle_time = round(settled / world.settings.tick_rate, 9) if settled <= world.tick else None
+    figures = [settle_time, most_strain, highest - start, _broken(world), int(blew_up)]
+    finite = [None if isinstance(each, float) and not math.isfinite(each) else each for each in figures]
+    return [*finite, *(held[number] for number in sorted(held))]
+
+
+def _set_coefficients(session: Session, values: dict[str, Value], material: str | None) -> None:
+    cs, cd = (float(values[name]) if name in values else None for name in (CS, CD))
+    if cs is None and cd is None:
+        return
+    names = list(session.world.material_names)
+    if material is not None and material not in names:
+        raise SweepError(f"there is no material {material!r}; there are: {', '.join(names)}")
+    number = None if material is None else names.index(material)
+    session.submit(SetCoefficients(stiffness=cs, damping=cd, material=number))
+    session.apply_pending()
+    if session.messages:
+        raise SweepError(session.messages[0])
+
+
+def _fastest(world: World) -> float:
+    speed = np.sqrt(np.sum(world.velocity[shown_particles(world)] ** 2, axis=1))
+    return float(np.max(speed, initial=0.0))
+
+
+def _broken(world: World) -> int:
+    hands = sum(world.is_grab_spring(slot) for slot in range(world.spring_count))
+    return int(world.spring_count - hands - np.count_nonzero(shown_springs(world)))
