@@ -24,10 +24,13 @@ from pathlib import Path
 import pygame
 
 from sandbox.app.app import App
+from sandbox.app.compiling import warm_up_rest
 from sandbox.app.display import Display
 from sandbox.app.play.playback import Playback
 from sandbox.app.start_request import StartRequest
 from sandbox.level.format.files import load_level
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.step import warm_up
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
 from tests.support.person import VirtualScreen
@@ -255,6 +258,11 @@ def end_toys(folder: Path) -> None:
 
 def soak(seed: int, frames: int, folder: Path, seconds: float | None = None, stretch: int = STRETCH) -> list[str]:
     """Do it; what was found."""
+    measures = frames // stretch > len(SCREENS)
+    if measures:
+        # Machine code comes once and stays; which levels need it first is left to chance.
+        warm_up(tuple(SOLVERS))
+        warm_up_rest()
     monkey = Monkey(seed)
     sizes: list[int] = []
     found: list[str] = []
@@ -269,11 +277,9 @@ def soak(seed: int, frames: int, folder: Path, seconds: float | None = None, str
             monkey.let_go()
             fault = monkey.verified(folder / f"soak-{number}.replay")
             found += [f"stretch {number}: its recording does not verify: {fault}"] if fault else []
-            if frames // stretch <= len(SCREENS):
-                continue
-            sizes.append(monkey.memory())
-            if number % 5 == 4:
-                print(f"{number + 1} stretches, {sizes[-1] / 1e6:.0f} MB", flush=True)
+            if measures:
+                sizes.append(monkey.memory())
+                print(f"{number + 1} stretches, {sizes[-1] / 1e6:.1f} MB", flush=True)
     except Exception:
         found.append("\n".join([*monkey.done, traceback.format_exc()]))
     monkey.app.close()
