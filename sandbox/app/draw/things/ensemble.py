@@ -7,7 +7,7 @@ from sandbox.app.draw.looks import SOFT_SKINS, STRANDS
 from sandbox.app.draw.raster.bodies import Outlines
 from sandbox.app.draw.raster.painter import MarkList, Painter
 from sandbox.app.draw.raster.shadows import Thrown
-from sandbox.app.draw.themes import outline_of
+from sandbox.app.draw.themes import dark_edge, outline_of
 from sandbox.app.draw.things.balls import Balls
 from sandbox.app.draw.things.borders import hull_of
 from sandbox.app.draw.things.cast import Actor, Cast, Join
@@ -171,7 +171,7 @@ class Ensemble:
     def _mark_crates(self, marks: MarkList, frame: Frame) -> None:
         for k, shape in enumerate(self.soft.shapes):
             if shape.skin in CRATES:
-                marks.strokes(self.soft.lines_of(k), CRATE_LINE * frame.scale, outline_of(shape.colour))
+                marks.strokes(self.soft.lines_of(k), CRATE_LINE * frame.scale, dark_edge(shape.colour))
 
     def _mark_balloons(self, marks: MarkList, frame: Frame) -> None:
         """Gleams that stay where the light is, and a knot where something is tied."""
