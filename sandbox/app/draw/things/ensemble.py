@@ -33,6 +33,13 @@ PANEL_OUT, WINDOW_IN = 4.0, -3.0
 CRATE_LINE = 1.6
 
 
+def _strangers(there: Mask, own: Slots) -> Slots:
+    """Slots that are there and are nobody's own."""
+    left = there.copy()
+    left[own[own < len(left)]] = False
+    return np.flatnonzero(left)
+
+
 class Ensemble:
     """All things of a world whose particles (n,) and springs (m,) are there."""
 
@@ -48,11 +55,11 @@ class Ensemble:
         for actor in cast.actors:
             there = springs[actor.springs]
             joins += self._add(actor, there)
-        strangers = np.setdiff1d(np.flatnonzero(springs), cast.springs)
+        strangers = _strangers(springs, cast.springs)
         ends = np.stack([state.particle_a, state.particle_b], axis=1).astype(np.int64)
         self._add_joins(joins, ends)
         self.members.add_strangers(ends[strangers], strangers, state.rest_length)
-        self.balls = Balls(cast, state, np.setdiff1d(np.flatnonzero(particles), cast.particles))
+        self.balls = Balls(cast, state, _strangers(particles, cast.particles))
         self.faces = Faces(self._faces)
         self._hems = [Shape([loop], CLOTH, 0, -1, rounds=0, line=False) for loop in self.sheets.outlines()]
         self.soft = Soft(self._shapes + self._hems)
