@@ -27,6 +27,7 @@ from sandbox.app.app import App
 from sandbox.app.compiling import warm_up_rest
 from sandbox.app.display import Display
 from sandbox.app.play.playback import Playback
+from sandbox.app.settings.chosen import SETTINGS
 from sandbox.app.start_request import StartRequest
 from sandbox.level.format.files import load_level
 from sandbox.physics.solvers import SOLVERS
@@ -231,11 +232,18 @@ class Monkey:
         self.let_go()
         self.app.documents.give_up()
         self.app.display.window.size = SIZES[0]
+        # Larger widgets take more: what was chosen is put back afterwards.
+        chosen = {setting.name: self.app.chosen[setting.name] for setting in SETTINGS}
+        for name in chosen:
+            self.app.chosen.choose(name, None)
         self.app.start(Playback(load_level("rope")))
         for _ in range(5):
             self.frame()
         gc.collect()
-        return resident()
+        held = resident()
+        for name, value in chosen.items():
+            self.app.chosen.choose(name, value)
+        return held
 
 
 def resident() -> int:
