@@ -37,7 +37,7 @@ class SharePage:
 
     def __init__(self, app: Application, sharing: Sharing) -> None:
         self._app, self._sharing = app, sharing
-        self.page: Page | None = None
+        self.page: ShareForm | None = None
 
     def open(self) -> None:
         """Show the page, where there is something to share."""
@@ -55,7 +55,7 @@ class SharePage:
             self.page = None
 
     def _build(self, ui: Ui) -> None:
-        self.page = Page(ui, self._sharing, self.leave, self._build)
+        self.page = ShareForm(ui, self._sharing, self.leave, self._build)
 
     def update(self) -> None:
         """Show what has changed."""
@@ -72,7 +72,7 @@ class SharePage:
         self.page.update()
 
 
-class Page:
+class ShareForm:
     """What is on the page at one step of sharing, in one window; again: called where it is laid out anew."""
 
     def __init__(self, ui: Ui, sharing: Sharing, leave: Callable[[], object], again: Callable[[Ui], object]) -> None:
