@@ -75,7 +75,7 @@ class SharePage:
 class ShareForm:
     """What is on the page at one step of sharing, in one window; again: called where it is laid out anew."""
 
-    def __init__(self, ui: Ui, sharing: Sharing, leave: Callable[[], object], again: Callable[[Ui], object]) -> None:
+    def __init__(self, ui: Ui, sharing: Sharing, leave: Callable[[], None], again: Callable[[Ui], None]) -> None:
         self._ui, self._sharing, self._leave = ui, sharing, leave
         self.step = sharing.step
         self._seen: tuple[object, ...] = ()
