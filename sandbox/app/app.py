@@ -345,7 +345,7 @@ class App:
                 self.display.flip()
         self._seen = self.screen
         spent = time.perf_counter() - started
-        self.profile.milliseconds["frame"].append(1e3 * spent)
+        self.profile.end_frame(spent)
         self._count(frame_time, spent)
 
     def _sound(self) -> None:

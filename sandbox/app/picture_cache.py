@@ -28,11 +28,11 @@ SECONDS = 0.8
 # Levels of more particles than this are drawn as they are built: the gallery stays quick.
 PARTICLES = 3000
 # Rises when the same level is drawn otherwise.
-VERSION = 3
+VERSION = 4
 # Pictures that are kept, those used last.
 KEPT = 300
 # Pictures in the size of cards that are held in memory: all of a page, and its neighbours'.
-HELD = 96
+HELD = 64
 # How pictures are written: a fifth of the bytes of a PNG file.
 SUFFIX = ".jpg"
 

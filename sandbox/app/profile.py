@@ -1,18 +1,24 @@
 """Profile: where the time of a frame goes, for `sandbox play --profile`."""
 
 import time
-from collections import defaultdict
+from collections import defaultdict, deque
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 PARTS = ("events", "commands", "ticks", "stage", "things", "marks", "sound", "ui", "flip", "frame")
+# So many times of each part are remembered: a minute, so that an app that is left open does not grow.
+REMEMBERED = 3_600
 
 
 class Profile:
-    """Collects the wall time of each part of each frame, and when things came about for the first time."""
+    """Collects the wall time of each part of the last frames, and when things came about for the first time.
+
+    frames: how many there have been.
+    """
 
     def __init__(self) -> None:
-        self.milliseconds: dict[str, list[float]] = defaultdict(list)
+        self.milliseconds: dict[str, deque[float]] = defaultdict(lambda: deque(maxlen=REMEMBERED))
+        self.frames = 0
         # From one picture in the window to the next, what a person sees stand still: wall time [s], and how much of it
         # this thread itself was busy, which other programs do not lengthen.
         self.longest_stop = (0.0, 0.0)
@@ -28,6 +34,11 @@ class Profile:
         finally:
             self.milliseconds[name].append(1e3 * (time.perf_counter() - start))
 
+    def end_frame(self, seconds: float) -> None:
+        """Note what a whole frame took [s]."""
+        self.milliseconds["frame"].append(1e3 * seconds)
+        self.frames += 1
+
     def shown(self) -> None:
         """Note that the window shows a new picture now."""
         now = time.perf_counter(), time.thread_time()
@@ -40,9 +51,11 @@ class Profile:
         self.first_times.setdefault(what, time.perf_counter())
 
     def table(self, began: float) -> str:
-        """Mean, 95th percentile and worst [ms] of every part; then what came when after began [s of perf_counter]."""
-        seconds = time.perf_counter() - began
-        frames = len(self.milliseconds["frame"])
+        """Mean, 95th percentile and worst [ms] of every part in the last minute; then what came when.
+
+        began: when the program did [s of perf_counter].
+        """
+        seconds, frames = time.perf_counter() - began, self.frames
         lines = [f"{'part':<12}{'mean':>8}{'p95':>8}{'worst':>8}   ms"]
         for name in PARTS:
             times = sorted(self.milliseconds[name])

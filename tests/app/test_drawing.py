@@ -12,9 +12,10 @@ from sandbox.app.draw.camera import Camera, bounds, grid_spacing
 from sandbox.app.draw.lines import Canvas
 from sandbox.app.draw.picture import crop_of, draw_picture, save_picture, view_of
 from sandbox.app.draw.raster.cells import SHEET, CellArrays
-from sandbox.app.draw.raster.painter import Painter
+from sandbox.app.draw.raster.painter import MarkList, Painter
 from sandbox.app.draw.renderer import Renderer
 from sandbox.app.draw.strain_colours import strain_tones
+from sandbox.app.draw.textures import Tiles
 from sandbox.app.draw.themes import THEMES
 from sandbox.app.loop import LONGEST_FRAME, SPEEDS, TickClock
 from sandbox.app.play.playback import Playback, interpolated
@@ -336,3 +337,16 @@ def test_an_empty_level_and_a_level_of_one_particle_can_be_drawn():
     for level in (empty, one):
         surface = draw_picture(level, Session(level).snapshot(), (100, 80))
         assert surface.get_size() == (100, 80)
+
+
+def test_a_kernel_that_leaves_garbage_which_holds_the_pixels_leaves_no_locked_surface(monkeypatch):
+    def leave_garbage(pixels, *_):
+        garbage = [pixels]
+        garbage.append(garbage)
+
+    monkeypatch.setattr("sandbox.app.draw.raster.painter.paint_marks", leave_garbage)
+    surface, painter, layer = pygame.Surface((8, 8), 0, 32), Painter(), MarkList()
+    layer.discs(np.array([[4.0, 4.0]]), 2.0, 0xFFFFFF)
+    if painter.begin(surface):
+        painter.marks(layer, Tiles(THEMES["dark"]).array)
+    assert not surface.get_locked()

@@ -21,7 +21,8 @@ _WORDS = {
 _GROUND_WORDS = {
     "glass": "glass", "wood": "wood", "table": "wood", "frame": "wood", "lid": "wood", "foot": "wood", "beam": "wood",
     "plank": "wood", "rock": "rock", "cliff": "rock", "stone": "rock", "metal": "metal", "steel": "metal",
-    "ground": "soil", "soil": "soil", "valley": "soil", "canyon": "soil", "pit": "soil", "hill": "soil",
+    "drain": "metal", "ground": "soil", "soil": "soil", "valley": "soil", "canyon": "soil", "pit": "soil",
+    "hill": "soil",
 }  # fmt: skip
 # Cs from which a body is rubber and a line steel, and from which a loose spring is no coil.
 FIRM, NO_COIL = 0.85, 0.3

@@ -58,7 +58,9 @@ def skin_table(skin: str, colour: int, theme: Theme) -> Packed:
     if skin == "window":
         return _lit_table(base, mixed(base, WHITE, 0.7), mixed(base, (60, 110, 150), 0.4), 0.5, 0.1)
     if skin == "lattice":
-        return _lit_table(base, mixed(base, WHITE, 0.25), mixed(base, BLACK, 0.2), 0.0, 0.55)
+        # Glass between springs at rest and what the theme is drawn on, so that they stand out on it.
+        glass = mixed(base, theme.card, 0.55)
+        return _lit_table(glass, mixed(glass, WHITE, 0.25), mixed(glass, BLACK, 0.2), 0.0, 0.66)
     if skin in ("wood", "stone", "brick"):
         return _lit_table(base, mixed(base, WHITE, 0.25), mixed(base, (30, 10, 0), 0.45), 0.0, 0.0)
     if skin == "ground soil":
@@ -216,16 +218,16 @@ def _noise(rng: np.random.Generator, reach: int) -> Floats:
 
 @cache
 def grains() -> NDArray[np.int64]:
-    """Grains (2, GRAIN, GRAIN) that tile: earth with faint strata, and wood."""
+    """Grains (2, GRAIN, GRAIN) that tile: earth with strata and pebbles, and wood."""
     rng = np.random.default_rng(5)
     y, x = np.mgrid[0:GRAIN, 0:GRAIN] * (2 * np.pi / GRAIN)
     bent = 0.6 * np.sin(x) + 0.3 * _noise(rng, 16)
-    earth = 1.4 * _noise(rng, 2) + 1.6 * _noise(rng, 9) + 2.0 * np.tanh(2 * np.sin(5 * y + 2 * bent))
+    earth = 1.2 * _noise(rng, 2) + 1.8 * _noise(rng, 9) + 4.0 * np.tanh(2 * np.sin(4 * y + 1.6 * bent))
     wood = 5.0 * np.sin(18 * y + 1.5 * np.sin(x) + 0.5 * np.sin(3 * x)) + 3.0 * np.sin(46 * y + np.sin(2 * x))
-    for _ in range(34):
-        i, j, size = rng.integers(0, GRAIN), rng.integers(0, GRAIN), rng.uniform(0.8, 2.4)
+    for _ in range(16):
+        i, j, size = rng.integers(0, GRAIN), rng.integers(0, GRAIN), rng.uniform(0.9, 3.0)
         rows, columns = np.mgrid[-4:5, -4:5]
-        pebble = np.clip(size + 0.5 - np.sqrt(rows**2 + columns**2), 0, 1) * rng.choice([-6.0, 8.0])
+        pebble = np.clip(size + 0.5 - np.sqrt(rows**2 + columns**2), 0, 1) * rng.choice([-15.0, 18.0])
         earth[(i + rows) % GRAIN, (j + columns) % GRAIN] += pebble
     return np.ascontiguousarray(np.stack([earth, wood + _noise(rng, 2)]).round().astype(np.int64))
 

@@ -83,6 +83,12 @@ def outline_of(colour: int) -> int:
     return (r << 16) | (g << 8) | b
 
 
+def dark_edge(colour: int) -> int:
+    """The line around something of wood or stone: its own hue, nearly black."""
+    r, g, b = mixed(_rgb(colour), (24, 10, 0), 0.66)
+    return (r << 16) | (g << 8) | b
+
+
 def rgb_of(colour: int) -> Colour:
     """A colour 0xRRGGBB as its channels."""
     return _rgb(colour)

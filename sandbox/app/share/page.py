@@ -1,5 +1,6 @@
 """SharePage: what of the last seconds is kept, and as what; how far it is; what has become of it."""
 
+from collections.abc import Callable
 from typing import Any
 
 import pygame
@@ -29,16 +30,18 @@ NAMED = (("yes", "Shown", "Small, in the corner"), ("no", "Hidden", "Nothing but
 
 
 class SharePage:
-    """The page, open or not; it follows what becomes of `sharing`."""
+    """The page, open or not; it follows what becomes of `sharing`.
+
+    page: what is on it while it is open; after that nothing is kept of the window that it was in.
+    """
 
     def __init__(self, app: Application, sharing: Sharing) -> None:
         self._app, self._sharing = app, sharing
-        self._sheet: Any = None
-        self._seen: tuple[object, ...] = ()
+        self.page: ShareForm | None = None
 
     def open(self) -> None:
         """Show the page, where there is something to share."""
-        if self._sheet is None and self._sharing.begin():
+        if self.page is None and self._sharing.begin():
             self._build(self._app.ui)
 
     def leave(self) -> None:
@@ -47,25 +50,49 @@ class SharePage:
         self._sharing.leave()
 
     def _close(self) -> None:
-        self._app.ui.close_sheet(self._sheet)
-        self._sheet = None
+        if self.page is not None:
+            self._app.ui.close_sheet(self.page.sheet)
+            self.page = None
 
-    def _again(self, ui: Ui) -> None:
-        self._build(ui)
+    def _build(self, ui: Ui) -> None:
+        self.page = ShareForm(ui, self._sharing, self.leave, self._build)
 
     def update(self) -> None:
         """Show what has changed."""
-        if self._sheet is None:
+        if self.page is None:
             return
-        if not self._sheet.alive():
+        if not self.page.sheet.alive():
             # The screen under it was left, and the page with it.
-            self._sheet = None
+            self.page = None
             self._sharing.leave()
             return
-        sharing = self._sharing
-        if self.step != sharing.step:
+        if self.page.step != self._sharing.step:
             self._close()
             self._build(self._app.ui)
+        self.page.update()
+
+
+class ShareForm:
+    """What is on the page at one step of sharing, in one window; again: called where it is laid out anew."""
+
+    def __init__(self, ui: Ui, sharing: Sharing, leave: Callable[[], None], again: Callable[[Ui], None]) -> None:
+        self._ui, self._sharing, self._leave = ui, sharing, leave
+        self.step = sharing.step
+        self._seen: tuple[object, ...] = ()
+        width, height = (min(most, room - 16) for most, room in zip((WIDTH, HEIGHT), ui.units, strict=True))
+        self._width, self._height = width, height
+        self.sheet: Any = ui.open_sheet(leave, is_page=True, again=again)
+        left, top = ((room - side) / 2 for room, side in zip(ui.units, (width, height), strict=True))
+        self._box = ui.panel(ui.rect(left, top, width, height), self.sheet, "@dialog")
+        film = sharing.film
+        title = f"Share the last {film.seconds:.0f} seconds" if film and film.seconds >= 2.0 else "Share"
+        ui.label(ui.rect(MARGIN, 16, width - 2 * MARGIN, 28), title, self._box, "@title")
+        self._build_preview()
+        {"choose": self._build_choices, "work": self._build_work, "done": self._build_outcome}[self.step]()
+
+    def update(self) -> None:
+        """Show what has changed."""
+        sharing = self._sharing
         seen = (sharing.wanted, sharing.note)
         if seen != self._seen:
             self._seen = seen
@@ -75,21 +102,6 @@ class SharePage:
             self.bar.show_share(sharing.done)
 
     # Building.
-
-    def _build(self, ui: Ui) -> None:
-        self._ui = ui
-        self.step = self._sharing.step
-        self._seen = ()
-        width, height = (min(most, room - 16) for most, room in zip((WIDTH, HEIGHT), ui.units, strict=True))
-        self._width, self._height = width, height
-        self._sheet = ui.open_sheet(self.leave, is_page=True, again=self._again)
-        left, top = ((room - side) / 2 for room, side in zip(ui.units, (width, height), strict=True))
-        self._box = ui.panel(ui.rect(left, top, width, height), self._sheet, "@dialog")
-        film = self._sharing.film
-        title = f"Share the last {film.seconds:.0f} seconds" if film and film.seconds >= 2.0 else "Share"
-        ui.label(ui.rect(MARGIN, 16, width - 2 * MARGIN, 28), title, self._box, "@title")
-        self._build_preview()
-        {"choose": self._build_choices, "work": self._build_work, "done": self._build_outcome}[self.step]()
 
     def _build_preview(self) -> None:
         ui = self._ui
@@ -136,7 +148,7 @@ class SharePage:
                 self.kinds.buttons[kind].disable()
         self._build_note(TOP + 4 * step)
         self._add_button("Save", self._save, 0, "@primary")
-        self._add_button("Close", self.leave, 1)
+        self._add_button("Close", self._leave, 1)
 
     @property
     def _preview_width(self) -> float:
@@ -158,7 +170,7 @@ class SharePage:
         self.bar = ProgressBar(ui, ui.rect(self._right, TOP + 30, self._side, 10), self._box)
         self._build_note(TOP + 54)
         self._add_button("Cancel", sharing.cancel, 0)
-        self._add_button("Play on", self.leave, 1, tip="It is written while you play")
+        self._add_button("Play on", self._leave, 1, tip="It is written while you play")
 
     def _build_outcome(self) -> None:
         sharing, ui = self._sharing, self._ui
@@ -170,7 +182,7 @@ class SharePage:
             ui.button(ui.rect(self._right + index * (half + 10), top, half, BUTTON), text, action, self._box)
         self.note.set_dimensions((ui.px(self._side), ui.px(top - TOP - 8)))
         self.note.repaint()
-        self._add_button("Close", self.leave, 0, "@primary")
+        self._add_button("Close", self._leave, 0, "@primary")
         self._add_button("Another", sharing.another, 1, tip="Of the same seconds")
 
     def _add_button(self, text: str, action: Any, place: int, style: str = "", tip: str = "") -> None:

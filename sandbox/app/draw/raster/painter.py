@@ -1,6 +1,8 @@
 """Painter: draws layers on a surface by kernels, or plainly by pygame while these are not compiled."""
 
-from collections.abc import Sequence
+import functools
+import gc
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -112,7 +114,6 @@ class BodyLayer:
 
 @dataclass
 class _Scratch:
-    size: tuple[int, int]
     bodies: BodyScratch
     shadows: ShadowScratch
     place: Slots
@@ -123,7 +124,6 @@ class Painter:
     """Draws on one surface; compiled: whether kernels may be used, if they are compiled."""
 
     compiled: bool = True
-    _scratch: _Scratch | None = field(default=None, repr=False)
     surface: pygame.Surface = field(init=False, repr=False)
     exact: bool = field(default=False, init=False)
 
@@ -139,13 +139,19 @@ class Painter:
         """The surface's pixels (h, w); while the array lives, the surface is locked."""
         return pygame.surfarray.pixels2d(self.surface).T
 
+    def _paint(self, kernel: Callable[..., object], *arguments: object) -> None:
+        kernel(self.pixels(), *arguments, self.clip)
+        if self.surface.get_locked():
+            # What compiling at this call has left behind holds the pixels, and nothing could be blitted any more.
+            gc.collect()
+
     def marks(self, layer: MarkList, tiles: Packed) -> None:
         """Draw marks."""
         arrays = layer.arrays()
         if arrays is None:
             return
         if self.exact:
-            paint_marks(self.pixels(), arrays, tiles, self.clip)
+            self._paint(paint_marks, arrays, tiles)
         else:
             _plain_marks(self.surface, arrays, tiles)
 
@@ -154,11 +160,10 @@ class Painter:
         if not len(layer.rows.loops):
             return
         if self.exact:
-            scratch = self._scratch_for()
-            paint_bodies(
-                self.pixels(), layer.outlines, layer.rows, layer.skins, layer.flush, scratch.bodies, scratch.place,
-                self.clip,
-            )  # fmt: skip
+            scratch = _scratch_for(self.surface.get_size())
+            self._paint(
+                paint_bodies, layer.outlines, layer.rows, layer.skins, layer.flush, scratch.bodies, scratch.place
+            )
         else:
             _plain_bodies(self.surface, layer)
 
@@ -167,7 +172,7 @@ class Painter:
         if not len(arrays.sheet):
             return
         if self.exact:
-            paint_cells(self.pixels(), arrays, sheets, np.zeros(9), self.clip)
+            self._paint(paint_cells, arrays, sheets, np.zeros(9))
             return
         tones = sheets.reshape(len(sheets), -1)[:, 0].tolist()
         seen = (np.abs(arrays.corner) < FAR).all(axis=1)
@@ -177,10 +182,8 @@ class Painter:
     def shadows(self, thrown: Thrown, shapes: Outlines, offset: Sequence[float], colour: int, strength: float) -> None:
         """Throw shadows; there are none while kernels are not compiled."""
         if self.exact and strength > 0.0:
-            paint_shadows(
-                self.pixels(), shapes, thrown, self._scratch_for().shadows, np.array(offset, dtype=np.float64), colour,
-                strength, self.clip,
-            )  # fmt: skip
+            scratch = _scratch_for(self.surface.get_size()).shadows
+            self._paint(paint_shadows, shapes, thrown, scratch, np.array(offset, dtype=np.float64), colour, strength)
 
     def trace(self, at: Floats, loops: Loops, grow: Floats) -> Outlines:
         """Outlines of loops of particles at (n, 2) [pixels], grown by (c,)."""
@@ -193,29 +196,28 @@ class Painter:
             return Outlines(at[loops.slot], loops.start)
         return Outlines(point, loops.point_start)
 
-    def _scratch_for(self) -> _Scratch:
-        size = self.surface.get_size()
-        if self._scratch is None or self._scratch.size != size:
-            pad = 2 * int(WIDEST) + 16
-            width, height = size[0] + pad, size[1] + pad
-            edge = int(WIDEST * SOFTNESS) + 4
-            half = (width // 2 + edge) * (height // 2 + edge)
-            flush = (width // FLUSH_CELL + 5) * (height // FLUSH_CELL + 5)
-            quarter = (size[0] // FACTOR + 8) * (size[1] // FACTOR + 8)
-            self._scratch = _Scratch(
-                size,
-                BodyScratch(
-                    _cells((width + 2) * (height + 2)), _cells(half), _cells(half), _cells(width), _cells(flush),
-                    _cells(flush), _cells(width), _cells(width), np.zeros(width + FLUSH_CELL, dtype=np.int32),
-                    np.zeros(width + 2 * FLUSH_CELL, dtype=np.int32), np.zeros(width, dtype=np.uint32), np.zeros(4),
-                ),
-                ShadowScratch(
-                    _cells(quarter), _cells(quarter), _cells(quarter), _cells(size[0]),
-                    np.zeros(size[0] + 8 * FACTOR, dtype=np.int32), np.zeros(4),
-                ),
-                np.zeros(10, dtype=np.int64),
-            )  # fmt: skip
-        return self._scratch
+
+# One for all painters, which take turns, as it is as large as four pictures: of the window, its stage and a film.
+@functools.lru_cache(maxsize=3)
+def _scratch_for(size: tuple[int, int]) -> _Scratch:
+    pad = 2 * int(WIDEST) + 16
+    width, height = size[0] + pad, size[1] + pad
+    edge = int(WIDEST * SOFTNESS) + 4
+    half = (width // 2 + edge) * (height // 2 + edge)
+    flush = (width // FLUSH_CELL + 5) * (height // FLUSH_CELL + 5)
+    quarter = (size[0] // FACTOR + 8) * (size[1] // FACTOR + 8)
+    return _Scratch(
+        BodyScratch(
+            _cells((width + 2) * (height + 2)), _cells(half), _cells(half), _cells(width), _cells(flush),
+            _cells(flush), _cells(width), _cells(width), np.zeros(width + FLUSH_CELL, dtype=np.int32),
+            np.zeros(width + 2 * FLUSH_CELL, dtype=np.int32), np.zeros(width, dtype=np.uint32), np.zeros(4),
+        ),
+        ShadowScratch(
+            _cells(quarter), _cells(quarter), _cells(quarter), _cells(size[0]),
+            np.zeros(size[0] + 8 * FACTOR, dtype=np.int32), np.zeros(4),
+        ),
+        np.zeros(10, dtype=np.int64),
+    )  # fmt: skip
 
 
 def _cells(count: int) -> NDArray[np.float32]:
@@ -273,10 +275,7 @@ def _plain_bodies(surface: pygame.Surface, layer: BodyLayer) -> None:
 
 def expect_painting() -> None:
     """Compile the drawing kernels, or load them from the cache; while kernels are interpreted, note what they take."""
-    painter = Painter()
-    surface = pygame.Surface((8, 8), 0, 32)
-    painter.surface = surface
-    scratch = painter._scratch_for()
+    scratch = _scratch_for((8, 8))
     pixels, clip = np.zeros((8, 8), dtype=np.uint32), np.zeros(4, dtype=np.int64)
     flat, pairs, numbers = np.zeros(0), np.zeros((0, 2)), np.zeros(0, dtype=np.int64)
     many = np.zeros((0, 2), dtype=np.int64)

@@ -7,7 +7,7 @@ from sandbox.app.draw.looks import SOFT_SKINS, STRANDS
 from sandbox.app.draw.raster.bodies import Outlines
 from sandbox.app.draw.raster.painter import MarkList, Painter
 from sandbox.app.draw.raster.shadows import Thrown
-from sandbox.app.draw.themes import outline_of
+from sandbox.app.draw.themes import dark_edge, outline_of
 from sandbox.app.draw.things.balls import Balls
 from sandbox.app.draw.things.borders import hull_of
 from sandbox.app.draw.things.cast import Actor, Cast, Join
@@ -33,6 +33,13 @@ PANEL_OUT, WINDOW_IN = 4.0, -3.0
 CRATE_LINE = 1.6
 
 
+def _strangers(there: Mask, own: Slots) -> Slots:
+    """Slots that are there and are nobody's own."""
+    left = there.copy()
+    left[own[own < len(left)]] = False
+    return np.flatnonzero(left)
+
+
 class Ensemble:
     """All things of a world whose particles (n,) and springs (m,) are there."""
 
@@ -48,11 +55,11 @@ class Ensemble:
         for actor in cast.actors:
             there = springs[actor.springs]
             joins += self._add(actor, there)
-        strangers = np.setdiff1d(np.flatnonzero(springs), cast.springs)
+        strangers = _strangers(springs, cast.springs)
         ends = np.stack([state.particle_a, state.particle_b], axis=1).astype(np.int64)
         self._add_joins(joins, ends)
         self.members.add_strangers(ends[strangers], strangers, state.rest_length)
-        self.balls = Balls(cast, state, np.setdiff1d(np.flatnonzero(particles), cast.particles))
+        self.balls = Balls(cast, state, _strangers(particles, cast.particles))
         self.faces = Faces(self._faces)
         self._hems = [Shape([loop], CLOTH, 0, -1, rounds=0, line=False) for loop in self.sheets.outlines()]
         self.soft = Soft(self._shapes + self._hems)
@@ -171,7 +178,7 @@ class Ensemble:
     def _mark_crates(self, marks: MarkList, frame: Frame) -> None:
         for k, shape in enumerate(self.soft.shapes):
             if shape.skin in CRATES:
-                marks.strokes(self.soft.lines_of(k), CRATE_LINE * frame.scale, outline_of(shape.colour))
+                marks.strokes(self.soft.lines_of(k), CRATE_LINE * frame.scale, dark_edge(shape.colour))
 
     def _mark_balloons(self, marks: MarkList, frame: Frame) -> None:
         """Gleams that stay where the light is, and a knot where something is tied."""

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from sandbox.app.draw.raster.cells import CellArrays
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.textures import laid, woven
-from sandbox.app.draw.themes import CLOTH_STRIPE, outline_of
+from sandbox.app.draw.themes import CLOTH_STRIPE, dark_edge, outline_of
 from sandbox.app.draw.things.cast import Actor
 from sandbox.app.draw.things.frame import Frame
 
@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 # Texels of a cell of cloth, and of one of planks; columns of cloth to a fold, and how deep folds are shaded.
 CLOTH_TEXELS, LAID_TEXELS = 16.0, 14.0
-FOLD, FOLD_DEPTH = 4.0, 0.15
+FOLD, FOLD_DEPTH = 4.0, 0.2
 HEM_HALF = 1.5
 # Cloth that is gathered is darker, cloth that is stretched lighter.
 GATHER, DARKEST, LIGHTEST = 1.2, -0.3, 0.2
@@ -94,7 +94,8 @@ class Sheets:
         for sheet in self._sheets:
             for loop in sheet.loops:
                 ends = np.concatenate([frame.at[loop], np.roll(frame.at[loop], -1, axis=0)], axis=1)
-                marks.strokes(ends, HEM_HALF * frame.scale, outline_of(sheet.colour))
+                tone = outline_of(sheet.colour) if sheet.is_cloth else dark_edge(sheet.colour)
+                marks.strokes(ends, HEM_HALF * frame.scale, tone)
 
     def outlines(self) -> list[Slots]:
         """Loops of slots that throw shadows."""

@@ -15,6 +15,8 @@ Floats = NDArray[np.float64]
 # Half widths [pixels at scale 1], at most this part of the length between particles, and at least so much.
 HALF = {"rope": 3.4, "cable": 2.6, "chain": 4.6, "deck": 6.0, "thread": 1.2, "silk": 0.9}
 MOST_OF_STEP, LEAST = 0.45, 0.55
+# A rope of one spring hangs something up on others: it has this part of their width.
+HANGER = 0.62
 # Length of the pattern, in half widths.
 PERIOD = {"chain": 5.6, "deck": 2.0}
 USUAL_PERIOD = 6.5
@@ -40,7 +42,8 @@ class Strands:
             if particles[0] == particles[-1] and len(particles) > 3:
                 before[0], after[-1] = particles[-2], particles[1]
             rows = np.stack([before[:-1], particles[:-1], particles[1:], after], axis=1)
-            self._found.setdefault((look.line, look.width), []).append((rows, rest[order], springs[order]))
+            width = look.width * (HANGER if look.line == "rope" and len(particles) == 2 else 1.0)
+            self._found.setdefault((look.line, width), []).append((rows, rest[order], springs[order]))
 
     def groups(self) -> list[tuple[str, float, Slots, Floats, Slots, float]]:
         """Of each kind: kind, width, stretches (m, 4), metres at their ends (m, 2), springs (m,), a usual length."""
@@ -78,7 +81,7 @@ class Strands:
             if pieces == 1:
                 ends = frame.ends(stretches[:, 1:3])
             else:
-                ends, whose, part = _curved(frame.at, stretches, pieces)
+                ends, whose, part = curved(frame.at, stretches, pieces)
                 first = along[whose, :1]
                 along, tint, by = first + (along[whose, 1:] - first) * part, tint[whose], by[whose]
             if kind in _LINES:
@@ -86,7 +89,7 @@ class Strands:
             marks.strips(ends, half, TILE[kind], along, tint, by)
 
 
-def _curved(at: Floats, stretches: Slots, pieces: int) -> tuple[Floats, Slots, Floats]:
+def curved(at: Floats, stretches: Slots, pieces: int) -> tuple[Floats, Slots, Floats]:
     """Lines (k, 4) of Catmull-Rom curves through stretches (m, 4) of particles; -1 = goes straight on.
 
     And whose they are (k,), and which part (k, 2) of it. One that would not be seen to bend is one line.

@@ -10,12 +10,14 @@ from sandbox.app.draw.themes import STEEL
 from sandbox.app.draw.things.cast import Actor
 from sandbox.app.draw.things.frame import Frame
 from sandbox.app.draw.things.soft import Shape
+from sandbox.app.draw.things.strands import PIECES, curved
 
 Slots = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-# Wheels smaller than this [pixels] have neither rim nor lugs.
+# Wheels smaller than this [pixels] have neither rim nor lugs; how far lugs stand out, as a part of the wheel's radius.
 RIM_FROM, LUGS_FROM = 14.0, 22.0
+LUG = 0.075
 MANY_SPOKES = 10
 TYRE = 0x343842
 
@@ -29,6 +31,7 @@ class DrawnWheel:
         self.hub, self.inner = actor.slots[0], actor.slots[1 : count + 1]
         self.outer = actor.slots[count + 1 : 2 * count + 1]
         self.radius = radius
+        self._stretches = np.column_stack([np.roll(self.inner, by) for by in (1, 0, -1, -2)])
         self.spokes = np.flatnonzero(there[:count])[:: 2 if count >= MANY_SPOKES else 1]
         own = actor.look.colour if actor.look.skin in ("rubber", "jelly", "plain") else TYRE
         loops = [self.outer, self.inner[::-1]]
@@ -53,7 +56,7 @@ class DrawnWheel:
         feet = np.concatenate([outer, middle])
         out = feet - hub
         out = out / np.maximum(np.sqrt(np.sum(out * out, axis=1)), 1e-9)[:, None]
-        tips = hub + out * (size + self.radius * frame.zoom + 0.015 * size)
+        tips = hub + out * (size + self.radius * frame.zoom + LUG * size)
         red, green, blue = frame.theme.tyre
         half = max(1.5, min(0.055 * size, 1.2 * size / len(feet)))
         marks.strokes(np.concatenate([feet, tips], axis=1), half, red << 16 | green << 8 | blue)
@@ -68,7 +71,7 @@ class DrawnWheel:
         centre = np.broadcast_to(hub, spokes.shape)
         ends = np.concatenate([centre, spokes], axis=1)
         if self.is_tyre and size > RIM_FROM:
-            around = np.concatenate([inner, np.roll(inner, -1, axis=0)], axis=1)
+            around, *_ = curved(frame.at, self._stretches, PIECES)
             half = max(1.6, 0.045 * size)
             marks.strokes(around, half + 0.8 * frame.scale, 0x161B26, 0.8)
             marks.strips(around, half, TILE["steel"], 0.0)
