@@ -1,8 +1,8 @@
 """Faults of one ulp in recordings of a minute: each named exactly, tick, array and index, and how soon.
 
 Run by hand: python -m tests.abuse.faults [--all] [--seed 1]. Each is put into a random value of a random array after a
-random tick of a golden. Prints the longest time beside that of a plain verification [s of CPU]; exit code 1 where a
-fault is not named, or takes longer than two plain verifications and two seconds.
+random tick of a golden. Exit code 1 where a fault is not named, or takes longer than two plain verifications and two
+seconds of CPU.
 """
 
 import argparse
@@ -19,6 +19,7 @@ from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import Replay
 from sandbox.session.replay.verify import verify
 from tests.determinism.golden import SHORTER, golden_names, golden_path
+from tests.support.limits import Limits
 
 # Arrays of numbers that every tick hands on to the next.
 ARRAYS = ("position", "velocity", "mass", "rest_length", "slow_velocity", "energy_bank", "tension")
@@ -40,7 +41,7 @@ def main() -> int:
     given = parser.parse_args()
     chance, count = random.Random(given.seed), 100 if given.all else 5
     names = [name for name in golden_names() if name not in SHORTER]
-    named, slowest, late = 0, 0.0, 0
+    limits, named, slowest = Limits(), 0, 0.0
     for number in range(count):
         replay = read_replay(golden_path(names[number % len(names)]))
         plain, equal = seconds(lambda replay=replay: verify(replay))
@@ -50,9 +51,9 @@ def main() -> int:
         if not str(found).startswith(wanted):
             print(f"{replay.source}: put {wanted}, named {found}")
         slowest = max(slowest, took / (TIMES * plain + MORE))
-        late += took > TIMES * plain + MORE
-    print(f"{named} of {count} named; the slowest took {100 * slowest:.0f} % of twice a verification and 2 s")
-    return int(named < count or late > 0)
+    limits.at_least("faults named by tick, array and index", named, count)
+    limits.at_most("longest, in parts of two plain verifications and 2 s", slowest, 1.0)
+    return int(limits.broken)
 
 
 def one(replay: Replay, chance: random.Random) -> tuple[str, float, object]:
