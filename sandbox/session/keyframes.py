@@ -66,6 +66,18 @@ class Keyframes:
             if any(kept.between for kept in self._kept):
                 self._set([kept for kept in self._kept if not kept.between])
             self._keep(Keyframe(order, take(world)))
+        elif world.tick % self._spacing == 0 and self._lacks(world.tick):
+            self.insert(Keyframe(order, take(world)))
+
+    def _lacks(self, tick: int) -> bool:
+        """Whether a tick lies in a gap that was passed over, not between two that are as near as usual."""
+        place = bisect.bisect_right(self._kept, tick, key=_tick)
+        return self._kept[place - 1].tick < tick and self._kept[place].tick - self._kept[place - 1].tick > self._spacing
+
+    def insert(self, keyframe: Keyframe) -> None:
+        """Keep one of a tick that was passed over."""
+        place = bisect.bisect_right(self._kept, keyframe.tick, key=_tick)
+        self._set([*self._kept[:place], _sharing(keyframe, self._kept[place - 1]), *self._kept[place:]])
 
     def note_passed(self, world: World, order: int, target: int) -> None:
         """Keep a tick shortly before the one sought for a while, as the next one sought may be among these."""

@@ -1,6 +1,7 @@
 """Session: one run of a level: ticks, commands, the log, undo, time travel. No wall clock."""
 
 import bisect
+import itertools
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
@@ -193,6 +194,51 @@ class Session:
             raise ValueError("stop the recording before going back in time")
         self._rewind(tick, tick)
 
+    def kept_before(self, tick: int) -> int:
+        """The last tick up to a tick whose state is kept: from there `seek` steps again."""
+        return self._keyframes.before(tick).tick
+
+    def adopt(self, state: Snapshot) -> None:
+        """Be at a state that a recording of this very run holds, and keep it: what lies between is not stepped.
+
+        Ahead of the last tick, the script's commands until there count as carried out. Of what lies between the state
+        and the last tick, nothing may be undone, or be an undoing. Raises CommandError, with nothing changed, where a
+        command names what is not there.
+        """
+        before = take(self.world)
+        restore(self.world, state)
+        name_added(self.world)
+        if self.tick > self._last_tick:
+            try:
+                self._pass_script()
+            except CommandError:
+                restore(self.world, before)
+                name_added(self.world)
+                raise
+        self._keyframes.insert(Keyframe(self._order_at(self._first_of(self.tick)), take(self.world)))
+
+    def _pass_script(self) -> None:
+        """Enter the script's commands before this tick into history, which a state already holds."""
+        lines = []
+        while self._scripted is not None and self._scripted.tick < self.tick:
+            lines.append(self._scripted)
+            self._scripted = next(self._script, None)
+        try:
+            commands = [from_record(line.record, self.world) for line in lines]
+        except CommandError:
+            self._script = itertools.chain([*lines, *filter(None, [self._scripted])], self._script)
+            self._scripted = next(self._script, None)
+            raise
+        for line, command in zip(lines, commands, strict=True):
+            if line.gesture in self._undone:
+                continue
+            if line.gesture not in self._entries:
+                self._done.append(line.gesture)
+                self._redoable.clear()
+            self._last_gesture = max(self._last_gesture, line.gesture)
+            self._enter(LogEntry(self._next_order, line.tick, line.gesture, command))
+        self._last_tick = self.tick
+
     def retold(self, tick: int) -> "Session":
         """A run of its own with the same history, at the last keyframe at or before a tick; `advance` follows it from
         there to the last tick. Neither run changes the other.
@@ -335,14 +381,16 @@ class Session:
 
     def _note(self, command: Command, gesture: int, implied: bool = False) -> None:
         """Enter a command that was applied, or is implied by what is, into the log."""
-        entry = LogEntry(self._next_order, self.tick, gesture, command, implied=implied)
+        self._enter(LogEntry(self._next_order, self.tick, gesture, command, implied=implied))
+        if not isinstance(command, (Undo, Redo)):
+            self._keyframes.note_command(self.world, self._next_order)
+
+    def _enter(self, entry: LogEntry) -> None:
         self._next_order += 1
         self._log.append(entry)
-        if isinstance(command, (Undo, Redo)):
-            return
-        self._entries.setdefault(gesture, []).append(entry)
-        self._timeline.append(entry)
-        self._keyframes.note_command(self.world, self._next_order)
+        if not isinstance(entry.command, (Undo, Redo)):
+            self._entries.setdefault(entry.gesture, []).append(entry)
+            self._timeline.append(entry)
 
     # Undo and time travel: restore the nearest earlier keyframe and step again with the commands that still count.
 

@@ -1,6 +1,6 @@
 """Replay and command files with things done to them: refused in clear lines or read, soon, and in little memory.
 
-Prints how many were refused and read, the longest time [s], and the memory [MB] beyond an idle process.
+Prints how many were refused and read, the longest time [s of CPU], and the memory [MB] beyond an idle process.
 """
 
 import argparse
@@ -25,7 +25,7 @@ from tests.support.malformed_replays import compressed, sealed
 from tests.support.play import play
 from tests.support.rope_level import rope_level
 
-# The longest that a file may take [s], and the most memory that all may [MB].
+# The longest that a file may take [s of CPU], and the most memory that all may [MB].
 LONGEST, MOST_MEMORY = 2.0, 300.0
 TOKENS = [
     b"",
@@ -83,8 +83,8 @@ def forged(data: bytes, chance: random.Random) -> bytes:
 
 
 def attempt(read: Callable[[Path], object], path: Path, told: Counter[str]) -> float:
-    """Read a file; the time that it took [s]. What is raised besides ReplayError ends the script."""
-    start = time.perf_counter()
+    """Read a file; the CPU time that it took [s]. What is raised besides ReplayError ends the script."""
+    start = time.process_time()
     try:
         read(path)
     except ReplayError as error:
@@ -93,7 +93,7 @@ def attempt(read: Callable[[Path], object], path: Path, told: Counter[str]) -> f
         told["refused"] += 1
     else:
         told["read"] += 1
-    return time.perf_counter() - start
+    return time.process_time() - start
 
 
 def replays(limits: Limits, count: int, folder: Path) -> None:
@@ -126,13 +126,13 @@ def scripts(limits: Limits, count: int, folder: Path) -> None:
         path.write_bytes(mutated(text, random.Random(number)))
         longest = max(longest, attempt(read_script, path, told))
     path.write_bytes(b'{"tick": 1, "command": {"type": "undo"}}\n' * 249_000)
-    start, idle = time.perf_counter(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    start, idle = time.process_time(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     read_script(path)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     print(f"{count} scripts: {dict(told)}")
     limits.at_most("longest [s]", longest, LONGEST)
     limits.at_most("memory of the longest script allowed [MB]", (peak - idle) / 1024, MOST_MEMORY)
-    print(f"the longest script allowed: {time.perf_counter() - start:.1f} s")
+    print(f"the longest script allowed: {time.process_time() - start:.1f} s")
 
 
 def main(arguments: list[str] | None = None) -> int:

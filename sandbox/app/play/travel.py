@@ -36,6 +36,21 @@ class Travel:
         reached = self._session.last_tick
         return max(reached, self._replay.ticks) if watching and self._replay is not None else reached
 
+    def stored_before(self, tick: int) -> int | None:
+        """The tick of the replay's last stored state up to a tick, from which the way there is shorter than from what
+        the run has kept; None where there is none, or where something is undone on the way to it.
+        """
+        if self._replay is None:
+            return None
+        reached = self._session.last_tick
+        known = self._session.kept_before(min(tick, reached))
+        undoings = [line.tick for line in self._replay.script if line.record.get("type") in ("undo", "redo")]
+        for stored in sorted((each for each in self._replay.states if known < each <= tick), reverse=True):
+            first, last = min(stored, reached), max(stored, reached)
+            if not any(first <= undoing <= last for undoing in undoings):
+                return stored
+        return None
+
     def marks(self) -> list[Mark]:
         """What happened, in order."""
         session = self._session
