@@ -7,13 +7,15 @@
 # make pictures: draw the gallery's pictures of shipped levels anew, after one was changed, and those of docs/.
 PYTHON ?= python3
 VENV := .venv
-BIN := $(VENV)/bin
+BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 WORKERS ?= 2
 
-.PHONY: play test lint goldens goldens-anew pictures bench abuse soak clean
+.PHONY: play install test lint goldens goldens-anew pictures bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
+
+install: $(VENV)/installed-dev
 
 test: $(VENV)/installed-dev
 	-$(BIN)/sandbox prepare
