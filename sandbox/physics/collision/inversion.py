@@ -4,6 +4,7 @@ A jelly is a group of triangles that share sides. It is inverted while a triangl
 LARGEST times its area, or while the triangles about one of its inner particles do not wind round that just once.
 """
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,8 @@ from sandbox.physics.world import World
 # turning others over on its way: held from that, it would stand still. The softest jelly comes to a hundredth of it
 # when it is stirred at 80 m/s.
 LARGEST = 1e4
+# A run needs two of them, of particles and of the rows of the direct solver; a person takes some steps back and forth.
+KEPT_GROUPINGS = 6
 
 
 class Jellies(NamedTuple):
@@ -39,7 +42,16 @@ class Jellies(NamedTuple):
 
 
 def group_triangles(corners: Slots) -> Jellies:
-    """The jellies that triangles of these particles (t, 3) make, in the order of their first triangles."""
+    """The jellies that triangles of these particles (t, 3) make, in the order of their first triangles; to be read.
+
+    Those of the same triangles are the same, since pins, hands and cuts leave triangles as they are.
+    """
+    return _grouped(corners.tobytes())
+
+
+@functools.lru_cache(maxsize=KEPT_GROUPINGS)
+def _grouped(content: bytes) -> Jellies:
+    corners = np.frombuffer(content, dtype=np.int64).reshape(-1, 3)
     sides = np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 2)
     keys = sides.min(axis=1) << 32 | sides.max(axis=1)
     order = np.argsort(keys, kind="stable")

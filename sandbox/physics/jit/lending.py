@@ -171,15 +171,16 @@ class _Words(bytearray):
     items: Any
 
 
-def _signature(item: Any) -> tuple[Any, ...]:
-    """What decides the numba type of what lies in a bundle, quicker to compare than that type."""
+def _add_words(item: Any, words: list[int]) -> tuple[Any, ...]:
+    """Add the words of what lies in a bundle; what decides its numba type, quicker to compare than that type."""
     if isinstance(item, np.ndarray):
         if not item.flags.c_contiguous:
             raise TypeError("arrays in a bundle are contiguous")
+        words += (0, 0, item.size, item.itemsize, item.__array_interface__["data"][0], *item.shape, *item.strides)
         return item.dtype.str, item.ndim
     if not isinstance(item, tuple):
         raise TypeError(f"a bundle holds arrays and tuples of them, not {type(item).__name__}")
-    return type(item), *map(_signature, item)
+    return type(item), *[_add_words(part, words) for part in item]
 
 
 @functools.cache
@@ -192,15 +193,6 @@ def _kind_of(signature: tuple[Any, ...]) -> Any:
     return Lent(first.__name__ if fields else "", fields or ("",) * len(others), tuple(map(_kind_of, others)))
 
 
-def _add_words(item: Any, words: list[int]) -> None:
-    """Add the words of what lies in a bundle."""
-    if isinstance(item, tuple):
-        for part in item:
-            _add_words(part, words)
-        return
-    words += [0, 0, item.size, item.itemsize, item.__array_interface__["data"][0], *item.shape, *item.strides]
-
-
 @functools.cache
 def _dtype(kind: Lent) -> np.dtype[Any]:
     _BUNDLES[kind.name] = kind
@@ -209,9 +201,8 @@ def _dtype(kind: Lent) -> np.dtype[Any]:
 
 def bundle(items: tuple[Any, ...]) -> Any:
     """One array with the addresses of all the arrays in `items`, which a kernel takes at the cost of one."""
-    kind = _kind_of(_signature(items))
     words: list[int] = []
-    _add_words(items, words)
+    kind = _kind_of(_add_words(items, words))
     owner = _Words(np.array(words, dtype=np.int64).tobytes())
     owner.items = items
     return np.frombuffer(owner, dtype=_dtype(kind))
