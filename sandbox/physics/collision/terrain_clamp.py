@@ -64,12 +64,12 @@ def stopped(x: float, y: float, wx: float, wy: float, terrain: Terrain) -> tuple
 @inner_kernel
 def _crossing(x: float, y: float, wx: float, wy: float, terrain: Terrain) -> tuple[int, float, float, float]:
     # The first edge that the way w of a particle's centre crosses (-1: none), distance from it, normal towards it.
-    cell = terrain.cell[0]
+    per_cell = 1.0 / terrain.cell[0]
     left, right = cells_between(
-        x + min(0.0, wx) - SKIN, x + max(0.0, wx) + SKIN, terrain.corner[0], cell, terrain.size[0]
+        x + min(0.0, wx) - SKIN, x + max(0.0, wx) + SKIN, terrain.corner[0], per_cell, terrain.size[0]
     )
     bottom, top = cells_between(
-        y + min(0.0, wy) - SKIN, y + max(0.0, wy) + SKIN, terrain.corner[1], cell, terrain.size[1]
+        y + min(0.0, wy) - SKIN, y + max(0.0, wy) + SKIN, terrain.corner[1], per_cell, terrain.size[1]
     )
     soonest = 2.0
     found = -1

@@ -64,8 +64,10 @@ def find_islands(contacts: Contacts, count: int, inverse_mass: Floats, held: Fla
         for end in range(3):
             p, _ = weight_of(contacts, c, end)
             if p >= 0 and inverse_mass[p] > 0.0:
+                # All that move have the same.
                 islands.contact_label[c] = label[p]
                 islands.bound[c] = islands.is_bound[label[p]]
+                break
         if islands.bound[c]:
             bound += 1
     return bound
