@@ -7,6 +7,7 @@ last third of 6 s, as a share of the motors' speed times the wheels' radius. Fri
 
 import argparse
 import itertools
+import sys
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from tests.support.carts import (
     unicycle,
     weighted_wheel,
 )
+from tests.support.limits import Limits
 
 CARRYING = ("direct", "iterative")
 SUBSTEPS = (1, 4)
@@ -31,7 +33,7 @@ LEAST = 0.93
 RIGID = {"stiffness": 1.0, "damping": 1.0}
 
 
-def speeds(everything: bool) -> None:
+def speeds(limits: Limits, everything: bool) -> None:
     """The carts' table."""
     rims, loads = (RIMS, LOADS) if everything else (RIMS[::4], LOADS[::3])
     for solver, substeps, slope in itertools.product(CARRYING, SUBSTEPS, SLOPES):
@@ -40,12 +42,11 @@ def speeds(everything: bool) -> None:
             for driven in (1, 2) if everything else (2,):
                 found.append(cart_speed(rim, load, slope, solver, substeps, driven=driven))
         short = sum(share < LEAST for share in found)
-        listed = " ".join(f"{share:.3f}" for share in found)
-        print(f"{solver:9} {substeps} substeps, {slope:2g} degrees: {min(found):.3f} at least, {short} of {len(found)} "
-              f"below {LEAST}: {listed}", flush=True)  # fmt: skip
+        print(f"{short} of {len(found)} below {LEAST}:", " ".join(f"{share:.3f}" for share in found))
+        limits.at_least(f"{solver}, {substeps} substeps, {slope:g} degrees: share of the speed", min(found), LEAST)
 
 
-def stalls() -> None:
+def stalls(limits: Limits) -> None:
     """Where a motor stalls at a weight of 20 kg, 5 degrees below level."""
     for solver, substeps in itertools.product(CARRYING, SUBSTEPS):
         lifted = []
@@ -55,10 +56,12 @@ def stalls() -> None:
             for _ in range(45):
                 step(world)
             lifted.append(world.position[17, 1] - start)
-        print(f"{solver:9} {substeps} substeps: lifted in 0.75 s with 0.97 and 1.03 of the torque {lifted} m")
+        name = f"{solver}, {substeps} substeps: lifted in 0.75 s"
+        limits.at_most(f"{name} with 0.97 of the torque [m]", lifted[0], 0.0)
+        limits.at_least(f"{name} with 1.03 of it [m]", lifted[1], 0.0)
 
 
-def floats() -> None:
+def floats(limits: Limits) -> None:
     """The angular momentum of a wheel and a frame in space."""
     for solver, substeps in itertools.product((*CARRYING, "single_pass"), SUBSTEPS):
         coefficients = {"stiffness": 0.14, "damping": 0.14} if solver == "single_pass" else RIGID
@@ -68,7 +71,8 @@ def floats() -> None:
             step(world)
             worst = max(worst, abs(angular_momentum(world)) / abs(angular_momentum(world, rim)))
         turn = spin(world, rim) - spin(world, np.array([0, 33, 34]))
-        print(f"{solver:11} {substeps} substeps: speed {turn:.6f} of 4, angular momentum {worst:.1e} of the wheel's")
+        print(f"{solver:11} {substeps} substeps: speed {turn:.6f} of 4")
+        limits.at_most("change of angular momentum, of the wheel's", worst, 1e-9)
 
 
 def faults() -> None:
@@ -83,7 +87,7 @@ def faults() -> None:
         print(f"{solver:9} {substeps} substeps, {torque:3g} N m: {' '.join(places)} m", flush=True)
 
 
-def reversals(seeds: int) -> None:
+def reversals(limits: Limits, seeds: int) -> None:
     """Energy of floating carts beyond the start and their motors' work, driven at random."""
     worst = 0.0
     for seed in range(seeds):
@@ -104,21 +108,21 @@ def reversals(seeds: int) -> None:
             work += float(np.sum(more))
             scale += float(np.sum(np.abs(more)))
             worst = max(worst, (total_energy(world) - energy - work) / max(scale, 1e-12))
-    print(
-        f"{seeds} floating carts: energy beyond start and work, as a share of the work both ways: {worst:.1e} at most"
-    )
+    limits.at_most(f"{seeds} floating carts: energy beyond start and work, of the work both ways", worst, 1e-9)
 
 
-def main() -> None:
+def main(arguments: list[str] | None = None) -> int:
+    """Print the figures; 1 where one is beyond its limit."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--all", action="store_true")
-    everything = parser.parse_args().all
-    stalls()
-    floats()
-    reversals(200 if everything else 10)
+    everything, limits = parser.parse_args(arguments).all, Limits()
+    stalls(limits)
+    floats(limits)
+    reversals(limits, 200 if everything else 10)
     faults()
-    speeds(everything)
+    speeds(limits, everything)
+    return int(limits.broken)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

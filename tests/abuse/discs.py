@@ -3,6 +3,7 @@
 Run by hand: python -m tests.abuse.discs. Prints a line for each; exit code 1 where a limit is broken.
 """
 
+import argparse
 import itertools
 import math
 import sys
@@ -16,6 +17,7 @@ from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
 from sandbox.physics.world import World
 from tests.support.contact_scenes import add_discs, world
+from tests.support.limits import Limits
 
 GRAVITY = 9.81
 RADIUS = 0.1
@@ -105,15 +107,12 @@ def fastest(built: World) -> float:
     return float(max(np.abs(built.velocity).max(), np.abs(built.spin * built.radius).max()))
 
 
-def main() -> int:
+def main(arguments: list[str] | None = None) -> int:
     """Print the figures; 1 where one is beyond its limit."""
-    broken = False
-
-    def tell(what: str, value: float, most: float) -> None:
-        nonlocal broken
-        broken = broken or not value <= most
-        print(f"{what}: {value:.3g} (at most {most:g}{'' if value <= most else ', BROKEN'})", flush=True)
-
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--all", action="store_true", help="the usual")
+    parser.parse_args(arguments)
+    limits = Limits()
     for solver, substeps in itertools.product(SOLVERS, (1, 4)):
         worst = 0.0
         for degrees, friction in itertools.product((10, 15, 20, 30, 40, 50, 60), (0.1, 0.19, 0.2, 0.5, 1.0)):
@@ -121,18 +120,18 @@ def main() -> int:
                 continue
             found, wanted = rolled(degrees, friction, solver=solver, substeps=substeps), expected(degrees, friction)
             worst = max(worst, *(abs(a / b - 1.0) for a, b in zip(found, wanted, strict=True)))
-        tell(f"slopes, {solver}, {substeps} substeps: error of acceleration and spin", worst, 0.01)
+        limits.at_most(f"slopes, {solver}, {substeps} substeps: error of acceleration and spin", worst, 0.01)
     for restitution, speed in itertools.product((0.0, 0.5, 0.8, 1.0), (1.0, 4.0, 20.0)):
         runs = [lost_turning(crowd(200, seed, speed, restitution), 300) for seed in range(10)]
         name = f"crowds of 200, restitution {restitution:g}, {speed:g} m/s"
-        tell(f"{name}: change of angular momentum", max(lost for lost, _ in runs), 1e-9)
-        tell(f"{name}: most energy over that at the start", max(most for _, most in runs), 1.0 + 1e-9)
+        limits.at_most(f"{name}: change of angular momentum", max(lost for lost, _ in runs), 1e-9)
+        limits.at_most(f"{name}: most energy over that at the start", max(most for _, most in runs), 1.0 + 1e-9)
     for seed in range(5):
         built = heap(500, 25, seed)
         for _ in range(900):
             step(built)
-        tell(f"heap of 500, seed {seed}: fastest after 15 s [m/s]", fastest(built), 1e-3)
-    return int(broken)
+        limits.at_most(f"heap of 500, seed {seed}: fastest after 15 s [m/s]", fastest(built), 1e-3)
+    return int(limits.broken)
 
 
 if __name__ == "__main__":

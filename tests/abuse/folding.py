@@ -20,12 +20,12 @@ SECONDS = 3.0
 SAMPLE = 24
 
 
-def main() -> int:
+def main(arguments: list[str] | None = None) -> int:
     """Run the table; 1 where a triangle turned over, or energy was gained."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--all", action="store_true")
     parser.add_argument("--solver", choices=list(SOLVERS))
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     solvers = [given.solver] if given.solver else list(SOLVERS)
     cases = list(itertools.product(solvers, DEEDS, SHAPES, COEFFICIENTS, SUBSTEPS))
     chosen = np.random.default_rng(0).choice(len(cases), size=min(SAMPLE, len(cases)), replace=False)

@@ -7,6 +7,7 @@ Run by hand: python -m tests.abuse.meshes [--all]. Stars of 3 to 60 corners, fro
 import argparse
 import math
 import random
+import sys
 import time
 
 import numpy as np
@@ -38,10 +39,11 @@ def smallest_angle(places: np.ndarray, triangles: np.ndarray) -> float:
     return least
 
 
-def main() -> None:
+def main(arguments: list[str] | None = None) -> int:
+    """Print the angles; 0, there is no limit."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--all", action="store_true")
-    count = 10_000 if parser.parse_args().all else 300
+    count = 10_000 if parser.parse_args(arguments).all else 300
     generator, angles, refused, particles, spent = random.Random(1), [], 0, 0, 0.0
     for _ in range(count):
         outline, spacing = star(generator), generator.choice(SPACINGS)
@@ -60,7 +62,8 @@ def main() -> None:
     print(f"{len(angles)} meshes of {particles} particles, {refused} outlines refused as too thin for their spacing")
     print("smallest angle [degrees]: least, of 1 in 100, 1 in 20, 1 in 4, half:", np.round(shares, 1))
     print(f"{1e6 * spent / particles:.0f} us per particle")
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -8,6 +8,7 @@ import gzip
 import json
 import random
 import resource
+import sys
 import tempfile
 import time
 from collections import Counter
@@ -19,10 +20,13 @@ from sandbox.session.replay.recording import ReplayError
 from sandbox.session.replay.script import read_script
 from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
+from tests.support.limits import Limits
 from tests.support.malformed_replays import compressed, sealed
 from tests.support.play import play
 from tests.support.rope_level import rope_level
 
+# The longest that a file may take [s], and the most memory that all may [MB].
+LONGEST, MOST_MEMORY = 2.0, 300.0
 TOKENS = [
     b"",
     b"null",
@@ -92,7 +96,7 @@ def attempt(read: Callable[[Path], object], path: Path, told: Counter[str]) -> f
     return time.perf_counter() - start
 
 
-def replays(count: int, folder: Path) -> None:
+def replays(limits: Limits, count: int, folder: Path) -> None:
     """Mutated replay files, plain, compressed, and forged."""
     good, told, longest = recording(folder), Counter[str](), 0.0
     idle = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
@@ -105,10 +109,12 @@ def replays(count: int, folder: Path) -> None:
             path.write_bytes(mutated(path.read_bytes(), chance))
         longest = max(longest, attempt(lambda path: verify(read_replay(path, partial=True)), path, told))
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    print(f"{count} replays: {dict(told)}, longest {longest:.2f} s, {(peak - idle) / 1024:.0f} MB more")
+    print(f"{count} replays: {dict(told)}")
+    limits.at_most("longest [s]", longest, LONGEST)
+    limits.at_most("memory above the empty process [MB]", (peak - idle) / 1024, MOST_MEMORY)
 
 
-def scripts(count: int, folder: Path) -> None:
+def scripts(limits: Limits, count: int, folder: Path) -> None:
     """Mutated command files."""
     good = recording(folder)
     kept = [json.loads(line) for line in good.splitlines() if b'"command"' in line]
@@ -123,14 +129,22 @@ def scripts(count: int, folder: Path) -> None:
     start, idle = time.perf_counter(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     read_script(path)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    print(f"{count} scripts: {dict(told)}, longest {longest:.2f} s")
-    print(f"the longest script allowed: {time.perf_counter() - start:.1f} s, {(peak - idle) / 1024:.0f} MB more")
+    print(f"{count} scripts: {dict(told)}")
+    limits.at_most("longest [s]", longest, LONGEST)
+    limits.at_most("memory of the longest script allowed [MB]", (peak - idle) / 1024, MOST_MEMORY)
+    print(f"the longest script allowed: {time.perf_counter() - start:.1f} s")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Print what came of them; 1 where a limit is broken."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--all", action="store_true", help="10,000 replays and 1,000 scripts")
+    everything, limits = parser.parse_args(arguments).all, Limits()
+    with tempfile.TemporaryDirectory() as folder:
+        replays(limits, 10_000 if everything else 300, Path(folder))
+        scripts(limits, 1_000 if everything else 100, Path(folder))
+    return int(limits.broken)
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--all", action="store_true", help="10,000 replays and 1,000 scripts")
-    everything = parser.parse_args().all
-    with tempfile.TemporaryDirectory() as folder:
-        replays(10_000 if everything else 300, Path(folder))
-        scripts(1_000 if everything else 100, Path(folder))
+    sys.exit(main())

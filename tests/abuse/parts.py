@@ -35,13 +35,14 @@ def play(seed: int, ticks: int, path: Path) -> Session:
     return session
 
 
-def main() -> None:
-    """Print a line for each session that does not verify, then how many commands of each kind there were."""
+def main(arguments: list[str] | None = None) -> int:
+    """Print a line for each session that does not verify, then how many commands of each kind; 1 where one does not."""
     parser = argparse.ArgumentParser()
+    parser.add_argument("--all", action="store_true", help="the usual")
     parser.add_argument("--seeds", type=int, default=100)
     parser.add_argument("--ticks", type=int, default=150)
     parser.add_argument("--interpreted", type=int, default=5)
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     counts: Counter[str] = Counter()
     failed, interpreted, began = 0, 0, time.process_time()
     with tempfile.TemporaryDirectory() as folder:
@@ -65,7 +66,8 @@ def main() -> None:
         f"{given.seeds - failed} of {given.seeds} sessions verify, {interpreted} of them interpreted as well; ", end=""
     )
     print(f"{time.process_time() - began:.0f} s; " + ", ".join(f"{n} {name}" for name, n in counts.most_common()))
+    return int(failed > 0 or interpreted < min(given.interpreted, given.seeds))
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

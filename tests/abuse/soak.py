@@ -7,11 +7,13 @@ found.
 """
 
 import argparse
+import contextlib
 import ctypes
 import gc
 import os
 import random
 import shutil
+import signal
 import sys
 import tempfile
 import time
@@ -242,6 +244,15 @@ def resident() -> int:
         return 0
 
 
+def end_toys(folder: Path) -> None:
+    """End what was opened from files in this folder, and goes on when the app ends."""
+    for said in Path("/proc").glob("[0-9]*/cmdline"):
+        with contextlib.suppress(OSError):
+            words = said.read_bytes().split(b"\0")
+            if b"toy" in words and any(word.startswith(os.fsencode(folder)) for word in words):
+                os.kill(int(said.parent.name), signal.SIGTERM)
+
+
 def soak(seed: int, frames: int, folder: Path, seconds: float | None = None, stretch: int = STRETCH) -> list[str]:
     """Do it; what was found."""
     monkey = Monkey(seed)
@@ -266,6 +277,7 @@ def soak(seed: int, frames: int, folder: Path, seconds: float | None = None, str
     except Exception:
         found.append("\n".join([*monkey.done, traceback.format_exc()]))
     monkey.app.close()
+    end_toys(folder)
     # Whole rounds of all screens, so that the same was open before.
     first = sizes[int(WARM_UP * len(sizes)) :]
     if len(first) > 2 * len(SCREENS) and first[0]:
@@ -277,18 +289,18 @@ def soak(seed: int, frames: int, folder: Path, seconds: float | None = None, str
     return found
 
 
-def main() -> None:
-    """Print what was found."""
+def main(arguments: list[str] | None = None) -> int:
+    """Print what was found; 1 where that is anything."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--frames", type=int, default=36_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--seconds", type=float)
     parser.add_argument("--screen", action="store_true", help="in a window on a virtual screen, where Xvfb is")
     parser.add_argument("--all", action="store_true", help="the usual; for make abuse")
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     if given.screen and not shutil.which("Xvfb"):
         print("needs Xvfb (apt install xvfb)")
-        return
+        return 0
     with tempfile.TemporaryDirectory() as folder:
         screen = VirtualScreen(Path(folder)) if given.screen else None
         os.environ |= {"SDL_VIDEODRIVER": "x11", "DISPLAY": screen.display} if screen else {}
@@ -300,8 +312,8 @@ def main() -> None:
             if screen is not None:
                 screen.close()
     print("\n".join(found) or "nothing was found")
-    sys.exit(1 if found else 0)
+    return int(bool(found))
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

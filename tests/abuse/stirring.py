@@ -5,6 +5,7 @@ speeds, ten seeds each, which takes hours; else one seed each of three materials
 """
 
 import argparse
+import sys
 import time
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from sandbox.app.draw.renderer import Renderer
 from sandbox.physics.snapshot import take
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.world import World
+from tests.support.limits import Limits
 from tests.support.stirring import heap, stir
 
 SAMPLE = ((0.1, 0.5), (0.5, 0.9), (0.9, 0.99))
@@ -32,14 +34,14 @@ def draw(world: World, path: Path) -> None:
     pygame.image.save(surface, str(path))
 
 
-def main() -> None:
-    """Print a line a run, then what was to be shown."""
+def main(arguments: list[str] | None = None) -> int:
+    """Print a line a run, then what was to be shown; 1 where that is not."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--all", action="store_true")
     parser.add_argument("--seeds", type=int)
     parser.add_argument("--solver", choices=SOLVERS, default="direct")
     parser.add_argument("--pictures", type=Path)
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     runs = []
     for stiffness, damping in ALL if given.all else SAMPLE:
         for speed in SPEEDS:
@@ -57,13 +59,16 @@ def main() -> None:
                 if given.pictures:
                     draw(found.world, given.pictures / f"heap-{stiffness}-{damping}-{speed:.0f}-{seed}.png")
     deepest, springs = np.array([run.deepest for run in runs]), np.array([run.springs for run in runs])
-    print(
-        f"{len(runs)} runs: deeper than 1.5 radii {np.sum(deepest > 1.5)}, than 1 {np.sum(deepest > 1.0)}; lines left "
-        f"crossing in {sum(run.lines > 0 for run in runs)}; springs at most {springs.max():.2f}, above 2 in "
-        f"{np.sum(springs > 2.0)}; staying {sum(run.stays for run in runs)}; energy at most "
-        f"{max(run.gain for run in runs):.4f}"
-    )
+    limits = Limits()
+    limits.at_most("deepest overlap [radii]", deepest.max(), 1.5)
+    limits.at_most("share of runs with one above 1 radius", np.mean(deepest > 1.0), 0.1)
+    limits.at_most("runs that leave lines crossing", sum(run.lines > 0 for run in runs), 0)
+    limits.at_most("runs in which a pair stays overlapped", sum(run.stays for run in runs), 0)
+    limits.at_most("most energy of springs, of that before", springs.max(), 4.0)
+    limits.at_most("share of runs with more than twice", np.mean(springs > 2.0), 0.05)
+    limits.at_most("most energy after the release, of that at it", max(run.gain for run in runs), 1.001)
+    return int(limits.broken)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
