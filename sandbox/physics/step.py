@@ -21,6 +21,7 @@ from sandbox.physics.substeps import (
     Pair,
     Substep,
     constraint_coefficients,
+    pace_of,
     substep_coefficients,
     substep_count,
     substep_time,
@@ -77,18 +78,17 @@ def step(world: World) -> None:
 
 def _step_free(world: World, collisions: "Collisions") -> bool:
     # All of a tick in one entry; False: something is to be taken back before.
-    settings = world.settings
-    substeps = settings.fewest_substeps
+    settings, pace = world.settings, collisions.pace
     if collisions.forces.settings is not settings:
         forces_of(world)
+    if pace is None or pace.settings is not settings:
+        pace = collisions.pace = pace_of(settings)
     collisions.begin(world)
-    h = substep_time(settings, substeps)
-    count = collisions.step_free(substeps, SOLVERS[settings.solver].follows, world.tick, h)
+    count = collisions.step_free(pace.substeps, SOLVERS[settings.solver].follows, world.tick, pace.h)
     if count == UNSOUND:
         return False
     collisions.end(world)
-    world.rest_grabs()
-    world.tick += 1
+    world.end_tick()
     if count == LOST:
         contain_outcome(world)
     return True
@@ -135,8 +135,7 @@ def _step_held(world: World) -> None:
     if collisions is not None:
         collisions.end(world)
     world.scale_impulses(1.0 / scale)
-    world.rest_grabs()
-    world.tick += 1
+    world.end_tick()
     contain_outcome(world)
 
 

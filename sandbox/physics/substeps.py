@@ -38,6 +38,19 @@ class Substep(NamedTuple):
     before: Before
 
 
+class Pace(NamedTuple):
+    """How ticks go by some settings: in so many substeps, the fewest, of h [s] each."""
+
+    settings: WorldSettings
+    substeps: int
+    h: float
+
+
+def pace_of(settings: WorldSettings) -> Pace:
+    """The pace of some settings."""
+    return Pace(settings, settings.fewest_substeps, substep_time(settings))
+
+
 def substep_time(settings: WorldSettings, count: int | None = None) -> float:
     """Time step h [s] of one of `count` substeps (None: of the fewest that the settings give a tick)."""
     return 1.0 / (settings.tick_rate * (count or settings.fewest_substeps))

@@ -149,8 +149,10 @@ def _place_contacts(
         work.place[i, 1] = q
         work.level[i] = level
         work.at[level + 1] += 1
+    total = 0
     for level in range(last - first):
-        work.at[level + 1] += work.at[level]
+        total += work.at[level + 1]
+        work.at[level + 1] = total
     return count
 
 
