@@ -20,8 +20,8 @@ from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import (
     Pair,
     Substep,
+    cadence_of,
     constraint_coefficients,
-    pace_of,
     substep_coefficients,
     substep_count,
     substep_time,
@@ -78,13 +78,13 @@ def step(world: World) -> None:
 
 def _step_free(world: World, collisions: "Collisions") -> bool:
     # All of a tick in one entry; False: something is to be taken back before.
-    settings, pace = world.settings, collisions.pace
+    settings, cadence = world.settings, collisions.cadence
     if collisions.forces.settings is not settings:
         forces_of(world)
-    if pace is None or pace.settings is not settings:
-        pace = collisions.pace = pace_of(settings)
+    if cadence is None or cadence.settings is not settings:
+        cadence = collisions.cadence = cadence_of(settings)
     collisions.begin(world)
-    count = collisions.step_free(pace.substeps, SOLVERS[settings.solver].follows, world.tick, pace.h)
+    count = collisions.step_free(cadence.substeps, SOLVERS[settings.solver].follows, world.tick, cadence.h)
     if count == UNSOUND:
         return False
     collisions.end(world)

@@ -38,7 +38,7 @@ class Substep(NamedTuple):
     before: Before
 
 
-class Pace(NamedTuple):
+class Cadence(NamedTuple):
     """How ticks go by some settings: in so many substeps, the fewest, of h [s] each."""
 
     settings: WorldSettings
@@ -46,9 +46,9 @@ class Pace(NamedTuple):
     h: float
 
 
-def pace_of(settings: WorldSettings) -> Pace:
-    """The pace of some settings."""
-    return Pace(settings, settings.fewest_substeps, substep_time(settings))
+def cadence_of(settings: WorldSettings) -> Cadence:
+    """That of some settings."""
+    return Cadence(settings, settings.fewest_substeps, substep_time(settings))
 
 
 def substep_time(settings: WorldSettings, count: int | None = None) -> float:

@@ -57,7 +57,7 @@ from sandbox.physics.sanitise import LOST, UNSOUND, CheckedArrays, are_sound, ch
 from sandbox.physics.solvers.contact.free_contacts import Work, new_work, solve_free_contacts
 from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, new_islands, sort_free_contacts
 from sandbox.physics.state import Floats, Slots
-from sandbox.physics.substeps import Pace
+from sandbox.physics.substeps import Cadence
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.world import World
 
@@ -310,7 +310,7 @@ class Collisions:
 
     is_free: whether no spring or constraint holds anything. wanted: the largest counts so far. solved: those
     left to a solver, by their number. kept: the contacts of the last tick, the first of those in room; they are the
-    world's own, which so has them without a copy. pace: that of the last tick in which nothing was held.
+    world's own, which so has them without a copy. cadence: that of the last tick in which nothing was held.
     """
 
     particles: CollidingParticles
@@ -327,7 +327,7 @@ class Collisions:
     solved: dict[int, LentContacts] = field(default_factory=dict)
     kept: KeptContacts = NOTHING_KEPT
     count: int = 0
-    pace: Pace | None = None
+    cadence: Cadence | None = None
 
     def begin(self, world: World) -> None:
         """Take over the contacts of the world's last step, where they are not those of the last tick already."""

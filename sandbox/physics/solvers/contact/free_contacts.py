@@ -178,9 +178,7 @@ def _fill_constraints(
         row[k, WEIGHT_P], row[k, WEIGHT_Q] = work.weight[p], work.weight[q]
         row[k, APART_X], row[k, APART_Y] = 0.0, 0.0
         row[k, TURN_P], row[k, TURN_Q] = work.turning[p], work.turning[q]
-        row[k, ARM] = 1.0
-        row[k, PER_REACH] = 0.0
-        row[k, WAY] = STANDS
+        row[k, ARM], row[k, PER_REACH], row[k, WAY] = 1.0, 0.0, STANDS
         row[k, REACH] = contacts.gap[c]
         row[k, NX], row[k, NY] = contacts.normal[c, 0], contacts.normal[c, 1]
         row[k, ALONG], row[k, ACROSS] = contacts.impulse[c, 0], contacts.impulse[c, 1]
@@ -190,16 +188,13 @@ def _fill_constraints(
         row[k, MASS] = 1.0 / mass
         row[k, MASS_ACROSS] = 1.0 / (mass + work.turning[p] + work.turning[q])
         row[k, DEPTH] = DEEPEST * smaller
-        row[k, FRICTION] = contacts.friction[c]
-        row[k, BOUNCE] = contacts.bounce[c]
+        row[k, FRICTION], row[k, BOUNCE] = contacts.friction[c], contacts.bounce[c]
         row[k, RESTITUTION] = contacts.restitution[c]
         if disc >= 0:
             _fill_pair(contacts, c, k, colliders, work)
         ratio_p, ratio_q = rolling_ratios(contacts.particle[c], disc, colliders)
-        row[k, RATIO_P] = ratio_p
-        row[k, RATIO_Q] = ratio_q
-        row[k, ROLL_P] = ratio_p * row[k, TURN_P]
-        row[k, ROLL_Q] = ratio_q * row[k, TURN_Q]
+        row[k, RATIO_P], row[k, RATIO_Q] = ratio_p, ratio_q
+        row[k, ROLL_P], row[k, ROLL_Q] = ratio_p * row[k, TURN_P], ratio_q * row[k, TURN_Q]
         answer = ratio_p * row[k, ROLL_P] + ratio_q * row[k, ROLL_Q]
         row[k, ROLLING] = contacts.rolling[c] if answer > 0.0 else 0.0
         row[k, ROLLING_MASS] = 1.0 / answer if answer > 0.0 else 0.0
@@ -216,21 +211,18 @@ def _fill_pair(contacts: Contacts, c: int, k: int, colliders: Colliders, work: W
     dx = colliders.position[p, 0] - colliders.position[q, 0]
     dy = colliders.position[p, 1] - colliders.position[q, 1]
     reach = colliders.radius[p] + colliders.radius[q]
-    row[k, APART_X] = dx
-    row[k, APART_Y] = dy
+    row[k, APART_X], row[k, APART_Y] = dx, dy
     row[k, WAY] = FOLLOWS
     row[k, REACH] = -reach
     row[k, PER_REACH] = 1.0 / reach if reach > 0.0 else 0.0
     row[k, ARM] = (nx * dx + ny * dy) * row[k, PER_REACH]
     if abs(nx * dy - ny * dx) > ALONG_CENTRES * reach:
         # Discs that are followed along their way will meet with their centres along the normal, but do not lie so yet.
-        row[k, ARM] = 1.0
-        row[k, WAY] = STANDS
+        row[k, ARM], row[k, WAY] = 1.0, STANDS
         if row[k, WEIGHT_P] > 0.0 and row[k, WEIGHT_Q] > 0.0:
             row[k, WAY] = COMING
             row[k, BOUNCE] = -1.0
-            row[k, ALONG] = 0.0
-            row[k, ACROSS] = 0.0
+            row[k, ALONG], row[k, ACROSS] = 0.0, 0.0
 
 
 @inner_kernel
