@@ -20,6 +20,7 @@ from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import (
     Pair,
     Substep,
+    cadence_of,
     constraint_coefficients,
     substep_coefficients,
     substep_count,
@@ -77,18 +78,17 @@ def step(world: World) -> None:
 
 def _step_free(world: World, collisions: "Collisions") -> bool:
     # All of a tick in one entry; False: something is to be taken back before.
-    settings = world.settings
-    substeps = settings.fewest_substeps
+    settings, cadence = world.settings, collisions.cadence
     if collisions.forces.settings is not settings:
         forces_of(world)
+    if cadence is None or cadence.settings is not settings:
+        cadence = collisions.cadence = cadence_of(settings)
     collisions.begin(world)
-    h = substep_time(settings, substeps)
-    count = collisions.step_free(substeps, SOLVERS[settings.solver].follows, world.tick, h)
+    count = collisions.step_free(cadence.substeps, SOLVERS[settings.solver].follows, world.tick, cadence.h)
     if count == UNSOUND:
         return False
     collisions.end(world)
-    world.rest_grabs()
-    world.tick += 1
+    world.end_tick()
     if count == LOST:
         contain_outcome(world)
     return True
@@ -135,8 +135,7 @@ def _step_held(world: World) -> None:
     if collisions is not None:
         collisions.end(world)
     world.scale_impulses(1.0 / scale)
-    world.rest_grabs()
-    world.tick += 1
+    world.end_tick()
     contain_outcome(world)
 
 

@@ -38,6 +38,19 @@ class Substep(NamedTuple):
     before: Before
 
 
+class Cadence(NamedTuple):
+    """How ticks go by some settings: in so many substeps, the fewest, of h [s] each."""
+
+    settings: WorldSettings
+    substeps: int
+    h: float
+
+
+def cadence_of(settings: WorldSettings) -> Cadence:
+    """That of some settings."""
+    return Cadence(settings, settings.fewest_substeps, substep_time(settings))
+
+
 def substep_time(settings: WorldSettings, count: int | None = None) -> float:
     """Time step h [s] of one of `count` substeps (None: of the fewest that the settings give a tick)."""
     return 1.0 / (settings.tick_rate * (count or settings.fewest_substeps))

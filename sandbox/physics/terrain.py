@@ -55,10 +55,13 @@ class Terrain(NamedTuple):
 
 
 @inner_kernel
-def cells_between(low: float, high: float, corner: float, cell: float, size: int) -> tuple[int, int]:
-    """First and last of `size` cells of the grid that an interval covers; none: the last is before the first."""
-    first = (low - corner) / cell
-    last = (high - corner) / cell
+def cells_between(low: float, high: float, corner: float, per_cell: float, size: int) -> tuple[int, int]:
+    """First and last of `size` cells of the grid that an interval covers; none: the last is before the first.
+
+    per_cell [1/m]: 1 over the side of a cell.
+    """
+    first = (low - corner) * per_cell
+    last = (high - corner) * per_cell
     if not (last >= 0.0 and first < size):
         return 0, -1
     return math.floor(max(0.0, first)), math.floor(min(last, size - 1.0))

@@ -560,8 +560,9 @@ class World(StateArrays):
         cursor = self.grab_particle + grab
         self.velocity[cursor] = (np.asarray(target) - self.position[cursor]) * float(self.settings.tick_rate)
 
-    def rest_grabs(self) -> None:
-        """Stop every cursor; the end of a tick."""
+    def end_tick(self) -> None:
+        """Count a tick, past the watch over attributes, which takes as long as a tenth of it; stop every cursor."""
+        self.__dict__["tick"] += 1
         if self.grab_particle >= 0:
             self.velocity[self.grab_particle : self.grab_particle + GRAB_COUNT] = 0.0
 
@@ -572,9 +573,7 @@ class World(StateArrays):
         # Not begun anew: what overlaps where a hand lets go is no start, at which parting costs nothing.
         held = np.arange(self.particle_count) == self.particle_b[spring]
         self.energy_bank[(self.energy_bank > 0.0) | (held & (self.energy_bank == 0.0))] = BANK_EMPTIED
-        self.position[cursor] = 0.0
-        self.velocity[cursor] = 0.0
-        self.slow_velocity[cursor] = 0.0
+        self.position[cursor] = self.velocity[cursor] = self.slow_velocity[cursor] = 0.0
         self.change("particle_b", 0, spring)
         self.change("spring_active", False, spring)
         self.change("law", LAW_NISSEN, spring)

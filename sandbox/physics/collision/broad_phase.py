@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.types import Flags
+from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inner_kernel, unsigned
 from sandbox.physics.state import Floats, Slots
 
@@ -84,7 +85,7 @@ def cell_size(box: Floats) -> float:
             total += max(box[k, 2] - box[k, 0], box[k, 3] - box[k, 1])
             count += 1
     extent = total / count if count > 0 else 1.0
-    return CELL_SIZE * extent if 0.0 < extent < FARTHEST * FARTHEST else 1.0
+    return CELL_SIZE * extent if SHORTEST < extent < FARTHEST * FARTHEST else 1.0
 
 
 @inner_kernel
@@ -98,6 +99,7 @@ def _find_cells(boxes: Boxes, cell: float, grid: Grid) -> int:
     # The cells of every box that takes part; how many of those that others look for are large.
     box = boxes.box
     larges = 0
+    per_cell = 1.0 / cell
     for k in range(box.shape[0]):
         if not box[k, 0] <= box[k, 2]:
             continue
@@ -109,7 +111,7 @@ def _find_cells(boxes: Boxes, cell: float, grid: Grid) -> int:
                 larges += 1
             continue
         for side in range(4):
-            grid.cells[k, side] = math.floor(box[k, side] / cell)
+            grid.cells[k, side] = math.floor(box[k, side] * per_cell)
     return larges
 
 
@@ -126,10 +128,12 @@ def _count(boxes: Boxes, grid: Grid) -> int:
             for column in range(cells[k, 0], cells[k, 2] + 1):
                 for row in range(cells[k, 1], cells[k, 3] + 1):
                     start[bucket_of(column, row, buckets) + 1] += 1
+    entries = 0
     for bucket in range(buckets):
-        grid.at[bucket] = start[bucket]
-        start[bucket + 1] += start[bucket]
-    return start[buckets]
+        grid.at[bucket] = entries
+        entries += start[bucket + 1]
+        start[bucket + 1] = entries
+    return entries
 
 
 @inner_kernel

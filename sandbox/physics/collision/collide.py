@@ -57,6 +57,7 @@ from sandbox.physics.sanitise import LOST, UNSOUND, CheckedArrays, are_sound, ch
 from sandbox.physics.solvers.contact.free_contacts import Work, new_work, solve_free_contacts
 from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, new_islands, sort_free_contacts
 from sandbox.physics.state import Floats, Slots
+from sandbox.physics.substeps import Cadence
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.world import World
 
@@ -257,7 +258,7 @@ def _after_solver(
     ahead = room.work.ahead
     clamp_at_terrain(
         particles.position, particles.velocity, ahead, particles.collides, particles.particle_active,
-        particles.inverse_mass, terrain, h,
+        particles.inverse_mass, terrain, room.boxes.box, room.terrain_pairs, h,
     )  # fmt: skip
     for p in range(ahead.shape[0]):
         particles.position[p, 0] += ahead[p, 0]
@@ -309,7 +310,7 @@ class Collisions:
 
     is_free: whether no spring or constraint holds anything. wanted: the largest counts so far. solved: those
     left to a solver, by their number. kept: the contacts of the last tick, the first of those in room; they are the
-    world's own, which so has them without a copy.
+    world's own, which so has them without a copy. cadence: that of the last tick in which nothing was held.
     """
 
     particles: CollidingParticles
@@ -326,6 +327,7 @@ class Collisions:
     solved: dict[int, LentContacts] = field(default_factory=dict)
     kept: KeptContacts = NOTHING_KEPT
     count: int = 0
+    cadence: Cadence | None = None
 
     def begin(self, world: World) -> None:
         """Take over the contacts of the world's last step, where they are not those of the last tick already."""

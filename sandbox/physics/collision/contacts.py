@@ -93,13 +93,13 @@ def find_terrain(boxes: Boxes, terrain: Terrain, pairs: Pairs) -> int:
     particles = boxes.filter.shape[0]
     if terrain.edge_a.shape[0] == 0:
         return count
-    cell = terrain.cell[0]
+    per_cell = 1.0 / terrain.cell[0]
     for p in range(particles):
         start[p] = count
         if boxes.filter[p] == WITH_NOTHING:
             continue
-        left, right = cells_between(box[p, 0], box[p, 2], terrain.corner[0], cell, terrain.size[0])
-        bottom, top = cells_between(box[p, 1], box[p, 3], terrain.corner[1], cell, terrain.size[1])
+        left, right = cells_between(box[p, 0], box[p, 2], terrain.corner[0], per_cell, terrain.size[0])
+        bottom, top = cells_between(box[p, 1], box[p, 3], terrain.corner[1], per_cell, terrain.size[1])
         for row in range(bottom, top + 1):
             for column in range(left, right + 1):
                 at = row * terrain.size[0] + column

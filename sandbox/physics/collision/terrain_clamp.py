@@ -2,6 +2,7 @@
 
 import math
 
+from sandbox.physics.collision.broad_phase import Pairs
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.types import Flags
 from sandbox.physics.jit import inner_kernel
@@ -24,9 +25,14 @@ def clamp_at_terrain(
     active: Flags,
     inverse_mass: Floats,
     terrain: Terrain,
+    box: Floats,
+    near: Pairs,
     h: float,
 ) -> None:
-    """Cut the velocities [m/s] of particles that would cross terrain in the coming h [s], on ways h v + ahead [m]."""
+    """Cut the velocities [m/s] of particles that would cross terrain in the coming h [s], on ways h v + ahead [m].
+
+    box [m] (n, 4): where each was expected; near: the edges of terrain there.
+    """
     if terrain.edge_a.shape[0] == 0:
         return
     for p in range(position.shape[0]):
@@ -34,6 +40,8 @@ def clamp_at_terrain(
             continue
         wx = h * velocity[p, 0] + ahead[p, 0]
         wy = h * velocity[p, 1] + ahead[p, 1]
+        if near.start[p] == near.start[p + 1] and _stays_in(box, p, position[p, 0], position[p, 1], wx, wy):
+            continue
         stops, x, y = stopped(position[p, 0], position[p, 1], wx, wy, terrain)
         if stops > STOPS:
             velocity[p, 0] = 0.0
@@ -43,6 +51,17 @@ def clamp_at_terrain(
         elif stops > 0:
             velocity[p, 0] += (x - wx) / h
             velocity[p, 1] += (y - wy) / h
+
+
+@inner_kernel
+def _stays_in(box: Floats, p: int, x: float, y: float, wx: float, wy: float) -> bool:
+    # Whether the way w of a particle's centre stays in its box, and SKIN away from what is outside.
+    return (
+        x + min(0.0, wx) - SKIN >= box[p, 0]
+        and y + min(0.0, wy) - SKIN >= box[p, 1]
+        and x + max(0.0, wx) + SKIN <= box[p, 2]
+        and y + max(0.0, wy) + SKIN <= box[p, 3]
+    )
 
 
 @inner_kernel
@@ -64,12 +83,12 @@ def stopped(x: float, y: float, wx: float, wy: float, terrain: Terrain) -> tuple
 @inner_kernel
 def _crossing(x: float, y: float, wx: float, wy: float, terrain: Terrain) -> tuple[int, float, float, float]:
     # The first edge that the way w of a particle's centre crosses (-1: none), distance from it, normal towards it.
-    cell = terrain.cell[0]
+    per_cell = 1.0 / terrain.cell[0]
     left, right = cells_between(
-        x + min(0.0, wx) - SKIN, x + max(0.0, wx) + SKIN, terrain.corner[0], cell, terrain.size[0]
+        x + min(0.0, wx) - SKIN, x + max(0.0, wx) + SKIN, terrain.corner[0], per_cell, terrain.size[0]
     )
     bottom, top = cells_between(
-        y + min(0.0, wy) - SKIN, y + max(0.0, wy) + SKIN, terrain.corner[1], cell, terrain.size[1]
+        y + min(0.0, wy) - SKIN, y + max(0.0, wy) + SKIN, terrain.corner[1], per_cell, terrain.size[1]
     )
     soonest = 2.0
     found = -1

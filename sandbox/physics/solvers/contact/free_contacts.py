@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.restitution import SLOWEST_BOUNCE
-from sandbox.physics.collision.turning import rolling_ratios, spin_of
+from sandbox.physics.collision.turning import SURFACE_WEIGHT, rolling_ratios, spin_of
 from sandbox.physics.collision.types import Colliders, Contacts
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inlined_kernel, inner_kernel, unsigned
@@ -35,20 +35,20 @@ DEEPEST = 0.04
 # angular momentum, less time.
 ALONG_CENTRES = 1e-12
 
-# Columns of a contact constraint, a row that lies together. What every iteration reads of it: normal; gap [m] without
-# what its particles are apart, of two discs minus their radii; how far two discs are apart at the start [m], else 0;
+# Columns of a contact constraint, a row that lies together. What every iteration reads of it: normal; gap [m] by now;
 # impulse [N s] of a small step along, bounce [m/s], and the way of its normal: FOLLOWS the centres of discs, is COMING
 # where they are followed along their way and have not met yet, STANDS where one of those is pinned, or is no disc.
-NX, NY, GAP, APART_X, APART_Y, ALONG, BOUNCE, WAY = range(8)
+NX, NY, GAP, ALONG, BOUNCE, WAY = range(6)
 FOLLOWS, COMING, STANDS = 0.0, 1.0, 2.0
 # And where it pushes: impulse across, friction, effective mass [kg] along and across, weight [1/kg] of its particles
-# and of their surfaces (0: it does not turn), the arm of friction as a share of the radii, and 1 over those [1/m];
-# rolling resistance, its effective mass [kg], the smaller radius over each one's.
-ACROSS, FRICTION, MASS, MASS_ACROSS, WEIGHT_P, WEIGHT_Q, TURN_P, TURN_Q, ARM, PER_REACH = range(8, 18)
-ROLLING, ROLLING_MASS, RATIO_P, RATIO_Q = range(18, 22)
-# Restitution; and the depth [m] as deep as it should sink.
-RESTITUTION, DEPTH = 22, 23
-COLUMNS = 24
+# and of their surfaces (0: it does not turn), the arm of friction as a share of the radii; rolling resistance, its
+# effective mass [kg], the smaller radius over each one's, and that times its TURN.
+ACROSS, FRICTION, MASS, MASS_ACROSS, WEIGHT_P, WEIGHT_Q, TURN_P, TURN_Q, ARM = range(6, 15)
+ROLLING, ROLLING_MASS, RATIO_P, RATIO_Q, ROLL_P, ROLL_Q = range(15, 21)
+# What the gap comes from: without what its particles are apart [m], of two discs minus their radii; how far two discs
+# are apart at the start [m], else 0; 1 over the radii [1/m]. Restitution; the depth [m] as deep as it should sink.
+REACH, APART_X, APART_Y, PER_REACH, RESTITUTION, DEPTH = range(21, 27)
+COLUMNS = 27
 # Columns of a place: velocity [m/s], way [m] so far, speed of its surface [m/s] = spin times radius; and what the
 # impulses of a small step add to the first and the last.
 VX, VY, WX, WY, SURFACE, PUSHED_X, PUSHED_Y, PUSHED_SURFACE = range(8)
@@ -149,8 +149,10 @@ def _place_contacts(
         work.place[i, 1] = q
         work.level[i] = level
         work.at[level + 1] += 1
+    total = 0
     for level in range(last - first):
-        work.at[level + 1] += work.at[level]
+        total += work.at[level + 1]
+        work.at[level + 1] = total
     return count
 
 
@@ -176,10 +178,8 @@ def _fill_constraints(
         row[k, WEIGHT_P], row[k, WEIGHT_Q] = work.weight[p], work.weight[q]
         row[k, APART_X], row[k, APART_Y] = 0.0, 0.0
         row[k, TURN_P], row[k, TURN_Q] = work.turning[p], work.turning[q]
-        row[k, ARM] = 1.0
-        row[k, PER_REACH] = 0.0
-        row[k, WAY] = STANDS
-        row[k, GAP] = contacts.gap[c]
+        row[k, ARM], row[k, PER_REACH], row[k, WAY] = 1.0, 0.0, STANDS
+        row[k, REACH] = contacts.gap[c]
         row[k, NX], row[k, NY] = contacts.normal[c, 0], contacts.normal[c, 1]
         row[k, ALONG], row[k, ACROSS] = contacts.impulse[c, 0], contacts.impulse[c, 1]
         disc = contacts.end_a[c] if contacts.end_b[c] < 0 else -1
@@ -188,15 +188,14 @@ def _fill_constraints(
         row[k, MASS] = 1.0 / mass
         row[k, MASS_ACROSS] = 1.0 / (mass + work.turning[p] + work.turning[q])
         row[k, DEPTH] = DEEPEST * smaller
-        row[k, FRICTION] = contacts.friction[c]
-        row[k, BOUNCE] = contacts.bounce[c]
+        row[k, FRICTION], row[k, BOUNCE] = contacts.friction[c], contacts.bounce[c]
         row[k, RESTITUTION] = contacts.restitution[c]
         if disc >= 0:
             _fill_pair(contacts, c, k, colliders, work)
         ratio_p, ratio_q = rolling_ratios(contacts.particle[c], disc, colliders)
-        row[k, RATIO_P] = ratio_p
-        row[k, RATIO_Q] = ratio_q
-        answer = ratio_p * ratio_p * row[k, TURN_P] + ratio_q * ratio_q * row[k, TURN_Q]
+        row[k, RATIO_P], row[k, RATIO_Q] = ratio_p, ratio_q
+        row[k, ROLL_P], row[k, ROLL_Q] = ratio_p * row[k, TURN_P], ratio_q * row[k, TURN_Q]
+        answer = ratio_p * row[k, ROLL_P] + ratio_q * row[k, ROLL_Q]
         row[k, ROLLING] = contacts.rolling[c] if answer > 0.0 else 0.0
         row[k, ROLLING_MASS] = 1.0 / answer if answer > 0.0 else 0.0
 
@@ -212,21 +211,18 @@ def _fill_pair(contacts: Contacts, c: int, k: int, colliders: Colliders, work: W
     dx = colliders.position[p, 0] - colliders.position[q, 0]
     dy = colliders.position[p, 1] - colliders.position[q, 1]
     reach = colliders.radius[p] + colliders.radius[q]
-    row[k, APART_X] = dx
-    row[k, APART_Y] = dy
+    row[k, APART_X], row[k, APART_Y] = dx, dy
     row[k, WAY] = FOLLOWS
-    row[k, GAP] = -reach
+    row[k, REACH] = -reach
     row[k, PER_REACH] = 1.0 / reach if reach > 0.0 else 0.0
     row[k, ARM] = (nx * dx + ny * dy) * row[k, PER_REACH]
     if abs(nx * dy - ny * dx) > ALONG_CENTRES * reach:
         # Discs that are followed along their way will meet with their centres along the normal, but do not lie so yet.
-        row[k, ARM] = 1.0
-        row[k, WAY] = STANDS
+        row[k, ARM], row[k, WAY] = 1.0, STANDS
         if row[k, WEIGHT_P] > 0.0 and row[k, WEIGHT_Q] > 0.0:
             row[k, WAY] = COMING
             row[k, BOUNCE] = -1.0
-            row[k, ALONG] = 0.0
-            row[k, ACROSS] = 0.0
+            row[k, ALONG], row[k, ACROSS] = 0.0, 0.0
 
 
 @inner_kernel
@@ -250,16 +246,16 @@ def _plan(work: Work, first: int, last: int, h: float) -> tuple[int, float]:
 
 
 @inner_kernel
-def _bias(bounce: float, gap: float, rate: float, softness: float, pushes: bool) -> tuple[float, float]:
-    # The velocity b [m/s] by which a contact is to end apart from its surfaces staying together, and how soft it is;
-    # rate: small steps in a second.
+def _bias(bounce: float, gap: float, rate: float, hardness: float, pushes: bool) -> tuple[float, float]:
+    # The velocity b [m/s] by which a contact is to end apart from its surfaces staying together, and how hard it is,
+    # 1 / (1 + soft); rate: small steps in a second.
     if bounce >= 0.0:
-        return -bounce, 0.0
+        return -bounce, 1.0
     if gap > 0.0:
-        return gap * rate, 0.0
+        return gap * rate, 1.0
     if pushes:
-        return max(OVERLAP_SHARE * gap * rate, -FASTEST_PUSH), softness
-    return 0.0, 0.0
+        return max(OVERLAP_SHARE * gap * rate, -FASTEST_PUSH), hardness
+    return 0.0, 1.0
 
 
 @inlined_kernel
@@ -307,29 +303,52 @@ def _time_until(dx: float, dy: float, ux: float, uy: float, reach: float) -> flo
 
 
 @inner_kernel
-def _meet(work: Work, i: int, dx: float, dy: float, ux: float, uy: float) -> None:
-    # Two discs that were coming meet when they are d apart and move by u: the normal, and with what speed they part.
-    row = work.constraint
+def _meet(work: Work, i: int, p: int, q: int, small: float) -> float:
+    # When two discs that are coming meet, if in this small step, else infinite: then the normal, and with what speed
+    # they part.
+    row, motion = work.constraint, work.motion
+    ux, uy = motion[p, VX] - motion[q, VX], motion[p, VY] - motion[q, VY]
+    wx = row[i, APART_X] + (motion[p, WX] - motion[q, WX])
+    wy = row[i, APART_Y] + (motion[p, WY] - motion[q, WY])
+    late = _time_until(wx, wy, ux, uy, -row[i, REACH])
+    if not late < small:
+        return math.inf
+    dx, dy = wx + late * ux, wy + late * uy
     distance = math.sqrt(dx * dx + dy * dy)
     if distance > SHORTEST:
         row[i, NX] = dx / distance
         row[i, NY] = dy / distance
+    row[i, GAP] = row[i, REACH] + row[i, NX] * wx + row[i, NY] * wy
     row[i, ARM] = distance * row[i, PER_REACH]
     row[i, WAY] = FOLLOWS
     speed = -(row[i, NX] * ux + row[i, NY] * uy)
     if speed > 0.0:
         row[i, BOUNCE] = row[i, RESTITUTION] * speed if speed > SLOWEST_BOUNCE else 0.0
+    return late
 
 
-@inlined_kernel
-def _follow(row: Floats, i: int, dx: float, dy: float) -> tuple[float, float, float]:
-    # The normal and the gap of two discs that are d apart.
-    distance = math.sqrt(dx * dx + dy * dy)
-    if distance > SHORTEST:
-        per_distance = 1.0 / distance
-        row[i, NX] = dx * per_distance
-        row[i, NY] = dy * per_distance
-    return row[i, NX], row[i, NY], row[i, GAP] + distance
+@inner_kernel
+def _look(work: Work, first: int, last: int) -> None:
+    # Where contacts are by now: their gaps, and of discs the normals and arms, which follow the centres.
+    row, end, motion = work.constraint, work.end, work.motion
+    for c in range(first, last):
+        i = unsigned(c)
+        p = unsigned(end[i, 0])
+        q = unsigned(end[i, 1])
+        nx, ny = row[i, NX], row[i, NY]
+        wx = row[i, APART_X] + (motion[p, WX] - motion[q, WX])
+        wy = row[i, APART_Y] + (motion[p, WY] - motion[q, WY])
+        gap = row[i, REACH] + nx * wx + ny * wy
+        if row[i, WAY] == FOLLOWS:
+            if abs(nx * wy - ny * wx) > -ALONG_CENTRES * row[i, REACH]:
+                distance = math.sqrt(wx * wx + wy * wy)
+                if distance > SHORTEST:
+                    per_distance = 1.0 / distance
+                    row[i, NX] = wx * per_distance
+                    row[i, NY] = wy * per_distance
+                gap = row[i, REACH] + distance
+            row[i, ARM] = 1.0 + gap * row[i, PER_REACH]
+        row[i, GAP] = gap
 
 
 @inlined_kernel
@@ -340,15 +359,19 @@ def _apply(
     # impulse at the smaller radius of at most ROLLING times that along the normal.
     row, motion = work.constraint, work.motion
     p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
-    jx, jy, torque = jn * nx - jt * ny, jn * ny + jt * nx, arm * jt
-    weight_p, weight_q, turn_p, turn_q = row[i, WEIGHT_P], row[i, WEIGHT_Q], row[i, TURN_P], row[i, TURN_Q]
-    surface_p, surface_q = motion[p, SURFACE] - torque * turn_p, motion[q, SURFACE] - torque * turn_q
+    jx, jy = jn * nx - jt * ny, jn * ny + jt * nx
+    weight_p, weight_q = row[i, WEIGHT_P], row[i, WEIGHT_Q]
+    surface_p, surface_q = motion[p, SURFACE], motion[q, SURFACE]
+    roll_p, roll_q = row[i, ROLL_P], row[i, ROLL_Q]
+    turn = row[i, RATIO_P] * surface_p - row[i, RATIO_Q] * surface_q
+    surface_p -= jt * (arm * row[i, TURN_P])
+    surface_q -= jt * (arm * row[i, TURN_Q])
     if rolls and row[i, ROLLING] > 0.0:
         most = row[i, ROLLING] * row[i, ALONG]
-        turn = row[i, RATIO_P] * surface_p - row[i, RATIO_Q] * surface_q
+        turn -= jt * (arm * (roll_p - roll_q))
         j = min(most, max(-most, -turn * row[i, ROLLING_MASS]))
-        surface_p += j * row[i, RATIO_P] * turn_p
-        surface_q -= j * row[i, RATIO_Q] * turn_q
+        surface_p += j * roll_p
+        surface_q -= j * roll_q
     motion[p, VX] += jx * weight_p
     motion[p, VY] += jy * weight_p
     motion[q, VX] -= jx * weight_q
@@ -364,50 +387,39 @@ def _apply(
 
 @inlined_kernel
 def _iterate(work: Work, first: int, last: int, small: float, softness: float, pushes: bool, is_last: bool) -> None:
-    # One Gauss-Seidel iteration. Normals follow the centres of discs, so that impulses along them turn nothing. pushes:
-    # what overlaps is pushed apart, with that softness; with the impulses of the other iteration of a small step the
-    # next one starts. is_last: whether the step ends with it; what would meet in the first small step of the next one,
-    # and bounce there, is not slowed before.
-    # J = max(0, J - ((u + b) m + soft J) / (1 + soft));  |J_t| <= friction J, against the slip of the surfaces
+    # One Gauss-Seidel iteration over contacts as they were looked at. pushes: what overlaps is pushed apart, with that
+    # softness; with the impulses of the other iteration of a small step the next one starts. is_last: whether the step
+    # ends with it; what would meet in the first small step of the next one, and bounce there, is not slowed before.
+    # J = max(0, (J - (u + b) m) / (1 + soft));  |J_t| <= friction J, against the slip of the surfaces
     row, end, motion = work.constraint, work.end, work.motion
     rate = 1.0 / small
     hardness = 1.0 / (1.0 + softness)
+    displaced = False
     for c in range(first, last):
+        if displaced:
+            _look(work, c, c + 1)
         i = unsigned(c)
         p = unsigned(end[i, 0])
         q = unsigned(end[i, 1])
-        nx, ny = row[i, NX], row[i, NY]
         ux, uy = motion[p, VX] - motion[q, VX], motion[p, VY] - motion[q, VY]
-        wx = row[i, APART_X] + (motion[p, WX] - motion[q, WX])
-        wy = row[i, APART_Y] + (motion[p, WY] - motion[q, WY])
         late = 0.0
         if row[i, WAY] == COMING:
-            late = _time_until(wx, wy, ux, uy, -row[i, GAP]) if pushes else math.inf
-            if not late < small:
+            late = _meet(work, i, p, q, small) if pushes else math.inf
+            if late == math.inf:
                 continue
-            _meet(work, i, wx + late * ux, wy + late * uy, ux, uy)
-            nx, ny = row[i, NX], row[i, NY]
-        gap = row[i, GAP] + nx * wx + ny * wy
+            displaced = displaced or late > 0.0
+        nx, ny, gap = row[i, NX], row[i, NY], row[i, GAP]
         along = nx * ux + ny * uy
         old = row[i, ALONG]
         bounce = row[i, BOUNCE]
-        bias, soft = _bias(bounce, gap, rate, softness, pushes)
-        # What does not meet by any normal does not meet.
+        bias, hard = _bias(bounce, gap, rate, hardness, pushes)
         if old == 0.0 and along + bias >= 0.0:
             continue
-        arm = row[i, ARM]
-        if row[i, WAY] == FOLLOWS and late == 0.0:
-            if abs(nx * wy - ny * wx) > -ALONG_CENTRES * row[i, GAP]:
-                nx, ny, gap = _follow(row, i, wx, wy)
-                along = nx * ux + ny * uy
-                bias, soft = _bias(bounce, gap, rate, softness, pushes)
-            arm = 1.0 + gap * row[i, PER_REACH]
         if is_last and not bounce >= 0.0 and gap > 0.0 and row[i, RESTITUTION] > 0.0 and along < -SLOWEST_BOUNCE:
             continue
-        change = (along + bias) * row[i, MASS]
-        if soft > 0.0:
-            change = (change + soft * old) * hardness
-        new = max(0.0, old - change)
+        arm = row[i, ARM]
+        mass = row[i, MASS] * hard
+        new = max(0.0, (old * hard - bias * mass) - along * mass)
         most = row[i, FRICTION] * new
         held = row[i, ACROSS]
         slip = nx * uy - ny * ux - arm * (motion[p, SURFACE] + motion[q, SURFACE])
@@ -416,7 +428,6 @@ def _iterate(work: Work, first: int, last: int, small: float, softness: float, p
         row[i, ACROSS] = across
         _apply(work, i, nx, ny, new - old, across - held, arm, late, not pushes and new > 0.0)
         if not pushes and new > 0.0:
-            row[i, ARM] = arm
             _push(work, i, nx, ny, new, across, arm)
 
 
@@ -428,9 +439,10 @@ def _energy(work: Work, begin: int, end: int, gained: float) -> float:
         if work.weight[k] > 0.0:
             vx = work.motion[k, VX] + gained * work.gain[k, 0]
             vy = work.motion[k, VY] + gained * work.gain[k, 1]
-            total += 0.5 * (vx * vx + vy * vy) / work.weight[k]
+            squared = vx * vx + vy * vy
             if work.turning[k] > 0.0:
-                total += 0.5 * work.motion[k, SURFACE] * work.motion[k, SURFACE] / work.turning[k]
+                squared += work.motion[k, SURFACE] * work.motion[k, SURFACE] / SURFACE_WEIGHT
+            total += 0.5 * squared / work.weight[k]
     return total
 
 
@@ -521,18 +533,21 @@ def _take_small_steps(work: Work, first: int, last: int, begin: int, end: int, h
     small = h / count
     scale = 1.0 / count
     _begin(work, first, last, scale)
+    _look(work, first, last)
     for step in range(count):
         # The impulses of the last small step start this one.
         for k in range(begin, end):
-            for axis in range(2):
-                motion[k, VX + axis] += work.gain[k, axis] * scale + motion[k, PUSHED_X + axis]
-                motion[k, PUSHED_X + axis] = 0.0
-            motion[k, SURFACE] += motion[k, PUSHED_SURFACE]
-            motion[k, PUSHED_SURFACE] = 0.0
+            if work.weight[k] > 0.0:
+                for axis in range(2):
+                    motion[k, VX + axis] += work.gain[k, axis] * scale + motion[k, PUSHED_X + axis]
+                    motion[k, PUSHED_X + axis] = 0.0
+                motion[k, SURFACE] += motion[k, PUSHED_SURFACE]
+                motion[k, PUSHED_SURFACE] = 0.0
         _iterate(work, first, last, small, softness, True, False)
         for k in range(begin, end):
             motion[k, WX] += small * motion[k, VX]
             motion[k, WY] += small * motion[k, VY]
+        _look(work, first, last)
         _iterate(work, first, last, small, 0.0, False, step == count - 1)
     return count
 

@@ -64,8 +64,10 @@ def find_islands(contacts: Contacts, count: int, inverse_mass: Floats, held: Fla
         for end in range(3):
             p, _ = weight_of(contacts, c, end)
             if p >= 0 and inverse_mass[p] > 0.0:
+                # All that move have the same.
                 islands.contact_label[c] = label[p]
                 islands.bound[c] = islands.is_bound[label[p]]
+                break
         if islands.bound[c]:
             bound += 1
     return bound
@@ -81,12 +83,15 @@ def sort_free_contacts(count: int, islands: Islands) -> int:
         if not islands.bound[c]:
             at[islands.contact_label[c] + 1] += 1
     found = 0
+    total = 0
     for p in range(at.shape[0] - 1):
-        if at[p + 1] > 0:
-            islands.first[found] = at[p]
+        more = at[p + 1]
+        if more > 0:
+            islands.first[found] = total
             found += 1
-        at[p + 1] += at[p]
-    islands.first[found] = at[at.shape[0] - 1]
+        total += more
+        at[p + 1] = total
+    islands.first[found] = total
     for c in range(count):
         if not islands.bound[c]:
             label = islands.contact_label[c]
