@@ -2,7 +2,8 @@
 
 Contacts push a particle out where it is nearest, and so hold a body that has gone through another just there. Seen are
 edges that cross, found in the grid of the broad phase, and shapes of which one lies in the other. What is pressed
-together crosses nowhere, so nothing more is looked at where nothing overlaps.
+together crosses nowhere, so nothing more is looked at where nothing overlaps. Lines that cross lines are seen as well:
+a particle that is caught in a mesh narrower than itself must not hold it open.
 """
 
 from typing import NamedTuple
@@ -16,8 +17,8 @@ from sandbox.physics.collision.types import Colliders, Flags, KeptContacts
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import Floats, Slots
 
-# Outlines of solid bodies that overlap deeper than this many radii of a particle part; from there on contacts do it.
-# Less takes contacts from what is only pressed together, more leaves what has been pushed through.
+# Outlines of solid bodies that overlap deeper than this many radii of a particle part, until nothing crosses. Less
+# takes contacts from what is only pressed together, more leaves what has been pushed through.
 DEEP = 1.0
 # By this share of a radius two outlines are taken apart before they are compared, so that ones that lie exactly on each
 # other cross.

@@ -1,9 +1,9 @@
 """Parting: bodies whose outlines have come to overlap come apart, whoever pushed them, and keep their form.
 
 Both are moved as wholes, away from what they share, while contacts between them are left out (overlaps.py): nothing
-holds them, so their springs restore them, and from one radius on contacts end it. A line that crosses a solid body, a
-rope or a cloth, is moved where it crosses alone. Nothing is kept from step to step but what it is paid with: energy
-that the two have lost before.
+holds them, so their springs restore them, until nothing crosses. A line that crosses a solid body, a rope or a cloth,
+is moved where it crosses alone. Nothing is kept from step to step but contacts, of which what parts has none, and what
+it is paid with: energy that the two have lost before.
 """
 
 import math
