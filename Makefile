@@ -1,17 +1,21 @@
 # make play: install into .venv and run the app.    make test: install into .venv and run every test.
 # Kernels are compiled before, or each worker would compile all of them.
+# make goldens: run the kept recordings whole, bit for bit; minutes. make goldens-anew: record them anew, which only a
+# change of what a tick computes is a reason to.
 # make abuse: what stirring, throwing and driving does to things, in figures; hours.
 # make soak: random mouse and keyboard at the app for minutes, and a while in a window on a virtual screen.
 # make pictures: draw the gallery's pictures of shipped levels anew, after one was changed, and those of docs/.
 PYTHON ?= python3
 VENV := .venv
-BIN := $(VENV)/bin
+BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 WORKERS ?= 2
 
-.PHONY: play test lint pictures bench abuse soak clean
+.PHONY: play install test lint goldens goldens-anew pictures bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
+
+install: $(VENV)/installed-dev
 
 test: $(VENV)/installed-dev
 	-$(BIN)/sandbox prepare
@@ -22,6 +26,14 @@ lint: $(VENV)/installed-dev
 	$(BIN)/ruff format --check sandbox tests examples
 	$(BIN)/mypy
 	$(BIN)/mypy --strict --follow-imports=silent examples
+
+goldens: $(VENV)/installed-dev
+	-$(BIN)/sandbox prepare
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal tests/determinism/goldens
+
+goldens-anew: $(VENV)/installed-dev
+	-$(BIN)/sandbox prepare
+	$(BIN)/python -m tests.determinism.make_goldens --processes $(WORKERS)
 
 pictures: $(VENV)/installed-dev
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.picture_cache

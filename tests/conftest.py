@@ -4,7 +4,6 @@ import ctypes
 import gc
 import sys
 from contextlib import suppress
-from weakref import WeakKeyDictionary
 
 import pytest
 
@@ -17,6 +16,8 @@ with suppress(ImportError):
 TOPOLOGY = [column.name for column in COLUMNS if column.topology]
 # Looks at one world that are made one after another, and ticks between two of them after that.
 FIRST_LOOKS, LATER = 10, 16
+# Where a world keeps how often it was looked at, and the version, arrays and tick that it was last seen with.
+SEEN = "_seen_by_tests"
 # Of a process that runs tests [bytes].
 MOST_MEMORY = 1.0e9
 # So much more memory [bytes] than after the last search for garbage is worth another.
@@ -58,18 +59,23 @@ def pytest_collection_finish():
 @pytest.fixture(autouse=True, scope="session")
 def nothing_is_derived_from_a_topology_that_was_changed_behind_a_worlds_back():
     """What a world keeps derived is made for the topology that it has: nobody writes those arrays but its methods."""
-    seen, looks, derived = WeakKeyDictionary(), WeakKeyDictionary(), World.derived
+    derived = World.derived
 
     def checked(world, make):
-        looks[world] = looks.get(world, 0) + 1
-        if looks[world] <= FIRST_LOOKS or world.tick % LATER == 0:
-            version, arrays = seen.get(world, (-1, ()))
-            present = [getattr(world, name).tobytes() for name in TOPOLOGY]
-            if version == world.topology_version:
-                changed = [name for name, now, then in zip(TOPOLOGY, present, arrays, strict=True) if now != then]
-                assert not changed, f"{', '.join(changed)} written in place: use World.change"
-            seen[world] = world.topology_version, present
+        seen = world.__dict__.get(SEEN)
+        if seen is None or seen[0] < FIRST_LOOKS:
+            look(world, *(seen or (0, -1, ())))
+        elif world.tick % LATER == 0 and world.tick != seen[3]:
+            look(world, *seen)
         return derived(world, make)
+
+    def look(world, looks, version, arrays, _=0):
+        # Kept on the world: every tick asks some ten times, and a weak dictionary would cost more than the answers.
+        present = [getattr(world, name).tobytes() for name in TOPOLOGY]
+        if version == world.topology_version:
+            changed = [name for name, now, then in zip(TOPOLOGY, present, arrays, strict=True) if now != then]
+            assert not changed, f"{', '.join(changed)} written in place: use World.change"
+        world.__dict__[SEEN] = looks + 1, world.topology_version, present, world.tick
 
     World.derived = checked
     yield

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.package_copy import copy_of_the_package
+
 ROOT = Path(__file__).resolve().parents[1]
 
 PLAY = """
@@ -122,8 +124,7 @@ TRIANGLE = EditorTool("triangle", "Shift+A", "Triangle", _draw_triangle, Triangl
 @pytest.fixture
 def package(tmp_path):
     """A copy of the package."""
-    shutil.copytree(ROOT / "sandbox", tmp_path / "sandbox", ignore=shutil.ignore_patterns("__pycache__"))
-    return tmp_path / "sandbox"
+    return copy_of_the_package(tmp_path)
 
 
 def put(path, text, before=None):

@@ -40,6 +40,9 @@ class _Work(threading.Thread):
             # A process that has compiled kernels already goes on with them.
             with contextlib.suppress(RuntimeError):
                 jit.start_interpreted()
+            # What numpy's median imports when it is first asked for one, which the first page does.
+            import numpy.ma  # noqa: F401
+
             import sandbox.app.app  # noqa: F401
 
             self.wanted = self._find()

@@ -2,6 +2,8 @@
 
 import argparse
 import json
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +12,10 @@ from sandbox.terminal import Progress, interrupted_between_ticks, seconds
 
 if TYPE_CHECKING:
     from sandbox.level.format.model import Level
+    from sandbox.physics.world import World
+    from sandbox.session.player.report import Watched
     from sandbox.session.replay.difference import ComparedRun, RunDifference
+    from sandbox.session.replay.recording import Replay
     from sandbox.session.replay.verify import Comparison
     from sandbox.session.session import Session
 
@@ -78,6 +83,7 @@ def _json(options: argparse.Namespace, found: "RunDifference") -> dict[str, Any]
 
 def _draw_difference(sides: "tuple[ComparedRun, ComparedRun]", found: "RunDifference", path: Path) -> None:
     from sandbox.session.player.page import PlayerPage
+    from sandbox.session.player.report import command_marks, first_difference_shown, played
 
     ticks = found.ticks
     tick = found.divergence.tick if found.divergence else ticks
@@ -86,15 +92,19 @@ def _draw_difference(sides: "tuple[ComparedRun, ComparedRun]", found: "RunDiffer
     else:
         runs = [side.begin(other) for side, other in (sides, sides[::-1])]
         names = [f"{letter}  {side.name}" for letter, side in zip("AB", sides, strict=True)]
-        page = PlayerPage(f"{sides[0].name} and {sides[1].name}", *_played(names, runs, ticks, tick),
-                    marks=_marks(sides[0].replay or sides[1].replay), difference=_first(found.divergence, runs[0]),
-                    lines=found.lines())  # fmt: skip
+        with _watching(len(runs) * ticks) as watched:
+            page = PlayerPage(
+                f"{sides[0].name} and {sides[1].name}", *played(names, runs, ticks, tick, watched),
+                marks=command_marks(sides[0].replay or sides[1].replay),
+                difference=first_difference_shown(found.divergence, runs[0]), lines=found.lines(),
+            )  # fmt: skip
         page.write(path)
     print(f"{path}: {path.stat().st_size / 1e6:.2f} MB")
 
 
 def _draw_both(sides: "tuple[ComparedRun, ComparedRun]", found: "RunDifference", tick: int, path: Path) -> None:
-    from sandbox.app.share.evidence import Shown, particle_of, write_sides
+    from sandbox.app.share.evidence import Shown, write_sides
+    from sandbox.session.replay.divergence import differing_particle
 
     shown = []
     for letter, side, other, run in zip("AB", sides, sides[::-1], (found.left, found.right), strict=True):
@@ -102,66 +112,42 @@ def _draw_both(sides: "tuple[ComparedRun, ComparedRun]", found: "RunDifference",
         while run.tick < tick:
             run.advance()
         state = run.snapshot()
-        ring = particle_of(found.divergence, state) if found.divergence else None
+        ring = differing_particle(found.divergence, state) if found.divergence else None
         shown.append(Shown(f"{letter}  {side.name}, tick {tick}", side.level, state, ring))
     write_sides(shown, path)
 
 
-def _played(names: "list[str]", runs: "list[Session]", ticks: int, also: int | None) -> "tuple[Any, int, list[Any]]":
-    """The box, the tick rate and the reels of runs that have not begun, or are where they part; they are advanced."""
-    from sandbox.session.player.reel import Reel, gathered, shown_box, steps_between, told_states
+@contextmanager
+def _watching(ticks: int) -> "Iterator[Watched]":
+    """Show how far it is while so many ticks are played in all, and let Ctrl+C end it between two."""
+    with Progress(ticks) as bar, interrupted_between_ticks() as look_up:
 
-    level = runs[0].level
-    box = shown_box(level, runs[0].keyframes(0, runs[0].tick)[0])
-    step = steps_between(ticks, runs[0].world.particle_count, len(runs))
-    with Progress(len(runs) * ticks) as bar, interrupted_between_ticks() as look_up:
-
-        def watched(run: "Session") -> Any:
-            for state in told_states(run, 0, ticks):
+        def watched(states: "Iterable[World]") -> "Iterator[World]":
+            for state in states:
                 yield state
                 bar.update()
                 look_up()
 
-        reels = [gathered(Reel(name, run.level, box), watched(run), step, also)
-                 for name, run in zip(names, runs, strict=True)]  # fmt: skip
-    return box, level.settings.tick_rate, reels
+        yield watched
 
 
-def _first(divergence: Any, run: "Session") -> tuple[int, int | None] | None:
-    from sandbox.app.share.evidence import particle_of
-
-    return None if divergence is None else (divergence.tick, particle_of(divergence, run.snapshot()))
-
-
-def _marks(replay: Any) -> list[tuple[int, str]]:
-    """The first command of each gesture."""
-    gestures: dict[int, tuple[int, str]] = {}
-    for line in replay.script if replay else ():
-        gestures.setdefault(line.gesture, (line.tick, str(line.record.get("type"))))
-    return list(gestures.values())
-
-
-def write_run(session: "Session", ticks: int, path: Path, name: str, replay: Any) -> str:
+def write_run(session: "Session", ticks: int, path: Path, name: str, replay: "Replay | None") -> str:
     """Write the page that plays one run, which has not begun; what was written."""
     from sandbox.session.player.page import PlayerPage
+    from sandbox.session.player.report import command_marks, played
 
-    page = PlayerPage(name, *_played([name], [session], ticks, None), marks=_marks(replay))
+    with _watching(ticks) as watched:
+        page = PlayerPage(name, *played([name], [session], ticks, watched=watched), marks=command_marks(replay))
     page.write(path)
     return f"{ticks / session.world.settings.tick_rate:g} s, {len(page.reels[0].ticks)} pictures"
 
 
 def write_report(found: "Comparison", path: Path) -> None:
     """Write the page that plays the recorded run beside the one that diverged from it."""
-    from sandbox.session.player.page import PlayerPage
-    from sandbox.session.session import Session
+    from sandbox.session.player.report import report_page
 
-    replay, tick = found.replay, found.divergence.tick
-    runs, names = [Session(replay.level, script=replay.script), found.actual], ["expected", "actual"]
-    first = _first(found.divergence, found.actual)
-    if found.expected is None:
-        names[0] = "as this version steps it; the recorded states are not known"
-    page = PlayerPage(f"{replay.source}: diverged at tick {tick}", *_played(names, runs, replay.ticks, tick),
-                marks=_marks(replay), difference=first, lines=found.lines())  # fmt: skip
+    with _watching(2 * found.replay.ticks) as watched:
+        page = report_page(found, watched)
     page.write(path)
 
 

@@ -110,19 +110,24 @@ def _drawn(config: pytest.Config, found: Comparison, path: Path) -> list[str]:
     """Draw where a run parts, and say where that is."""
     from sandbox.app.share.evidence import write_motion, write_picture
     from sandbox.app.share.kinds import Missing
+    from sandbox.session.player.report import report_page
 
     folder = _output(config)
     name = "-".join(path.relative_to(config.rootpath).parts) if path.is_relative_to(config.rootpath) else path.name
     lines = []
-    for kind, write in (("png", write_picture), ("gif", write_motion)):
-        drawing: Callable[[Comparison, Path], None] = write
+    kinds: list[tuple[str, str, Callable[[Comparison, Path], None]]] = [
+        ("picture", "png", write_picture),
+        ("motion", "gif", write_motion),
+        ("player", "html", lambda found, target: report_page(found).write(target)),
+    ]
+    for what, kind, write in kinds:
         target = folder / f"{name}.{kind}"
         try:
-            drawing(found, target)
+            write(found, target)
         except (Missing, OSError) as error:
-            lines.append(f"{'picture' if kind == 'png' else 'motion'}: {error}")
+            lines.append(f"{what}: {error}")
         else:
-            lines.append(f"{'picture' if kind == 'png' else 'motion'}: {target}")
+            lines.append(f"{what}: {target}")
     return lines
 
 

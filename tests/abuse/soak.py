@@ -7,11 +7,13 @@ found.
 """
 
 import argparse
+import contextlib
 import ctypes
 import gc
 import os
 import random
 import shutil
+import signal
 import sys
 import tempfile
 import time
@@ -242,6 +244,15 @@ def resident() -> int:
         return 0
 
 
+def end_toys(folder: Path) -> None:
+    """End what was opened from files in this folder, and goes on when the app ends."""
+    for said in Path("/proc").glob("[0-9]*/cmdline"):
+        with contextlib.suppress(OSError):
+            words = said.read_bytes().split(b"\0")
+            if b"toy" in words and any(word.startswith(os.fsencode(folder)) for word in words):
+                os.kill(int(said.parent.name), signal.SIGTERM)
+
+
 def soak(seed: int, frames: int, folder: Path, seconds: float | None = None, stretch: int = STRETCH) -> list[str]:
     """Do it; what was found."""
     monkey = Monkey(seed)
@@ -266,6 +277,7 @@ def soak(seed: int, frames: int, folder: Path, seconds: float | None = None, str
     except Exception:
         found.append("\n".join([*monkey.done, traceback.format_exc()]))
     monkey.app.close()
+    end_toys(folder)
     # Whole rounds of all screens, so that the same was open before.
     first = sizes[int(WARM_UP * len(sizes)) :]
     if len(first) > 2 * len(SCREENS) and first[0]:

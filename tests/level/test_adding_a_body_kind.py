@@ -1,14 +1,12 @@
 """A body kind is two new files and a line in two tables: one is added to a copy of the package, and played."""
 
 import os
-import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
-PACKAGE = Path(__file__).resolve().parents[2] / "sandbox"
+from tests.support.package_copy import copy_of_the_package
 
 LEVEL_KIND = '''
 """Ladder: two rows that rungs join."""
@@ -168,11 +166,11 @@ def inserted(path, line, addition):
 @pytest.fixture
 def package(tmp_path):
     """A copy of the package."""
-    return shutil.copytree(PACKAGE, tmp_path / "sandbox", ignore=shutil.ignore_patterns("__pycache__", "_shipped"))
+    return copy_of_the_package(tmp_path)
 
 
 def test_a_body_kind_of_four_files_is_read_played_moved_drawn_and_documented(package):
-    before = {path: path.read_bytes() for path in package.rglob("*") if path.is_file()}
+    before = {path: path.read_bytes() for path in package.rglob("*.py")}
     (package / "level/kinds/ladder.py").write_text(LEVEL_KIND.lstrip(), encoding="utf-8")
     (package / "editor/kinds/ladder.py").write_text(EDITOR_KIND.lstrip(), encoding="utf-8")
     models, editing = package / "level/kinds/bodies.py", package / "editor/kinds/table.py"

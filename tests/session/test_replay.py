@@ -53,6 +53,14 @@ def test_a_recording_of_version_1_is_read_as_the_same_run(recorded, tmp_path):
     assert str(disturbed) == str(verify(version_2, on_tick=_disturbed(137, 7)))
 
 
+def test_a_part_of_a_recording_is_verified_from_a_stored_state_to_a_tick(recorded):
+    replay, seen = read_replay(recorded), []
+    assert verify(replay, start=240, end=260, on_tick=lambda world: seen.append(world.tick)) is None
+    assert seen == list(range(241, 261))
+    assert verify(replay, end=136, on_tick=_disturbed(137, 7)) is None
+    assert verify(replay, end=137, on_tick=_disturbed(137, 7)).tick == 137
+
+
 def _disturbed(tick, slot):
     def disturb(world):
         if world.tick == tick:

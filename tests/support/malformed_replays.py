@@ -98,7 +98,8 @@ def _forged_cases(lines: Lines) -> Iterator[tuple[str, bytes]]:
     for key in ("format", "version", "physics_version", "sandbox_version", "level"):
         yield f"header without {key}", changed(0, lambda line, k=key: line.pop(k))
     for key, value in (("tick", 2), ("tick", -1), ("tick", 3.5), ("tick", True), ("tick", "3"), ("hash", 7),
-                       ("arrays", {"a": "0"}), ("arrays", []), ("arrays", {"position": 3}), ("noise", 0)):  # fmt: skip
+                       ("hash", ""), ("arrays", {"a": "0"}), ("arrays", []), ("arrays", {"position": 3}),
+                       ("noise", 0)):  # fmt: skip
         yield f"tick line {key} {value!r}", changed(tick, lambda line, k=key, v=value: line.__setitem__(k, v))
     for key, value in (("tick", 10**6), ("gesture", -1), ("gesture", 1.5), ("gesture", True), ("command", []),
                        ("command", "undo"), ("surprise", 0)):  # fmt: skip

@@ -135,7 +135,9 @@ def test_a_fault_is_told_by_tick_array_body_particle_and_bits_with_a_picture_and
     values = [float(decimal) for decimal, _ in shown]
     assert values == [float.fromhex(bits) for _, bits in shown]
     assert values[1] == np.nextafter(values[0], np.inf)
-    assert [path.suffix for path in sorted((project.path / "out").iterdir())] == [".gif", ".png"]
+    motion, page, picture = sorted((project.path / "out").iterdir())
+    assert (motion.suffix, page.suffix, picture.suffix) == (".gif", ".html", ".png")
+    assert '"first":23,' in page.read_text() and f"player: {page}" in told
     failure = xml.parse(project.path / "report.xml").find(".//failure")
     assert failure is not None and "body rope, particle 7" in failure.text
 
@@ -156,7 +158,7 @@ def test_without_pillow_there_is_the_picture_alone_and_a_line(project, fault, mo
     result = project("two.replay.gz")
     result.assert_outcomes(failed=1)
     assert 'motion: GIF needs Pillow: pip install "spring-sandbox[export]"' in result.stdout.str()
-    assert [path.suffix for path in (project.path / "out").iterdir()] == [".png"]
+    assert sorted(path.suffix for path in (project.path / "out").iterdir()) == [".html", ".png"]
 
 
 def test_a_stored_state_that_was_changed_and_sealed_anew_is_told(project):

@@ -14,9 +14,8 @@ from sandbox.app.share.kinds import require
 from sandbox.app.widgets.fonts import plain_font
 from sandbox.level.format.model import Level
 from sandbox.physics.snapshot import Snapshot, take
-from sandbox.physics.state import BY_STORED, Family
 from sandbox.session.player.reel import told_states
-from sandbox.session.replay.divergence import Divergence, number_text
+from sandbox.session.replay.divergence import differing_particle, number_text
 from sandbox.session.replay.format import decode_state
 from sandbox.session.replay.verify import Comparison
 from sandbox.session.session import Session
@@ -109,23 +108,10 @@ def write_motion(comparison: Comparison, path: Path) -> None:
         writer.close()
 
 
-def particle_of(divergence: Divergence, state: Snapshot) -> int | None:
-    """The slot of the particle that a divergence is about, or of an end of its spring."""
-    column = BY_STORED.get(divergence.array)
-    if column is None or divergence.index is None:
-        return None
-    slot = int(np.atleast_1d(divergence.index)[0])
-    if column.family is Family.PARTICLE:
-        return slot
-    owners = {Family.SPRING: state.particle_a, Family.CONTACT: state.contact_particle,
-              Family.CORNER: state.corner_particle}.get(column.family)  # fmt: skip
-    return int(owners[slot]) if owners is not None and slot < len(owners) else None
-
-
 def _sides(comparison: Comparison) -> list[Shown]:
     found, actual = comparison.divergence, comparison.actual
     now = actual.snapshot()
-    ring = particle_of(found, now)
+    ring = differing_particle(found, now)
     expected = comparison.expected
     if expected is None:
         got = Shown(f"actual  tick {found.tick}, where {found.array} differs", actual.level, now, ring)
@@ -163,7 +149,7 @@ def _pictures(comparison: Comparison) -> Iterator[pygame.Surface]:
     ticks = [number for number in states[-1][2] if all(number in each for _, _, each in states)]
     stack: Stack | None = None
     for number in ticks:
-        ring = particle_of(comparison.divergence, states[-1][2][number]) if number >= tick else None
+        ring = differing_particle(comparison.divergence, states[-1][2][number]) if number >= tick else None
         shown = [Shown(f"{side}  tick {number}", level, each[number], ring) for side, level, each in states]
         stack = stack or Stack(shown, GIF_SIZE)
         yield stack.draw(shown)

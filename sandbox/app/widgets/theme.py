@@ -4,6 +4,7 @@ import json
 from collections import OrderedDict
 from typing import Any
 
+import i18n
 import pygame
 import pygame_gui
 from pygame_gui.core import gui_font_pygame
@@ -59,6 +60,8 @@ class Manager(pygame_gui.UIManager):
         self._scale = scale
         self._tip: Any = None
         super().__init__(size, enable_live_theme_updates=False)
+        # Each manager adds the library's folder of translations, and every text with a full stop is looked up in all.
+        i18n.load_path.clear()
 
     def create_tool_tip(self, *arguments: Any, **options: Any) -> Any:
         """The only tip; that of a widget in a panel at a side lies beside the panel, not over the next widget."""

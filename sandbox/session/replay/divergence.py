@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.query import slot_name
-from sandbox.physics.snapshot import canonical_bytes
-from sandbox.physics.state import BY_STORED
+from sandbox.physics.snapshot import Snapshot, canonical_bytes
+from sandbox.physics.state import BY_STORED, Family
 from sandbox.physics.world import World
 
 
@@ -80,3 +80,16 @@ def first_difference(tick: int, array: str, wanted: NDArray[Any], world: World) 
     index = place[0] if len(place) == 1 else (place[0], place[1])
     name = slot_name(world, array, place[0])
     return Divergence(tick, array, index, wanted[place].item(), found[place].item(), name)
+
+
+def differing_particle(divergence: Divergence, state: Snapshot) -> int | None:
+    """The slot of the particle that a divergence is about, or of an end of its spring."""
+    column = BY_STORED.get(divergence.array)
+    if column is None or divergence.index is None:
+        return None
+    slot = int(np.atleast_1d(divergence.index)[0])
+    if column.family is Family.PARTICLE:
+        return slot
+    owners = {Family.SPRING: state.particle_a, Family.CONTACT: state.contact_particle,
+              Family.CORNER: state.corner_particle}.get(column.family)  # fmt: skip
+    return int(owners[slot]) if owners is not None and slot < len(owners) else None

@@ -7,7 +7,8 @@
                                                                        also "joined", where bodies joined while it ran
     {"end": true, "tick": 900, "hash": "...", "chain": "..."}
 
-`arrays` holds the first digits of the hash of each array that changed since the line before, null of one that is no
+`hash` and those of `arrays` are the first digits, at a stored state and at the end `hash` is whole. `arrays` holds that
+of each array that changed since the line before, null of one that is no
 longer in use; at a stored state, of all that are in use. `state` holds the arrays that changed since the state stored
 before. chain = blake2b over the previous line's whole digest and this line's bytes up to its own chain, of which a line
 has the first digits.
@@ -40,9 +41,11 @@ from sandbox.session.commands.adding import name_slots_to
 
 FORMAT = "spring-sandbox/replay"
 VERSION = 2
-# Hexadecimal digits of a line's chain, by version; of arrays' hashes a reader compares as many as there are.
+# Hexadecimal digits of a line's chain, by version; of hashes a reader compares as many as there are. That anything
+# differs is said by the hash of the whole state, those of arrays only say which.
 CHAIN_DIGITS = {1: 32, VERSION: 8}
-ARRAY_DIGITS = 8
+TICK_DIGITS = 16
+ARRAY_DIGITS = 6
 # Ticks between two stored states, unless a writer is told otherwise.
 STATE_TICKS = 600
 ARRAY_LIMIT = 64 * 2**20  # [bytes]

@@ -5,9 +5,9 @@ import os
 from collections.abc import Generator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, cast
+from typing import Annotated, Any, cast
 
-from pydantic import field_validator
+from pydantic import Field, field_validator
 
 from sandbox.level.build.plan import Plan, kept_plan
 from sandbox.level.format.files import LevelError, parse_level
@@ -18,7 +18,7 @@ from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import ALWAYS_STORED, BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.replay.format import CHAIN_DIGITS, FORMAT, VERSION, level_digest, unseal
+from sandbox.session.replay.format import CHAIN_DIGITS, FORMAT, TICK_DIGITS, VERSION, level_digest, unseal
 from sandbox.session.replay.line import CommandLine, Digest, Line, Tick, checked, json_object
 from sandbox.session.replay.lines import GZIP_MAGIC, ReplayLines, kind_of
 from sandbox.session.replay.recording import Replay, ReplayError, StoredState, TickHashes
@@ -49,7 +49,7 @@ class _SealedCommand(_Sealed, CommandLine):
 
 class _TickLine(_Sealed):
     tick: Tick
-    hash: Digest
+    hash: Annotated[Digest, Field(min_length=TICK_DIGITS)]
     arrays: dict[str, Digest | None]
 
 

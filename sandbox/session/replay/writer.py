@@ -13,7 +13,7 @@ from sandbox.physics.snapshot import hash_by_array, state_hash
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
-from sandbox.session.replay.format import ARRAY_DIGITS, STATE_TICKS, encode_state, header, seal
+from sandbox.session.replay.format import ARRAY_DIGITS, STATE_TICKS, TICK_DIGITS, encode_state, header, seal
 
 # Ticks after which what is compressed reaches the file: a second of the usual rate.
 FLUSH_TICKS = 60
@@ -64,7 +64,8 @@ class Recorder:
         told = hashes if storing else [name for name in BY_STORED if hashes.get(name) != before.get(name)]
         arrays = {name: hashes[name][:ARRAY_DIGITS] if name in hashes else None for name in told}
         self._hashes = hashes
-        self._write({"tick": world.tick, "hash": state_hash(world, hashes), "arrays": arrays})
+        whole = state_hash(world, hashes)
+        self._write({"tick": world.tick, "hash": whole if storing else whole[:TICK_DIGITS], "arrays": arrays})
         self._is_storable = not storing
         if storing:
             self._write_state(world, hashes)

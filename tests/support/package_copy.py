@@ -1,0 +1,12 @@
+"""A copy of the package, to be changed and imported by processes of its own."""
+
+import shutil
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parents[2] / "sandbox"
+
+
+def copy_of_the_package(folder: Path) -> Path:
+    """The package in a folder, without compiled kernels; with byte code, or each process would compile every module."""
+    unwanted = shutil.ignore_patterns("kernels", "_shipped", "*.pyc.*")
+    return Path(shutil.copytree(PACKAGE, folder / "sandbox", ignore=unwanted))
