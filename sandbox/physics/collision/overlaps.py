@@ -146,7 +146,8 @@ def find_crossings(
     cells = grid.cells
     particles = boxes.filter.shape[0]
     buckets = grid.start.shape[0] - 1
-    for e in range(outline.dynamic[0]):
+    # Of a world of lines alone, a rope bridge and a car, this would be a third of a tick.
+    for e in range(outline.dynamic[0] if outline.dynamic[1] > 0 else 0):
         k = particles + e
         if not boxes.is_target[k]:
             continue
@@ -349,6 +350,8 @@ def pair_overlaps(
     Contacts between those that part are left out of the step: see `may_collide`. kept: the contacts of the last step.
     """
     found.counts[OVERLAPS] = 0
+    if outline.dynamic[1] == 0:
+        return 0
     for p in range(colliders.parting.shape[0]):
         colliders.parting[p] = False
     for s in range(found.first_pair.shape[0]):
