@@ -30,14 +30,18 @@ class NothingFree(Exception):
 
 
 def overlapping(world: World) -> list[tuple[int, int]]:
-    """The pairs of bodies that lay in each other in the last step, by a particle of each; twice the same: in itself."""
+    """The pairs of bodies that lay in each other in the last step, by a particle of each; twice the same: in itself.
+
+    Lines that cross lines do not count.
+    """
     collisions = collisions_of(world)
     if collisions is None:
         return []
     outline, colliders = collisions.outline, collisions.colliders
-    shapes = colliders.parted[: colliders.parted_count[0]]
+    shapes = colliders.parted[: colliders.parted_count[0], :2]
     first = outline.member[outline.member_start[:-1]]
-    return [(int(first[s]), int(first[t])) for s, t in shapes.tolist()]
+    is_solid = outline.solid_of >= 0
+    return [(int(first[s]), int(first[t])) for s, t in shapes.tolist() if is_solid[s] or is_solid[t]]
 
 
 def body_of(world: World, particle: int) -> Slots:

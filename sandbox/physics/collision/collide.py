@@ -150,7 +150,9 @@ def _find_overlaps(outline: Outline, colliders: Colliders, room: CollisionRoom, 
     room.counts[CROSSED] = find_crossings(room.boxes, room.grid, larges, colliders, outline, overlaps)
     if overlaps.counts[CROSSINGS] > overlaps.edge.shape[0]:
         return False
-    room.counts[OVERLAPPING] = pair_overlaps(colliders, outline, room.bounds, overlaps)
+    room.counts[OVERLAPPING] = pair_overlaps(
+        colliders, outline, room.bounds, room.kept, room.counts[KEPT], overlaps
+    )  # fmt: skip
     return room.counts[OVERLAPPING] <= overlaps.shape.shape[0]
 
 
@@ -434,7 +436,7 @@ def _grow(collisions: Collisions) -> None:
     old = collisions.room
     collisions.wanted = np.maximum(collisions.wanted, old.counts[:DONE])
     collisions.room = _make_room(collisions.outline, collisions.triangles, collisions.wanted)
-    parted = np.zeros_like(collisions.room.overlaps.shape)
+    parted = np.zeros((len(collisions.room.overlaps.shape), 3), np.int64)
     collisions.colliders = collisions.colliders._replace(parted=parted)
     collisions.room.counts[:] = old.counts
     count = len(old.kept.particle)

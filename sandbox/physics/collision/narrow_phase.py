@@ -25,12 +25,12 @@ DISC, EDGE, TERRAIN = 0, 1, 2
 
 @inner_kernel
 def are_parting(p: int, v: int, colliders: Colliders) -> bool:
-    """Whether the shapes of two vertices part in this step (overlaps.py)."""
+    """Whether two vertices give way to each other in this step, as their shapes part (overlaps.py)."""
     s = min(colliders.shape[p], colliders.shape[v])
     t = max(colliders.shape[p], colliders.shape[v])
     for pair in range(colliders.parted_count[0]):
         if colliders.parted[pair, 0] == s and colliders.parted[pair, 1] == t:
-            return True
+            return colliders.parting[p] + colliders.parting[v] >= colliders.parted[pair, 2]
     return False
 
 
@@ -40,7 +40,7 @@ def may_collide(p: int, v: int, colliders: Colliders) -> bool:
     return (
         colliders.collides[p] & colliders.group[v] != 0
         and colliders.collides[v] & colliders.group[p] != 0
-        and not (colliders.parting[p] and colliders.parting[v] and are_parting(p, v, colliders))
+        and not ((colliders.parting[p] or colliders.parting[v]) and are_parting(p, v, colliders))
     )
 
 

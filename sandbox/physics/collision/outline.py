@@ -21,7 +21,8 @@ class Outline(NamedTuple):
     that a spring or a constraint holds. solid (k, 2): first edge and one past the last of each owner's edges where any
     is solid, terrain's last. dynamic (2,): edges of bodies, and how many of those in solid are bodies'. Shapes are the
     owners of edges of bodies, in the order of their edges: shape, by vertex, -1: none; solid_of = by shape, the row of
-    solid, -1: lines alone; particles of shape s: member[member_start[s]:member_start[s + 1]].
+    solid, -1: lines alone; particles of shape s: member[member_start[s]:member_start[s + 1]]. spring_end: one particle
+    of each spring.
     """
 
     edge_a: Slots
@@ -41,6 +42,7 @@ class Outline(NamedTuple):
     solid_of: Slots
     member_start: Slots
     member: Slots
+    spring_end: Slots
 
 
 def outline_of(world: World) -> Outline:
@@ -80,6 +82,7 @@ def _make_outline(world: World) -> Outline:
         held,
         np.array([len(chosen), np.count_nonzero(solid[:, 0] < len(chosen))]),
         *_shapes(world, owner, a, solid),
+        world.particle_a.astype(np.int64),
     )
 
 
@@ -149,5 +152,5 @@ def colliders_of(world: World, outline: Outline, pairs: int) -> Colliders:
         position, velocity, origin, radius, friction, restitution, outline.owner, group, collides, inverse_mass,
         turning, rolling, outline.edge_a, outline.edge_b, outline.side, outline.number, outline.edge_start,
         outline.edge_of, outline.near_start, outline.near_of, outline.shielded, np.zeros(total, np.bool_),
-        outline.shape, np.zeros(total, np.bool_), np.zeros((pairs, 2), np.int64), np.zeros(1, np.int64),
+        outline.shape, np.zeros(total, np.bool_), np.zeros((pairs, 3), np.int64), np.zeros(1, np.int64),
     )  # fmt: skip

@@ -2,7 +2,8 @@
 
 Contacts push a particle out where it is nearest, and so hold a body that has gone through another just there. Seen are
 edges that cross, found in the grid of the broad phase, and shapes of which one lies in the other. What is pressed
-together crosses nowhere, so nothing more is looked at where nothing overlaps.
+together crosses nowhere, so nothing more is looked at where nothing overlaps. Lines that cross lines are seen as well:
+a particle that is caught in a mesh narrower than itself must not hold it open.
 """
 
 from typing import NamedTuple
@@ -10,14 +11,14 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.broad_phase import Boxes, Grid, bucket_of, cell_number, overlap
-from sandbox.physics.collision.narrow_phase import closest, may_collide, winds
+from sandbox.physics.collision.narrow_phase import DISC, TERRAIN, closest, may_collide, winds
 from sandbox.physics.collision.outline import Outline
-from sandbox.physics.collision.types import Colliders, Flags
+from sandbox.physics.collision.types import Colliders, Flags, KeptContacts
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import Floats, Slots
 
-# Outlines of solid bodies that overlap deeper than this many radii of a particle part; from there on contacts do it.
-# Less takes contacts from what is only pressed together, more leaves what has been pushed through.
+# Outlines of solid bodies that overlap deeper than this many radii of a particle part, until nothing crosses. Less
+# takes contacts from what is only pressed together, more leaves what has been pushed through.
 DEEP = 1.0
 # By this share of a radius two outlines are taken apart before they are compared, so that ones that lie exactly on each
 # other cross.
@@ -61,9 +62,8 @@ def _side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> f
 
 
 @inner_kernel
-def _cross(e: int, f: int, apart: float, colliders: Colliders) -> tuple[float, float]:
+def _cross(e: int, f: int, apart: float, position: Floats, colliders: Colliders) -> tuple[float, float]:
     # Where edge e crosses edge f, which is looked at a little apart: the shares along both; -1: nowhere.
-    position = colliders.position
     a = colliders.edge_a[e]
     b = colliders.edge_b[e]
     c = colliders.edge_a[f]
@@ -98,7 +98,7 @@ def _note_crossing(e: int, f: int, colliders: Colliders, outline: Outline, found
     t = colliders.shape[c]
     solid_s = outline.solid_of[s] >= 0
     solid_t = outline.solid_of[t] >= 0
-    if not (solid_s or solid_t) or (solid_s and colliders.side[e] == 0) or (solid_t and colliders.side[f] == 0):
+    if (solid_s and colliders.side[e] == 0) or (solid_t and colliders.side[f] == 0):
         return count
     if not may_collide(a, c, colliders):
         return count
@@ -107,9 +107,14 @@ def _note_crossing(e: int, f: int, colliders: Colliders, outline: Outline, found
         apart = colliders.radius[c]
     elif a == c or a == colliders.edge_b[f] or colliders.edge_b[e] == c or colliders.edge_b[e] == colliders.edge_b[f]:
         return count
-    along_e, along_f = _cross(e, f, apart, colliders)
+    along_e, along_f = _cross(e, f, apart, colliders.position, colliders)
     if along_e < 0.0:
         return count
+    if s == t and not solid_s:
+        # A mesh may be made of lines that cross.
+        made_so, _ = _cross(e, f, apart, colliders.origin, colliders)
+        if made_so >= 0.0:
+            return count
     if count < found.edge.shape[0]:
         found.edge[count, 0] = e
         found.edge[count, 1] = f
@@ -141,7 +146,7 @@ def find_crossings(
     cells = grid.cells
     particles = boxes.filter.shape[0]
     buckets = grid.start.shape[0] - 1
-    # Lines alone cross as they like.
+    # Of a world of lines alone, a rope bridge and a car, this would be a third of a tick.
     for e in range(outline.dynamic[0] if outline.dynamic[1] > 0 else 0):
         k = particles + e
         if not boxes.is_target[k]:
@@ -309,8 +314,9 @@ def give_way(pair: int, colliders: Colliders, outline: Outline, bounds: Floats, 
         other = outline.solid_of[found.shape[pair, 1 - side]]
         for i in range(outline.member_start[s], outline.member_start[s + 1]):
             p = outline.member[i]
-            if outline.solid_of[s] >= 0 or _is_in(
-                colliders.position[p, 0], colliders.position[p, 1], other, outline, bounds, colliders
+            if outline.solid_of[s] >= 0 or (
+                other >= 0
+                and _is_in(colliders.position[p, 0], colliders.position[p, 1], other, outline, bounds, colliders)
             ):
                 flags[p] = True
         if outline.solid_of[s] < 0:
@@ -322,10 +328,26 @@ def give_way(pair: int, colliders: Colliders, outline: Outline, bounds: Floats, 
 
 
 @inner_kernel
-def pair_overlaps(colliders: Colliders, outline: Outline, bounds: Floats, found: Overlaps) -> int:
+def _touched(s: int, t: int, colliders: Colliders, outline: Outline, kept: KeptContacts, kept_count: int) -> bool:
+    # Whether two shapes touched in the last step.
+    for c in range(kept_count):
+        k = colliders.shape[kept.particle[c]]
+        kind = kept.feature[c] % 3
+        if k in (s, t) and kind != TERRAIN:
+            number = kept.feature[c] // 3
+            other = colliders.shape[number if kind == DISC else outline.spring_end[number]]
+            if (k == s and other == t) or (k == t and other == s):
+                return True
+    return False
+
+
+@inner_kernel
+def pair_overlaps(
+    colliders: Colliders, outline: Outline, bounds: Floats, kept: KeptContacts, kept_count: int, found: Overlaps
+) -> int:
     """Sort the crossings by pairs of shapes, and decide which part; the number of pairs, counted on without room.
 
-    Contacts between those that part are left out of the step: see `may_collide`.
+    Contacts between those that part are left out of the step: see `may_collide`. kept: the contacts of the last step.
     """
     found.counts[OVERLAPS] = 0
     if outline.dynamic[1] == 0:
@@ -355,11 +377,17 @@ def pair_overlaps(colliders: Colliders, outline: Outline, bounds: Floats, found:
             found.parts[at] = _is_inside_deep(s, t, outline, bounds, colliders) or _is_inside_deep(
                 t, s, outline, bounds, colliders
             )
+        # What parts goes on until nothing crosses: contacts that hold what they are to push out would take it back.
+        if not found.parts[at] and kept_count > 0:
+            found.parts[at] = not _touched(s, t, colliders, outline, kept, kept_count)
     # Only now, as nobody may be left out while others are looked at.
     for at in range(pairs):
         if found.parts[at]:
             colliders.parted[colliders.parted_count[0], 0] = found.shape[at, 0]
             colliders.parted[colliders.parted_count[0], 1] = found.shape[at, 1]
+            # A line that is caught in another, or in itself, is let go whatever else of that would hold it.
+            alone = outline.solid_of[found.shape[at, 0]] < 0 and outline.solid_of[found.shape[at, 1]] < 0
+            colliders.parted[colliders.parted_count[0], 2] = 1 if alone else 2
             colliders.parted_count[0] += 1
             give_way(at, colliders, outline, bounds, found, colliders.parting)
     return pairs

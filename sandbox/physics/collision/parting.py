@@ -1,9 +1,9 @@
 """Parting: bodies whose outlines have come to overlap come apart, whoever pushed them, and keep their form.
 
 Both are moved as wholes, away from what they share, while contacts between them are left out (overlaps.py): nothing
-holds them, so their springs restore them, and from one radius on contacts end it. A line that crosses a solid body, a
-rope or a cloth, is moved where it crosses alone. Nothing is kept from step to step but what it is paid with: energy
-that the two have lost before.
+holds them, so their springs restore them, until nothing crosses. A line that crosses a solid body, a rope or a cloth,
+is moved where it crosses alone. Nothing is kept from step to step but contacts, of which what parts has none, and what
+it is paid with: energy that the two have lost before.
 """
 
 import math
@@ -285,12 +285,14 @@ def part_overlaps(
 ) -> None:
     """Push apart the pairs that part, in their order. flags (n,): scratch."""
     for pair in range(found.counts[OVERLAPS]):
-        # What has come through itself its own springs restore.
-        if not found.parts[pair] or found.shape[pair, 0] == found.shape[pair, 1]:
+        # What has come through itself its own springs restore; lines cross lines as they like.
+        s = found.shape[pair, 0]
+        t = found.shape[pair, 1]
+        if not found.parts[pair] or s == t or (outline.solid_of[s] < 0 and outline.solid_of[t] < 0):
             continue
         for side in range(2):
-            s = found.shape[pair, side]
-            for i in range(outline.member_start[s], outline.member_start[s + 1]):
+            k = found.shape[pair, side]
+            for i in range(outline.member_start[k], outline.member_start[k + 1]):
                 flags[outline.member[i]] = False
         give_way(pair, colliders, outline, bounds, found, flags)
         _part(pair, outline, colliders, particles, found, flags)
