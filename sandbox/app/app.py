@@ -22,6 +22,7 @@ from sandbox.app.help import show_help
 from sandbox.app.idle import IdleCollector
 from sandbox.app.input import Input
 from sandbox.app.loop import FRAME_RATE
+from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.status import NOTICES, Notice, StatusLine, draw_bar, draw_spinner
@@ -186,6 +187,7 @@ class App:
         """Choose a level or a recording; query: what is searched."""
         self.close_gallery()
         self._describe("")
+        self.status.take_back(LEFT_VIEW)
         self.gallery = Gallery(self.ui, self, section, self.close_gallery, query)
 
     def close_gallery(self) -> None:
@@ -236,11 +238,16 @@ class App:
             return
         level, source = play.playback.level, play.source
         if isinstance(play, CompareScreen):
-            self.start(Playback(level), source)
+            back = play.single or Playback(level)
+            # Kernels may have come about meanwhile.
+            back.session.world.drop_caches()
+            self.start(back, source)
         elif play.of_document:
             self.say("Save the level and open it from its file to play it twice: this run belongs to the editor.")
         else:
-            self.show_screen(CompareScreen(self, TwinPlayback(level), TwinPlayback(level), source))
+            pair = CompareScreen(self, TwinPlayback(level), TwinPlayback(level), source)
+            pair.single = play.playback
+            self.show_screen(pair)
 
     @property
     def actions(self) -> dict[str, Callable[[], object]]:

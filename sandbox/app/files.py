@@ -1,6 +1,7 @@
 """FileActions: opening levels and replays, recording, saving."""
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 from sandbox.app.application import Application
@@ -117,11 +118,10 @@ class FileActions:
         play = self.app.play
         if play is None:
             return
-        session = play.playback.session
-        if session.recording is not None:
+        if play.playback.session.recording is not None:
             self._stop_and_name()
             return
-        path = self._record_now()
+        path = self._write(play.playback.record_to)
         if path is not None:
             self.app.say(_recording(path))
 
@@ -130,27 +130,30 @@ class FileActions:
         play = self.app.play
         if play is None:
             return
-        if play.playback.session.recording is None and self._record_now() is None:
+        if play.playback.session.recording is not None:
+            self._stop_and_name()
             return
-        self._stop_and_name()
+        path = self._write(play.playback.save_to)
+        if path is not None:
+            self._name(path)
 
-    def _record_now(self) -> Path | None:
+    def _write(self, write: Callable[[Path], Path | None]) -> Path | None:
+        """Write a new file for the run's recording; its path, None where that cannot be."""
         assert self.app.play is not None
-        playback = self.app.play.playback
         try:
-            path = free_path(recordings_folder(), plain_name(playback.level.name))
-            playback.session.record_to(path)
+            return write(free_path(recordings_folder(), plain_name(self.app.play.playback.level.name)))
         except (OSError, ValueError) as error:
             self.app.say(f"Recording cannot start: {error}.")
             return None
-        return path
 
     def _stop_and_name(self) -> None:
         assert self.app.play is not None
         path = self.app.play.playback.stop_recording()
-        if path is None:
-            return
-        self.app.take_back(_recording(path))
+        if path is not None:
+            self.app.take_back(_recording(path))
+            self._name(path)
+
+    def _name(self, path: Path) -> None:
         self.app.say(_saved(path))
         suggestion = path.name.removesuffix(SUFFIX)
         ask(

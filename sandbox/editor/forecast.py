@@ -50,7 +50,7 @@ class Forecast:
         self.position: Floats | None = None
         self.at_rest: bool | None = None
         self.falling: Selection = frozenset()
-        self._trouble = ""
+        self._trouble, self._level = "", level
         self._work = self._run(level)
 
     @property
@@ -61,7 +61,8 @@ class Forecast:
         if not self.at_rest:
             return self._trouble
         if len(self.falling) == 1:
-            return f"Shown is where it hangs at rest; {called(*self.falling)} falls away, because nothing holds it"
+            subject = called(self._level, *self.falling)
+            return f"Shown is where it hangs at rest; {subject} falls away, because nothing holds it"
         if self.falling:
             return f"Shown is where it hangs at rest; {len(self.falling)} items fall away, because nothing holds them"
         return "Shown is where it hangs at rest"
@@ -87,7 +88,7 @@ class Forecast:
             return
         driven = next(driven_items(scene), None)
         if driven is not None:
-            self._trouble = f"{called(driven)} is driven, and never comes to rest; play it to see"
+            self._trouble = f"{called(level, driven)} is driven, and never comes to rest; play it to see"
             self.at_rest = False
             return
         if moving > LARGEST:

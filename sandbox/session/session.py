@@ -244,24 +244,44 @@ class Session:
         state_ticks: from one stored state to the next; from each the recording can be verified, and each takes room.
         Overwrites the file. Raises OSError where it cannot be written, ValueError for a run that began in the middle.
         """
+        self.stop_recording()
+        twin = self._recorded(path, state_ticks)
+        self._drop_future()
+        self._recorder = twin._recorder
+
+    def save_to(self, path: Path) -> Path | None:
+        """Write the run up to the present tick as a recording of its own; this run stays as it is, what follows too.
+
+        Its file, or None where its end cannot be written. Overwrites the file. Raises as `record_to` does.
+        """
+        twin = self._recorded(path, STATE_TICKS)
+        saved = twin.stop_recording()
+        self.messages.extend(twin.messages)
+        return saved
+
+    def _recorded(self, path: Path, state_ticks: int) -> "Session":
+        """A run of its own that did all that was done until now, with the recording that it is still making of that."""
         if self._keyframes.first.tick > 0:
             raise ValueError("only a run from the level's start can be recorded")
-        self.stop_recording()
         twin = Session(self.level)
         twin._recorder = Recorder(path, self.level, twin.world, state_ticks)
-        self._drop_future()
         try:
-            for entry in self._log:
-                if entry.implied:
-                    continue
+            for entry in self._until_now():
                 self._catch_up(twin, entry.tick)
                 twin._apply(entry.command, entry.gesture)
             self._catch_up(twin, self.tick)
         except BaseException:
             twin.abandon_recording()
             raise
-        self._recorder = twin._recorder
         self.messages.extend(twin.messages)
+        twin.messages.clear()
+        return twin
+
+    def _until_now(self) -> list[LogEntry]:
+        """The commands that lead from the level's start to the present tick; in the past without what is undone."""
+        if self.tick == self._last_tick:
+            return [entry for entry in self._log if not entry.implied]
+        return [entry for entry in self._timeline if entry.tick <= self.tick and entry.in_effect]
 
     def _catch_up(self, twin: "Session", tick: int) -> None:
         while twin.tick < tick:
@@ -430,7 +450,7 @@ class Session:
         if self.tick == self._last_tick:
             return
         self._keep_branch(self.tick)
-        self._go_by([entry for entry in self._timeline if entry.tick <= self.tick and entry.in_effect], self.tick)
+        self._go_by(self._until_now(), self.tick)
         self._keyframes.drop_beyond(self.tick)
         self._forget_breaks(self.tick)
 

@@ -39,9 +39,14 @@ class DropTool:
             return NOTHING
         velocity = self._thrown(event)
         self._pressed_at = None
-        command = self.part.make(self.size, event.position, velocity, COLOURS[self.count % len(COLOURS)])
+        command = self.part.make(self.size, event.position, velocity, self.colour)
         self.count += 1
         return Response((Submission(command, self._new_gesture()),))
+
+    @property
+    def colour(self) -> str:
+        """The colour of what is dropped next."""
+        return COLOURS[self.count % len(COLOURS)]
 
     def _thrown(self, event: PointerEvent) -> Point:
         """The velocity [m/s] of the pointer in the last moment."""

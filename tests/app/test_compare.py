@@ -6,7 +6,7 @@ import pytest
 
 from sandbox.app.compare.compare_screen import CompareScreen
 from sandbox.physics.snapshot import state_hash
-from sandbox.session.commands import Grab, SetCoefficients
+from sandbox.session.commands import Grab, Pin, SetCoefficients
 from tests.app.conftest import small_level
 
 
@@ -123,6 +123,19 @@ def test_going_back_in_time_takes_both_there_and_on_again(pair):
     assert one.tick == other.tick and one.tick < tick
     pair.frames(tick)
     assert one.tick == other.tick and state_hash(one) == state_hash(other)
+
+
+def test_f9_leads_back_to_the_run_that_was_left_for_it(driver):
+    driver.key(pygame.K_F9)
+    driver.key(pygame.K_F9)
+    driver.frames(30)
+    driver.playback.submit(Pin(2))
+    driver.frames(2)
+    before = driver.playback
+    driver.key(pygame.K_F9)
+    driver.frames(5)
+    driver.key(pygame.K_F9)
+    assert driver.playback is before and driver.playback.session.can_undo
 
 
 def test_halves_are_alike_in_any_window_and_f9_leads_back(pair):

@@ -4,6 +4,7 @@ import pygame
 import pytest
 
 from sandbox.app.draw.colours import ACCENT
+from sandbox.app.draw.part_pictures import PartGhost
 from sandbox.app.play.palette import NAMES
 from sandbox.session.commands import AddBody, AddParticle, Push, Remove, SetAir
 from tests.support.parts import furnished
@@ -75,6 +76,23 @@ def test_a_ghost_goes_before_a_click_drops_and_the_run_goes_on(player):
     player.key(pygame.K_y, pygame.KMOD_CTRL)
     player.frames(1)
     assert player.world.joined
+
+
+def test_a_ghost_is_a_pale_picture_of_the_part_as_large_as_it_and_an_outline_where_that_is_huge(player):
+    player.key(pygame.K_5)
+    player.stage.tool.size = 1.0
+    place = at(player, 0.0, 3.0)
+    player.frames(1)
+    before = player.app.display.surface.get_at((round(place[0]), round(place[1])))[:3]
+    player.move(place)
+    player.frames(1)
+    wood = player.app.display.surface.get_at((round(place[0]), round(place[1])))[:3]
+    assert wood[0] > before[0] + 30 and wood[0] > wood[2] + 20
+    ghost, renderer = PartGhost(), player.stage.renderer
+    picture = ghost.picture("box", 1.0, "coral", 50.0, renderer)
+    assert picture.get_at(picture.get_rect().center).a > 100 and picture.get_at((0, 0)).a == 0
+    assert ghost.picture("box", 1.0, "coral", 50.0, renderer) is picture
+    assert ghost.picture("box", 1000.0, "coral", 50.0, renderer) is None
 
 
 def test_the_wheel_and_keys_size_a_part_and_zoom_with_the_hand(player):

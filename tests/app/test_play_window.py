@@ -113,5 +113,12 @@ def test_again_is_offered_once_things_have_left_the_view_and_begins_anew(open_ap
     assert not again.visible
     driver.frames(90)
     assert again.visible and any("left the view" in text for text in driver.notices)
+    driver.playback.clock.paused = True
+    driver.playback.seek(1)
+    driver.frames()
+    assert not again.visible and not any("left the view" in text for text in driver.notices)
+    driver.playback.seek(90)
+    driver.frames()
     driver.click_widget(again)
+    driver.playback.clock.paused = False
     assert driver.playback.session.tick < 20 and not again.visible

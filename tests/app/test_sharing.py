@@ -219,6 +219,16 @@ def test_before_anything_has_moved_there_is_a_picture(open_app, folder):
     assert files(folder) == ["small.png"]
 
 
+def test_a_film_shows_the_overlays_of_the_run_stability_among_them(driver):
+    def picture():
+        (one,) = driver.app.play.film(1.0).samples(0.0, 0.0, (160, 90))[:1]
+        return pygame.surfarray.array3d(one)
+
+    plain = picture()
+    driver.app.act("stability")
+    assert (picture() != plain).any()
+
+
 def test_the_page_shows_the_film_and_outlives_a_new_size_of_the_window(driver, folder):
     while driver.app.sharing._filming is not None:
         driver.app.sharing.update(0.0)

@@ -213,3 +213,48 @@ def test_runs_that_break_have_marks_where_they_broke(open_app):
     assert marks and {mark.kind for mark in marks} == {"break"}
     driver.key(pygame.K_COMMA, SHIFT)
     assert driver.playback.session.tick == marks[-1].tick
+
+
+def test_what_is_saved_in_the_past_leaves_the_run_and_what_follows_as_they_are(timeline, documents):
+    playback = timeline.playback
+    end, last = state_hash(playback.session.world), playback.session.last_tick
+    playback.seek(45)
+    timeline.key(pygame.K_s, CTRL)
+    timeline.key(pygame.K_RETURN)
+    (path,) = documents.iterdir()
+    saved = read_replay(path)
+    assert saved.ticks == 45 and verify(saved) is None
+    assert playback.session.last_tick == last and not playback.session.branches
+    playback.seek(last)
+    assert state_hash(playback.session.world) == end
+
+
+def test_a_recording_begun_in_a_replays_past_ends_the_watching_of_it(timeline, documents, open_app):
+    timeline.key(pygame.K_s, CTRL)
+    timeline.key(pygame.K_RETURN)
+    (path,) = documents.iterdir()
+    watching = open_app(replay=read_replay(path))
+    watching.frames(60)
+    watching.playback.seek(20)
+    watching.key(pygame.K_r, CTRL)
+    assert not watching.playback.watching and len(watching.playback.session.branches) == 1
+
+
+@pytest.mark.parametrize("before", [0, 20])
+def test_a_replay_is_taken_over_in_the_middle_of_a_drag_and_the_hand_is_free(driver, documents, open_app, before):
+    driver.press(driver.pixel_of("rope.4"))
+    driver.move(driver.stage.camera.to_pixels((4.0, 1.0)))
+    driver.frames(60)
+    driver.key(pygame.K_s, CTRL)
+    driver.key(pygame.K_RETURN)
+    (path,) = documents.iterdir()
+    watching = open_app(replay=read_replay(path))
+    watching.frames(40)
+    playback = watching.playback
+    assert playback.watching and playback.session.world.any_held()
+    playback.seek(playback.session.tick - before)
+    watching.press(watching.pixel_of("pair.1"))
+    watching.move(watching.stage.camera.to_pixels((2.0, 2.5)))
+    watching.frames(2)
+    assert "took over" in playback.verdict and not any("holds" in text for text in watching.notices)
+    assert list(watching.stage.drag.holds) == [0] and len(playback.session.going()) == 1

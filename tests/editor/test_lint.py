@@ -105,6 +105,15 @@ def test_a_part_of_several_items_is_one_finding_and_a_part_cut_off_a_body_is_nam
     assert finding.place == (3.0, 0.0)
 
 
+def test_a_loose_spring_is_called_by_its_name_or_by_its_ends():
+    ends = tuple(ParticleDef(id=name, position=(x, 0.0), pinned=True) for name, x in (("left", 0.0), ("right", 2.0)))
+    unnamed, named = SpringDef(a="left", b="right"), SpringDef(a="left", b="right", name="leg")
+    lines = texts(level_of(particles=ends, springs=(unnamed, named)))
+    assert [line.partition(" does nothing")[0] for line in lines] == [
+        'the spring from "left" to "right"', 'the spring "leg"',
+    ]  # fmt: skip
+
+
 def test_a_flood_of_findings_ends_in_one_line_that_counts_the_rest():
     balls = tuple(ParticleDef(id=f"ball {index}", position=(float(index), 0.0)) for index in range(50))
     lines = found(level_of(particles=balls))

@@ -176,7 +176,8 @@ def test_the_pointer_snaps_to_corners_and_then_to_edges():
     scene = make_scene(square().level)
     assert snap(scene, (2.05, -0.04), 0.1).kind == "corner"
     on_edge = snap(scene, (1.3, 0.03), 0.1, grid=0.25)
-    assert (on_edge.kind, on_edge.point, on_edge.name) == ("edge", (1.3, 0.0), None)
+    assert (on_edge.kind, on_edge.point, on_edge.name) == ("edge", (1.25, 0.0), None)
+    assert snap(scene, (1.3, 0.03), 0.1).point == snap(scene, (1.3, 0.03), 0.1, grid=1.0).point == (1.3, 0.0)
     assert snap(scene, (1.3, 0.08), 0.1).kind == "free"
     assert snap(scene, (2.05, -0.04), 0.1, skip=frozenset([GROUND])).kind == "free"
     assert snap(scene, (2.05, -0.04), 0.0).kind == "free"

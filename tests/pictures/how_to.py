@@ -11,8 +11,9 @@ from sandbox.session.sweep.grid import SweepGrid
 from sandbox.session.sweep.pool import swept
 from sandbox.terminal import cores
 from tests.pictures.photographer import DOCS, ROOT, Photographer, write_small
+from tests.support.machines import build_car, build_walker
 
-FOLDER = DOCS / "how-to"
+FOLDER, BUILT = DOCS / "how-to", DOCS / "built-by-mouse"
 # What is drawn on a sheet: corners of solid ground, and tools, each from where to where it is dragged [m].
 SOLID = ((-6.0, -3.5), (-3.5, -3.5), (-3.5, -0.5), (-6.0, -0.5)), ((3.5, -3.5), (6.0, -3.5), (6.0, -0.5), (3.5, -0.5))
 DRAWN = (
@@ -83,6 +84,26 @@ def build() -> None:
     driver.app.close()
 
 
+def machines() -> None:
+    """What a maker of machines does: a car that crosses a bridge, and a jelly that walks."""
+    for name, make, key, ticks in (("car", build_car, pygame.K_d, 105), ("walker", build_walker, None, 200)):
+        driver = Photographer(load_level("rope"))
+        driver.app._describe("")
+        driver.app.documents.new()
+        driver.frames(3)
+        make(driver)
+        driver.app._notices.clear()
+        driver.take(BUILT / f"{name}-sheet.png")
+        driver.app.act("play")
+        driver.frames(2)
+        if key is not None:
+            driver.post(pygame.KEYDOWN, key=key, mod=0, unicode="")
+        driver.frames(ticks)
+        driver.app._notices.clear()
+        driver.take(BUILT / f"{name}-play.png")
+        driver.app.close()
+
+
 def test() -> None:
     """What a tester does: goes back and forth in a run, and keeps it."""
     driver = _played("wrecking_crane", 60)
@@ -110,4 +131,5 @@ def draw() -> None:
     sweep()
     design()
     build()
+    machines()
     test()

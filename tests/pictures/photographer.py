@@ -30,9 +30,9 @@ def write_small(surface: pygame.Surface, path: Path, size: tuple[int, int], colo
 
 
 class Photographer(Driver):
-    """A person who takes pictures of the window; size [pixels] of them."""
+    """A person who takes pictures of the window; width [pixels] of them, as high as the window's form asks for."""
 
-    size = (640, 360)
+    width = 640
 
     def __init__(self, level=None, replay=None):
         super().__init__(level, replay)
@@ -43,7 +43,9 @@ class Photographer(Driver):
     def take(self, path: Path) -> None:
         """Keep what the window shows, small."""
         self.frames()
-        write_small(self.app.display.surface, path, self.size)
+        surface = self.app.display.surface
+        wide, tall = surface.get_size()
+        write_small(surface, path, (self.width, round(self.width * tall / wide)))
 
     def throw(self, name: str, by: tuple[float, float]) -> None:
         """Throw what a particle belongs to, by so many metres."""

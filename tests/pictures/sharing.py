@@ -3,7 +3,7 @@
 from tests.pictures.photographer import DOCS, Photographer
 
 FOLDER = DOCS / "sharing"
-SIZE = (720, 506)
+WIDTH = 720
 # What is drawn on the sheet: a tool, and from where to where it is dragged [m].
 DRAWN = (
     ("tool_walls", (-6.5, -4.0), (6.5, 4.5)),
@@ -16,7 +16,7 @@ DRAWN = (
 def draw() -> None:
     """Do what the page says and draw each step."""
     driver = Photographer()
-    driver.size = SIZE
+    driver.width = WIDTH
     driver.wait_for_gallery()
     driver.take(FOLDER / "1-gallery.png")
     driver.choose("New")

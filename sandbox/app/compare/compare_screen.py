@@ -35,6 +35,8 @@ class CompareScreen(PlayScreen):
     def __init__(self, app: Application, playback: TwinPlayback, other: TwinPlayback, source: Path | None) -> None:
         playback.pair(other)
         self.beside: Stage | None = None
+        # The run of one that was left for the pair, and that is gone back to.
+        self.single: Playback | None = None
         self.side = SIDES[0]
         super().__init__(app, playback, source)
         self.beside = Stage(other, self.other_viewport, app.scale)

@@ -64,6 +64,8 @@ class Overlay:
     cursor: tuple[float, float] | None = None
     pulls: list[Pull] = field(default_factory=list)
     ghost: list[list[tuple[float, float]]] = field(default_factory=list)
+    # And a picture of it, with the place of its middle [m].
+    ghost_picture: tuple[pygame.Surface, tuple[float, float]] | None = None
     stability: NDArray[np.float64] | None = None
 
 
@@ -81,6 +83,8 @@ class Renderer:
         self.overlays = Overlays()
         self.detail = FULL
         self.has_effects = True
+        # Whether what lies behind all things is drawn.
+        self.has_stage = True
         # Whether faces sleep, and what they look at while they rest [pixels].
         self.asleep = False
         self.pointer: tuple[float, float] | None = None
@@ -159,10 +163,11 @@ class Renderer:
             self._follow(frame, current, camera, overlay)
             if self._still.show(surface, place):
                 return
-            with profile.part("stage"):
-                self._backdrop.draw(
-                    painter, camera, current.terrain, self.level, self.theme, frame.tiles, self.scale
-                )  # fmt: skip
+            if self.has_stage:
+                with profile.part("stage"):
+                    self._backdrop.draw(
+                        painter, camera, current.terrain, self.level, self.theme, frame.tiles, self.scale
+                    )  # fmt: skip
             with profile.part("things"):
                 if self.level is not None:
                     ensemble = self._ensemble_of(frame, particles, springs)
@@ -187,7 +192,8 @@ class Renderer:
         key = (
             (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail,
              self.has_effects, self.asleep, self.pointer),
-            (overlay.hovered, tuple(overlay.trail), overlay.cursor, tuple(map(tuple, overlay.ghost))),
+            (overlay.hovered, tuple(overlay.trail), overlay.cursor, tuple(map(tuple, overlay.ghost)),
+             None if overlay.ghost_picture is None else (id(overlay.ghost_picture[0]), overlay.ghost_picture[1])),
             tuple(pull.cursor for pull in overlay.pulls if pull.at_limit), frozenset(shown),
             self._grounds, (frame.seconds if moves else 0.0), (current.tick if shown & CHANGING else 0),
             current.particle_active.tobytes(), current.spring_active.tobytes(), (current.inverse_mass == 0.0).tobytes(),
@@ -302,6 +308,9 @@ class Renderer:
             points = camera.project(np.array(overlay.trail))
             ends = np.concatenate([points[:-1], points[1:]], axis=1)
             canvas.lines(np.ascontiguousarray(ends), np.full(len(ends), packed(DANGER)), 2.4 * scale)
+        if overlay.ghost_picture is not None:
+            picture, place = overlay.ghost_picture
+            surface.blit(picture, picture.get_rect(center=camera.to_pixels(place)))
         for line in overlay.ghost:
             points = camera.project(np.array(line))
             ends = np.ascontiguousarray(np.concatenate([points[:-1], points[1:]], axis=1))

@@ -25,7 +25,7 @@ from sandbox.app.edit.side.options import OPTIONS_HEIGHT, OptionsRow
 from sandbox.app.edit.side.side import Side
 from sandbox.app.edit.watch import Watch
 from sandbox.app.play.stage import PICK_RADIUS
-from sandbox.app.play.status import STATUS_HEIGHT
+from sandbox.app.play.status import STATUS_HEIGHT, counted_parts
 from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Figures, Pixel, Pointer
@@ -424,7 +424,7 @@ class EditScreen:
         if self.pointer is not None:
             x, y = self.camera.to_world(self.pointer)
             parts.append((f"{x:.3f}, {y:.3f} m", MUTED))
-        return [*parts, (f"{len(scene.position):,} particles", MUTED), (f"{len(scene.particle_a):,} springs", MUTED)]
+        return [*parts, *counted_parts(len(scene.position), len(scene.particle_a))]
 
     def title(self) -> list[str]:
         """Level, * where it is not saved, and the state."""

@@ -11,7 +11,7 @@ NOTICE = "It has left the view. Again (R) begins anew; Ctrl+Z takes the last act
 GONE = 0.75
 # So far around what is seen at first something still counts as near, as a part of its width and height.
 MARGIN = 0.25
-# Ticks between two looks.
+# Ticks between two looks; after each step back in time there is one.
 EVERY = 20
 
 
@@ -24,7 +24,7 @@ class OutOfView:
 
     def update(self, world: World, box: Box) -> None:
         """Look at a world; box [m]: what is seen at first."""
-        if abs(world.tick - self._tick) < EVERY:
+        if 0 <= world.tick - self._tick < EVERY:
             return
         self._tick = world.tick
         moving = shown_particles(world) & (world.inverse_mass > 0.0)

@@ -1,7 +1,6 @@
 """Palette: a strip at the left of the world with parts to drop and deeds to do while it runs."""
 
 import functools
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -9,23 +8,17 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, TEXT, Colour
-from sandbox.app.draw.picture import draw_picture
+from sandbox.app.draw.part_pictures import picture_of
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.ui import Ui, set_icon
 from sandbox.editor.tools.icons import Icon, IconPen
-from sandbox.level.format.limits import FORMAT, VERSION
-from sandbox.level.format.parse import parse_level
-from sandbox.session.session import Session
-from sandbox.tools.parts import COLOURS, PARTS
+from sandbox.tools.parts import PARTS
 
 # Sizes in layout units.
 LEFT, TOP, BUTTON, GAP, EDGE = 10.0, 10.0, 34.0, 3.0, 5.0
 WIDTH = BUTTON + 2 * EDGE
 ICON, PICTURE = 18.0, 30.0
-# Half of what a part's picture shows [m], of a part of 1 m.
-SHOWN = {"rope": 1.1}
-USUALLY_SHOWN = 0.62
 # Where the window has less height for a button, there are two columns.
 LEAST_STEP = BUTTON + GAP
 
@@ -69,23 +62,6 @@ class PaletteState:
 
     tool: str
     compiled: bool
-
-
-def picture_of(part: str, size: int) -> pygame.Surface:
-    """What a part looks like, on a square of size [pixels]."""
-    level = parse_level(
-        json.dumps({"format": FORMAT, "version": VERSION, "name": part, "contacts": {}}).encode(), part
-    )  # fmt: skip
-    session = Session(level)
-    session.submit(PARTS[part].make(1.0, (0.0, 0.0), (0.0, 0.0), COLOURS[0]))
-    session.apply_pending()
-    half, times = SHOWN.get(part, USUALLY_SHOWN), 3
-    large = draw_picture(level, session.snapshot(), (times * size, times * size), (-half, -half, half, half), 1.0)
-    # Round corners, as buttons have.
-    mask = pygame.Surface(large.get_size(), pygame.SRCALPHA)
-    pygame.draw.rect(mask, (255, 255, 255, 255), mask.get_rect(), border_radius=times * size // 6)
-    mask.blit(large, (0, 0), special_flags=pygame.BLEND_RGB_MULT)
-    return pygame.transform.smoothscale(mask, (size, size))
 
 
 class PartsPalette:

@@ -413,8 +413,8 @@ class PlayScreen:
         was_over = self.out_of_view.is_over
         self.out_of_view.update(self.playback.session.world, self.stage.first_box)
         is_over = self.out_of_view.is_over
-        if is_over and not was_over:
-            self._app.say(LEFT_VIEW)
+        if is_over != was_over:
+            (self._app.say if is_over else self._app.take_back)(LEFT_VIEW)
         if is_over != bool(self.again.visible):
             (self.again.show if is_over else self.again.hide)()
 

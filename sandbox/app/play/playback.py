@@ -89,12 +89,13 @@ class Playback:
     def submit(self, command: Command, gesture: int | None = None) -> None:
         """Queue a command of the person's; while a replay is watched, or in the past, the person takes over from it."""
         session = self.session
+        is_past = session.tick < session.last_tick
+        if (self.watching or is_past) and not self._submitted:
+            gesture = session.new_gesture() if gesture is None else gesture
+            self._end_what_goes_on(gesture)
         if self.watching:
             self.take_over()
-        if session.tick < session.last_tick and not self._submitted:
-            gesture = session.new_gesture() if gesture is None else gesture
-            for ending in session.going():
-                session.submit(ending, gesture)
+        if is_past and not self._submitted:
             self.messages.append("The run goes on from here. What followed is kept: Shift+Y returns to it.")
         if self.clock.speed < 0.0:
             self.clock.speed, self.clock.accumulator = 1.0, 0.0
@@ -128,9 +129,15 @@ class Playback:
     def toggle_pause(self) -> None:
         """Pause, or go on; at the end of a replay the run goes on from there."""
         if self.clock.paused and self.watching and self.verdict and self.session.tick == self.length:
+            self._end_what_goes_on(self.session.new_gesture())
             self.take_over()
         self.travel.target = None
         self.clock.paused = not self.clock.paused
+
+    def _end_what_goes_on(self, gesture: int) -> None:
+        """Let go what hands hold and stop what is driven by commands that are not followed any further."""
+        for ending in self.session.going():
+            self.session.submit(ending, gesture)
 
     def take_over(self) -> None:
         """Stop following the replay: from here the person plays."""
@@ -184,6 +191,23 @@ class Playback:
             if len(self.previous.mass) != len(self.current.mass) or self.clock.paused:
                 self.previous = self.current
         self._drain()
+
+    def record_to(self, path: Path) -> Path:
+        """Record from here on, and what was until now; in a replay's past the person takes over from it.
+
+        The file's path. Raises OSError where it cannot be written.
+        """
+        self.apply_pending()
+        is_past = self.session.tick < self.session.last_tick
+        self.session.record_to(path)
+        if self.watching and is_past:
+            self.take_over()
+        return path
+
+    def save_to(self, path: Path) -> Path | None:
+        """Write what was until now into a file, and leave the run as it is; see Session.save_to."""
+        self.apply_pending()
+        return self.session.save_to(path)
 
     def stop_recording(self) -> Path | None:
         """End a recording, with all that was submitted until now in it; its file, None where none was being made."""

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.app.play.playback import Playback
 from sandbox.physics.stability import stability_shares
+from sandbox.physics.world import World
 
 # Ticks between two looks at what changes by itself, such as springs that break.
 LOOK_EVERY = 15
@@ -17,10 +17,9 @@ class StabilityPaint:
         self._key: tuple[object, ...] = ()
         self._shares: NDArray[np.float64] = np.zeros(0)
 
-    def shares(self, playback: Playback) -> NDArray[np.float64]:
-        """The shares of its springs as they are now."""
-        world = playback.session.world
-        key = world, playback.revision, world.tick // LOOK_EVERY, world.spring_count, world.settings.solver
+    def shares(self, world: World, revision: int = 0) -> NDArray[np.float64]:
+        """The shares of its springs as they are now; revision: another number where a command may have changed them."""
+        key = world, revision, world.tick // LOOK_EVERY, world.spring_count, world.settings.solver
         if key != self._key:
             self._key, self._shares = key, stability_shares(world)
         return self._shares

@@ -8,6 +8,7 @@ import pygame
 
 from sandbox.app.draw.camera import Box, Camera, bounds
 from sandbox.app.draw.detail import Detail
+from sandbox.app.draw.part_pictures import PartGhost
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Overlay, Renderer
 from sandbox.app.play.playback import Playback
@@ -49,6 +50,7 @@ class Stage:
         # What the wheel made of the parts and the ring [m]; 0: nothing yet.
         self.size = 0.0
         self._paint = StabilityPaint()
+        self._ghost = PartGhost()
         self.detail = Detail()
         # What is drawn however long frames take; None: as `detail` has it.
         self.fixed_detail: int | None = None
@@ -262,8 +264,12 @@ class Stage:
         playback = self.playback
         overlay = Overlay(self._hovered, self.cut.trail, self.cursor, self.pulls())
         overlay.ghost = getattr(self.tool, "ghost", [])
+        if isinstance(self.tool, DropTool) and self.tool.place is not None:
+            part, size, colour = self.tool.part.name, self.tool.size, self.tool.colour
+            picture = self._ghost.picture(part, size, colour, self.camera.zoom, self.renderer)
+            overlay.ghost_picture = None if picture is None else (picture, self.tool.place)
         if "stability" in self.renderer.overlays.shown:
-            overlay.stability = self._paint.shares(playback)
+            overlay.stability = self._paint.shares(playback.session.world, playback.revision)
         alpha = playback.clock.alpha(playback.session.world.settings.tick_rate)
         self.renderer.draw(surface, self.camera, playback.previous, playback.current, alpha, overlay, profile)
         surface.set_clip(None)

@@ -147,6 +147,12 @@ def draw_bar(surface: pygame.Surface, ui: Ui, share: float, text: str) -> None:
     pygame.draw.rect(surface, ACCENT, bar, border_radius=ui.px(3))
 
 
+def counted_parts(particles: int, springs: int) -> list[tuple[str, Colour]]:
+    """How many particles and springs there are."""
+    counts = {"particle": particles, "spring": springs}
+    return [(f"{count:,} {thing}{'' if count == 1 else 's'}", MUTED) for thing, count in counts.items()]
+
+
 def status_parts(
     particles: int, springs: int, figures: Figures, non_finite: int, behind: bool
 ) -> list[tuple[str, Colour]]:
@@ -158,8 +164,7 @@ def status_parts(
     if behind:
         parts.append(("slower than real time", WARNING))
     parts += [
-        (f"{particles:,} particles", MUTED),
-        (f"{springs:,} springs", MUTED),
+        *counted_parts(particles, springs),
         (f"{figures.ticks:.0f} ticks/s", MUTED),
         (f"{figures.frames:.0f} frames/s", MUTED),
         (f"{figures.work:.1f} ms of work a frame", MUTED),

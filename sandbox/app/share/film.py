@@ -9,7 +9,8 @@ import pygame
 
 from sandbox.app.draw.camera import Box, Camera
 from sandbox.app.draw.picture import view_of
-from sandbox.app.draw.renderer import Renderer
+from sandbox.app.draw.renderer import Overlay, Renderer
+from sandbox.app.play.stability_paint import StabilityPaint
 from sandbox.app.share.kinds import Size
 from sandbox.app.widgets.fonts import plain_font
 from sandbox.physics.snapshot import Snapshot
@@ -81,7 +82,7 @@ class Film:
                 now = twin.snapshot()
                 if len(now.mass) != len(before.mass) or before.tick != now.tick - 1:
                     before = now
-            yield stage.draw(before, now, 1.0 - (tick - at) if before is not now else 1.0)
+            yield stage.draw(twin, before, now, 1.0 - (tick - at) if before is not now else 1.0)
 
     def samples(self, start: float, end: float, size: Size, name: str = "") -> list[pygame.Surface]:
         """A few pictures from start to end [s from its beginning], of states that are kept: what colours there are."""
@@ -89,7 +90,7 @@ class Film:
         kept = [self._past.snapshot(), *self._past.keyframes(first, last), self._end]
         chosen = [kept[round(k)] for k in np.linspace(0, len(kept) - 1, min(len(kept), SAMPLES))]
         stage = _FilmStage(self, size, name)
-        return [stage.draw(state, state, 1.0).copy() for state in chosen]
+        return [stage.draw(self._past, state, state, 1.0).copy() for state in chosen]
 
 
 class _FilmStage:
@@ -102,14 +103,17 @@ class _FilmStage:
             self._camera.fit(film._box)
         scale = film._renderer.scale * self._camera.zoom / film._zoom
         self._renderer = film._renderer.alike(max(SMALLEST_SCALE, scale))
+        self._paint = StabilityPaint()
         self._surface = pygame.Surface(size, 0, 32)
         self._tag = _name_tag(name, size[1] / 360.0) if name else None
         self._edge = round(EDGE * size[1] / 360.0)
 
-    def draw(self, before: Snapshot, now: Snapshot, alpha: float) -> pygame.Surface:
-        """Draw what lies between two ticks."""
-        surface = self._surface
-        self._renderer.draw(surface, self._camera, before, now, alpha)
+    def draw(self, session: Session, before: Snapshot, now: Snapshot, alpha: float) -> pygame.Surface:
+        """Draw what lies between two ticks of a session."""
+        surface, overlay = self._surface, Overlay()
+        if "stability" in self._renderer.overlays.shown:
+            overlay.stability = self._paint.shares(session.world)
+        self._renderer.draw(surface, self._camera, before, now, alpha, overlay)
         if self._tag is not None:
             surface.blit(self._tag, (self._edge, surface.get_height() - self._edge - self._tag.get_height()))
         return surface

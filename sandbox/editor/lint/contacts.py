@@ -82,7 +82,7 @@ def _buried(scene: Scene, slots: Slots, out: Floats, where: str) -> Rule:
         worst = mine[np.argmax(np.hypot(*out[mine].T))]
         item, count = scene.items[index], int(np.sum(scene.particle_item == index))
         some = "" if len(mine) == count else f" with {len(mine)} of {count} particles"
-        text = f"{called(item)} starts{some} {where}, and will be pushed out; move it"
+        text = f"{called(scene.level, item)} starts{some} {where}, and will be pushed out; move it"
         x, y = (out[worst] + ROOM * np.sign(out[worst])).tolist()
         remedy = Remedy("Move it out", _moved(item, x, y))
         yield Finding("warning", text, frozenset([item]), place_of(scene, int(slots[worst])), remedy)
@@ -136,12 +136,12 @@ def turning_in_vain(level: Level, scene: Scene) -> Rule:
         item = scene.items[int(scene.particle_item[slot])]
         if particle.rolling > MOST_ROLLING and particle.rolls:
             text = (
-                f"{called(item)} has a rolling resistance of {particle.rolling:g}: with more than {MOST_ROLLING:g} "
-                "heaps do not come to rest; lower it, or let it not roll"
+                f"{called(level, item)} has a rolling resistance of {particle.rolling:g}: with more than "
+                f"{MOST_ROLLING:g} heaps do not come to rest; lower it, or let it not roll"
             )
             yield Finding("warning", text, frozenset([item]), place_of(scene, slot))
         if particle.spin != 0.0 and held[slot]:
-            text = f"{called(item)} is held and does not turn; its spin of {particle.spin:g} rad/s is lost"
+            text = f"{called(level, item)} is held and does not turn; its spin of {particle.spin:g} rad/s is lost"
             yield Finding("hint", text, frozenset([item]), place_of(scene, slot))
     yield None
 

@@ -57,9 +57,18 @@ def listed(rule: Rule) -> Rule:
         yield Finding(last.severity, f"And {rest} more, such as: {last.text}", frozenset(items), last.place)
 
 
-def called(item: Item) -> str:
-    """An item as sentences name it."""
-    return f'"{item.key}"' if item.kind != "spring" else f'spring ":{item.key}"'
+def called(level: Level, item: Item) -> str:
+    """An item as sentences name it: a loose spring by its name, or else by its ends."""
+    if item.kind != "spring":
+        return f'"{item.key}"'
+    spring = level.springs[int(item.key)]
+    return f'the spring "{spring.name}"' if spring.name else f'the spring from "{spring.a}" to "{spring.b}"'
+
+
+def called_spring(scene: Scene, spring: int) -> str:
+    """A spring as sentences name it."""
+    item = scene.items[int(scene.spring_item[spring])]
+    return called(scene.level, item) if item.kind == "spring" else scene.spring_name(spring)
 
 
 def place_of(scene: Scene, slot: int) -> tuple[float, float]:

@@ -56,7 +56,9 @@ def falling_parts(level: Level, scene: Scene) -> Rule:
         if len(items) == 1 and counts[0] < whole[owners[0]]:
             subject = f'"{scene.names(int(slots[0]))}"' + (f" and {len(slots) - 1} more" if len(slots) > 1 else "")
         else:
-            subject = called(items[0]) + (f" and what it is joined to, {len(items)} items," if len(items) > 1 else "")
+            subject = called(scene.level, items[0]) + (
+                f" and what it is joined to, {len(items)} items," if len(items) > 1 else ""
+            )
         text = f"{subject} will fall out of sight: nothing holds it; pin a particle of it or join it to something"
         yield Finding("warning", text, frozenset(items), place_of(scene, int(slots[0])))
         yield None
@@ -69,7 +71,7 @@ def idle_items(scene: Scene) -> Rule:
     idle = loose[scene.pinned[scene.particle_a[loose]] & scene.pinned[scene.particle_b[loose]]]
     for spring in idle.tolist():
         item = scene.items[int(scene.spring_item[spring])]
-        text = f"{called(item)} does nothing: both its ends are pinned; unpin one or delete it"
+        text = f"{called(scene.level, item)} does nothing: both its ends are pinned; unpin one or delete it"
         yield Finding("hint", text, frozenset([item]), middle_of(scene, spring))
     yield None
     used = np.zeros(len(scene.position), dtype=np.bool_)
@@ -79,6 +81,6 @@ def idle_items(scene: Scene) -> Rule:
         used |= scene.collision.touches != 0
     for slot in np.flatnonzero(scene.pinned & ~used & (scene.particle_item >= bodies)).tolist():
         item = scene.items[int(scene.particle_item[slot])]
-        text = f"{called(item)} is pinned and holds nothing; join something to it or delete it"
+        text = f"{called(scene.level, item)} is pinned and holds nothing; join something to it or delete it"
         yield Finding("hint", text, frozenset([item]), place_of(scene, slot))
     yield None

@@ -16,8 +16,8 @@ def unknown_looks(level: Level) -> Rule:
     subjects: list[tuple[str, Item | None, object]] = [
         (f'the material "{name}"', None, material.look) for name, material in level.materials.items()
     ]
-    subjects += [(called(item), item, body.look) for body in level.bodies for item in [Item("body", body.id)]]
-    balls = [(called(item), item, ball.look) for ball in level.particles for item in [Item("particle", ball.id)]]
+    subjects += [(called(level, item), item, body.look) for body in level.bodies for item in [Item("body", body.id)]]
+    balls = [(called(level, item), item, ball.look) for ball in level.particles for item in [Item("particle", ball.id)]]
     for subject, item, look in [*subjects, *balls]:
         for field, name in _unknown(look):
             text = f"{subject} has the {field} {shown(name)}, which is none" + suggestion(name, _KNOWN[field])

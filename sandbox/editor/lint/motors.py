@@ -38,11 +38,12 @@ def _idle(scene: Scene, driven: list[tuple[int, WheelDef]]) -> Rule:
         hub = scene.slot(f"{body.id}.hub")
         item = Item("body", body.id)
         if not _joined(scene, int(first[hub]), index, True):
-            text = f"the motor of {called(item)} turns nothing: no spoke joins its rim to its hub"
+            text = f"the motor of {called(scene.level, item)} turns nothing: no spoke joins its rim to its hub"
             yield Finding("warning", text, frozenset([item]), place_of(scene, hub))
         elif not scene.pinned[hub] and not _joined(scene, int(first[hub]), index, False):
             text = (
-                f"the motor of {called(item)} does nothing: its hub is fixed to nothing; pin it, or join a spring to it"
+                f"the motor of {called(scene.level, item)} does nothing: its hub is fixed to nothing; "
+                "pin it, or join a spring to it"
             )
             yield Finding("warning", text, frozenset([item]), place_of(scene, hub))
         yield None
@@ -71,7 +72,9 @@ def _weak(level: Level, scene: Scene, driven: list[tuple[int, WheelDef]]) -> Rul
         needed = max(weight * wheel.radius * float(np.sin(np.pi / wheel.segments)) for wheel in wheels)
         if torque < needed:
             items = [Item("body", wheel.id) for wheel in wheels]
-            whose = " and ".join(map(called, items)) if len(items) < 3 else f"{len(items)} wheels"
+            whose = (
+                " and ".join(called(scene.level, item) for item in items) if len(items) < 3 else f"{len(items)} wheels"
+            )
             text = (
                 f"the torque of {whose}, {torque:.3g} N m in all, does not lift {weight / gravity:.3g} kg over the "
                 f"corners of its wheels: that takes {needed:.3g} N m; give more, or wheels of more segments"

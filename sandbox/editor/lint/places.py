@@ -110,7 +110,7 @@ def crossing_bodies(level: Level, scene: Scene) -> Rule:
             items, p, q = (scene.items[a], scene.items[b]), first[a], first[b]
             collide = level.has_contacts and bool(scene.collision.meet(int(p), int(q)))
             then = "and will be pushed apart" if collide else "and will pass through each other"
-            text = f"{called(items[0])} and {called(items[1])} cross, {then}; move one away, or join them"
+            text = f"{called(level, items[0])} and {called(level, items[1])} cross, {then}; move one away, or join them"
             yield Finding("warning" if collide else "hint", text, frozenset(items), crossing)
 
 

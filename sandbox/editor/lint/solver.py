@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.lint.finding import Finding, Rule, called, middle_of, place_of
+from sandbox.editor.lint.finding import Finding, Rule, called, called_spring, middle_of, place_of
 from sandbox.editor.scene import Scene
 from sandbox.level.build.constraints import add_constraints
 from sandbox.level.build.materials import coefficients
@@ -61,9 +61,9 @@ def _constraints_past_proven(level: Level, scene: Scene, world: World, load: NDA
         worst = int(mine[np.argmax(load[mine])])
         item = scene.items[index]
         text = (
-            f"areas or angles of {called(item)} are past what the {level.settings.solver} solver is proven to hold: "
-            f"Cs + 2 Cd add up to {load[worst]:.3g}, stable is below {BOUND:g}; lower the coefficients or use the "
-            "direct solver"
+            f"areas or angles of {called(level, item)} are past what the {level.settings.solver} solver is proven "
+            f"to hold: Cs + 2 Cd add up to {load[worst]:.3g}, stable is below {BOUND:g}; lower the coefficients or use "
+            "the direct solver"
         )
         slot = int(world.corner_particle[world.constraint_first[worst]])
         yield Finding("warning", text, frozenset([item]), place_of(scene, slot))
@@ -81,10 +81,14 @@ def _past_proven(level: Level, scene: Scene, load: NDArray[np.float64]) -> Rule:
     for spring in past[np.flatnonzero(np.diff(owner, prepend=-1))].tolist():
         index = int(scene.spring_item[spring])
         item = scene.items[index]
-        springs = f"{counts[index]} springs of {called(item)} are" if counts[index] > 1 else f"{called(item)} is"
+        springs = (
+            f"{counts[index]} springs of {called(level, item)} are"
+            if counts[index] > 1
+            else f"{called(level, item)} is"
+        )
         text = (
             f"{springs} past what the {level.settings.solver} solver is proven to hold: Cs + 2 Cd add up to "
-            f"{load[spring]:.3g} at {scene.spring_name(spring)}, stable is below {BOUND:g}; lower the coefficients "
+            f"{load[spring]:.3g} at {called_spring(scene, spring)}, stable is below {BOUND:g}; lower the coefficients "
             f'of material "{scene.materials[int(scene.material[spring])]}", use more substeps or the direct solver'
         )
         yield Finding("warning", text, frozenset([item]), middle_of(scene, spring))
@@ -104,7 +108,7 @@ def _past_published(level: Level, scene: Scene, world: World) -> Rule:
     worst = int(past[np.argmax(excess[past])])
     items = frozenset(scene.items[index] for index in np.unique(scene.spring_item[past]).tolist())
     text = (
-        f"{len(past)} springs are above the published limit 1/(n+1), such as {scene.spring_name(worst)} with "
+        f"{len(past)} springs are above the published limit 1/(n+1), such as {called_spring(scene, worst)} with "
         f"{coefficient[worst]:g} above {limit[worst]:.2g}; the {level.settings.solver} solver often holds them and "
         "cannot promise it, the direct solver can"
     )

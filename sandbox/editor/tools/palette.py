@@ -10,5 +10,5 @@ from sandbox.editor.tools.drawing_terrain import GROUND, LINE, WALLS
 from sandbox.editor.tools.drawing_wave import WAVE
 from sandbox.editor.tools.selecting import LASSO, SELECT
 
-_ALL = (SELECT, LASSO, PARTICLE, SPRING, HANGERS, *BODY_TOOLS, CHASSIS, AXLE, PART, PIN, WAVE, GROUND, LINE, WALLS)
+_ALL = (SELECT, LASSO, PARTICLE, SPRING, *BODY_TOOLS, HANGERS, CHASSIS, AXLE, PART, PIN, WAVE, GROUND, LINE, WALLS)
 TOOLS = {tool.name: tool for tool in _ALL}

@@ -64,7 +64,7 @@ def snap(
 def _drawn(
     scene: Scene, point: Point, within: float, grid: float | None, anchor: Point | None, skip: Selection
 ) -> Snap:
-    place = _particle(scene, point, within, skip) or _ground(scene, point, within, skip)
+    place = _particle(scene, point, within, skip) or _ground(scene, point, within, grid, skip)
     if place is not None:
         return place
     places = []
@@ -101,8 +101,11 @@ def _particle(scene: Scene, point: Point, within: float, skip: Selection) -> Sna
     return Snap((x, y), "end" if slot in ends else "particle", name, f"on {name}")
 
 
-def _ground(scene: Scene, point: Point, within: float, skip: Selection) -> Snap | None:
-    """The nearest corner of terrain that draws the pointer, or else the nearest place on an edge."""
+def _ground(scene: Scene, point: Point, within: float, grid: float | None, skip: Selection) -> Snap | None:
+    """The nearest corner of terrain that draws the pointer, or else the nearest place on an edge.
+
+    On an edge it is where a line of the grid crosses it, if that is near as well.
+    """
     if within <= 0.0 or not len(scene.corner):
         return None
     left_out = scene.chosen(skip)
@@ -123,7 +126,20 @@ def _ground(scene: Scene, point: Point, within: float, skip: Selection) -> Snap 
     if nearest < 0 or distance[nearest] > EDGE_SHARE * within:
         return None
     name = scene.items[int(scene.edge_item[edges[nearest]])].key
-    return Snap(_rounded(*places[nearest].tolist()), "edge", None, f"on {name}")
+    place = _rounded(*places[nearest].tolist())
+    if grid is not None:
+        crossing = _at_grid_line(place, along[nearest].tolist(), start[nearest].tolist(), grid)
+        place = crossing if math.dist(crossing, point) <= within else place
+    return Snap(place, "edge", None, f"on {name}")
+
+
+def _at_grid_line(place: Point, along: Point, start: Point, grid: float) -> Point:
+    """Where the nearest line of the grid crosses an edge most squarely; the place itself beyond the edge's ends."""
+    axis = 0 if abs(along[0]) >= abs(along[1]) else 1
+    share = (round(place[axis] / grid) * grid - start[axis]) / along[axis]
+    if not 0.0 <= share <= 1.0:
+        return place
+    return _rounded(start[0] + share * along[0], start[1] + share * along[1])
 
 
 def _ends(scene: Scene, near: NDArray[np.int64]) -> dict[int, str]:

@@ -100,10 +100,10 @@ class View:
 
     def _draw_marks(self, surface: pygame.Surface) -> None:
         screen, tool = self._screen, self._screen.pointer_tool
-        tool.draw(surface)
         under = tool.hovered if isinstance(tool, SelectTool) and tool.matrix is None else None
         if under is not None and under not in screen.document.selection:
             self._painter.paint_hovered(surface, screen.camera, screen.scene, under)
+        tool.draw(surface)
         named = self._name_of(under)
         if named and screen.pointer is not None and not tool.measure:
             draw_label(surface, screen.ui, screen.pointer, named, screen.camera.viewport)

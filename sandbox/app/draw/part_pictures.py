@@ -1,0 +1,88 @@
+"""Pictures of the parts that a person can drop: small ones for buttons, and pale ones of what a click would drop."""
+
+import json
+import math
+
+import numpy as np
+import pygame
+
+from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.picture import draw_picture
+from sandbox.app.draw.renderer import Renderer
+from sandbox.level.format.limits import FORMAT, VERSION
+from sandbox.level.format.model import Level
+from sandbox.level.format.parse import parse_level
+from sandbox.physics.snapshot import Snapshot
+from sandbox.session.session import Session
+from sandbox.tools.parts import COLOURS, PARTS
+
+# Half of what a part's picture shows [m], of a part of 1 m.
+SHOWN = {"rope": 1.1}
+USUALLY_SHOWN = 0.62
+# How much of a part shows where it would be dropped, of 1; and the widest picture of that [pixels]: of larger parts
+# the outline is enough.
+GHOST_SHARE, GHOST_MOST = 0.55, 600
+
+
+def picture_of(part: str, size: int) -> pygame.Surface:
+    """What a part looks like, on a square of size [pixels]."""
+    level, state = _alone(part, 1.0, COLOURS[0])
+    half, times = _half(part), 3
+    large = draw_picture(level, state, (times * size, times * size), (-half, -half, half, half), 1.0)
+    # Round corners, as buttons have.
+    mask = pygame.Surface(large.get_size(), pygame.SRCALPHA)
+    pygame.draw.rect(mask, (255, 255, 255, 255), mask.get_rect(), border_radius=times * size // 6)
+    mask.blit(large, (0, 0), special_flags=pygame.BLEND_RGB_MULT)
+    return pygame.transform.smoothscale(mask, (size, size))
+
+
+class PartGhost:
+    """The pale picture of what would be dropped; it is drawn anew where the part, its size or the zoom are others."""
+
+    def __init__(self) -> None:
+        self._key: tuple[object, ...] = ()
+        self._picture: pygame.Surface | None = None
+
+    def picture(self, part: str, size: float, colour: str, zoom: float, like: Renderer) -> pygame.Surface | None:
+        """A part of a size [m], in the middle of its picture; None where that would be too large.
+
+        zoom [pixels/m]; like: a renderer of the run, whose theme and scale it has.
+        """
+        key = part, size, colour, zoom, like.scale, like.theme.name, like.compiled
+        if key != self._key:
+            self._key, self._picture = key, self._drawn(part, size, colour, zoom, like)
+        return self._picture
+
+    def _drawn(self, part: str, size: float, colour: str, zoom: float, like: Renderer) -> pygame.Surface | None:
+        side = 2 * math.ceil(1.2 * _half(part) * size * zoom)
+        if not 0 < side <= GHOST_MOST:
+            return None
+        level, state = _alone(part, size, colour)
+        on = []
+        for ground in (0, 255):
+            surface = pygame.Surface((side, side), 0, 32)
+            surface.fill((ground, ground, ground))
+            renderer = Renderer(like.scale, level)
+            renderer.theme, renderer.compiled, renderer.has_stage = like.theme, like.compiled, False
+            renderer.draw(surface, Camera(zoom=zoom, viewport=(0, 0, side, side)), state, state, 1.0)
+            on.append(pygame.surfarray.array3d(surface).astype(np.float64))
+        # What of a black and a white ground shows through says how much of each pixel is covered.
+        cover = 1.0 - (on[1] - on[0]).mean(axis=2) / 255.0
+        colours = on[0] / np.maximum(cover, 1.0 / 255.0)[..., None]
+        picture = pygame.Surface((side, side), pygame.SRCALPHA)
+        pygame.surfarray.blit_array(picture, np.clip(colours, 0, 255).astype(np.uint8))
+        pygame.surfarray.pixels_alpha(picture)[...] = np.clip(255.0 * GHOST_SHARE * cover, 0, 255).astype(np.uint8)
+        return picture
+
+
+def _half(part: str) -> float:
+    return SHOWN.get(part, USUALLY_SHOWN)
+
+
+def _alone(part: str, size: float, colour: str) -> tuple[Level, Snapshot]:
+    """An empty level with a part of a size [m] in its middle."""
+    empty = json.dumps({"format": FORMAT, "version": VERSION, "name": part, "contacts": {}})
+    session = Session(parse_level(empty.encode(), part))
+    session.submit(PARTS[part].make(size, (0.0, 0.0), (0.0, 0.0), colour))
+    session.apply_pending()
+    return session.level, session.snapshot()
