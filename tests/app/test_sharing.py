@@ -1,8 +1,11 @@
 """Sharing the last seconds of a run, by the page: what is kept, what is left untouched, what is said."""
 
+import base64
 import errno
 import gc
+import json
 import os
+import re
 import stat
 import weakref
 from itertools import pairwise
@@ -20,6 +23,7 @@ from sandbox.app.share.film import film_of_view
 from sandbox.app.share.gif import GifWriter
 from sandbox.app.share.sharing import Sharing
 from sandbox.physics.snapshot import state_hash
+from sandbox.session.player.reel import STEPS
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
@@ -316,3 +320,33 @@ def test_the_path_is_copied_and_the_folder_opened_on_request(sharing, folder, mo
     sharing.copy_path()
     assert (opened, COPIED) == ([folder], [str(folder / "small.png")])
     assert sharing.note == "The file's path is on the clipboard."
+
+
+def test_a_page_plays_the_part_that_was_chosen_and_its_last_picture_is_left_for_the_clipboard(sharing, folder):
+    film = sharing.film
+    sharing.choose(kind="html", start=0.1, end=0.4)
+    sharing.save()
+    export = sharing._export
+    work_off(sharing)
+    (path,) = folder.iterdir()
+    text = path.read_text(encoding="utf-8")
+    data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)[1])
+    assert (path.suffix, data["ticks"]) == (".html", list(range(6, 25)))
+    assert f"<title>{path.stem}" in text or f"<title>{sharing.level_name}" in text
+    assert data["box"] == list(film.box) and export.picture.get_size() == sharing.wanted.size
+    places = np.frombuffer(base64.b64decode(data["sides"][0]["frames"]), dtype="<u2").reshape(19, -1, 2)
+    left, bottom, right, top = film.box
+    span = max(right - left, top - bottom)
+    for place, world in zip(places, filter(None, film.states(0.1, 0.4)), strict=True):
+        at = place * (span / STEPS) + (left - span, bottom - span)
+        assert np.abs(at - world.position).max() <= 0.51 * span / STEPS
+
+
+def test_a_page_has_no_size_to_choose(driver):
+    page = driver.app.share_page.page
+    driver.click_widget(page.kinds.buttons["html"])
+    driver.frames()
+    assert not any(button.is_enabled for button in page.sizes.buttons.values())
+    driver.click_widget(page.kinds.buttons["gif"])
+    driver.frames()
+    assert all(button.is_enabled for button in page.sizes.buttons.values())

@@ -1,4 +1,4 @@
-"""Writing a film into a file: PNG, GIF or MP4, a slice of the work at a time, whole or not at all."""
+"""Writing a film into a file: PNG, GIF, MP4 or a page that plays it, a slice of the work at a time; whole or not."""
 
 import contextlib
 import os
@@ -6,6 +6,7 @@ from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pygame
 
 from sandbox.app.draw.picture import write_png
@@ -49,7 +50,10 @@ class Export:
         """Do the work. Raises OSError where the file cannot be written, of the file's name."""
         # In the same folder, where it can be renamed; hidden, and of the same kind for programs that look.
         unfinished = self.path.with_name(f".{self.path.stem[:80]}-{os.getpid()}.{self.excerpt.kind}")
-        write = {"gif": self._write_gif, "mp4": self._write_movie, "png": self._write_still}[self.excerpt.kind]
+        writers = {
+            "gif": self._write_gif, "mp4": self._write_movie, "png": self._write_still, "html": self._write_page,
+        }  # fmt: skip
+        write = writers[self.excerpt.kind]
         try:
             # What the folder refuses is said before any work is done.
             unfinished.touch()
@@ -87,6 +91,25 @@ class Export:
         yield from self._pictures(lambda picture: None)
         assert self.picture is not None
         write_png(self.picture, path)
+
+    def _write_page(self, path: Path) -> Slices:
+        from sandbox.session.player.page import PlayerPage
+        from sandbox.session.player.reel import Reel, steps_between
+
+        film, excerpt, box = self.film, self.excerpt, np.array(self.film.box)
+        ticks = max(1, round((excerpt.end - excerpt.start) * film.rate))
+        reel, passed = Reel(excerpt.name, film.level, box), 0
+        for world in film.states(excerpt.start, excerpt.end):
+            if world is not None:
+                if passed % steps_between(ticks, world.particle_count, 1) == 0:
+                    reel.add(world)
+                passed += 1
+            yield passed / (ticks + 1)
+        PlayerPage(excerpt.name or self.path.stem, box, film.rate, [reel]).write(path)
+        # For the clipboard.
+        for picture in film.pictures(excerpt.end, excerpt.end, excerpt.fps, excerpt.size, excerpt.name):
+            self.picture = picture or self.picture
+            yield 1.0
 
     def _pictures(self, write: Callable[[pygame.Surface], object]) -> Slices:
         excerpt, done = self.excerpt, 0

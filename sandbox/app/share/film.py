@@ -14,6 +14,7 @@ from sandbox.app.play.stability_paint import StabilityPaint
 from sandbox.app.share.kinds import Size
 from sandbox.app.widgets.fonts import plain_font
 from sandbox.physics.snapshot import Snapshot
+from sandbox.physics.world import World
 from sandbox.session.session import Session
 
 # Lines are never drawn thinner than at this scale [pixels per layout unit].
@@ -51,6 +52,28 @@ class Film:
     def seconds(self) -> float:
         """How long it is [s]."""
         return (self.last - self.first) / self.rate
+
+    @property
+    def box(self) -> Box:
+        """What its pictures show [m]: left, bottom, right, top."""
+        if self._box is not None:
+            return self._box
+        (x, y), wide, tall = self._centre, self._shown[0] / self._zoom / 2, self._shown[1] / self._zoom / 2
+        return x - wide, y - tall, x + wide, y + tall
+
+    def states(self, start: float, end: float) -> Iterator[World | None]:
+        """The world at every tick of start..end [s from its beginning]: itself, to be looked at before the next.
+
+        Before them None, for each tick made.
+        """
+        first, last = (min(self.first + round(at * self.rate), self.last) for at in (start, end))
+        twin = self._past.retold(first)
+        self._running.add(twin)
+        yield twin.world if twin.tick == first else None
+        while twin.tick < last:
+            with np.errstate(over="ignore", invalid="ignore"):
+                twin.advance()
+            yield twin.world if twin.tick >= first else None
 
     def drop_caches(self) -> None:
         """Forget what worlds have derived, where kernels are interpreted no more."""

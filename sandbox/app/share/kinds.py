@@ -15,7 +15,7 @@ class Kind:
     """fps: pictures a second unless told otherwise, and the most that viewers show at their speed.
 
     module, package: what it needs beside what is always installed, and how that is called when it is installed.
-    even: whether its sides have to be.
+    even: whether its sides have to be. A page has every tick, and no size.
     """
 
     usual_fps: float
@@ -29,6 +29,7 @@ KINDS = {
     "gif": Kind(20.0, 50.0, "PIL", "Pillow"),
     "mp4": Kind(30.0, 60.0, "imageio_ffmpeg", "imageio-ffmpeg", even=True),
     "png": Kind(1.0, 1.0),
+    "html": Kind(1.0, 1.0),
 }
 
 

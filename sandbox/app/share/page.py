@@ -24,6 +24,7 @@ KINDS = (
     ("gif", "GIF", "Plays everywhere, over and over"),
     ("mp4", "MP4", "A film: sharper and smaller, for chats and players"),
     ("png", "PNG", "One picture, of the moment that you choose"),
+    ("html", "Page", "One file for a browser: play, step and scrub it there"),
 )
 SIZE_NAMES = [(f"{width}x{height}", f"{width} x {height}", "") for width, height in SIZES]
 NAMED = (("yes", "Shown", "Small, in the corner"), ("no", "Hidden", "Nothing but the run"))
@@ -130,7 +131,7 @@ class ShareForm:
         )  # fmt: skip
         self.sizes = ui.choice(self._row("Size", TOP - 4 + step), SIZE_NAMES, self._choose_size, self._box)
         self.named = ui.choice(
-            self._row("The level's name in the picture", TOP - 4 + 2 * step), NAMED,
+            self._row("The level's name in it", TOP - 4 + 2 * step), NAMED,
             lambda value: sharing.choose(named=value == "yes"), self._box,
         )  # fmt: skip
         if not sharing.level_name:
@@ -144,7 +145,7 @@ class ShareForm:
         if film.seconds >= SHORTEST_FILM:
             self.slider = RangeSlider(ui, place, film.seconds, self._choose_range, self._box)
         else:
-            for kind in ("gif", "mp4"):
+            for kind in ("gif", "mp4", "html"):
                 self.kinds.buttons[kind].disable()
         self._build_note(TOP + 4 * step)
         self._add_button("Save", self._save, 0, "@primary")
@@ -220,6 +221,8 @@ class ShareForm:
             return
         self.kinds.show(wanted.kind)
         self.sizes.show(f"{wanted.size[0]}x{wanted.size[1]}")
+        for button in self.sizes.buttons.values():
+            (button.disable if wanted.kind == "html" else button.enable)()
         self.named.show("yes" if wanted.named and self._sharing.level_name else "no")
         self.field.show(wanted.name)
         self.suffix.set_text(f".{wanted.kind}")
