@@ -33,12 +33,12 @@ def seconds(act: Callable[[], object]) -> tuple[float, object]:
     return time.process_time() - start, result
 
 
-def main() -> int:
+def main(arguments: list[str] | None = None) -> int:
     """Try many."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--all", action="store_true", help="a hundred, not five")
     parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     chance, count = random.Random(given.seed), 100 if given.all else 5
     names = [name for name in golden_names() if name not in SHORTER]
     limits, named, slowest = Limits(), 0, 0.0

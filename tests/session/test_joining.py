@@ -79,7 +79,7 @@ def test_a_cart_joins_with_axles_and_motors_and_passes_through_itself_alone():
 
 @pytest.mark.parametrize("solver", sorted(SOLVERS))
 def test_a_push_gives_what_is_near_its_impulse_and_nothing_else_any(solver):
-    session = run(Session(furnished(solver)), 20)
+    session = run(Session(furnished(solver)), 5)
     world = session.world
     before, far = momentum(world), world.velocity[world.particle_slot("ball")].copy()
     apply(world, Push((-2.0, 0.5), 1.5, (3.0, 4.0)))

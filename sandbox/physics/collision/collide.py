@@ -260,7 +260,7 @@ def _after_solver(
     ahead = room.work.ahead
     clamp_at_terrain(
         particles.position, particles.velocity, ahead, particles.collides, particles.particle_active,
-        particles.inverse_mass, terrain, room.boxes.box, room.terrain_pairs, h,
+        particles.inverse_mass, terrain, room.boxes.box, room.terrain_pairs.start, h,
     )  # fmt: skip
     for p in range(ahead.shape[0]):
         particles.position[p, 0] += ahead[p, 0]

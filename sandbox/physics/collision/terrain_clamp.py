@@ -2,7 +2,6 @@
 
 import math
 
-from sandbox.physics.collision.broad_phase import Pairs
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.types import Flags
 from sandbox.physics.jit import inner_kernel
@@ -26,12 +25,12 @@ def clamp_at_terrain(
     inverse_mass: Floats,
     terrain: Terrain,
     box: Floats,
-    near: Pairs,
+    near_start: Slots,
     h: float,
 ) -> None:
     """Cut the velocities [m/s] of particles that would cross terrain in the coming h [s], on ways h v + ahead [m].
 
-    box [m] (n, 4): where each was expected; near: the edges of terrain there.
+    box [m] (n, 4): where each was expected; near_start (n + 1,): how many edges of terrain are there, summed up.
     """
     if terrain.edge_a.shape[0] == 0:
         return
@@ -40,7 +39,7 @@ def clamp_at_terrain(
             continue
         wx = h * velocity[p, 0] + ahead[p, 0]
         wy = h * velocity[p, 1] + ahead[p, 1]
-        if near.start[p] == near.start[p + 1] and _stays_in(box, p, position[p, 0], position[p, 1], wx, wy):
+        if near_start[p] == near_start[p + 1] and _stays_in(box, p, position[p, 0], position[p, 1], wx, wy):
             continue
         stops, x, y = stopped(position[p, 0], position[p, 1], wx, wy, terrain)
         if stops > STOPS:
