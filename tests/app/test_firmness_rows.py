@@ -5,7 +5,7 @@ import pytest
 from sandbox.editor.items import Item
 from sandbox.level.format.parse import parse_level
 from sandbox.level.kinds.body_def import FirmnessDef
-from sandbox.session.commands import SetCoefficients, SetFirmness
+from sandbox.session.commands import AddBody, SetCoefficients, SetFirmness
 from tests.support.wobbles import firm_level
 
 BOX = {"shape": {"box": [1, 1]}, "position": [0, 1], "spacing": 0.25}
@@ -105,3 +105,22 @@ def test_the_editor_s_panel_takes_the_nearest_and_says_so(edit):
     driver.frames(2)
     assert driver.editor.document.level.bodies[0].firmness == FirmnessDef(hz=10.0, ratio=0.479)
     assert any("it has the nearest now, 10 Hz at ratio 0.479" in notice for notice in driver.notices)
+
+
+def test_the_menus_follow_bodies_that_join_a_run_and_are_taken_back(jelly):
+    def offered(menu):
+        return [name for name, _ in menu.options_list]
+
+    panel, session = jelly.panel, jelly.playback.session
+    bodies, materials = offered(panel.firmness.menu), offered(panel.menu)
+    definition = {"type": "jelly", "position": [0, 4], "shape": {"box": [1, 1]}, "spacing": 0.25, "material": "dough"}
+    session.submit(AddBody(definition, materials={"dough": {"stiffness": 0.4, "damping": 0.9}}))
+    jelly.frames(10)
+    assert offered(panel.firmness.menu) == [*bodies, "+1"] and len(offered(panel.menu)) == len(materials) + 1
+    panel.firmness.choose_body("+1")
+    panel.choose_material(len(materials) - 1)
+    jelly.playback.session.undo()
+    jelly.frames(20)
+    assert (offered(panel.firmness.menu), offered(panel.menu)) == (bodies, materials)
+    assert panel.firmness.menu.selected_option[0] == bodies[0] and panel.menu.selected_option[0] == materials[0]
+    assert texts(jelly) == ["10", "2.32", "0.15"]

@@ -7,6 +7,7 @@ from typing import Any
 
 from sandbox.app.play.playback import Playback
 from sandbox.app.widgets.fields import Choice, Field, typed_number
+from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
 from sandbox.physics import jit
 from sandbox.physics.firmness import LARGEST_READ, WORDS, OutOfReach, Reach, coefficients_of, lowest_mode_of, word_of
@@ -19,9 +20,9 @@ MIXED = "mixed"
 
 
 class FirmnessRows:
-    """What the rows show and do; the panel builds them. bodies: names of those whose firmness can be set here.
+    """What the rows show and do; the panel builds them, where `shown`.
 
-    Larger ones are left to the level's field and the command.
+    Bodies that are large are left to the level's field and the command.
     """
 
     menu: Any
@@ -30,11 +31,28 @@ class FirmnessRows:
 
     def __init__(self, playback: Playback, say: Callable[[str], None]) -> None:
         self.playback, self._say = playback, say
-        forms = playback.session.world.forms
-        self._slots = {body.name: k for k, body in enumerate(forms) if len(body.shape.mass) <= LARGEST_READ}
-        self.bodies = list(self._slots)
         self._body = ALL_BODIES
+        self._find_bodies()
+        # A panel that was laid out without bodies has no rows.
+        self.shown = bool(self._slots)
         self._shown_of: tuple[object, ...] = ()
+
+    @property
+    def bodies(self) -> list[str]:
+        """Names of the bodies whose firmness can be set here."""
+        return list(self._slots)
+
+    def _find_bodies(self) -> None:
+        forms = self.playback.session.world.forms
+        self._slots = {body.name: k for k, body in enumerate(forms) if len(body.shape.mass) <= LARGEST_READ}
+        if self._body not in self._slots:
+            self._body = ALL_BODIES
+
+    def offer_bodies(self, ui: Ui) -> None:
+        """Let the menu offer what there is at the moment: bodies join a run, and go again."""
+        self._find_bodies()
+        if self.shown:
+            ui.offer(self.menu, [ALL_BODIES, *self.bodies], self._body)
 
     def choose_body(self, name: str) -> None:
         """Show and change that body, or all."""
@@ -43,7 +61,7 @@ class FirmnessRows:
 
     def refresh(self, look: bool) -> None:
         """Show what the bodies have now; look: also where no command of the person's has changed them."""
-        if not self.bodies:
+        if not self.shown:
             return
         key = (self.playback.revision, self._body, jit.COMPILED)
         if key == self._shown_of and not look:

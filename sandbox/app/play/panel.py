@@ -97,7 +97,8 @@ class Panel:
         self._refreshed_at: tuple[object, ...] = ()
         self._y = 0.0
         self.firmness = FirmnessRows(playback, say)
-        full = FULL_HEIGHT + (FIRMNESS_HEIGHT if self.firmness.bodies else 0.0)
+        self._offered = self._present()
+        full = FULL_HEIGHT + (FIRMNESS_HEIGHT if self.firmness.shown else 0.0)
         self.by_pad = height >= full + PAD_MORE if shape.springs is None else shape.springs == "pad"
         full += (PAD_MORE if self.by_pad else 0.0) + (0.0 if shape.side is None else SIDES_HEIGHT)
         self.is_folded = (self.by_pad and height < TIGHTEST * full) if shape.world is None else not shape.world
@@ -110,7 +111,7 @@ class Panel:
         if shape.side is not None:
             self._build_sides(shape.side)
         self._build_springs()
-        if self.firmness.bodies:
+        if self.firmness.shown:
             self._build_firmness()
         self._build_world()
         self.area.set_height(ui.px(full * self._tight))
@@ -265,6 +266,7 @@ class Panel:
         """Show what the world has now."""
         world = self.playback.session.world
         settings = world.settings
+        self._follow_what_joins()
         self.gravity_x.show(f"{settings.gravity[0]:g}")
         self.gravity_y.show(f"{settings.gravity[1]:g}")
         self.solver.show(settings.solver)
@@ -383,6 +385,21 @@ class Panel:
 
     def _submit(self, command: Command, gesture: int | None = None) -> None:
         self.playback.submit(command, gesture)
+
+    def _present(self) -> tuple[object, object]:
+        world = self.playback.session.world
+        return world.material_names, world.forms
+
+    def _follow_what_joins(self) -> None:
+        """Offer the materials and bodies that there are: some join a run with what is dropped, and go again."""
+        if all(now is then for now, then in zip(self._present(), self._offered, strict=True)):
+            return
+        self._offered, names = self._present(), self._material_names()
+        if self.material is not None and self.material >= len(names):
+            self.material = None
+        chosen = ALL_MATERIALS if self.material is None else names[self.material]
+        self._ui.offer(self.menu, [ALL_MATERIALS, *names], chosen)
+        self.firmness.offer_bodies(self._ui)
 
     def choose_material(self, material: int | None) -> None:
         """Show and change the springs of a material (index); None = all."""

@@ -152,6 +152,14 @@ class Ui(WindowLayout):
         state.selected_option = menu.selected_option
         state.selected_option_button.set_text(chosen)
 
+    def offer(self, menu: UIDropDownMenu, options: Sequence[str], chosen: str) -> None:
+        """Let a menu have these options, one of them chosen, in place of those it had."""
+        if [name for name, _ in menu.options_list] != list(options):
+            menu.remove_options([name for name, _ in menu.options_list])
+            menu.add_options(list(options))
+        if menu.selected_option[0] != chosen:
+            self.replace_menu(menu, chosen)
+
     def add(self, widget: Painted) -> None:
         """Let a painted widget be reached by Tab."""
         self._add_focusable(widget)
