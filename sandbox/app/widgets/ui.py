@@ -154,8 +154,9 @@ class Ui(WindowLayout):
 
     def offer(self, menu: UIDropDownMenu, options: Sequence[str], chosen: str) -> None:
         """Let a menu have these options, one of them chosen, in place of those it had."""
-        if [name for name, _ in menu.options_list] != list(options):
-            menu.remove_options([name for name, _ in menu.options_list])
+        had = [option if isinstance(option, str) else option[0] for option in menu.options_list]
+        if had != list(options):
+            menu.remove_options(had)
             menu.add_options(list(options))
         if menu.selected_option[0] != chosen:
             self.replace_menu(menu, chosen)
