@@ -47,7 +47,7 @@ TIGHTEST = 0.94
 # What is added where there are bodies whose firmness can be set; by the pad, in place of sliders; and what of the full
 # height the section of the world takes, which is folded where the pad leaves it no room.
 FIRMNESS_HEIGHT = 118.0
-PAD_HEIGHT, CURVE_HEIGHT = 224.0, 84.0
+PAD_HEIGHT, CURVE_HEIGHT = 208.0, 84.0
 PAD_MORE = PAD_HEIGHT + CURVE_HEIGHT - 68.0
 WORLD_HEIGHT = 300.0
 SPRINGS_CHOICE = 118.0
