@@ -319,6 +319,21 @@ def test_a_polygon_that_crosses_itself_is_not_closed_and_its_last_corner_can_be_
     assert len(last_body(drawing.done(empty)).shape.polygon) == 3
 
 
+@pytest.mark.parametrize("tool", [*TWO_POINTS, "polygon", "line"])
+def test_a_point_that_is_taken_back_while_the_button_is_down_ends_as_nothing(tool, empty):
+    drawing = TOOLS[tool].drawing(reach=REACH)
+    for taken_back in (0, 1):
+        for corner in [(0.0, 0.0)] * taken_back:
+            click(drawing, empty, corner)
+        drawing.down(at(empty, (1.0, 2.0)))
+        drawing.back()
+        before = list(drawing.points)
+        drawing.move(at(empty, (4.0, 3.0)))
+        drawing.up(at(empty, (4.0, 3.0)))
+        assert drawing.done(empty) is None and drawing.points == before
+        drawing.cancel()
+
+
 def test_an_outline_in_one_stroke_is_simplified_and_closed_where_the_stroke_ends(empty):
     drawing = TOOLS["polygon"].drawing(reach=REACH)
     turns = np.linspace(0.0, 2.0 * math.pi, 400)[:-1]

@@ -136,6 +136,8 @@ class Drawing(Generic[AnyOptions]):
         """Take the last point back, as Backspace asks."""
         self._fault = ""
         del self.points[-1:]
+        # The press that made it moves and ends nothing any more.
+        self._pressed = False
 
     def cancel(self) -> None:
         """Give up what is under way, as Escape asks."""
