@@ -113,8 +113,8 @@ def test_a_recording_cut_before_its_first_tick_verifies_nothing(good, tmp_path):
 
 def test_a_forged_line_is_refused_before_it_is_held(good, tmp_path):
     lines = [json.loads(line) for line in good.splitlines()]
-    flood = {"tick": 0, "gesture": 1, "command": {"type": "x" * 40_000_000}}
-    wide = {"tick": 0, "state": {"position": "A" * 40_000_000}, "settings": {}}
+    flood = {"tick": 0, "gesture": 1, "command": {"type": "x" * 12_000_000}}
+    wide = {"tick": 0, "state": {"position": "A" * 12_000_000}, "settings": {}}
     for forged in (flood, wide, {"note": [[]] * 3_000_000}):
         path = tmp_path / "forged.gz"
         path.write_bytes(compressed(sealed([*lines[:3], forged])))
