@@ -404,7 +404,7 @@ class Panel:
     def choose_material(self, material: int | None) -> None:
         """Show and change the springs of a material (index); None = all."""
         self.material = material
-        self._rebuild_menu(ALL_MATERIALS if material is None else self._material_names()[material])
+        self._ui.replace_menu(self.menu, ALL_MATERIALS if material is None else self._material_names()[material])
 
     def _choose_material(self, name: str) -> None:
         self.choose_material(None if name == ALL_MATERIALS else self._material_names().index(name))
@@ -414,10 +414,6 @@ class Panel:
 
     def _choose_substeps(self, count: str) -> None:
         self._submit(SetSolver(substeps=AUTO if count == AUTO else int(count)))
-
-    def _rebuild_menu(self, name: str) -> None:
-        if self.menu.selected_option[0] != name:
-            self._ui.replace_menu(self.menu, name)
 
     def _slide(self, value: float, is_stiffness: bool) -> None:
         if self._gesture is None:

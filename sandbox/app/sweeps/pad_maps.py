@@ -41,7 +41,6 @@ class PadMaps:
         name = None if material is None else list(world.material_names)[material]
         self.sweeps.follow(playback.level, world.settings, name)
         self.sweeps.update()
-        if self.menu.selected_option[0] != self._chosen:
-            self._ui.replace_menu(self.menu, self._chosen)
+        self._ui.replace_menu(self.menu, self._chosen)
         showing = self.sweeps.measure is not None
         pad.show_layer(self.sweeps.layer if showing else None, self.note if showing else "")

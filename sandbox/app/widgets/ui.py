@@ -145,7 +145,9 @@ class Ui(WindowLayout):
         return menu
 
     def replace_menu(self, menu: UIDropDownMenu, chosen: str) -> None:
-        """Show another chosen option on a menu, which then keeps its place among the widgets."""
+        """Show another chosen option on a menu, which then keeps its place among the widgets; nothing if it is that."""
+        if menu.selected_option[0] == chosen:
+            return
         menu.selected_option = (chosen, chosen)
         # The menu's state, closed or open, has a copy of the option and a button that shows it.
         state: Any = menu.current_state
@@ -158,8 +160,7 @@ class Ui(WindowLayout):
         if had != list(options):
             menu.remove_options(had)
             menu.add_options(list(options))
-        if menu.selected_option[0] != chosen:
-            self.replace_menu(menu, chosen)
+        self.replace_menu(menu, chosen)
 
     def add(self, widget: Painted) -> None:
         """Let a painted widget be reached by Tab."""
