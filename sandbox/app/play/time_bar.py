@@ -13,7 +13,7 @@ from sandbox.app.play.travel import Mark
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.icons import ICONS, painted_icon
-from sandbox.app.widgets.ui import Ui, set_icon
+from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.session.session import Branch
 
@@ -110,7 +110,7 @@ class TimeBar:
             if on != button.is_selected:
                 (button.select if on else button.unselect)()
                 picture = dict(LEFT + RIGHT)[action]
-                set_icon(button, painted_icon(ICONS[picture], self._ui.px(ICON), ACCENT if on else TEXT))
+                button.show_icon(painted_icon(ICONS[picture], self._ui.px(ICON), ACCENT if on else TEXT))
 
     # Actions.
 
