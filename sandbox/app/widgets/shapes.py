@@ -11,6 +11,9 @@ from pygame_gui.core.surface_cache import SurfaceCache
 
 # Pictures of buttons and the like that are kept; most have 10 kB, none has more than 160.
 MOST_SHAPES = 500
+# Rounded rectangles are drawn no larger [pixels], and stretched: the library gives the background inside a border the
+# corners of the border, made as much smaller, and in a much smaller shape that would be seen.
+ENOUGH = 64
 
 
 class _Asked(NamedTuple):
@@ -76,7 +79,7 @@ class Shapes(SurfaceCache):
 
     def _stretched(self, asked: _Asked) -> pygame.Surface | None:
         """A rounded rectangle: a small one, with its middle row and column as often as needed."""
-        side = _least_side(asked)
+        side = _side(asked)
         if side is None:
             return None
         theming = {
@@ -90,12 +93,13 @@ class Shapes(SurfaceCache):
         return _widened(_widened(small, asked.size[0], 0), asked.size[1], 1)
 
 
-def _least_side(asked: _Asked) -> int | None:
-    """Sides of a square that has little but the corners; None: the shape has no such corners, or is no larger."""
+def _side(asked: _Asked) -> int | None:
+    """Sides of the square to stretch; None: the shape has no round corners, or is no larger than they are."""
     if asked.radii is None or asked.shadow_width:
         return None
-    side = 2 * (max(asked.radii) + asked.border_widths["left"]) + 4
-    return side if side <= min(asked.size) and side < max(asked.size) else None
+    side = min(*asked.size, ENOUGH)
+    least = 2 * (max(asked.radii) + asked.border_widths["left"]) + 4
+    return side if least <= side < max(asked.size) else None
 
 
 def _widened(picture: pygame.Surface, length: int, axis: int) -> pygame.Surface:
