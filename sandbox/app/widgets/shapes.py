@@ -2,11 +2,12 @@
 
 from collections import OrderedDict
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import pygame
 from pygame_gui.core.drawable_shapes import RoundedRectangleShape
 from pygame_gui.core.drawable_shapes.drawable_shape import DrawableShape
+from pygame_gui.core.interfaces import IUIManagerInterface
 from pygame_gui.core.surface_cache import SurfaceCache
 
 # Pictures of buttons and the like that are kept; most have 10 kB, none has more than 160.
@@ -42,7 +43,8 @@ class Shapes(SurfaceCache):
         self._pictures: OrderedDict[str, pygame.Surface] = OrderedDict()
         self._asked: _Asked | None = None
 
-    # As the library's shapes ask for a theme.
+    # What a shape that is drawn here asks of a manager.
+
     def get_theme(self) -> "Shapes":
         """The theme in as much as a shape needs it, which is a cache."""
         return self
@@ -89,7 +91,8 @@ class Shapes(SurfaceCache):
             "shape_corner_radius": list(asked.radii or ()),
             "border_overlap": 1,
         }
-        small = RoundedRectangleShape(pygame.Rect(0, 0, side, side), theming, ["normal"], self).get_surface("normal")
+        square, manager = pygame.Rect(0, 0, side, side), cast(IUIManagerInterface, self)
+        small = RoundedRectangleShape(square, theming, ["normal"], manager).get_surface("normal")
         return _widened(_widened(small, asked.size[0], 0), asked.size[1], 1)
 
 
@@ -129,4 +132,4 @@ def _redraw_shown(shape: DrawableShape, force_full_redraw: bool = False) -> None
 
 # The library draws all states of a button one after another, in the frames that come; most are never seen. The others
 # are drawn by `set_active_state`, once they are.
-DrawableShape.redraw_all_states = _redraw_shown
+DrawableShape.redraw_all_states = _redraw_shown  # type: ignore[method-assign, assignment]
