@@ -1,5 +1,6 @@
 """The app end to end: what a person does changes the world, and what it cannot do it says."""
 
+import errno
 import json
 import os
 import subprocess
@@ -152,6 +153,18 @@ def test_the_keyboard_alone_drags_a_particle(driver):
     driver.key(pygame.K_RETURN)
     assert not driver.world.is_held(0)
     assert driver.world.position[4][1] > 0.5
+
+
+def test_a_recording_on_a_full_disk_is_refused_in_plain_words_and_leaves_no_file(driver, documents, monkeypatch):
+    def full(recorder, world):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("sandbox.session.replay.writer.Recorder.write_tick", full)
+    for key in (pygame.K_r, pygame.K_s):
+        driver.key(key, CTRL)
+        path = documents / "small.replay.jsonl"
+        assert driver.notices == [f"The recording cannot be written to {path}: No space left on device."]
+        assert driver.playback.session.recording is None and not list(documents.iterdir())
 
 
 def test_record_drag_slide_and_save_gives_a_replay_that_verifies(driver, documents):
