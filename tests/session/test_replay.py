@@ -1,3 +1,4 @@
+import gzip
 import json
 import random
 from bisect import bisect_right
@@ -157,10 +158,30 @@ def test_a_build_that_steps_differently_is_told_from_an_injected_fault(recorded,
     replay = read_replay(recorded)
     monkeypatch.setattr("sandbox.session.session.step", _slightly_wrong_step)
     divergence = verify(replay)
-    assert divergence.tick == 201
-    assert "this build steps differently" in divergence.note
-    assert "tick 240" in divergence.note
+    assert (divergence.tick, divergence.seen) == (201, 240)
+    assert divergence.note == "this build steps differently"
     assert divergence.expected != divergence.actual
+    assert "tick 201: velocity; at the next stored state, tick 240: velocity[" in str(divergence)
+    assert divergence.lines()[:1] == ["first difference at tick 201, in velocity"]
+
+
+@pytest.mark.parametrize("bits", [1, 1 << 30])
+def test_a_build_with_one_wrong_number_is_told_by_the_hash_that_was_recorded(recorded, monkeypatch, bits):
+    replay = read_replay(recorded)
+
+    def wrong_step(world):
+        from sandbox.physics.step import step
+
+        step(world)
+        if world.tick == 201:
+            world.velocity.view(np.int64)[9, 1] ^= bits
+
+    monkeypatch.setattr("sandbox.session.session.step", wrong_step)
+    divergence = verify(replay)
+    assert (divergence.tick, divergence.array, divergence.index, divergence.seen) == (201, "velocity", (9, 1), None)
+    expected, actual = (np.float64(value).view(np.int64) for value in (divergence.expected, divergence.actual))
+    assert expected ^ actual == bits
+    assert "this build steps differently; what is expected is told by its hash" in divergence.lines()[-1]
 
 
 def _slightly_wrong_step(world):
@@ -193,10 +214,23 @@ def test_a_changed_byte_in_a_compressed_recording_is_refused(tmp_path):
     session.stop_recording()
     data = path.read_bytes()
     generator = random.Random(8)
-    for place in [*range(10), *(generator.randrange(10, len(data)) for _ in range(100))]:
+    head_of_gzip = [0, 1, 2, 3]  # behind them stand a time and a system, which say nothing of the run
+    for place in [*head_of_gzip, *(generator.randrange(10, len(data)) for _ in range(100))]:
         path.write_bytes(data[:place] + bytes([data[place] ^ 0x40]) + data[place + 1 :])
         with pytest.raises(ReplayError):
             read_replay(path)
+
+
+def test_a_recording_that_was_unpacked_and_packed_again_is_the_same(tmp_path):
+    path, again = tmp_path / "run.gz", tmp_path / "again.gz"
+    session = Session(rope_level())
+    session.record_to(path)
+    play(session, 70)
+    session.stop_recording()
+    with gzip.open(path) as packed, gzip.open(again, "wb") as file:
+        file.write(packed.read())
+    assert again.read_bytes() != path.read_bytes()
+    assert verify(read_replay(again)) is None
 
 
 @pytest.mark.parametrize("suffix", ["jsonl", "gz"])
