@@ -115,7 +115,8 @@ class App:
 
     def _build_ui(self) -> None:
         self.gallery: Gallery | None = None
-        self.ui = Ui(*fitting_layout(self.display.size, self.scale), self.display.pixel_ratio)
+        size, scale = fitting_layout(self.display.size, self.scale)
+        self.ui = Ui(size, scale, self.display.pixel_ratio)
         self.status = StatusLine(self.ui, self._notices)
         if self.screen is not None:
             self.screen.build(self.ui)

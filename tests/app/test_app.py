@@ -377,18 +377,18 @@ def test_the_window_can_be_resized_and_rescaled(driver):
     assert driver.stage.camera.viewport[2] == 900
 
 
-@pytest.mark.parametrize("edit", [False, True])
-def test_a_window_that_holds_next_to_nothing_is_laid_out_smaller_and_cut_off(open_app, edit):
-    driver = open_app(small_level() if edit else None, edit=edit)
-    if edit:
+@pytest.mark.parametrize("shown", ["gallery", "tour", "properties"])
+def test_a_window_that_holds_next_to_nothing_is_laid_out_smaller_and_cut_off(open_app, shown):
+    driver = open_app(small_level() if shown == "properties" else None, edit=shown != "gallery")
+    if shown == "properties":
         driver.key(pygame.K_a, CTRL)
     window = driver.app.display.window
     window.minimum_size = (1, 1)
-    for size, chosen, shown in (((640, 440), 4.0, 2.0), ((200, 150), 1.0, 0.625), ((1, 1), 1.0, 0.5)):
+    for size, chosen, scale in (((640, 440), 4.0, 2.0), ((200, 150), 1.0, 0.625), ((1, 1), 1.0, 0.5)):
         driver.app.scale, window.size = chosen, size
         driver.app.rebuild()
         driver.frames(2)
-        assert driver.app.ui.scale == shown and min(driver.app.ui.units) >= 220
+        assert driver.app.ui.scale == scale and min(driver.app.ui.units) >= 220
     # One press of the key makes things smaller, however large they were asked for.
     driver.app.scale, window.size = 4.0, (640, 440)
     driver.frames(2)
