@@ -377,9 +377,11 @@ def test_the_window_can_be_resized_and_rescaled(driver):
     assert driver.stage.camera.viewport[2] == 900
 
 
-@pytest.mark.parametrize("shown", ["gallery", "tour", "properties"])
+@pytest.mark.parametrize("shown", ["gallery", "tour", "properties", "parts"])
 def test_a_window_that_holds_next_to_nothing_is_laid_out_smaller_and_cut_off(open_app, shown):
     driver = open_app(small_level() if shown == "properties" else None, edit=shown != "gallery")
+    if shown == "parts":
+        driver.editor.show_parts()
     if shown == "properties":
         driver.key(pygame.K_a, CTRL)
     window = driver.app.display.window

@@ -21,8 +21,8 @@ class WindowLayout:
         return round(units * self.scale)
 
     def rect(self, x: float, y: float, width: float, height: float) -> pygame.Rect:
-        """A rectangle of layout units in pixels, empty where there is no room for one."""
-        return pygame.Rect(self.px(x), self.px(y), max(self.px(width), 0), max(self.px(height), 0))
+        """A rectangle of layout units in pixels."""
+        return pygame.Rect(self.px(x), self.px(y), self.px(width), self.px(height))
 
     @property
     def units(self) -> tuple[float, float]:
