@@ -189,3 +189,20 @@ def test_what_was_dropped_is_kept_in_the_document_and_undone_there(edit):
     driver.frames(1)
     driver.key(pygame.K_z, pygame.KMOD_CTRL)
     assert len(driver.editor.document.level.bodies) == 3
+
+
+def test_a_drop_and_its_undo_may_come_within_one_frame(player):
+    player.key(pygame.K_6)
+    place = tuple(map(round, at(player, 0.0, 3.0)))
+    player.move(place)
+    # A busy machine hands all of it on at once.
+    player.post(pygame.MOUSEBUTTONDOWN, pos=place, button=1)
+    player.post(pygame.MOUSEBUTTONUP, pos=place, button=1)
+    player.post(pygame.KEYDOWN, key=pygame.K_z, mod=pygame.KMOD_CTRL, unicode="", scancode=0)
+    player.frames(2)
+    assert player.playback.session.can_redo and not player.world.joined
+    assert "There is nothing to undo." not in player.notices
+    for key in (pygame.K_y, pygame.K_z, pygame.K_y):
+        player.post(pygame.KEYDOWN, key=key, mod=pygame.KMOD_CTRL, unicode="", scancode=0)
+    player.frames(2)
+    assert len(player.world.joined) == 1 and "There is nothing to redo." not in player.notices

@@ -39,11 +39,11 @@ class CompareScreen(PlayScreen):
         self.single: Playback | None = None
         self.side = SIDES[0]
         super().__init__(app, playback, source)
-        self.beside = Stage(other, self.other_viewport, app.scale)
+        self.beside = Stage(other, self.other_viewport, app.ui.scale)
         self.difference = Difference()
         self._join_stages()
         # The beginning is the same in both: they show the same part of it.
-        self.stage.place(self.viewport, app.scale)
+        self.stage.place(self.viewport, app.ui.scale)
         app.follow(other)
         if self.welcome:
             app.say(self.welcome)

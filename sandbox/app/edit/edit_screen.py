@@ -30,6 +30,7 @@ from sandbox.app.play.status import STATUS_HEIGHT, counted_parts
 from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Figures, Pixel, Pointer
+from sandbox.app.sentences import sentence
 from sandbox.app.shortcuts import Mode
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import Document, EditError
@@ -117,7 +118,7 @@ class EditScreen:
         try:
             document = function(self.document)
         except EditError as error:
-            self.say(str(error))
+            self.say(sentence(error))
             return False
         self.apply(label, document, merge)
         return True

@@ -14,6 +14,7 @@ from sandbox.app.play.firmness_rows import ALL_BODIES, FirmnessRows
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.response_curve import ResponseCurve
 from sandbox.app.play.view_row import ViewRow
+from sandbox.app.sentences import sentence
 from sandbox.app.sweeps.pad_maps import PadMaps
 from sandbox.app.sweeps.pad_sweeps import PadSweeps
 from sandbox.app.widgets.fields import Field, typed_number
@@ -331,7 +332,7 @@ class Panel:
             self.note.show_text(self._no_spring_note())
             return
         self._show_reading(stiffness, damping)
-        self.note.show_text(f"{limits.reason[0].upper()}{limits.reason[1:]}.")
+        self.note.show_text(sentence(limits.reason))
 
     def _show_on_sliders(self, stiffness: np.ndarray, damping: np.ndarray, limits: CoefficientLimits) -> None:
         for values, slider, limit, label in (
@@ -488,7 +489,7 @@ class Panel:
         try:
             stiffness, damping = coefficients_from_frequency(frequency, ratio, self._tick_time())
         except ValueError as error:
-            self._say(f"{error}.")
+            self._say(sentence(error))
             return False
         if not self._has_springs():
             return False

@@ -71,10 +71,10 @@ class PlayScreen:
         self.show_palette = False
         self.palette: PartsPalette | None = None
         self.panel: SidePanel | None = None
-        self.stage = Stage(playback, (0, 0, *app.ui.size), app.scale)
+        self.stage = Stage(playback, (0, 0, *app.ui.size), app.ui.scale)
         self.time = TimeBar(app, lambda: self.playback)
         self.graphs = GraphDock(app, self._measured)
-        self.stage.place(self.viewport, app.scale)
+        self.stage.place(self.viewport, app.ui.scale)
         kept = preference(SPRINGS)
         self.shape = PanelShape(kept if kept in ("pad", "sliders") else None)
         kept = preference(HAND)

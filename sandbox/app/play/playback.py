@@ -119,11 +119,13 @@ class Playback:
             self.messages.append(response.message)
 
     def submit_undo(self) -> None:
-        """Take the last gesture back."""
+        """Take the last gesture back, also one of this frame."""
+        self.apply_pending()
         self._submit_if(self.session.can_undo, Undo(), "There is nothing to undo.")
 
     def submit_redo(self) -> None:
-        """Make the gesture again that was undone last."""
+        """Make the gesture again that was undone last, also in this frame."""
+        self.apply_pending()
         self._submit_if(self.session.can_redo, Redo(), "There is nothing to redo.")
 
     def _submit_if(self, possible: bool, command: Command, otherwise: str) -> None:

@@ -185,8 +185,8 @@ def motor_parts(readings: list[MotorReading], carries: bool) -> list[tuple[str, 
         return [*parts, (f"{len(readings)} motors, {told}", WARNING if full else MUTED)]
     for reading in readings:
         if reading.pushes:
-            text = f"{reading.name} {abs(reading.torque):.3g} of {reading.limit:.3g} N m"
+            text = f"motor {reading.name}: {abs(reading.torque):.3g} of {reading.limit:.3g} N m"
             parts.append((text, WARNING if reading.at_limit else MUTED))
         else:
-            parts.append((f"{reading.name} pushes against nothing", WARNING))
+            parts.append((f"motor {reading.name}: it pushes against nothing", WARNING))
     return parts
