@@ -41,7 +41,8 @@ pictures: $(VENV)/installed-dev
 	$(BIN)/python -m tests.pictures
 
 bench: $(VENV)/installed-dev
-	for bench in tests/bench/*.py; do echo "## $$bench"; PYTHONPATH=. $(BIN)/python "$$bench" || exit 1; done
+	failed=0; for bench in tests/bench/*.py; do echo "## $$bench"; PYTHONPATH=. $(BIN)/python "$$bench" || failed=1; \
+	done; exit $$failed
 
 abuse: $(VENV)/installed-dev
 	$(BIN)/python -m tests.abuse

@@ -12,8 +12,8 @@ Point = tuple[float, float]
 
 # A hand reaches so many times as far into a soft body as that goes, so that all of it bears some of the force. With 1
 # a jelly that stands at nine tenths of its height is stretched to twice its length when it is thrown by a corner; with
-# 1.5 the corner of a larger one swings ahead of the cursor. Much more holds it as if it were stiff.
-REACH = 3.0
+# 1.5 the corner of a larger one swings ahead of the cursor. Much more holds a jelly as if it were stiff.
+REACH = 2.0
 
 # A mistuned Hooke spring blows up for the user to see: what overflows is far from everything, and no fault.
 _far_away = np.errstate(over="ignore", invalid="ignore")

@@ -2,7 +2,7 @@
 
 import hashlib
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import Field, dataclass, fields
 from typing import Any
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.changing.equipment import Equipment
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.state import COLUMNS, Column, StateArrays
+from sandbox.physics.state import COLUMNS, MOVING, TOPOLOGY, Column, StateArrays
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.world import World
 
@@ -35,13 +35,22 @@ class Snapshot(StateArrays):
         self.__dict__.update(self.arrays)
 
 
-def take(world: World) -> Snapshot:
-    """Copy a world's state."""
-    copies = {column.name: getattr(world, column.name).copy() for column in COLUMNS}
+def _copied(world: World, columns: Iterable[Column]) -> dict[str, NDArray[Any]]:
+    copies = {column.name: getattr(world, column.name).copy() for column in columns}
     for copy in copies.values():
         copy.flags.writeable = False
+    return copies
+
+
+def _topology(world: World) -> dict[str, NDArray[Any]]:
+    """Copies of what is topology, which all snapshots share that are taken while it is the same."""
+    return _copied(world, TOPOLOGY)
+
+
+def take(world: World) -> Snapshot:
+    """Copy a world's state."""
     return Snapshot(
-        copies,
+        {**world.derived(_topology), **_copied(world, MOVING)},
         settings=world.settings,
         tick=world.tick,
         grab_particle=world.grab_particle,
@@ -57,8 +66,11 @@ def restore(world: World, snapshot: Snapshot) -> None:
     world.equipment = snapshot.equipment
     # Before the arrays: another solver begins some of them anew.
     world.settings = snapshot.settings
+    copied = world.derived(_topology)
     for column in COLUMNS:
         present, kept = getattr(world, column.name), snapshot.arrays[column.name]
+        if copied.get(column.name) is kept:
+            continue
         if len(present) != len(kept):
             setattr(world, column.name, kept.copy())
         elif column.topology and not np.array_equal(present, kept):

@@ -166,6 +166,9 @@ FAMILIES: dict[Family, tuple[Column, ...]] = {
 }
 # Those that no state goes without.
 ALWAYS_STORED: frozenset[str] = frozenset(column.stored for column in COLUMNS if not column.sparse)
+# Those from which solvers and collision derive, which a tick seldom changes, and all others.
+TOPOLOGY: tuple[Column, ...] = tuple(column for column in COLUMNS if column.topology)
+MOVING: tuple[Column, ...] = tuple(column for column in COLUMNS if not column.topology)
 GUARDED: tuple[Column, ...] = tuple(column for column in COLUMNS if column.guarded)
 
 

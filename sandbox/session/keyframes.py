@@ -65,7 +65,7 @@ class Keyframes:
         if world.tick % self._spacing == 0 and self._kept[-1].tick < world.tick:
             if any(kept.between for kept in self._kept):
                 self._set([kept for kept in self._kept if not kept.between])
-            self._keep(Keyframe(order, take(world)))
+            self.keep(Keyframe(order, take(world)))
         elif world.tick % self._spacing == 0 and self._lacks(world.tick):
             self.insert(Keyframe(order, take(world)))
 
@@ -79,6 +79,15 @@ class Keyframes:
         place = bisect.bisect_right(self._kept, keyframe.tick, key=_tick)
         self._set([*self._kept[:place], _sharing(keyframe, self._kept[place - 1]), *self._kept[place:]])
 
+    def keep(self, keyframe: Keyframe) -> None:
+        """Keep one behind all others."""
+        self._unkept = 0
+        keyframe = _sharing(keyframe, self._kept[-1])
+        self._size += _own_size(keyframe, self._kept[-1])
+        self._kept.append(keyframe)
+        while self._size > KEYFRAME_BUDGET and len(self._kept) > 2:
+            self._thin()
+
     def note_passed(self, world: World, order: int, target: int) -> None:
         """Keep a tick shortly before the one sought for a while, as the next one sought may be among these."""
         if target - world.tick < KEYFRAME_TICKS:
@@ -91,7 +100,7 @@ class Keyframes:
         enough = KEYFRAME_COMMANDS + COMMANDS_PER_PARTICLE * world.particle_count
         # In the past that was sought, later ones are kept already.
         if self._unkept >= enough and self._kept[-1].order < order:
-            self._keep(Keyframe(order, take(world), between=True))
+            self.keep(Keyframe(order, take(world), between=True))
 
     def note_return(self) -> None:
         """The world is as one of them has it."""
@@ -117,14 +126,6 @@ class Keyframes:
         if len(kept) < len(self._kept):
             self._set(kept)
 
-    def _keep(self, keyframe: Keyframe) -> None:
-        self._unkept = 0
-        keyframe = _sharing(keyframe, self._kept[-1])
-        self._size += _own_size(keyframe, self._kept[-1])
-        self._kept.append(keyframe)
-        while self._size > KEYFRAME_BUDGET and len(self._kept) > 2:
-            self._thin()
-
     def _thin(self) -> None:
         """Let every other one go; of those between the commands of one tick first."""
         first = next((place for place, kept in enumerate(self._kept) if kept.between), 1)
@@ -141,7 +142,8 @@ def _sharing(keyframe: Keyframe, before: Keyframe) -> Keyframe:
     """A keyframe that has the arrays of the one before where they are equal."""
     present, earlier = keyframe.snapshot.arrays, before.snapshot.arrays
     arrays = {
-        name: earlier[name] if array.tobytes() == earlier[name].tobytes() else array for name, array in present.items()
+        name: earlier[name] if array is earlier[name] or array.tobytes() == earlier[name].tobytes() else array
+        for name, array in present.items()
     }
     return replace(keyframe, snapshot=replace(keyframe.snapshot, arrays=arrays))
 

@@ -17,6 +17,7 @@ from sandbox.session.commands import Command, CommandError, Redo, Undo, apply
 from sandbox.session.commands.adding import name_added
 from sandbox.session.commands.records import ScriptLine, from_record, to_record
 from sandbox.session.keyframes import Keyframe, Keyframes
+from sandbox.session.log import LogEntry, Reached, ReachedStates
 from sandbox.session.replay.format import STATE_TICKS
 from sandbox.session.replay.writer import Recorder
 
@@ -26,22 +27,6 @@ BRANCH_LIMIT = 9
 PROGRESS_TICKS = 120
 # Of more springs that break in one tick the message says how many they are, not their names.
 MOST_NAMED = 3
-
-
-@dataclass
-class LogEntry:
-    """A command that was applied at a tick, before that tick's step; order: its place among all that ever were.
-
-    in_effect: False while the command cannot be carried out because what it needed is undone. implied: the end of a
-    drag or drive that an Undo brings about by itself, so that a recording of that Undo does not hold it.
-    """
-
-    order: int
-    tick: int
-    gesture: int
-    command: Command
-    in_effect: bool = True
-    implied: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +77,7 @@ class Session:
         # Gestures of which a command has or had no effect.
         self._hindered: set[int] = set()
         self._keyframes = Keyframes(Keyframe(0, take(self.world)))
+        self._reached = ReachedStates()
         self._breaks: set[int] = set()
         self._branches: list[Branch] = []
         self._recorder: Recorder | None = None
@@ -369,6 +355,8 @@ class Session:
         elif isinstance(command, Redo):
             self._redo()
         else:
+            if gesture not in self._entries and not self._reached.has(tick):
+                self._keep_reached()
             apply(self.world, command)
             self._drop_future()
             if gesture not in self._entries:
@@ -401,6 +389,7 @@ class Session:
         if gesture is None:
             raise CommandError("nothing to undo")
         self._drop_future()
+        self._keep_reached()
         self._let_go(gesture)
         first = self._first_order(gesture)
         del self._done[bisect.bisect_left(self._done, first, key=self._first_order)]
@@ -428,6 +417,7 @@ class Session:
             raise CommandError("nothing to redo")
         if self.tick < self._last_tick:
             raise CommandError(f"redo works at the end of the run: go to tick {self._last_tick} first")
+        self._keep_reached()
         gesture = self._redoable.pop()
         self._undone.remove(gesture)
         entries, first = self._entries[gesture], self._first_order(gesture)
@@ -450,12 +440,30 @@ class Session:
             if entry.gesture == gesture and ending is not None:
                 self._note(ending, gesture, implied=True)
 
+    def _keep_reached(self) -> None:
+        """Keep the present state: undoing what comes, or redoing what goes, leads through it."""
+        if self.tick < self._last_tick:
+            return
+        idle = [entry for gesture in self._hindered for entry in self._entries[gesture] if not entry.in_effect]
+        self._reached.keep(Reached(list(self._timeline), idle, frozenset(self._breaks), take(self.world)))
+
     def _step_again_from(self, order: int) -> None:
         """Come to the present tick once more, by history as it now stands, which is another from an order on."""
         tick = self.tick
         self._keyframes.drop_after(order)
-        self._forget_breaks(self._keyframes.before(tick).tick)
+        nearest = self._keyframes.before(tick)
+        reached = self._reached.last_of(self._timeline, tick)
+        if reached is not None and (reached.state.tick, len(reached.history)) > (nearest.tick, self._place(nearest)):
+            reached.tell_effects()
+            self._breaks = set(reached.breaks)
+            self._keyframes.keep(Keyframe(self._order_at(len(reached.history)), reached.state, between=True))
+        else:
+            self._forget_breaks(nearest.tick)
         self._rewind(tick, tick)
+
+    def _place(self, keyframe: Keyframe) -> int:
+        """Where in history that begins which a keyframe does not hold."""
+        return bisect.bisect_left(self._timeline, keyframe.order, key=_order)
 
     def _rewind(self, back_to: int, tick: int) -> None:
         """Restore the last keyframe at or before a tick and follow history to another."""
@@ -463,7 +471,7 @@ class Session:
         restore(self.world, keyframe.snapshot)
         self._keyframes.note_return()
         name_added(self.world)
-        self._follow(bisect.bisect_left(self._timeline, keyframe.order, key=_order), tick)
+        self._follow(self._place(keyframe), tick)
 
     def _first_of(self, tick: int) -> int:
         """Where in history the commands of a tick begin."""

@@ -42,7 +42,7 @@ def _lengths(level) -> tuple[int, int]:
     substeps = 1 if world.settings.substeps == AUTO else world.settings.substeps
     work = substeps * (world.particle_count + len(world.particle_a) + 2 * len(world.constraint_kind))
     seconds = min(SECONDS, max(TOUCHING_SECONDS, WORK // work // rate))
-    return seconds * rate, min(INTERPRETED_TICKS, INTERPRETED_WORK // work)
+    return seconds * rate, max(1, min(INTERPRETED_TICKS, INTERPRETED_WORK // work))
 
 
 @pytest.mark.parametrize("paths", SHARES, ids=lambda paths: "+".join(path.stem for path in paths))

@@ -158,10 +158,30 @@ def test_a_build_that_steps_differently_is_told_from_an_injected_fault(recorded,
     replay = read_replay(recorded)
     monkeypatch.setattr("sandbox.session.session.step", _slightly_wrong_step)
     divergence = verify(replay)
-    assert divergence.tick == 201
-    assert "this build steps differently" in divergence.note
-    assert "tick 240" in divergence.note
+    assert (divergence.tick, divergence.seen) == (201, 240)
+    assert divergence.note == "this build steps differently"
     assert divergence.expected != divergence.actual
+    assert "tick 201: velocity; at the next stored state, tick 240: velocity[" in str(divergence)
+    assert divergence.lines()[:1] == ["first difference at tick 201, in velocity"]
+
+
+@pytest.mark.parametrize("bits", [1, 1 << 30])
+def test_a_build_with_one_wrong_number_is_told_by_the_hash_that_was_recorded(recorded, monkeypatch, bits):
+    replay = read_replay(recorded)
+
+    def wrong_step(world):
+        from sandbox.physics.step import step
+
+        step(world)
+        if world.tick == 201:
+            world.velocity.view(np.int64)[9, 1] ^= bits
+
+    monkeypatch.setattr("sandbox.session.session.step", wrong_step)
+    divergence = verify(replay)
+    assert (divergence.tick, divergence.array, divergence.index, divergence.seen) == (201, "velocity", (9, 1), None)
+    expected, actual = (np.float64(value).view(np.int64) for value in (divergence.expected, divergence.actual))
+    assert expected ^ actual == bits
+    assert "this build steps differently; what is expected is told by its hash" in divergence.lines()[-1]
 
 
 def _slightly_wrong_step(world):

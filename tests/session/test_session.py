@@ -1,6 +1,7 @@
 import pytest
 
 from sandbox.physics.snapshot import state_hash
+from sandbox.physics.step import step
 from sandbox.session.commands import (
     AddParticle,
     AddSpring,
@@ -303,3 +304,46 @@ def test_long_re_stepping_reports_its_progress(session):
     session.undo()
     session.apply_pending()
     assert seen and all(0 < done <= total == 500 for done, total in seen)
+
+
+def test_undo_steps_from_where_the_gesture_began_and_undoing_to_and_fro_steps_nothing(session, monkeypatch):
+    steps = []
+    monkeypatch.setattr("sandbox.session.session.step", lambda world: steps.append(world.tick) or step(world))
+    _advance(session, 50)
+    _drag(session, 6)
+    session.advance()
+    hashes = [state_hash(session.world)]
+    steps.clear()
+    session.undo()
+    session.apply_pending()
+    assert steps == list(range(50, 71))
+    hashes.append(state_hash(session.world))
+    for turn in range(6):
+        (session.undo if turn % 2 else session.redo)()
+        session.apply_pending()
+        assert state_hash(session.world) == hashes[turn % 2]
+    assert len(steps) == 21
+
+
+def test_what_redo_comes_back_to_has_the_breaks_and_the_effects_that_it_had(session):
+    session.submit(AddParticle((1.0, 1.0)))
+    session.advance()
+    session.submit(Pin(session.world.particle_slot("+.0")), gesture=99)
+    session.submit(Pin(3), gesture=99)
+    _advance(session, 3)
+    for _ in range(2):
+        session.undo()
+    for _ in range(2):
+        session.redo()
+    session.apply_pending()
+    assert session.world.particle_names[-1] == "+.0"
+    assert session.world.inverse_mass[[3, -1]].tolist() == [0.0, 0.0]
+    session.undo()
+    session.apply_pending()
+    assert (session.world.inverse_mass[[3, -1]] > 0.0).all()
+    session.redo()
+    _advance(session, 2)
+    session.redo()
+    session.apply_pending()
+    assert session.messages == ["nothing to redo"]
+    assert session.world.inverse_mass[[3, -1]].tolist() == [0.0, 0.0]

@@ -17,7 +17,8 @@ class Divergence:
     """The first difference between a recording and its verification.
 
     array: a state array, or `settings`; index: into that array, an int or (slot, component), None where the array's
-    length differs; name: of the particle or spring; note: where the difference was found, if not at `tick` itself.
+    length differs; name: of the particle or spring; note: what else there is to know. seen: the tick at which index and
+    values were seen, where those of `tick` itself are not known.
     """
 
     tick: int
@@ -27,12 +28,20 @@ class Divergence:
     actual: Any
     name: str = ""
     note: str = ""
+    seen: int | None = None
 
     def __str__(self) -> str:
         name = f" ({self.name})" if self.name else ""
         note = f"; {self.note}" if self.note else ""
-        told = f"expected {self.expected!r}, got {self.actual!r}"
-        return f"tick {self.tick}: {self.array}{self.place}{name}: {told}{note}"
+        place = f"{self.array}{self.place}{name}"
+        if self.seen is not None:
+            place = f"{self.array}; {self._elsewhere}{place}"
+        return f"tick {self.tick}: {place}: expected {self.expected!r}, got {self.actual!r}{note}"
+
+    @property
+    def _elsewhere(self) -> str:
+        """At which tick, if not that of the difference, index and values were seen."""
+        return f"at the next stored state, tick {self.seen}: "
 
     @property
     def place(self) -> str:
@@ -51,8 +60,9 @@ class Divergence:
         """All that is known, a line each: place, owner, both values in decimal and hexadecimal, and the note."""
         wide = max(len(expected), len(actual))
         shown = [(expected, self.expected), (actual, self.actual)]
+        first = f"first difference at tick {self.tick}, in {self.array}"
         return [
-            f"first difference at tick {self.tick}, in {self.array}{self.place}",
+            *([f"{first}{self.place}"] if self.seen is None else [first, f"{self._elsewhere}{self.array}{self.place}"]),
             *([f"of {self.owner()}"] if self.name else []),
             *(f"{side:<{wide}}  {number_text(value)}" for side, value in shown),
             *([self.note] if self.note else []),

@@ -1,7 +1,7 @@
 """verify: runs a replay again and names the first bit that differs; compare: the same, with the runs at that tick."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sandbox.level.format.model import Level
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, state_hash
@@ -10,11 +10,13 @@ from sandbox.physics.world import World
 from sandbox.session.commands import CommandError
 from sandbox.session.replay.divergence import Divergence, first_difference
 from sandbox.session.replay.format import decode_array
+from sandbox.session.replay.recorded_array import recorded_array
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.session import Session
 
 # Ticks between two calls of verify's `progress`.
 PROGRESS_TICKS = 60
+_OTHERWISE = "this build steps differently"
 
 
 @dataclass(frozen=True)
@@ -149,25 +151,41 @@ class _Run:
         elif expected is not None:
             found = first_difference(tick, array, getattr(expected.world, BY_STORED[array].name), world)
         else:
-            found = self._located_later(tick, array)
+            found = self._located_by_hash(actual, array) or self._located_later(tick, array)
         return self.comparison(actual, found, expected)
+
+    def _located_by_hash(self, actual: Session, array: str) -> Divergence | None:
+        """The same by the recorded hashes, where no other array differs, and that in a single number."""
+        recorded, world = self.replay.hashes[actual.tick], actual.world
+        present = hash_by_array(world)
+        if [name for name in BY_STORED if recorded.differs(name, present)] != [array] or array not in present:
+            return None
+
+        def fits(digits: str) -> bool:
+            changed = present | {array: digits}
+            return not recorded.differs(array, changed) and recorded.fits(state_hash(world, changed))
+
+        wanted = recorded_array(getattr(world, BY_STORED[array].name), fits)
+        if wanted is None:
+            return None
+        found = first_difference(actual.tick, array, wanted, world)
+        return replace(found, note=f"{_OTHERWISE}; what is expected is told by its hash")
 
     def _located_later(self, tick: int, array: str) -> Divergence:
         """The same from the next stored state, where this build does not come to the recorded one."""
-        replay, steps = self.replay, "this build steps differently"
+        replay = self.replay
         later = min((stored for stored in replay.states if stored >= tick), default=None)
         if later is None:
-            note = f"{steps}, and no later state is stored to show the values"
+            note = f"{_OTHERWISE}, and no later state is stored to show the values"
             return Divergence(tick, array, None, "unknown", "unknown", note=note)
         try:
             recorded = replay.state(later)
             clean = _Run(replay, self.level).clean_session(later, tick - 1)
         except ReplayError:
-            note = f"{steps}, and cannot reach the next stored state, tick {later}, to show the values"
+            note = f"{_OTHERWISE}, and cannot reach the next stored state, tick {later}, to show the values"
             return Divergence(tick, array, None, "unknown", "unknown", note=note)
         found = first_difference(tick, array, getattr(recorded, BY_STORED[array].name), clean.world)
-        note = f"{steps}; the values are those of the next stored state, tick {later}"
-        return Divergence(tick, array, found.index, found.expected, found.actual, found.name, note)
+        return replace(found, tick=tick, note=_OTHERWISE, seen=later)
 
     def clean_session(self, tick: int, verified: int | None = None) -> Session:
         """A fresh session at a tick, begun from the last state stored up to the verified tick, the one before it.
@@ -209,5 +227,5 @@ def _differing_state(replay: Replay, world: World) -> Divergence | None:
             continue
         note = "the stored state is not the one whose hash stands at its tick: changed, and sealed anew"
         found = first_difference(world.tick, name, array, world)
-        return Divergence(world.tick, name, found.index, found.expected, found.actual, found.name, note)
+        return replace(found, note=note)
     return None

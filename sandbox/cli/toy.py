@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from sandbox.cli.command import Commands, add_command, add_look_options
 from sandbox.cli.inputs import EXIT_OK, Refused, level_of
 from sandbox.terminal import seconds, tell
 
@@ -11,11 +12,14 @@ if TYPE_CHECKING:
     from sandbox.level.format.model import Level
 
 
-def add_toy_options(toy: argparse.ArgumentParser) -> None:
-    """What `sandbox toy` takes, beside how it looks."""
-    toy.add_argument("level", nargs="?", metavar="LEVEL", help="a level file or a shipped level's name")
-    toy.add_argument("--record", type=Path, metavar="FILE", help="write a replay; .gz compresses")
-    toy.add_argument("--seconds", type=seconds, help="close it after so many seconds")
+def add(commands: Commands) -> None:
+    """The command."""
+    text = "play a level in a small window that stays on top and feels how it is moved"
+    parser = add_command(commands, "toy", play_toy, text)
+    parser.add_argument("level", nargs="?", metavar="LEVEL", help="a level file or a shipped level's name")
+    parser.add_argument("--record", type=Path, metavar="FILE", help="write a replay; .gz compresses")
+    parser.add_argument("--seconds", type=seconds, help="close it after so many seconds")
+    add_look_options(parser)
 
 
 def play_toy(options: argparse.Namespace) -> int:

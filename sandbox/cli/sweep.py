@@ -8,6 +8,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from sandbox.cli.command import Commands, add_command
 from sandbox.cli.inputs import EXIT_INTERRUPTED, EXIT_OK, Refused, level_of
 from sandbox.terminal import Progress, cores, processes, seconds, tell
 
@@ -21,25 +22,26 @@ MOST_RUNS = 100_000
 TABLE, MAP = ".csv", ".png"
 
 
-def add_options(sweep: argparse.ArgumentParser) -> None:
-    """Options of `sandbox sweep`."""
-    sweep.add_argument("level", metavar="LEVEL")
-    sweep.add_argument("--cs", metavar="A:B:N[:log]", help="Cs: N values from A to B, or a,b,..")
-    sweep.add_argument("--cd", metavar="A:B:N[:log]", help="Cd, likewise")
-    sweep.add_argument("--material", metavar="NAME", help="whose springs have them; default: all")
-    sweep.add_argument("--solver", help="names with commas between, or all")
-    sweep.add_argument("--substeps", help="numbers with commas between, and auto")
-    sweep.add_argument(
+def add(commands: Commands) -> None:
+    """The command."""
+    parser = add_command(commands, "sweep", sweep, "run a level over a grid of settings into a table")
+    parser.add_argument("level", metavar="LEVEL")
+    parser.add_argument("--cs", metavar="A:B:N[:log]", help="Cs: N values from A to B, or a,b,..")
+    parser.add_argument("--cd", metavar="A:B:N[:log]", help="Cd, likewise")
+    parser.add_argument("--material", metavar="NAME", help="whose springs have them; default: all")
+    parser.add_argument("--solver", help="names with commas between, or all")
+    parser.add_argument("--substeps", help="numbers with commas between, and auto")
+    parser.add_argument(
         "--set", action="append", default=[], metavar="FIELD=VALUES", help="any field of the level: deck.height=0.1:1:5"
     )
-    sweep.add_argument("--seconds", type=seconds, default=SWEEP_SECONDS, help="simulated time of each run; default 10")
-    sweep.add_argument("--measure", metavar="NAMES", help="what the map shows, with commas between; default: all")
-    sweep.add_argument("--processes", type=processes, metavar="N", help="at a time; default: one a processor")
-    sweep.add_argument(
+    parser.add_argument("--seconds", type=seconds, default=SWEEP_SECONDS, help="simulated time of each run; default 10")
+    parser.add_argument("--measure", metavar="NAMES", help="what the map shows, with commas between; default: all")
+    parser.add_argument("--processes", type=processes, metavar="N", help="at a time; default: one a processor")
+    parser.add_argument(
         "--dask", metavar="ADDRESS", help="run by the scheduler of dask there; local: by one of this machine"
     )
-    sweep.add_argument("--fresh", action="store_true", help="run anew what is known already")
-    sweep.add_argument(
+    parser.add_argument("--fresh", action="store_true", help="run anew what is known already")
+    parser.add_argument(
         "-o", "--output", type=Path, required=True, metavar="OUT.csv|png", help="table; or map, with the table beside"
     )
 

@@ -1,0 +1,25 @@
+"""A command: its parser below that of the program, and what all commands that open a window take."""
+
+import argparse
+from collections.abc import Callable
+from typing import Any
+
+from sandbox.terminal import scale
+
+# What argparse gives for `add_subparsers`; its type has no public name.
+Commands = Any
+
+
+def add_command(
+    commands: Commands, name: str, action: Callable[[argparse.Namespace], int], text: str
+) -> argparse.ArgumentParser:
+    """The parser of a command, whose action returns an exit code; text: what it does."""
+    parser: argparse.ArgumentParser = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
+    parser.set_defaults(action=action)
+    return parser
+
+
+def add_look_options(app: argparse.ArgumentParser) -> None:
+    """How the widgets look."""
+    app.add_argument("--scale", type=scale, help="size of the widgets, 0.5 to 4; default: as in the settings")
+    app.add_argument("--theme", choices=("dark", "light", "system"), help="for this time; default: as in the settings")

@@ -1,0 +1,25 @@
+"""`sandbox edit`."""
+
+import argparse
+
+from sandbox.cli.command import Commands, add_command, add_look_options
+from sandbox.cli.inputs import Refused
+
+
+def add(commands: Commands) -> None:
+    """The command."""
+    parser = add_command(commands, "edit", edit, "open the level editor: a level, or an empty sheet")
+    parser.add_argument("level", nargs="?", metavar="LEVEL")
+    add_look_options(parser)
+
+
+def edit(options: argparse.Namespace) -> int:
+    """Open the editor. Raises Refused where there is no display."""
+    from sandbox.app.display import has_display
+
+    if not has_display():
+        raise Refused("the editor needs a display; without one, edit the level's JSON and try `sandbox check`")
+    from sandbox.app.opening import open_app
+    from sandbox.app.start_request import StartRequest
+
+    return open_app(lambda: StartRequest(edit=options.level or ""), scale=options.scale, theme=options.theme)

@@ -1,0 +1,51 @@
+"""Pages that play runs in a browser, written below a progress bar."""
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sandbox.terminal import Progress, interrupted_between_ticks
+
+if TYPE_CHECKING:
+    from sandbox.physics.world import World
+    from sandbox.session.player.report import Watched
+    from sandbox.session.replay.recording import Replay
+    from sandbox.session.replay.verify import Comparison
+    from sandbox.session.session import Session
+
+PAGE = ".html"
+
+
+@contextmanager
+def watching(ticks: int) -> "Iterator[Watched]":
+    """Show how far it is while so many ticks are played in all, and let Ctrl+C end it between two."""
+    with Progress(ticks) as bar, interrupted_between_ticks() as look_up:
+
+        def watched(states: "Iterable[World]") -> "Iterator[World]":
+            for state in states:
+                yield state
+                bar.update()
+                look_up()
+
+        yield watched
+
+
+def write_run(session: "Session", ticks: int, path: Path, name: str, replay: "Replay | None") -> str:
+    """Write the page that plays one run, which has not begun; what was written."""
+    from sandbox.session.player.page import PlayerPage
+    from sandbox.session.player.report import command_marks, played
+
+    with watching(ticks) as watched:
+        page = PlayerPage(name, *played([name], [session], ticks, watched=watched), marks=command_marks(replay))
+    page.write(path)
+    return f"{ticks / session.world.settings.tick_rate:g} s, {len(page.reels[0].ticks)} pictures"
+
+
+def write_report(found: "Comparison", path: Path) -> None:
+    """Write the page that plays the recorded run beside the one that diverged from it."""
+    from sandbox.session.player.report import report_page
+
+    with watching(2 * found.replay.ticks) as watched:
+        page = report_page(found, watched)
+    page.write(path)

@@ -1,0 +1,64 @@
+"""`sandbox play`, and `sandbox` alone."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sandbox.cli.command import Commands, add_command, add_look_options
+from sandbox.cli.inputs import EXIT_OK, level_or_replay
+from sandbox.cli.running import run_with_bar
+from sandbox.terminal import seconds
+
+if TYPE_CHECKING:
+    from sandbox.level.format.model import Level
+    from sandbox.session.replay.recording import Replay
+
+# How long it plays where there is no display [s].
+HEADLESS_SECONDS = 10.0
+
+
+def add(commands: Commands) -> None:
+    """The command."""
+    parser = add_command(commands, "play", play, "open the app: the gallery, a level, or a replay to watch")
+    parser.add_argument(
+        "level", nargs="?", metavar="LEVEL", help="a level file, a shipped level's name, or a replay file"
+    )
+    parser.add_argument("--profile", action="store_true", help="print where a frame's time goes, at the end")
+    parser.add_argument("--seconds", type=seconds, help="close the app after so many seconds")
+    add_look_options(parser)
+
+
+def play(options: argparse.Namespace) -> int:
+    """Open the app; without a display, play without one."""
+    from sandbox.app.display import has_display
+
+    if not has_display():
+        level, replay = level_or_replay(options.level or "rope_bridge_jelly")
+        return _play_headless(level, replay)
+    from sandbox.app.opening import open_app
+    from sandbox.app.start_request import StartRequest
+
+    def find() -> StartRequest:
+        if options.level is None:
+            return StartRequest()
+        level, replay = level_or_replay(options.level)
+        source = Path(options.level) if not replay and Path(options.level).is_file() else None
+        return StartRequest(None if replay else level, replay, source)
+
+    return open_app(find, profile=options.profile, seconds=options.seconds, scale=options.scale, theme=options.theme)
+
+
+def _play_headless(level: "Level", replay: "Replay | None") -> int:
+    from sandbox.app.draw.picture import save_picture
+    from sandbox.session.session import Session
+
+    picture = Path("sandbox.png")
+    ticks = round(HEADLESS_SECONDS * level.settings.tick_rate)
+    ticks = min(ticks, replay.ticks) if replay else ticks
+    seconds = ticks / level.settings.tick_rate
+    print(f"no display: playing {level.name!r} headless for {seconds:g} s, the last frame goes to {picture}")
+    session = Session(level, replay.script if replay else ())
+    summary = run_with_bar(session, ticks, replay.source if replay else level.name)
+    save_picture(session, picture)
+    print(summary.text(level.name))
+    return EXIT_OK

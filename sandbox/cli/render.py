@@ -1,0 +1,118 @@
+"""`sandbox render`."""
+
+import argparse
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sandbox.cli.command import Commands, add_command
+from sandbox.cli.inputs import EXIT_OK, Refused, level_or_replay
+from sandbox.cli.pages import write_run
+from sandbox.cli.running import run_with_bar
+from sandbox.terminal import Progress, rate, seconds, size
+
+if TYPE_CHECKING:
+    from sandbox.session.session import Session
+
+# What is drawn unless told otherwise: length of a film [s], sizes [pixels].
+FILM_SECONDS, FILM_SIZE, PNG_SIZE = 6.0, (640, 360), (1280, 720)
+
+
+def add(commands: Commands) -> None:
+    """The command."""
+    does = "draw a level or a replay into a PNG, GIF, MP4 or HTML, off screen"
+    parser = add_command(commands, "render", render, does)
+    parser.add_argument("level", metavar="LEVEL|REPLAY")
+    text = "PNG: simulated time before the picture, default 0; GIF and MP4: how long they are, default 6"
+    parser.add_argument("--seconds", type=seconds, help=text)
+    parser.add_argument("--from", type=seconds, dest="start", help="simulated time before a GIF or MP4; default 0")
+    parser.add_argument("--fps", type=rate, help="pictures a second; default 20 for GIF, 30 for MP4")
+    text = "in pixels; default 1280x720 for PNG, 640x360 for GIF and MP4"
+    parser.add_argument("--size", type=size, metavar="WxH", help=text)
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.png|gif|mp4|html")
+
+
+def render(options: argparse.Namespace) -> int:
+    """Draw, and tell what was written. Raises Refused."""
+    from sandbox.session.session import Session
+
+    kind = options.output.suffix.lower().removeprefix(".")
+    if kind == "html":
+        return _render_page(options)
+    if kind not in ("png", "gif", "mp4"):
+        raise Refused(f"{options.output}: end the name in .png, .gif, .mp4 or .html, for a page that plays it")
+    _check_render_options(options, kind)
+    level, replay = level_or_replay(options.level)
+    length = (0.0 if kind == "png" else FILM_SECONDS) if options.seconds is None else options.seconds
+    ticks = round(((options.start or 0.0) + length) * level.settings.tick_rate)
+    if replay and ticks > replay.ticks:
+        raise Refused(f"{options.level}: is {replay.ticks / level.settings.tick_rate:g} s long")
+    session = Session(level, replay.script if replay else ())
+    run_with_bar(session, ticks, options.level)
+    what = _draw_still(session, options) if kind == "png" else _draw_film(session, options, kind, length)
+    print(f"{options.output}: {what}, {options.output.stat().st_size / 1e6:.2f} MB")
+    return EXIT_OK
+
+
+def _render_page(options: argparse.Namespace) -> int:
+    """Write a page that plays a level or a replay; nothing is drawn here."""
+    from sandbox.session.session import Session
+
+    for name, value in (("from", options.start), ("fps", options.fps), ("size", options.size)):
+        if value is not None:
+            raise Refused(f"--{name}: is for pictures and films; a page has every tick, from the beginning")
+    level, replay = level_or_replay(options.level)
+    per_second = level.settings.tick_rate
+    wanted = FILM_SECONDS * per_second if options.seconds is None else options.seconds * per_second
+    if replay and options.seconds is None:
+        wanted = replay.ticks
+    if replay and round(wanted) > replay.ticks:
+        raise Refused(f"{options.level}: is {replay.ticks / per_second:g} s long")
+    session = Session(level, replay.script if replay else ())
+    what = write_run(session, round(wanted), options.output, level.name, replay)
+    print(f"{options.output}: {what}, {options.output.stat().st_size / 1e6:.2f} MB")
+    return EXIT_OK
+
+
+def _check_render_options(options: argparse.Namespace, kind: str) -> None:
+    from sandbox.app.share.kinds import KINDS, Missing, require
+
+    most = KINDS[kind].most_fps
+    if kind == "png":
+        for name, value in (("from", options.start), ("fps", options.fps)):
+            if value is not None:
+                raise Refused(f"--{name}: is for GIF and MP4; a PNG is drawn after --seconds")
+    elif (options.fps or 0.0) > most:
+        raise Refused(f"--fps: a {kind.upper()} shows at most {most:g} pictures a second")
+    elif options.seconds == 0.0:
+        raise Refused(f"--seconds: a {kind.upper()} of no length has no pictures")
+    try:
+        require(kind)
+    except Missing as missing:
+        raise Refused(f"{options.output}: {missing}") from None
+
+
+def _draw_still(session: "Session", options: argparse.Namespace) -> str:
+    """Draw the present state of a run; what was drawn."""
+    from sandbox.app.draw.picture import save_picture
+
+    pixels = options.size or PNG_SIZE
+    with Progress(1, "picture") as bar:
+        save_picture(session, options.output, pixels)
+        bar.update()
+    return f"{pixels[0]}x{pixels[1]}"
+
+
+def _draw_film(session: "Session", options: argparse.Namespace, kind: str, length: float) -> str:
+    """Draw the last `length` [s] of a run; what was drawn."""
+    from sandbox.app.share.export import Excerpt, Export
+    from sandbox.app.share.film import film_of_view
+    from sandbox.app.share.kinds import KINDS, possible_size
+
+    pixels, fps = possible_size(options.size or FILM_SIZE, kind), options.fps or KINDS[kind].usual_fps
+    film = film_of_view(session, pixels, length)
+    export = Export(film, Excerpt(kind, 0.0, film.seconds, fps, pixels), options.output)
+    with Progress(100, "%") as bar, closing(export.slices()) as slices:
+        for done in slices:
+            bar.update(int(100 * done) - bar.done)
+    return f"{pixels[0]}x{pixels[1]}, {film.seconds:g} s of {fps:g} pictures a second"

@@ -1,0 +1,128 @@
+"""`sandbox run`."""
+
+import argparse
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sandbox.cli.command import Commands, add_command
+from sandbox.cli.inputs import EXIT_OK, EXIT_REFUSED, Refused, level_of
+from sandbox.cli.running import run_with_bar
+from sandbox.terminal import count, seconds, substeps, tell
+
+if TYPE_CHECKING:
+    from sandbox.level.format.model import Level
+    from sandbox.physics.world import World
+    from sandbox.session.session import Session
+
+
+def add(commands: Commands) -> None:
+    """The command."""
+    parser = add_command(commands, "run", run, "run a level headless and print what came of it")
+    parser.add_argument("level", metavar="LEVEL")
+    length = parser.add_mutually_exclusive_group()
+    length.add_argument("--seconds", type=seconds, help="simulated time; default 10")
+    length.add_argument("--ticks", type=count, help="the same, in ticks")
+    parser.add_argument("--solver", help="instead of the level's solver")
+    parser.add_argument("--substeps", type=substeps, help="instead of the level's: a power of two, 1 to 64, or auto")
+    parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
+    parser.add_argument("--record", type=Path, metavar="FILE", help="write a replay; .gz compresses")
+    text = "commands to carry out, as lines of a replay"
+    parser.add_argument("--commands", type=Path, metavar="FILE.jsonl", help=text)
+    text = "write the last position and velocity of every particle"
+    parser.add_argument("--dump", type=Path, metavar="FILE", help=text)
+    text = "particles and motors to follow, by name, into the file of -o"
+    parser.add_argument("--probe", metavar="ID.K,..", help=text)
+    parser.add_argument("--every", type=count, default=1, metavar="N", help="follow them every N ticks; default 1")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE.csv", help="where the probe's table goes")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run a level and tell what came of it. Raises Refused."""
+    level = _with_overrides(level_of(options.level), options)
+    rate = level.settings.tick_rate
+    ticks = options.ticks or round((10.0 if options.seconds is None else options.seconds) * rate)
+    from sandbox.session.probe import dump, finite
+
+    _keep_apart(options)
+    session = _scripted_session(level, options.commands)
+    probe = _probe(options, session.world)
+    if options.record:
+        session.record_to(options.record)
+    try:
+        summary = run_with_bar(session, ticks, options.commands, probe.take)
+    except KeyboardInterrupt:
+        if session.recording:
+            tell([f"{session.recording}: cut off at tick {session.tick}; `sandbox replay --partial` verifies it"])
+        session.abandon_recording()
+        raise
+    finally:
+        recorded = session.stop_recording()
+    if options.output:
+        _write_text(options.output, probe.table())
+    if options.dump:
+        _write_text(options.dump, json.dumps(dump(session.world), indent=1) + "\n")
+    tell(session.messages)
+    if options.json:
+        print(json.dumps({"level": level.name, **finite(asdict(summary))}))
+    else:
+        print(summary.text(level.name))
+    return EXIT_OK if recorded == options.record else EXIT_REFUSED
+
+
+def _keep_apart(options: argparse.Namespace) -> None:
+    """Refuse to write over what is read, or two outputs into one file."""
+    taken = {Path(path).resolve() for path in (options.level, options.commands) if path}
+    for path in filter(None, (options.record, options.dump, options.output)):
+        if path.resolve() in taken and path.is_file():
+            raise Refused(f"{path}: is used twice in this command; give every file a name of its own")
+        taken.add(path.resolve())
+
+
+def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
+    from sandbox.level.faults.level_error import LevelError
+    from sandbox.session.replay.again import with_settings
+
+    given = {name: getattr(options, name) for name in ("solver", "substeps") if getattr(options, name) is not None}
+    if not given:
+        return level
+    try:
+        return with_settings(level, given, "command line")
+    except LevelError as error:
+        raise Refused(*error.faults) from None
+
+
+def _scripted_session(level: "Level", commands: Path | None) -> "Session":
+    from sandbox.session.session import Session
+
+    if commands is None:
+        return Session(level)
+    from sandbox.session.replay.recording import ReplayError
+    from sandbox.session.replay.script import read_script
+
+    try:
+        return Session(level, read_script(commands))
+    except ReplayError as error:
+        raise Refused(*error.faults) from None
+
+
+def _probe(options: argparse.Namespace, world: "World") -> Any:
+    from sandbox.session.probe import Probe, near_names
+
+    if bool(options.probe) != bool(options.output):
+        raise Refused("--probe names the particles and -o the file: give both")
+    names = [name.strip() for name in options.probe.split(",")] if options.probe else []
+    try:
+        return Probe(world, names, options.every)
+    except KeyError as error:
+        near = near_names(world, str(error.args[0]))
+        hint = f"; near names: {', '.join(near)}" if near else ""
+        raise Refused(f"--probe: there is no particle {error.args[0]!r}{hint}") from None
+
+
+def _write_text(path: Path, text: str) -> None:
+    try:
+        path.write_text(text, encoding="utf-8", newline="\n")
+    except OSError as error:
+        raise Refused(f"{path}: {error.strerror or error}") from None

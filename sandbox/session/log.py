@@ -1,0 +1,74 @@
+"""Log of a run: what was done at which tick, and some states with the history that led to them."""
+
+from collections import deque
+from dataclasses import dataclass
+
+from sandbox.physics.snapshot import Snapshot
+from sandbox.session.commands import Command
+
+# States that are kept by their history: what an undo steps from and what a redo comes to, of some three gestures. Fewer
+# make undoing to and fro step more ticks again, more take memory.
+REACHED_KEPT = 6
+
+
+@dataclass
+class LogEntry:
+    """A command that was applied at a tick, before that tick's step; order: its place among all that ever were.
+
+    in_effect: False while the command cannot be carried out because what it needed is undone. implied: the end of a
+    drag or drive that an Undo brings about by itself, so that a recording of that Undo does not hold it.
+    """
+
+    order: int
+    tick: int
+    gesture: int
+    command: Command
+    in_effect: bool = True
+    implied: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Reached:
+    """A state that a run was in once its history was this, whose tick is the last; idle: what of it had no effect.
+
+    breaks: ticks until then in which springs broke.
+    """
+
+    history: list[LogEntry]
+    idle: list[LogEntry]
+    breaks: frozenset[int]
+    state: Snapshot
+
+    def leads_to(self, history: list[LogEntry], tick: int) -> bool:
+        """Whether a run of this history, at a tick, was in this state on its way."""
+        count, here = len(self.history), self.state.tick
+        if here > tick or history[:count] != self.history:
+            return False
+        return count == len(history) or history[count].tick >= here
+
+    def tell_effects(self) -> None:
+        """Set of each command of the history whether it had an effect."""
+        for entry in self.history:
+            entry.in_effect = True
+        for entry in self.idle:
+            entry.in_effect = False
+
+
+class ReachedStates:
+    """The last such states of a run: as history is undone and redone it comes to be again what it was."""
+
+    def __init__(self) -> None:
+        self._kept: deque[Reached] = deque(maxlen=REACHED_KEPT)
+
+    def has(self, tick: int) -> bool:
+        """Whether the last one is of a tick."""
+        return bool(self._kept) and self._kept[-1].state.tick == tick
+
+    def keep(self, reached: Reached) -> None:
+        """Keep one, in place of that which was kept first."""
+        self._kept.append(reached)
+
+    def last_of(self, history: list[LogEntry], tick: int) -> Reached | None:
+        """The last one that a run of this history was in on its way to a tick."""
+        found = [each for each in self._kept if each.leads_to(history, tick)]
+        return max(found, key=lambda each: (each.state.tick, len(each.history)), default=None)
