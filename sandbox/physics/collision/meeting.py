@@ -98,6 +98,8 @@ def _bent(s: int, colliders: Colliders, outline: Outline) -> float:
     # The square of how far [m] a particle is at most from where its shape's form, moved and turned as a whole, has it.
     position, origin = colliders.position, colliders.origin
     first, last = outline.member_start[s], outline.member_start[s + 1]
+    if first == last:
+        return math.inf
     x = 0.0
     y = 0.0
     form_x = 0.0
