@@ -12,7 +12,7 @@ import pygame
 from sandbox.app.compare.compare_screen import CompareScreen
 from sandbox.app.compare.hooke_lesson import HookeLesson
 from sandbox.app.compare.twin import TwinPlayback
-from sandbox.app.display import SCALE_RANGE, Display
+from sandbox.app.display import SCALE_RANGE, Display, fitting_layout
 from sandbox.app.draw.colours import BACKGROUND, WARNING, show_theme
 from sandbox.app.edit.documents import DocumentActions
 from sandbox.app.edit.tour import Guide
@@ -115,7 +115,8 @@ class App:
 
     def _build_ui(self) -> None:
         self.gallery: Gallery | None = None
-        self.ui = Ui(self.display.size, self.scale, self.display.pixel_ratio)
+        size, scale = fitting_layout(self.display.size, self.scale)
+        self.ui = Ui(size, scale, self.display.pixel_ratio)
         self.status = StatusLine(self.ui, self._notices)
         if self.screen is not None:
             self.screen.build(self.ui)
@@ -280,7 +281,7 @@ class App:
         self._collector.close()
 
     def _rescale(self, factor: float) -> None:
-        self.chosen.choose("scale", min(max(self.scale * factor, SCALE_RANGE[0]), SCALE_RANGE[1]))
+        self.chosen.choose("scale", min(max(self.ui.scale * factor, SCALE_RANGE[0]), SCALE_RANGE[1]))
 
     # What the person has chosen.
 
@@ -381,7 +382,7 @@ class App:
             self.screen.draw(surface, self.profile)
         with self.profile.part("ui"):
             if self.screen is not None:
-                corner = None if self.ui.has_sheet else self.screen.notices_corner
+                corner = None if self.ui.has_sheet else self.screen.notices_place
                 parts = self.sharing.status() + self.screen.status(self._figures)
                 if not self.ready and self.mode == "edit":
                     parts.append(("preparing the physics", WARNING))

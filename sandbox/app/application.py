@@ -144,11 +144,6 @@ class Application(Protocol):
         ...
 
     @property
-    def scale(self) -> float:
-        """Pixels per layout unit."""
-        ...
-
-    @property
     def ready(self) -> bool:
         """Whether the physics is prepared."""
         ...

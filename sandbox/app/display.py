@@ -15,6 +15,8 @@ from sandbox.level.format.shipped import shipped_folder
 # Window at scale 1, and the smallest that everything fits in.
 WINDOW_SIZE = (1280, 720)
 SMALLEST_WINDOW = (640, 440)
+# What everything is laid out for at least [layout units]: the smallest window at twice its scale.
+FEWEST_UNITS = (320, 220)
 INVISIBLE_DRIVERS = ("dummy", "offscreen", "evdev")
 SCALE_RANGE = (0.5, 4.0)
 # Desktops higher than this [pixels] have small pixels, unless told otherwise.
@@ -106,6 +108,16 @@ class Display:
         """Close the window."""
         self.window.destroy()
         pygame.display.quit()
+
+
+def fitting_layout(size: tuple[int, int], scale: float) -> tuple[tuple[int, int], float]:
+    """Size [pixels] and scale that a window is laid out for: smaller than asked for where it would hold too little.
+
+    Below the least scale there is, what is right and below is cut off.
+    """
+    width, height = FEWEST_UNITS
+    scale = max(min(scale, size[0] / width, size[1] / height), SCALE_RANGE[0])
+    return (max(size[0], round(width * scale)), max(size[1], round(height * scale))), scale
 
 
 def _guessed_scale(desktop: tuple[int, int]) -> float:

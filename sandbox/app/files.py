@@ -122,7 +122,8 @@ class FileActions:
             self._stop_and_name()
             return
         path = self._write(play.playback.record_to)
-        if path is not None:
+        # A disk may be full before what was until now is written: why it ended is said then.
+        if path is not None and play.playback.session.recording is not None:
             self.app.say(_recording(path))
 
     def save_run(self) -> None:
@@ -142,9 +143,12 @@ class FileActions:
         assert self.app.play is not None
         try:
             return write(free_path(recordings_folder(), plain_name(self.app.play.playback.level.name)))
-        except (OSError, ValueError) as error:
-            self.app.say(f"Recording cannot start: {error}.")
-            return None
+        except OSError as error:
+            where = f" to {error.filename}" if error.filename else ""
+            self.app.say(f"The recording cannot be written{where}: {error.strerror or error}.")
+        except ValueError as error:
+            self.app.say(f"The recording cannot be made: {error}.")
+        return None
 
     def _stop_and_name(self) -> None:
         assert self.app.play is not None

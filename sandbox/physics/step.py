@@ -68,6 +68,12 @@ def _plan(world: World) -> TickPlan:
     )  # fmt: skip
 
 
+def expect(world: World) -> None:
+    """Make what topology decides of the next tick, which else that tick finds first: nothing of a world's state."""
+    world.derived(_plan)
+    SOLVERS[world.settings.solver].expect(world)
+
+
 def step(world: World) -> None:
     """Advance the world by one tick of 1 / tick_rate seconds."""
     plan = world.derived(_plan)

@@ -1,5 +1,6 @@
 """The app end to end: what a person does changes the world, and what it cannot do it says."""
 
+import errno
 import json
 import os
 import subprocess
@@ -152,6 +153,18 @@ def test_the_keyboard_alone_drags_a_particle(driver):
     driver.key(pygame.K_RETURN)
     assert not driver.world.is_held(0)
     assert driver.world.position[4][1] > 0.5
+
+
+def test_a_recording_on_a_full_disk_is_refused_in_plain_words_and_leaves_no_file(driver, documents, monkeypatch):
+    def full(recorder, world):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("sandbox.session.replay.writer.Recorder.write_tick", full)
+    for key in (pygame.K_r, pygame.K_s):
+        driver.key(key, CTRL)
+        path = documents / "small.replay.jsonl"
+        assert driver.notices == [f"The recording cannot be written to {path}: No space left on device."]
+        assert driver.playback.session.recording is None and not list(documents.iterdir())
 
 
 def test_record_drag_slide_and_save_gives_a_replay_that_verifies(driver, documents):
@@ -362,6 +375,27 @@ def test_the_window_can_be_resized_and_rescaled(driver):
     driver.app.act("panel")
     assert driver.panel is None
     assert driver.stage.camera.viewport[2] == 900
+
+
+@pytest.mark.parametrize("shown", ["gallery", "tour", "properties", "parts"])
+def test_a_window_that_holds_next_to_nothing_is_laid_out_smaller_and_cut_off(open_app, shown):
+    driver = open_app(small_level() if shown == "properties" else None, edit=shown != "gallery")
+    if shown == "parts":
+        driver.editor.show_parts()
+    if shown == "properties":
+        driver.key(pygame.K_a, CTRL)
+    window = driver.app.display.window
+    window.minimum_size = (1, 1)
+    for size, chosen, scale in (((640, 440), 4.0, 2.0), ((200, 150), 1.0, 0.625), ((1, 1), 1.0, 0.5)):
+        driver.app.scale, window.size = chosen, size
+        driver.app.rebuild()
+        driver.frames(2)
+        assert driver.app.ui.scale == scale and min(driver.app.ui.units) >= 220
+    # One press of the key makes things smaller, however large they were asked for.
+    driver.app.scale, window.size = 4.0, (640, 440)
+    driver.frames(2)
+    driver.key(pygame.K_MINUS, CTRL)
+    assert driver.app.ui.scale == pytest.approx(2.0 / 1.125)
 
 
 def test_a_window_made_smaller_and_larger_again_shows_what_it_showed(driver):

@@ -67,7 +67,7 @@ def told(driving):
 def test_the_status_line_says_what_a_motor_gives_and_what_the_single_pass_cannot_carry(driving):
     driving.post(pygame.KEYDOWN, key=pygame.K_d, mod=0, unicode="d")
     driving.frames(3)
-    assert any(text.startswith("w ") and text.endswith(" of 50 N m") for text in told(driving))
+    assert any(text.startswith("motor w: ") and text.endswith(" of 50 N m") for text in told(driving))
     assert any("cannot carry wheels" in text for text in told(driving))
     driving.playback.submit(SetSolver(solver="direct"))
     driving.frames(3)
@@ -75,4 +75,4 @@ def test_the_status_line_says_what_a_motor_gives_and_what_the_single_pass_cannot
     spokes = np.flatnonzero(driving.world.particle_a == driving.world.particle_slot("w.hub"))
     driving.playback.submit(CutSprings(tuple(spokes.tolist())))
     driving.frames(3)
-    assert "w pushes against nothing" in told(driving)
+    assert "motor w: it pushes against nothing" in told(driving)

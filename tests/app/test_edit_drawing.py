@@ -323,3 +323,14 @@ def test_the_options_that_come_next_are_reached_by_keyboard_too(edit):
     driver.app.ui.focus_on(options.more)
     driver.key(pygame.K_RETURN)
     assert set(options.fields).isdisjoint(first) and driver.app.ui.focus is options.more
+
+
+def test_what_a_tool_refuses_is_said_in_whole_sentences(edit):
+    driver = edit()
+    driver.key(pygame.K_w, pygame.KMOD_SHIFT)
+    driver.press(driver.at(-2, 1))
+    driver.move(driver.at(2, 1))
+    fault = "There is no muscle; select springs or bodies, and add one under Drive in Properties"
+    assert driver.editor.pointer_tool.hint == fault
+    driver.release(driver.at(2, 1))
+    assert driver.notices == [f"{fault}."]

@@ -369,6 +369,15 @@ def test_beyond_the_walls_is_found_and_moved_in():
     assert texts(inside) == [] and 0.9 < inside.particles[0].position[0] < 1.0
 
 
+def test_what_falls_on_a_bridge_that_it_touches_does_not_fall_away():
+    bridge = RopeDef(type="rope", id="deck", start=(-2.0, 0.0), end=(2.0, 0.0), segments=4, pin=("start", "end"))
+    above, beside = ParticleDef(id="above", position=(0.5, 3.0)), ParticleDef(id="beside", position=(4.0, 3.0))
+    below = ParticleDef(id="below", position=(0.5, -3.0))
+    ghost = ParticleDef(id="ghost", position=(0.5, 3.5), collides=False)
+    level = level_of(contacts=ContactsDef(), bodies=(bridge,), particles=(above, beside, below, ghost))
+    assert [text.split()[0] for text in texts(level)] == ['"beside"', '"below"', '"ghost"']
+
+
 def test_what_terrain_lies_below_does_not_fall_away_and_what_it_lies_beside_does():
     drops = (ParticleDef(id="above", position=(0.0, 5.0)), ParticleDef(id="beside", position=(20.0, 5.0)))
     floats = ParticleDef(id="floats", position=(30.0, 5.0), gravity_scale=0.0)

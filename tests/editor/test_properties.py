@@ -106,6 +106,17 @@ def test_units_limits_and_tooltips_come_from_the_schema():
     assert abouts(SpringDef)["rest_length"].optional and not abouts(ParticleDef)["mass"].optional
 
 
+def test_angles_are_read_typed_and_stepped_in_degrees(level):
+    wheel = chosen(level, "wheel")
+    # As the wheel tool leaves it, from a drag straight down.
+    turned = fields(wheel)["angle"].set(wheel, -1.570796327)
+    angle = fields(turned)["angle"]
+    assert (angle.about.unit, angle.texts) == ("°", ("-90",))
+    assert angle.typed("180") == math.pi and math.degrees(angle.stepped(1)) == pytest.approx(-89.0)
+    assert body(changed(turned, "angle", "45"), "wheel").angle == math.radians(45.0)
+    assert fields(chosen(level, "wheel", "driven"))["angle"].texts == ("0",)
+
+
 def test_what_differs_is_mixed_and_what_is_the_same_is_shown(level):
     both = fields(chosen(level, "rope", "line"))
     assert both["segments"].value is MIXED and both["segments"].texts == ("mixed",)

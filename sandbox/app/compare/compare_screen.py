@@ -39,11 +39,11 @@ class CompareScreen(PlayScreen):
         self.single: Playback | None = None
         self.side = SIDES[0]
         super().__init__(app, playback, source)
-        self.beside = Stage(other, self.other_viewport, app.scale)
+        self.beside = Stage(other, self.other_viewport, app.ui.scale)
         self.difference = Difference()
         self._join_stages()
         # The beginning is the same in both: they show the same part of it.
-        self.stage.place(self.viewport, app.scale)
+        self.stage.place(self.viewport, app.ui.scale)
         app.follow(other)
         if self.welcome:
             app.say(self.welcome)
@@ -112,6 +112,9 @@ class CompareScreen(PlayScreen):
         self.shape.side = self.side
         playback = self.playback if self.side == SIDES[0] or self.beside is None else self.other
         return Panel(ui, playback, self._app.say, {**choices, "side": self.choose_side}, BAR_HEIGHT, height, self.shape)
+
+    def _ask_rate(self, typed: str) -> None:
+        self._app.say(f"A and B go by one clock. Leave the comparison (F9) to play at {typed} ticks a second.")
 
     def choose_side(self, side: str) -> None:
         """Let the panel show and set that run's springs and solver."""

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from sandbox.app.edit.editing import Editing
+from sandbox.app.sentences import capitalised, sentence
 from sandbox.app.widgets.dialogs import ask
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.parts import part_of
@@ -27,7 +28,7 @@ def ask_to_keep_part(screen: Editing) -> None:
         try:
             path = keep_part(part_of(document, typed))
         except (EditError, StorageError) as error:
-            return f"{str(error)[:1].upper()}{str(error)[1:]}."
+            return sentence(error)
         kept.append(path)
         return None
 
@@ -36,4 +37,4 @@ def ask_to_keep_part(screen: Editing) -> None:
         screen.show_parts(kept[-1])
 
     hint = "What is selected joins the catalogue, for all of your levels."
-    ask(screen.ui, "Keep as a part", hint, f"{suggestion[:1].upper()}{suggestion[1:]}", "Keep", answer, then=show)
+    ask(screen.ui, "Keep as a part", hint, capitalised(suggestion), "Keep", answer, then=show)

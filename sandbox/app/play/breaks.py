@@ -2,6 +2,7 @@
 
 from collections import Counter
 
+from sandbox.app.sentences import sentence
 from sandbox.level.format.model import Level
 from sandbox.physics.world import World
 
@@ -48,7 +49,7 @@ class Breaks:
         if others > 0:
             parts.append(f"{others} more {'thing' if others == 1 else 'things'} broke")
         text = "; ".join(parts)
-        return f"{text[:1].upper()}{text[1:]}." if text else ""
+        return sentence(text) if text else ""
 
 
 def _told(name: str, count: int) -> str:

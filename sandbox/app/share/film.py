@@ -30,7 +30,7 @@ class Film:
     """What `session` has done from the first to the last tick of a span, as a camera shows it and a renderer draws it.
 
     What becomes of the three after that does not change the film. box [m]: what is shown instead, as large as it goes,
-    whatever shape the pictures have. first, last: its ticks.
+    whatever shape the pictures have. first, last: its ticks. is_latest: whether it ends where the run is.
     """
 
     def __init__(
@@ -41,7 +41,8 @@ class Film:
         self.last = min(max(span[1], 0), session.last_tick)
         self._past = session.retold(min(span[0], self.last))
         self.first = min(max(self._past.tick, span[0]), self.last)
-        self._end = session.snapshot() if session.tick == self.last else session.keyframes(0, self.last)[-1]
+        self.is_latest = session.tick == self.last
+        self._end = session.snapshot() if self.is_latest else session.keyframes(0, self.last)[-1]
         self._centre, self._zoom = camera.centre, camera.zoom
         self._shown, self._box = camera.viewport[2:], box
         self._renderer = renderer.alike(renderer.scale)

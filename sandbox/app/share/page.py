@@ -7,6 +7,7 @@ import pygame
 
 from sandbox.app.application import Application
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, TEXT
+from sandbox.app.share.film import Film
 from sandbox.app.share.range_slider import RangeSlider
 from sandbox.app.share.sharing import SHORTEST_FILM, SIZES, Sharing
 from sandbox.app.widgets.painted import Painted, TextBlock
@@ -86,8 +87,7 @@ class ShareForm:
         left, top = ((room - side) / 2 for room, side in zip(ui.units, (width, height), strict=True))
         self._box = ui.panel(ui.rect(left, top, width, height), self.sheet, "@dialog")
         film = sharing.film
-        title = f"Share the last {film.seconds:.0f} seconds" if film and film.seconds >= 2.0 else "Share"
-        ui.label(ui.rect(MARGIN, 16, width - 2 * MARGIN, 28), title, self._box, "@title")
+        ui.label(ui.rect(MARGIN, 16, width - 2 * MARGIN, 28), _title(film), self._box, "@title")
         self._build_preview()
         {"choose": self._build_choices, "work": self._build_work, "done": self._build_outcome}[self.step]()
 
@@ -234,6 +234,13 @@ class ShareForm:
             when = "the last moment" if ago < 0.05 else f"{ago:.1f} s before the last moment"
             text = f"The picture: {when}" if is_still else f"{wanted.end - wanted.start:.1f} s, to {when}"
             self.caption.set_text(text)
+
+
+def _title(film: Film | None) -> str:
+    """How much there is to share, and whether it is the latest."""
+    if film is None or film.seconds < 2.0:
+        return "Share"
+    return f"Share {'the last ' if film.is_latest else ''}{film.seconds:.0f} seconds"
 
 
 class FilmPreview(Painted):

@@ -30,8 +30,9 @@ class Painted(UIElement):
         raise NotImplementedError
 
     def repaint(self) -> None:
-        """Show the widget as it is now."""
-        self._set_image(self.paint(self.rect.size).premul_alpha())
+        """Show the widget as it is now; where there is no room for it, nothing."""
+        width, height = self.rect.size
+        self._set_image(self.paint((max(width, 0), max(height, 0))).premul_alpha())
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """React to a key while focused; True where the key is used."""

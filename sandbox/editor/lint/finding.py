@@ -14,6 +14,7 @@ from sandbox.level.format.model import Level
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 
 Severity = Literal["error", "warning", "hint"]
+Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
 # What a rule gives: findings, and None where it has worked for long enough to let the window draw.
 Rule = Iterator["Finding | None"]
@@ -108,7 +109,10 @@ def connected_parts(scene: Scene) -> Generator[None, None, Slots]:
 
 
 def falling_particles(level: Level, scene: Scene) -> Generator[None, None, tuple[Slots, NDArray[np.bool_]]]:
-    """The part that each particle belongs to (n,), and whether it falls away (n,): nothing holds or catches it."""
+    """The part that each particle belongs to (n,), and whether it falls away (n,): nothing holds or catches it.
+
+    What lies above something that is held falls on that, where the two touch.
+    """
     part = yield from connected_parts(scene)
     held = np.zeros(len(part), dtype=np.bool_)
     held[part[scene.pinned]] = True
@@ -116,11 +120,12 @@ def falling_particles(level: Level, scene: Scene) -> Generator[None, None, tuple
     pulled[part[_scales(level, scene) != 0.0]] = True
     if level.settings.gravity == (0.0, 0.0):
         pulled[:] = False
-    falls = pulled[part] & ~held[part]
+    falls = pulled & ~held
     if level.has_contacts and falls.any():
         yield None
-        falls &= ~_caught(level, scene, part)[part]
-    return part, falls
+        falls &= ~_caught(level, scene, part)
+        yield from _let_rest(level, scene, part, held, falls)
+    return part, falls[part]
 
 
 def _scales(level: Level, scene: Scene) -> NDArray[np.float64]:
@@ -136,15 +141,43 @@ def _caught(level: Level, scene: Scene, part: Slots) -> NDArray[np.bool_]:
     if level.walls is not None:
         caught[part[touches]] = True
         return caught
-    fall = np.array(level.settings.gravity) / np.hypot(*level.settings.gravity)
-    # Along the fall, and across it.
-    turned = np.array([fall, (-fall[1], fall[0])])
-    places, corners = scene.position[touches] @ turned.T, scene.corner @ turned.T
-    low, high = np.full((len(part), 2), np.inf), np.full((len(part), 2), -np.inf)
-    np.minimum.at(low, part[touches], places)
-    np.maximum.at(high, part[touches], places)
+    turned = _turned(level)
+    low, high = _spans(scene.position[touches] @ turned, part[touches], len(part))
+    corners = scene.corner @ turned
     for index in np.unique(scene.corner_item).tolist():
         mine = corners[scene.corner_item == index]
-        least, most = mine.min(axis=0), mine.max(axis=0)
-        caught |= (low[:, 0] <= most[0]) & (low[:, 1] <= most[1]) & (high[:, 1] >= least[1])
+        caught |= _is_above(low, high, mine.min(axis=0), mine.max(axis=0))
     return caught
+
+
+def _let_rest(
+    level: Level, scene: Scene, part: Slots, held: NDArray[np.bool_], falls: NDArray[np.bool_]
+) -> Generator[None, None, None]:
+    """Take from parts that fall, by their labels (n,), those that fall on a part that is held and that they touch."""
+    low, high = _spans(scene.position @ _turned(level), part, len(part))
+    for holder in np.flatnonzero(held).tolist():
+        falling = np.flatnonzero(falls)
+        if not len(falling):
+            return
+        rests = _is_above(low[falling], high[falling], low[holder], high[holder])
+        falls[falling[rests & scene.collision.meet(falling, holder)]] = False
+        yield None
+
+
+def _turned(level: Level) -> Floats:
+    """What turns places (n, 2) into how far they are along the way that things fall, and across it."""
+    x, y = np.array(level.settings.gravity) / np.hypot(*level.settings.gravity)
+    return np.array([(x, -y), (y, x)])
+
+
+def _spans(places: Floats, part: Slots, count: int) -> tuple[Floats, Floats]:
+    """The least and the most of the places of each part, by its label (count, 2); none of what is empty."""
+    low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
+    np.minimum.at(low, part, places)
+    np.maximum.at(high, part, places)
+    return low, high
+
+
+def _is_above(low: Floats, high: Floats, least: Floats, most: Floats) -> NDArray[np.bool_]:
+    """Which of spans (k, 2) lie over another and begin no lower than it ends."""
+    return np.asarray((low[:, 0] <= most[0]) & (low[:, 1] <= most[1]) & (high[:, 1] >= least[1]))

@@ -40,6 +40,8 @@ _SHORTER = {
     "the group default": "default",
 }
 _KEYS = ("key", "reverse_key")
+# The unit of angles in a file, and what people read and type.
+_RADIANS, DEGREES = "rad", "°"
 # Fields that are shown as nothing else is.
 _OWN_KINDS: dict[str, Kind] = {
     "material": "material", "shape": "form", "holes": "outlines", "extras": "extras", "skin": "choice",
@@ -73,7 +75,7 @@ class FieldInfo:
 
     empty: what null stands for. A `point` is of two numbers; `flags` are any number of the choices, `pairs` lists of
     numbers in a list, `outlines` lists of corners in one; a `form` has a table of its own; a `part` is an object, of
-    that model, or null.
+    that model, or null. What has the unit DEGREES is read and typed in them; its value and limits are in radians.
     """
 
     kind: Kind
@@ -118,10 +120,11 @@ def _about(name: str, schema: dict[str, Any], part: type[BaseModel] | None) -> F
     kind = "part" if part is not None else _kind(name, value)
     text = schema.get("description", "").replace("null = ", "empty = ").replace("`", "")
     empty = _EMPTY.search(text)
+    unit = value.get("unit", value.get("items", {}).get("unit", ""))
     about = FieldInfo(
         kind=kind,
         title="Held particles" if name == "pinned" and kind == "list" else title_of(name),
-        unit=value.get("unit", value.get("items", {}).get("unit", "")),
+        unit=DEGREES if unit == _RADIANS else unit,
         low=low,
         high=numbers.get("maximum"),
         above="exclusiveMinimum" in numbers,
@@ -166,7 +169,9 @@ def _kind(name: str, value: dict[str, Any]) -> Kind:
 
 def _tooltip(about: FieldInfo, description: str) -> str:
     """The description, and the limits of a number."""
-    if about.kind not in ("number", "integer", "point") or (about.low is None and about.high is None):
+    is_limited = about.low is not None or about.high is not None
+    # An angle's limits are so wide that nobody meets them.
+    if about.kind not in ("number", "integer", "point") or not is_limited or about.unit == DEGREES:
         return description
     unit = f" {about.unit}" if about.unit else ""
     low = "" if about.low is None else f"{'above ' if about.above else ''}{number_text(about.low)}"

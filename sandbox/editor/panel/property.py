@@ -1,6 +1,7 @@
 """Property: a field that a panel shows and changes, of the selected items, of the level or of its checks."""
 
 import json
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -8,8 +9,9 @@ from functools import partial
 from typing import Any, Final
 
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.panel.field_info import FieldInfo, abouts
+from sandbox.editor.panel.field_info import DEGREES, FieldInfo, abouts
 from sandbox.editor.panel.typed import (
+    DIGITS,
     line_text,
     list_text,
     number_text,
@@ -21,6 +23,7 @@ from sandbox.editor.panel.typed import (
     read_pairs,
     read_touched,
     read_words,
+    significant,
     stepped,
     touched_text,
 )
@@ -87,7 +90,8 @@ class Property:
             "outlines": read_outlines, "words": read_words, "touches": read_touched,
         }  # fmt: skip
         if about.kind in read:
-            return read[about.kind](about.title, text)
+            value = read[about.kind](about.title, text)
+            return math.radians(value) if about.unit == DEGREES else value
         return read_line(text)
 
     def stepped(self, steps: int) -> float | None:
@@ -95,6 +99,8 @@ class Property:
         about = self.about
         if about.kind not in ("number", "integer") or self.value is None or self.value is MIXED:
             return None
+        if about.unit == DEGREES:
+            return math.radians(stepped(_degrees(self.value), steps, None, None))
         value = stepped(self.value, steps, about.low, about.high, whole=about.kind == "integer")
         return self.value if about.above and value == about.low else value
 
@@ -110,6 +116,8 @@ class Section:
 def _text(about: FieldInfo, value: Any) -> str:
     if value is None:
         return ""
+    if about.unit == DEGREES:
+        return number_text(_degrees(value))
     if about.kind in ("number", "integer"):
         return number_text(value)
     if about.kind in ("list", "pairs", "outlines", "words"):
@@ -119,6 +127,11 @@ def _text(about: FieldInfo, value: Any) -> str:
     if about.kind == "extras":
         return json.dumps(value, ensure_ascii=False)
     return line_text(str(value))
+
+
+def _degrees(angle: float) -> float:
+    """An angle [rad] in degrees, without the dust of having been one in radians."""
+    return significant(math.degrees(angle), DIGITS)
 
 
 def same(values: Iterable[Any]) -> Any:

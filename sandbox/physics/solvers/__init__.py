@@ -45,6 +45,12 @@ class Solver:
         """spring_constant(stiffness, damping, reduced_mass [kg], h): k [N/m] of the energy k/2 x^2."""
         return self._schedule.spring_constant
 
+    def expect(self, world: "World") -> None:
+        """Make what topology decides of its substeps, where that takes long, ahead of the tick that needs it."""
+        make = getattr(self._schedule, "expect", None)
+        if make is not None:
+            make(world)
+
     @property
     def _schedule(self) -> Any:
         return import_module(f"{__name__}.{self.module}")

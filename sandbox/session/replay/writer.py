@@ -49,6 +49,10 @@ class Recorder:
             self.write_tick(world)
         except OSError as error:
             self.abandon()
+            # What has not even begun is no recording; a device is not for taking away.
+            with suppress(OSError):
+                if self.path.is_file():
+                    self.path.unlink()
             error.filename = str(self.path)
             raise
 

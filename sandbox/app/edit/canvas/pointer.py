@@ -12,6 +12,7 @@ from sandbox.app.edit.canvas.gestures import Boxing, Gesture, Lassoing, Moving, 
 from sandbox.app.edit.canvas.handles import Handles
 from sandbox.app.edit.canvas.overlay import draw_outline
 from sandbox.app.edit.editing import Editing
+from sandbox.app.sentences import capitalised, sentence
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.grouping import with_groups
 from sandbox.editor.edits.terrain import corners_of, delete_corner, move_corner, piece_of
@@ -216,7 +217,7 @@ class DrawTool:
     @property
     def hint(self) -> str:
         """What to do next, or why it cannot be done."""
-        return self.drawing.hint
+        return capitalised(self.drawing.hint)
 
     @property
     def measure(self) -> str:
@@ -251,13 +252,13 @@ class DrawTool:
         try:
             self.drawing.adjust(by)
         except EditError as error:
-            self._screen.say(str(error))
+            self._screen.say(sentence(error))
 
     def _take(self) -> None:
         try:
             document = self.drawing.done(self._screen.document)
         except EditError as error:
-            self._screen.say(str(error))
+            self._screen.say(sentence(error))
             return
         if document is not None:
             touched = self._screen.document.level.has_contacts

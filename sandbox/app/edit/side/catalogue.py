@@ -15,6 +15,7 @@ from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.picture_cache import draw_in_slices, find_picture, forget_old_pictures, keep_picture, kept_picture
 from sandbox.app.picture_cache import picture_key as key_of_level
 from sandbox.app.screen import Pixel
+from sandbox.app.sentences import sentence
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.slice_queue import SliceQueue
 from sandbox.app.widgets.dialogs import ask, choose
@@ -246,7 +247,7 @@ class CataloguePage:
             try:
                 path = rename_part(part, typed)
             except (StorageError, ValueError) as error:
-                return f"{str(error)[:1].upper()}{str(error)[1:]}."
+                return sentence(error)
             self._look_for(path)
             return None
 
@@ -261,7 +262,7 @@ class CataloguePage:
             try:
                 delete_part(part)
             except StorageError as error:
-                self._screen.say(f"{error}.")
+                self._screen.say(sentence(error))
                 return
             self._chosen = None
             self._looked = 0

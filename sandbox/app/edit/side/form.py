@@ -15,6 +15,7 @@ from sandbox.app.edit.side.boxes import CheckBox, KeyBox, Scrub
 from sandbox.app.edit.side.rows import Picker, Row
 from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.play.drive_keys import code_of
+from sandbox.app.sentences import sentence
 from sandbox.app.shortcuts import action_of, tip_of
 from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.fields import Field
@@ -46,11 +47,6 @@ OBJECT_TEXTS = {True: "Remove", False: "Add", MIXED: "Add to the others"}
 # What a menu says of null, of a colour that is typed, and of a box that may be neither ticked nor not.
 NONE, OTHER_COLOUR = "automatic", "Another colour..."
 YES_NO = {"yes": True, "no": False}
-
-
-def sentence(text: str) -> str:
-    """A fault as a sentence."""
-    return f"{text[:1].upper()}{text[1:]}" + ("" if text.endswith((".", "?")) else ".")
 
 
 def _choice_text(each: Property) -> str:
@@ -360,7 +356,7 @@ class Form:
         try:
             value = each.typed(text, axis)
         except EditError as error:
-            self._screen.say(sentence(str(error)))
+            self._screen.say(sentence(error))
             return False
         return self._set(name, value)
 

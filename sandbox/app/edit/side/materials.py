@@ -11,9 +11,10 @@ import pygame
 from sandbox.app.draw.colours import material_colours
 from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.boxes import Scrub
-from sandbox.app.edit.side.form import GAP, ROW, sentence
+from sandbox.app.edit.side.form import GAP, ROW
 from sandbox.app.edit.side.rows import Row, RowList
 from sandbox.app.edit.side.scroll import ScrollArea
+from sandbox.app.sentences import sentence
 from sandbox.app.widgets.fields import Field
 from sandbox.app.widgets.sliders import LogSlider
 from sandbox.editor.document import Document, EditError
@@ -247,7 +248,7 @@ class MaterialsPage:
         try:
             return read_number(label, text)
         except EditError as error:
-            self._screen.say(sentence(str(error)))
+            self._screen.say(sentence(error))
             return None
 
     def _type_coefficient(self, name: str, text: str) -> bool:
@@ -299,7 +300,7 @@ class MaterialsPage:
         try:
             stiffness, damping = coefficients_from_frequency(frequency, ratio, self._tick_time())
         except ValueError as error:
-            self._screen.say(sentence(str(error)))
+            self._screen.say(sentence(error))
             return False
         return self._put("frequency", replaced(self._material, stiffness=stiffness, damping=damping))
 

@@ -11,6 +11,7 @@ from sandbox.app.draw.colours import material_colours
 from sandbox.app.edit.canvas.pointer import DrawTool
 from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.rows import Picker, Row
+from sandbox.app.sentences import sentence
 from sandbox.app.widgets.fields import Field
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.moving import move, rotate, scale
@@ -226,7 +227,7 @@ class OptionsRow:
         try:
             tool.drawing.set_option(name, value)
         except EditError as error:
-            self._screen.say(f"{str(error)[:1].upper()}{str(error)[1:]}.")
+            self._screen.say(sentence(error))
             return False
         return True
 

@@ -6,6 +6,7 @@ import pygame
 
 from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.form import GAP, ROW, Form
+from sandbox.app.sentences import sentence
 from sandbox.app.widgets.dialogs import ask
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_level_field
@@ -76,8 +77,7 @@ class SettingsPage:
         try:
             document = set_rate_in_pace(self._screen.document, int(typed))
         except EditError as error:
-            text = str(error)
-            return f"{text[0].upper()}{text[1:]}."
+            return sentence(error)
         self._screen.apply("Tick rate at the same pace", document)
         return None
 

@@ -1,0 +1,12 @@
+"""Sentences: what is said to a person, from texts that name a fault in few words."""
+
+
+def capitalised(text: str) -> str:
+    """A text with a capital letter at its beginning."""
+    return f"{text[:1].upper()}{text[1:]}"
+
+
+def sentence(text: object) -> str:
+    """A fault as a sentence."""
+    line = capitalised(str(text))
+    return line if line.endswith((".", "?")) else f"{line}."
