@@ -31,6 +31,8 @@ class CompareScreen(PlayScreen):
     """Two runs on the screen: A, which all that is of one run goes by, and B beside it, or below where it is narrow."""
 
     welcome: ClassVar[str] = WELCOME
+    # Below what stands over the halves.
+    again_top = 104.0
 
     def __init__(self, app: Application, playback: TwinPlayback, other: TwinPlayback, source: Path | None) -> None:
         playback.pair(other)

@@ -46,8 +46,8 @@ from sandbox.tools.parts import PARTS
 
 # Where the button is that frees what is stuck, below the bar, and its size [layout units].
 FREE_PLACE, FREE_SIZE = (16.0, 12.0), (110.0, 34.0)
-# The button that begins again, below the bar in the middle [layout units].
-AGAIN_TOP, AGAIN_SIZE = 16.0, (150.0, 40.0)
+# The button that begins again, in the middle [layout units].
+AGAIN_SIZE = (150.0, 40.0)
 # Under what the strength of the hand is remembered.
 HAND = "hand"
 # And how springs are set: "pad" or "sliders".
@@ -58,6 +58,8 @@ class PlayScreen:
     """Plays a level or a replay; source: the file of the level; of_document: the level is what the editor has open."""
 
     mode: Mode = "play"
+    # How far the button that begins again is below the bar [layout units].
+    again_top = 16.0
 
     def __init__(
         self, app: Application, playback: Playback, source: Path | None = None, of_document: bool = False
@@ -141,7 +143,7 @@ class PlayScreen:
         self.free = ui.button(place, "Free it", self._free, tip=tip_of("free", "play"))
         self.free.hide()
         left = (self.viewport[0] + self.viewport[2] / 2) / ui.scale - AGAIN_SIZE[0] / 2
-        place = ui.rect(left, BAR_HEIGHT + AGAIN_TOP, *AGAIN_SIZE)
+        place = ui.rect(left, BAR_HEIGHT + self.again_top, *AGAIN_SIZE)
         self.again = ui.button(place, "Again", self._reset, style="@primary", tip=tip_of("reset", "play"))
         self.again.hide()
         self.graphs.build(ui, self.area[2] / ui.scale, ui.units[1] - STATUS_HEIGHT - self.time.height)
