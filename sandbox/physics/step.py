@@ -113,8 +113,8 @@ def _step_held(world: World) -> None:
     springs, constraints = (world.stiffness, world.damping), world.constraint_coefficients
     if count > 1:
         keeps_constant = solver.bounded and settings.substeps == AUTO
-        springs = substep_coefficients(world, count, plan.springs, keeps_constant)
-        constraints = constraint_coefficients(world, count, plan.constraints, keeps_constant)
+        springs = substep_coefficients(world, count, plan.springs, keeps_constant, solver.highest)
+        constraints = constraint_coefficients(world, count, plan.constraints, keeps_constant, solver.highest)
     # What a solver keeps is an impulse of one substep: exact, as their number is a power of two.
     scale = settings.fewest_substeps / count
     world.scale_impulses(scale)

@@ -12,6 +12,8 @@ from pygame_gui.core.surface_cache import SurfaceCache
 
 # Pictures of buttons and the like that are kept; most have 10 kB, none has more than 160.
 MOST_SHAPES = 500
+# Larger ones [pixels] are made anew, as the library has it.
+LARGEST_KEPT = 40_000
 # Rounded rectangles are drawn no larger [pixels], and stretched: the library gives the background inside a border the
 # corners of the border, made as much smaller, and in a much smaller shape that would be seen.
 ENOUGH = 64
@@ -71,7 +73,10 @@ class Shapes(SurfaceCache):
             self._pictures.move_to_end(lookup_id)
             return self._pictures[lookup_id]
         asked, self._asked = self._asked, None
-        return None if asked is None else self._stretched(asked)
+        picture = None if asked is None else self._stretched(asked)
+        if picture is not None and picture.width * picture.height < LARGEST_KEPT:
+            self.add_surface_to_cache(picture, lookup_id)
+        return picture
 
     def remove_user_from_cache_item(self, string_id: str) -> None:
         """Nothing: what is used no more goes by its age."""
