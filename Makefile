@@ -9,6 +9,8 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 WORKERS ?= 2
+# Byte code is kept whatever the environment says, or each of many processes would compile the package anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: play install test lint goldens goldens-anew pictures bench abuse soak clean
 

@@ -382,7 +382,7 @@ class App:
             self.screen.draw(surface, self.profile)
         with self.profile.part("ui"):
             if self.screen is not None:
-                corner = None if self.ui.has_sheet else self.screen.notices_corner
+                corner = None if self.ui.has_sheet else self.screen.notices_place
                 parts = self.sharing.status() + self.screen.status(self._figures)
                 if not self.ready and self.mode == "edit":
                     parts.append(("preparing the physics", WARNING))

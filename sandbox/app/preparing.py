@@ -7,6 +7,7 @@ its own where they cannot; what is in it is loaded on that thread, while the win
 import importlib
 import threading
 from collections.abc import Callable, Iterator
+from functools import cache
 
 from sandbox.app.compiling import GROUPS, Crew, is_prepared, note_prepared, usual_processes, warm_up_rest
 from sandbox.app.pace import Pace
@@ -88,7 +89,7 @@ class Preparation:
                 self._ready.update(GROUPS)
                 return
             self._switched()
-        for group, load in zip(GROUPS, (_load_basics, warm_up), strict=True):
+        for group, load in zip(GROUPS, (_load_basics, _load_contacts), strict=True):
             while group == "contacts" and not self._wants_contacts:
                 yield
             while self._crew is not None and not self._crew.has([group]):
@@ -140,6 +141,13 @@ def _import_numba() -> None:
         return
 
 
+# What is loaded stays in the process, whichever app comes next.
+@cache
 def _load_basics() -> None:
     warm_up(contacts=False)
     warm_up_rest()
+
+
+@cache
+def _load_contacts() -> None:
+    warm_up()

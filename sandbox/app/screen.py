@@ -30,8 +30,8 @@ class Screen(Protocol):
     actions: dict[str, Callable[[], object]]
 
     @property
-    def notices_corner(self) -> tuple[float, float]:
-        """Left edge of the notices, where they cover no widgets, and how far above the status line [layout units]."""
+    def notices_place(self) -> tuple[float, float, float]:
+        """Where notices cover no widgets [layout units]: left edge, how far above the status line, right end."""
         ...
 
     @property

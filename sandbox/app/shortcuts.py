@@ -198,9 +198,11 @@ def use_keys(own: Mapping[str, tuple[str, ...]]) -> list[str]:
     _own.clear()
     _own.update({name: tuple(text for text in keys if _is_known(text)) for name, keys in own.items()})
     _table.cache_clear()
+    shortcuts.cache_clear()
     return unknown
 
 
+@cache
 def shortcuts(mode: Mode) -> tuple[Shortcut, ...]:
     """The entries of the table that hold in a mode, with the keys that they have now."""
     entries = (entry for entry in SHORTCUTS if entry.mode in (None, mode))

@@ -5,7 +5,7 @@ import numpy as np
 from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, constraint_values
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.substeps import constraint_coefficients, halve, substep_time
+from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
 from sandbox.physics.world import GRAB_MATERIAL, LAW_HOOKE, TRIANGLE, Floats, World
 
 # The energy of what blew up is inf or NaN, and no fault.
@@ -27,16 +27,13 @@ def spring_lengths(world: World | Snapshot) -> Floats:
 
 def _spring_constants(state: World | Snapshot) -> Floats:
     """k [N/m] of every spring (m,), as the solver gives it to them."""
-    stiffness, damping = _halved_coefficients(state)
-    h = substep_time(state.settings)
-    nissen = SOLVERS[state.settings.solver].spring_constant(stiffness, damping, reduced_masses(state), h)
+    solver, h = SOLVERS[state.settings.solver], substep_time(state.settings)
+    nissen = solver.spring_constant(*_halved_coefficients(state), reduced_masses(state), h)
     return np.where(state.law == LAW_HOOKE, state.hooke_stiffness, nissen)
 
 
 def _halved_coefficients(state: World | Snapshot) -> tuple[Floats, Floats]:
-    stiffness, damping = state.stiffness.copy(), state.damping.copy()
-    halve(stiffness, damping, state.lowest_mode, state.settings.fewest_substeps)
-    return stiffness, damping
+    return substep_coefficients(state, highest=SOLVERS[state.settings.solver].highest)
 
 
 @_unbounded
@@ -90,11 +87,10 @@ def constraint_energies(world: World) -> Floats:
     With that of the floor under a triangle, where the solver has them.
     """
     value, mass, _ = measure_constraints(world)
-    constant = SOLVERS[world.settings.solver].spring_constant(
-        *constraint_coefficients(world), mass, substep_time(world.settings)
-    )
+    solver, h = SOLVERS[world.settings.solver], substep_time(world.settings)
+    constant = solver.spring_constant(*constraint_coefficients(world, highest=solver.highest), mass, h)
     energies = np.asarray(0.5 * constant * value * value)
-    if SOLVERS[world.settings.solver].has_floors:
+    if solver.has_floors:
         wanted, form = world.constraint_rest.T
         has_floor = (world.constraint_kind == AREA) & (world.constraint_corners == TRIANGLE) & (wanted * form > 0.0)
         below = np.minimum(0.0, np.sign(wanted) * (value + (1.0 - FLOOR) * wanted))

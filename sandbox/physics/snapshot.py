@@ -122,8 +122,12 @@ def _digest(column: Column, array: NDArray[Any]) -> str | None:
 
 def hash_by_array(world: World | Snapshot) -> dict[str, str]:
     """blake2b of each state array in use, 16 hexadecimal digits, by its name in files."""
-    hashes = {column.stored: _digest(column, getattr(world, column.name)) for column in COLUMNS}
-    return {name: digest for name, digest in hashes.items() if digest is not None}
+    arrays, hashes = vars(world), {}
+    for column in COLUMNS:
+        digest = _digest(column, arrays[column.name])
+        if digest is not None:
+            hashes[column.stored] = digest
+    return hashes
 
 
 def state_hash(world: World | Snapshot, arrays: Mapping[str, str] | None = None) -> str:

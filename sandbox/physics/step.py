@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from sandbox.physics.collision.collide import Collisions
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
-PHYSICS_VERSION = 3
+PHYSICS_VERSION = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +66,12 @@ def _plan(world: World) -> TickPlan:
         collisions, joints, has_triangles(world), drives, free, (springs[0], springs[1]),
         (constraints[0], constraints[1]),
     )  # fmt: skip
+
+
+def expect(world: World) -> None:
+    """Make what topology decides of the next tick, which else that tick finds first: nothing of a world's state."""
+    world.derived(_plan)
+    SOLVERS[world.settings.solver].expect(world)
 
 
 def step(world: World) -> None:
@@ -107,8 +113,8 @@ def _step_held(world: World) -> None:
     springs, constraints = (world.stiffness, world.damping), world.constraint_coefficients
     if count > 1:
         keeps_constant = solver.bounded and settings.substeps == AUTO
-        springs = substep_coefficients(world, count, plan.springs, keeps_constant)
-        constraints = constraint_coefficients(world, count, plan.constraints, keeps_constant)
+        springs = substep_coefficients(world, count, plan.springs, keeps_constant, solver.highest)
+        constraints = constraint_coefficients(world, count, plan.constraints, keeps_constant, solver.highest)
     # What a solver keeps is an impulse of one substep: exact, as their number is a power of two.
     scale = settings.fewest_substeps / count
     world.scale_impulses(scale)

@@ -12,6 +12,7 @@ from sandbox.physics.equation import half_step_of_network, part_of_network
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
 from sandbox.physics.settings import AUTO, WorldSettings
+from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import GRAB_COUNT, Floats, World
 
 # No tick chooses more substeps than this. 4 leaves a rope dragged at 20 m/s at a stretch above 1e-2, 16 doubles the
@@ -57,36 +58,41 @@ def substep_time(settings: WorldSettings, count: int | None = None) -> float:
 
 
 def substep_coefficients(
-    world: World, count: int | None = None, into: Pair | None = None, keeps_constant: bool = False
-) -> Pair:
+    world: World | Snapshot, count: int | None = None, into: Pair | None = None, keeps_constant: bool = False,
+    highest: float = 1.0,
+) -> Pair:  # fmt: skip
     """Cs and Cd (m,) of one substep, which leave every spring's motion from tick to tick as its Cs and Cd say.
 
     count: substeps in the tick (None: the fewest that the settings give it). into: the arrays that are filled in and
     returned (None: new ones). keeps_constant: leave its k instead, as the direct solver's where ticks choose their
-    parts.
+    parts. highest: one of several substeps is made of Cs and Cd of at most this, see `Solver`.
     """
-    return _of_substep(world, (world.stiffness, world.damping), world.lowest_mode, count, into, keeps_constant)
+    count = count or world.settings.fewest_substeps
+    coefficients = world.stiffness, world.damping
+    return _of_substep(coefficients, world.lowest_mode, count, into, keeps_constant, highest)
 
 
 def constraint_coefficients(
-    world: World, count: int | None = None, into: Pair | None = None, keeps_constant: bool = False
-) -> Pair:
+    world: World, count: int | None = None, into: Pair | None = None, keeps_constant: bool = False,
+    highest: float = 1.0,
+) -> Pair:  # fmt: skip
     """Cs and Cd (t,) of constraints, as `substep_coefficients` gives those of springs."""
-    modes = world.constraint_lowest_mode
-    return _of_substep(world, world.constraint_coefficients, modes, count, into, keeps_constant)
+    count, modes = count or world.settings.fewest_substeps, world.constraint_lowest_mode
+    return _of_substep(world.constraint_coefficients, modes, count, into, keeps_constant, highest)
 
 
 def _of_substep(
-    world: World, coefficients: Pair, lowest_mode: Floats, count: int | None, into: Pair | None, keeps_constant: bool
+    coefficients: Pair, lowest_mode: Floats, count: int, into: Pair | None, keeps_constant: bool, highest: float
 ) -> Pair:
     # Of nothing there is nothing to copy, which takes a fifth of the tick of a few discs.
     if not len(coefficients[0]):
         return coefficients
-    stiffness, damping = into or (np.empty_like(coefficients[0]), np.empty_like(coefficients[1]))
-    stiffness[:], damping[:] = coefficients
+    pair = into or (np.empty_like(coefficients[0]), np.empty_like(coefficients[1]))
+    for part, whole in zip(pair, coefficients, strict=True):
+        np.minimum(whole, highest if count > 1 else 1.0, out=part)
     turn = divide if keeps_constant else halve
-    turn(stiffness, damping, lowest_mode, count or world.settings.fewest_substeps)
-    return stiffness, damping
+    turn(*pair, lowest_mode, count)
+    return pair
 
 
 @kernel

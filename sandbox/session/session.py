@@ -178,7 +178,7 @@ class Session:
             raise ValueError(f"tick {tick} is outside {self._keyframes.first.tick}..{self._last_tick}")
         if self._recorder is not None:
             raise ValueError("stop the recording before going back in time")
-        self._rewind(tick, tick)
+        self._rewind(tick, sought=True)
 
     def kept_before(self, tick: int) -> int:
         """The last tick up to a tick whose state is kept: from there `seek` steps again."""
@@ -459,26 +459,26 @@ class Session:
             self._keyframes.keep(Keyframe(self._order_at(len(reached.history)), reached.state, between=True))
         else:
             self._forget_breaks(nearest.tick)
-        self._rewind(tick, tick)
+        self._rewind(tick)
 
     def _place(self, keyframe: Keyframe) -> int:
         """Where in history that begins which a keyframe does not hold."""
         return bisect.bisect_left(self._timeline, keyframe.order, key=_order)
 
-    def _rewind(self, back_to: int, tick: int) -> None:
-        """Restore the last keyframe at or before a tick and follow history to another."""
-        keyframe = self._keyframes.before(back_to)
+    def _rewind(self, tick: int, sought: bool = False) -> None:
+        """Restore the last keyframe at or before a tick and follow history; sought: others near may be next."""
+        keyframe = self._keyframes.before(tick)
         restore(self.world, keyframe.snapshot)
         self._keyframes.note_return()
         name_added(self.world)
-        self._follow(self._place(keyframe), tick)
+        self._follow(self._place(keyframe), tick, sought)
 
     def _first_of(self, tick: int) -> int:
         """Where in history the commands of a tick begin."""
         return bisect.bisect_left(self._timeline, tick, key=lambda entry: entry.tick)
 
-    def _follow(self, place: int, tick: int) -> None:
-        """Go on to a tick, carrying out history from a place in it on."""
+    def _follow(self, place: int, tick: int, sought: bool = True) -> None:
+        """Go on to a tick, carrying out history from a place in it on; sought: ticks on the way are kept a while."""
         start, history = self.tick, self._timeline
         while True:
             while place < len(history) and history[place].tick == self.tick:
@@ -494,7 +494,8 @@ class Session:
             if self.tick >= tick:
                 return
             self._step(self._order_at(place))
-            self._keyframes.note_passed(self.world, self._order_at(place), tick)
+            if sought:
+                self._keyframes.note_passed(self.world, self._order_at(place), tick)
             self._report_progress(self.tick - start, tick - start)
 
     def _order_at(self, place: int) -> int:
@@ -539,7 +540,7 @@ class Session:
         self._keyframes.drop_after(min((entry.order for entry in following), default=self._next_order))
         self._keyframes.drop_beyond(tick)
         self._breaks = set(branch.breaks)
-        self._rewind(tick, tick)
+        self._rewind(tick)
 
     def _go_by(self, history: list[LogEntry], last_tick: int) -> None:
         """Make these entries all that ever was, up to a tick; nothing is undone."""

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from sandbox.physics.snapshot import Snapshot
-from sandbox.tools.parts import COLOURS, PARTS, Loop, Point
+from sandbox.tools.parts import COLOURS, PARTS, Loop, Point, in_pace
 from sandbox.tools.sizing import resized
 from sandbox.tools.tool import CLICK_SHARE, NOTHING, PointerEvent, Response, Submission
 
@@ -39,7 +39,8 @@ class DropTool:
             return NOTHING
         velocity = self._thrown(event)
         self._pressed_at = None
-        command = self.part.make(self.size, event.position, velocity, self.colour)
+        made = self.part.make(self.size, event.position, velocity, self.colour)
+        command = in_pace(made, snapshot.settings.tick_rate)
         self.count += 1
         return Response((Submission(command, self._new_gesture()),))
 

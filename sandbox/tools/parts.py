@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from sandbox.level.format.look import PALETTE
+from sandbox.physics.equation import at_other_step
 from sandbox.session.commands import AddBody, AddParticle, Command
 
 Point = tuple[float, float]
@@ -20,6 +21,8 @@ SKIN = 0.03
 ROUND = 24
 # Sags of a jelly and of a box.
 SOFT, HARD = 0.1, 0.0
+# Ticks a second that Cs and Cd of the parts' materials are given for.
+USUAL_RATE = 60
 # Keys of the cart's motors: back and ahead.
 CART_KEYS = ("q", "w")
 COLOURS = tuple(PALETTE)
@@ -131,3 +134,24 @@ PARTS: dict[str, Droppable] = {
         Droppable("cart", _cart, (list(_FRAME), *(_circle(_WHEEL, *_FRAME[corner]) for corner in _AXLES))),
     )
 }
+
+
+def in_pace(command: Command, tick_rate: int) -> Command:
+    """The command that adds a part which moves per second, at this tick rate, as it does at the usual one.
+
+    A material that swings too fast for the rate keeps its Cs and Cd, and is softer there. Firmness, motors and places
+    are given per second already.
+    """
+    if not isinstance(command, AddBody) or command.materials is None or tick_rate == USUAL_RATE:
+        return command
+    materials = {name: _at_rate(material, tick_rate) for name, material in command.materials.items()}
+    return replace(command, materials=materials)
+
+
+def _at_rate(material: dict[str, float], tick_rate: int) -> dict[str, float]:
+    try:
+        pair = at_other_step(material["stiffness"], material["damping"], USUAL_RATE / tick_rate)
+    except ValueError:
+        return material
+    stiffness, damping = (float(f"{value:.6g}") for value in pair)
+    return material | {"stiffness": stiffness, "damping": damping}

@@ -95,6 +95,12 @@ class Driver:
         self.app.preparation.finish(self.app.play is not None and self.app.play.has_contacts)
         self.app.frame(FRAME)
 
+    def take_sliders(self):
+        """Have the whole panel in sight, with sliders in place of the pad."""
+        self.app.play.shape.world = True
+        self.app.play._set_by("sliders")
+        self.frames(2)
+
     def rest(self):
         """Do nothing for long enough that the app finds what it needs no more."""
         pygame.event.clear()

@@ -449,7 +449,7 @@ def delayed_contacts(driver, monkeypatch):
     """Contacts that are loaded once the event is set."""
     touching = threading.Event()
     driver.app.preparation.finish()
-    monkeypatch.setattr("sandbox.app.preparing.warm_up", lambda contacts=True: contacts and touching.wait())
+    monkeypatch.setattr("sandbox.app.preparing._load_contacts", touching.wait)
     monkeypatch.setattr(driver.app, "preparation", Preparation())
     driver.app.preparation.finish()
     return touching

@@ -33,6 +33,18 @@ def test_what_has_no_room_on_the_bar_is_in_its_menu(driver):
     assert any(label.startswith("Align") for label in labels)
 
 
+def test_the_panel_folds_in_a_narrow_window_comes_back_with_room_and_obeys_the_person(driver):
+    driver.editor.side.choose("level")
+    driver.fill(driver.editor.side.page.form.fields["author"][0], "Ann")
+    for width, expected in ((640, False), (1280, True)):
+        resize(driver, width, 720)
+        assert (driver.editor.side is not None) is expected
+    assert driver.editor.document.level.author == "Ann"
+    driver.app.act("panel")
+    resize(driver, 1300, 720)
+    assert driver.editor.side is None
+
+
 def test_a_tip_of_the_panel_lies_beside_it_and_there_is_one_at_a_time(driver):
     side, manager = driver.editor.side, driver.app.ui.manager
     tips = []

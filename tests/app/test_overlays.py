@@ -128,6 +128,7 @@ def test_every_overlay_has_a_row_in_the_legend_and_a_key(solver):
 
 
 def test_keys_and_buttons_show_overlays_with_their_legend_and_take_them_away(driver):
+    driver.take_sliders()
     shown = driver.stage.renderer.overlays.shown
     keys = dict(zip(NAMES, (pygame.K_l, *range(pygame.K_F3, pygame.K_F8)), strict=True))
     for name, key in keys.items():

@@ -6,7 +6,10 @@ import pytest
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.draw.part_pictures import PartGhost
 from sandbox.app.play.palette import NAMES
+from sandbox.physics.snapshot import state_hash
+from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.session.commands import AddBody, AddParticle, Push, Remove, SetAir
+from sandbox.tools.parts import PARTS
 from tests.support.parts import furnished
 
 KEYS = dict(zip(NAMES, "4567890vxi", strict=True))
@@ -53,6 +56,19 @@ def test_the_strip_folds_out_and_every_part_and_deed_has_a_key_a_button_and_a_pi
     assert player.app.play.palette is None
     player.key(pygame.K_6)
     assert player.app.play.palette is not None
+
+
+def test_what_joins_has_its_ticks_laid_out_in_a_frame_before_the_first_and_that_changes_nothing(player):
+    player.playback.submit(PARTS["jelly"].make(1.0, (0.0, 6.0), (0.0, 0.0), "sky"))
+    tick = player.playback.session.tick
+    player.frames(1)
+    assert player.world.joined and player.playback.session.tick == tick
+    before = state_hash(player.world)
+    player.frames(1)
+    assert player.playback.session.tick == tick and state_hash(player.world) == before
+    layout = layout_of(player.world)
+    player.frames(1)
+    assert player.playback.session.tick == tick + 1 and layout_of(player.world) is layout
 
 
 def test_a_ghost_goes_before_a_click_drops_and_the_run_goes_on(player):

@@ -4,8 +4,15 @@ import pygame
 import pytest
 
 from sandbox.app.widgets.sliders import fraction_of, value_at
+from sandbox.physics.equation import frequency_from_coefficients
 from sandbox.session.commands import SetCoefficients
 from tests.app.conftest import small_level
+
+
+@pytest.fixture
+def driver(driver):
+    driver.take_sliders()
+    return driver
 
 
 def coefficients(driver):
@@ -136,6 +143,7 @@ def test_the_single_pass_marks_its_limit_and_the_iterative_solver_says_that_ther
 def test_a_hooke_material_cannot_be_tuned_by_cs_and_says_so(open_app):
     level = small_level(materials={"steel": {"law": "hooke", "k": 20.0, "c": 0.5}, "rubber": {}})
     driver = open_app(level)
+    driver.take_sliders()
     panel = driver.panel
     panel._choose_material("steel")
     driver.frames()
@@ -205,3 +213,36 @@ def test_the_scale_is_logarithmic_and_maps_back():
     for fraction in (0.0, 0.13, 0.5, 0.77, 1.0):
         assert fraction_of(value_at(fraction)) == pytest.approx(fraction, abs=2e-3)
     assert value_at(-1.0) == 1e-5 and value_at(2.0) == 1.0
+
+
+def test_another_tick_rate_begins_the_run_anew_at_the_same_pace_or_with_the_same_coefficients(driver):
+    for label, keeps_pace in (("Keep the behaviour per second", True), ("Keep Cs and Cd as they are", False)):
+        before, rate = coefficients(driver), driver.world.settings.tick_rate
+        hertz = frequency_from_coefficients(*before[:2], 1.0 / rate)[0]
+        driver.fill(driver.panel.rate, str(2 * rate))
+        assert driver.world.settings.tick_rate == rate and driver.app.ui.has_sheet
+        driver.choose(label)
+        driver.frames(2)
+        assert driver.world.settings.tick_rate == 2 * rate and driver.world.tick < 20
+        after = coefficients(driver)
+        assert (frequency_from_coefficients(*after[:2], 0.5 / rate)[0] == pytest.approx(hertz, rel=1e-4)) == keeps_pace
+        assert (after == before) != keeps_pace
+        driver.take_sliders()
+
+
+def test_a_run_at_another_tick_rate_has_the_solver_and_the_springs_that_were_set(driver):
+    driver.fill(driver.panel.stiffness_field, "0.07")
+    driver.click_widget(driver.panel.solver.buttons["iterative"])
+    driver.fill(driver.panel.rate, "240")
+    driver.choose("Keep Cs and Cd as they are")
+    driver.frames(2)
+    assert coefficients(driver)[0] == 0.07 and driver.world.settings.solver == "iterative"
+
+
+@pytest.mark.parametrize("typed", ["fast", "0", "-60", "99999"])
+def test_a_tick_rate_that_no_level_has_is_refused_with_a_line(driver, typed):
+    driver.fill(driver.panel.rate, typed)
+    if driver.app.ui.has_sheet:
+        driver.choose("Keep the behaviour per second")
+    assert driver.world.settings.tick_rate == 60 and driver.notices[-1].endswith(".")
+    assert driver.panel.rate.text == "60"

@@ -63,6 +63,8 @@ def test_what_has_no_room_is_done_from_the_menu(driver):
     assert "settings" in bar.left_out
     driver.click_widget(bar.buttons["more"])
     (settings,) = [button for button in driver.app.ui.buttons() if button.text.startswith("Settings")]
+    driver.app.ui.focus_on(settings)
+    driver.frames(2)
     driver.click_widget(settings)
     assert any(button.text == "Light" for button in driver.app.ui.buttons())
 

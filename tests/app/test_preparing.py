@@ -68,7 +68,7 @@ def start(monkeypatch):
         "is_prepared": lambda: False,
         "note_prepared": note,
         "_load_basics": lambda: seen.loaded.append("basics"),
-        "warm_up": lambda: seen.loaded.append("contacts"),
+        "_load_contacts": lambda: seen.loaded.append("contacts"),
     }.items():
         monkeypatch.setattr(preparing, name, value)
     seen.preparation = Preparation(switched)

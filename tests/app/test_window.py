@@ -1,6 +1,7 @@
 """A real window on a virtual screen, driven by xdotool: drag, slide, pause, record, save; the replay verifies."""
 
 import numpy as np
+import pygame
 
 from sandbox.app.display import WINDOW_SIZE
 from sandbox.level.format.files import write_level
@@ -21,8 +22,8 @@ def test_a_person_drags_slides_pauses_records_and_saves_and_the_replay_verifies(
     twin.app.display.window.size = WINDOW_SIZE
     twin.frames(2)
     start = twin.pixel_of("rope.4")
-    slider = twin.panel.stiffness
-    places = [(slider.pixel_of(value), slider.rect.centery) for value in (0.1, 0.05, 0.01)]
+    pad = twin.panel.pad
+    places = [pygame.Vector2(pad.rect.topleft) + pad._at(value, 0.3) for value in (0.1, 0.05, 0.01)]
 
     person = Person(screen, ["play", str(tmp_path / "small.json")], tmp_path)
     try:

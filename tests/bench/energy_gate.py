@@ -125,33 +125,40 @@ def random_graphs(
     return graphs
 
 
-def energies(graphs: Graphs, count: int) -> Floats:
-    """Kinetic plus spring energy [J] of each graph (count,)."""
-    world = graphs.world
-    h = 1.0 / world.settings.tick_rate
+def spring_constants(world: World) -> Floats:
+    """The k [N/m] of each spring in the solver of a world (m,), which a run of these graphs leaves as it is."""
     inverse = world.inverse_mass[world.particle_a] + world.inverse_mass[world.particle_b]
     mass = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
-    constant = SOLVERS[world.settings.solver].spring_constant(world.stiffness, world.damping, mass, h)
+    constant: Floats = SOLVERS[world.settings.solver].spring_constant(
+        world.stiffness, world.damping, mass, 1.0 / world.settings.tick_rate
+    )
+    return constant
+
+
+def energies(graphs: Graphs, count: int, constant: Floats) -> Floats:
+    """Kinetic plus spring energy [J] of each graph (count,); constant: the k of each spring."""
+    world = graphs.world
     separation = world.position[world.particle_b] - world.position[world.particle_a]
     error = np.sqrt(np.sum(separation**2, axis=1)) - world.rest_length
-    value, effective, _ = measure_constraints(world)
-    stiffness, damping = world.constraint_coefficients
-    of_constraints = SOLVERS[world.settings.solver].spring_constant(stiffness, damping, effective, h)
     moving = np.where(world.inverse_mass > 0.0, world.mass * np.sum(world.velocity**2, axis=1), 0.0)
-    return 0.5 * (
-        np.bincount(graphs.of_particle, moving, count)
-        + np.bincount(graphs.of_spring, constant * error**2, count)
-        + np.bincount(graphs.of_element, of_constraints * value**2, count)
-    )
+    doubled = np.bincount(graphs.of_particle, moving, count) + np.bincount(graphs.of_spring, constant * error**2, count)
+    if world.constraint_count:
+        value, effective, _ = measure_constraints(world)
+        of_constraints = SOLVERS[world.settings.solver].spring_constant(
+            *world.constraint_coefficients, effective, 1.0 / world.settings.tick_rate
+        )
+        doubled = doubled + np.bincount(graphs.of_element, of_constraints * value**2, count)
+    return 0.5 * doubled
 
 
 def highest_energies(graphs: Graphs, count: int, steps: int) -> Floats:
     """The highest energy of each graph over a run, as a multiple of its start; inf where it is not finite."""
-    start = energies(graphs, count)
+    constant = spring_constants(graphs.world)
+    start = energies(graphs, count, constant)
     highest = start.copy()
     for _ in range(steps):
         step(graphs.world)
-        highest = np.maximum(highest, np.nan_to_num(energies(graphs, count), nan=np.inf))
+        highest = np.maximum(highest, np.nan_to_num(energies(graphs, count, constant), nan=np.inf))
     return highest / start
 
 

@@ -2,7 +2,8 @@
 
 Adding and undoing must grow with what is added: the last column of the first table is the time per particle of the
 larger run over that of the smaller. The second table is of frames of the window (drawing, ticks and panel) while
-jellies are dropped into the level jelly_pile: before, those of the drops, and the next ones, with the first tick.
+jellies are dropped into the level jelly_pile: before, those of the drops, those that lay out the ticks to come, and
+those of the first tick.
 """
 
 import os
@@ -41,8 +42,8 @@ def adding(count: int, undone: int) -> tuple[float, float]:
     return added, time.process_time() - began - added
 
 
-def dropping() -> tuple[list[float], list[float], list[float]]:
-    """Milliseconds of frames before drops of jellies, of those, and of the next ones."""
+def dropping() -> list[list[float]]:
+    """Milliseconds of frames before drops of jellies, of those, and of the two after each."""
     app = App(Display(1.0))
     app.open(StartRequest(load_level("jelly_pile"), None))
 
@@ -57,17 +58,16 @@ def dropping() -> tuple[list[float], list[float], list[float]]:
     for _ in range(2):
         frame()
     assert app.play is not None
-    at, after = [], []
+    drops: list[list[float]] = []
     for k in range(DROPS):
         command = PARTS["jelly"].make(1.5, (-5.0 + 0.8 * k, 9.0), (0.0, 0.0), "raspberry")
         app.play.playback.submit(command)
-        at.append(frame())
-        after.append(frame())
+        drops.append([frame() for _ in range(3)])
         for _ in range(BETWEEN):
             frame()
     app.close()
     pygame.quit()
-    return before, at, after
+    return [before, *map(list, zip(*drops, strict=True))]
 
 
 def main() -> None:
@@ -80,7 +80,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         for name in ("XDG_DATA_HOME", "XDG_CACHE_HOME", "XDG_DOCUMENTS_DIR"):
             os.environ[name] = folder
-        for name, frames in zip(("before", "at a drop", "the next"), dropping(), strict=True):
+        for name, frames in zip(("before", "at a drop", "laid out", "first tick"), dropping(), strict=True):
             print(f"frames {name:10} median {statistics.median(frames):5.1f} ms, slowest {max(frames):5.1f} ms")
 
 

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from sandbox.editor.document import Document, EditError, empty_level
+from sandbox.editor.edits.copying import copy_text, paste
+from sandbox.editor.edits.fields import set_setting
 from sandbox.editor.edits.parts import part_of, place_part
 from sandbox.editor.history import History
 from sandbox.editor.items import Item, items_of
@@ -19,6 +21,7 @@ from sandbox.level.format.model import NissenMaterial, ParticleDef, TerrainDef
 from sandbox.level.format.parse import parse_level
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bridge import BridgeDef
+from sandbox.physics.equation import frequency_from_coefficients
 from sandbox.physics.step import step
 
 SHIPPED = {part.path.stem: part for part in catalogue(None) if not part.is_own}
@@ -47,7 +50,34 @@ def place(world, name):
     return world.position[world.particle_slot(name)].copy()
 
 
+def readings(level, names):
+    """Hz and damping ratio of materials, at the level's rate."""
+    step_time = 1.0 / level.settings.tick_rate
+    springs = [level.materials[name] for name in names]
+    return np.array([frequency_from_coefficients(each.stiffness, each.damping, step_time) for each in springs])
+
+
 # Putting a part into a level.
+
+
+def test_a_part_goes_on_per_second_as_it_did_in_a_level_of_another_rate_and_back(floor):
+    fast = set_setting(floor, "tick_rate", 120)
+    part = SHIPPED["car"].level
+    names = [name for name, each in part.materials.items() if each.damping < 1.0]
+    there = with_part(fast, "car")
+    assert names and np.allclose(readings(there.level, names), readings(part, names), rtol=1e-4)
+    kept = part_of(there, "Fast car")
+    assert kept.settings.tick_rate == 120
+    back = place_part(floor, kept, (0.0, 0.0)).level
+    assert np.allclose(readings(back, names), readings(part, names), rtol=1e-3)
+
+
+def test_text_copied_from_a_level_of_another_rate_is_pasted_in_pace(floor):
+    part = SHIPPED["balloon"].level
+    text = copy_text(Document(part, frozenset(items_of(part))))
+    pasted = paste(set_setting(floor, "tick_rate", 240), text).level
+    names = [name for name, each in part.materials.items() if each.damping < 1.0 and name in pasted.materials]
+    assert names and np.allclose(readings(pasted, names), readings(part, names), rtol=1e-3)
 
 
 def test_a_part_is_put_where_the_pointer_is_as_one_group_and_is_selected(floor):

@@ -72,9 +72,11 @@ def add_line(to, points, pinned=(), **options):
 
 
 @pytest.mark.parametrize(("height", "touches"), [(0.0, False), (-0.12, True)])
-def test_what_is_caught_in_a_mesh_of_lines_does_not_push_it_open(height, touches):
+@pytest.mark.parametrize("has_solid", [True, False])
+def test_what_is_caught_in_a_mesh_of_lines_does_not_push_it_open(has_solid, height, touches):
     w = world(gravity=(0.0, 0.0))
-    add_jelly(w, (3.0, 0.0))
+    if has_solid:
+        add_jelly(w, (3.0, 0.0))
     net = add_discs(w, [(-0.1, -0.06), (0.1, -0.06), (0.0, 0.12)], radius=0.05, owner=1)
     a = np.arange(3)
     w.add_springs([f"net:{k}" for k in a], net + a, net + (a + 1) % 3, stiffness=0.9, damping=0.99, edge=LINE)

@@ -160,10 +160,15 @@ def test_carts_of_any_weight_come_to_their_speed_with_twice_the_torque_that_clim
     for _ in range(scaled(3, 1)):
         rim, load = 10.0 ** generator.uniform(-0.7, 0.7), 10.0 ** generator.uniform(-0.3, 2.08)
         slope, substeps = float(generator.choice([0.0, 10.0])), int(generator.choice([1, 4]))
-        # Of the iterative solver's carts of one driven wheel some hop uphill in small steps, and are slower then.
-        least = 0.9 if solver == "iterative" and slope and substeps > 1 else 0.93
         if scaled(1, 0):
-            assert cart_speed(rim, load, slope, solver, substeps, seconds=4) >= least
+            assert cart_speed(rim, load, slope, solver, substeps, seconds=4) >= 0.93
+
+
+def test_wheels_of_rigid_springs_do_not_hop_uphill_in_small_steps_of_the_iterative_solver():
+    # Where a substep took back all of a spring's error, these came to 0.92 and 0.91 of their speed.
+    if scaled(1, 0):
+        assert cart_speed(1.0, 5.0, 10.0, "iterative", 4, driven=1) >= 0.93
+        assert cart_speed(2.0, 0.5, 10.0, "iterative", 4, driven=1) >= 0.93
 
 
 def test_a_motor_that_is_switched_off_lets_its_wheel_run_on():

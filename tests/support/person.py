@@ -51,9 +51,13 @@ class VirtualScreen:
             self.display = f":{pipe.readline().strip()}"
         self._file = folder / "Xvfb_screen0"
 
+    def dump(self) -> bytes:
+        """All that is seen now, to be compared."""
+        return self._file.read_bytes()
+
     def pixels(self) -> np.ndarray:
         """What is seen now: red, green, blue (height, width, 3)."""
-        data = self._file.read_bytes()
+        data = self.dump()
         header = np.frombuffer(data, ">u4", 25).tolist()
         start, width, height, line = header[0] + 12 * header[19], header[4], header[5], header[12]
         rows = np.frombuffer(data, np.uint8, line * height, start).reshape(height, line)
@@ -106,9 +110,9 @@ class Person:
 
     def seen(self, *arguments: object, patience: float = DEADLINE) -> bool:
         """Do something and poll the pixels until they change; whether they did."""
-        before = self.screen.pixels()
+        before = self.screen.dump()
         self.do(*arguments)
-        return any(not np.array_equal(before, self.screen.pixels()) for _ in looks(patience, BLINK))
+        return any(self.screen.dump() != before for _ in looks(patience, BLINK))
 
     def move(self, pixel: tuple[float, float]) -> None:
         """Move the mouse; the app has seen it once what is under the mouse looks otherwise."""

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from sandbox.level.format.quantities import replaced
+from sandbox.physics.equation import frequency_from_coefficients
 from sandbox.session.commands import AddBody, AddParticle, Pin, Push, Remove, SetAir, Unpin
 from sandbox.session.session import Session
 from sandbox.tools.blowing import PushTool, WindTool
@@ -53,6 +55,17 @@ def test_every_part_drops_where_it_is_clicked_settles_and_flies_where_it_is_thro
     for _ in range(30):
         session.advance()
     assert np.isfinite(world.position).all()
+
+
+@pytest.mark.parametrize("rate", [60, 240])
+def test_what_is_dropped_moves_per_second_alike_at_every_tick_rate(rate):
+    level = room()
+    session = Session(replaced(level, settings=replaced(level.settings, tick_rate=rate)))
+    (rope,) = gesture(DropTool(session.new_gesture, "rope"), session, (0.0, 2.0), (0.0, 2.0))
+    (material,) = rope.materials.values()
+    reading = frequency_from_coefficients(material["stiffness"], material["damping"], 1.0 / rate)
+    assert reading == pytest.approx(frequency_from_coefficients(0.9, 0.95, 1.0 / 60), rel=1e-4)
+    assert not session.messages and session.world.joined
 
 
 def test_throws_have_a_limit_and_the_wheel_makes_parts_larger():

@@ -115,6 +115,9 @@ class CompareScreen(PlayScreen):
         playback = self.playback if self.side == SIDES[0] or self.beside is None else self.other
         return Panel(ui, playback, self._app.say, {**choices, "side": self.choose_side}, BAR_HEIGHT, height, self.shape)
 
+    def _ask_rate(self, typed: str) -> None:
+        self._app.say(f"A and B go by one clock. Leave the comparison (F9) to play at {typed} ticks a second.")
+
     def choose_side(self, side: str) -> None:
         """Let the panel show and set that run's springs and solver."""
         self.side = side

@@ -156,11 +156,16 @@ _TILES: dict[str, Callable[[], Packed]] = {
 TILE = {name: k for k, name in enumerate((*_TILES, "turf"))}
 
 
+@cache
+def _stuffs(theme: Theme) -> Packed:
+    return np.stack([*(make() for make in _TILES.values()), _turf(theme)])
+
+
 class Tiles:
     """Tiles of strips (t, ACROSS, ALONG): those of stuffs, and bars of any colour, added when first asked for."""
 
     def __init__(self, theme: Theme) -> None:
-        self.array = np.stack([*(make() for make in _TILES.values()), _turf(theme)])
+        self.array = _stuffs(theme)
         self._bars: dict[int, int] = {}
 
     def bar(self, colour: int) -> int:

@@ -11,7 +11,7 @@ from sandbox.app.edit.editing import Editing
 from sandbox.app.play.toolbar import BAR_HEIGHT, BUTTON, GAP, ICON, ROOM_FOR_NAME
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.icons import painted_icon
-from sandbox.app.widgets.ui import Ui, set_icon
+from sandbox.app.widgets.ui import Ui
 from sandbox.editor.tools.icons import Icon
 from sandbox.editor.tools.palette import TOOLS
 
@@ -46,7 +46,6 @@ class _Buttons:
         self._ui, self._press, self._back, self._size = ui, press, back, size
         self.by_action: dict[str, Any] = {}
         self._icons: dict[str, Icon] = {}
-        self._painted: dict[tuple[str, Colour], pygame.Surface] = {}
         self._shown: dict[str, Colour] = {}
 
     def add(self, action: str, icon: Icon, x: float, y: float) -> None:
@@ -79,16 +78,12 @@ class _Buttons:
             return
         self._shown[action] = colour
         button = self.by_action[action]
-        set_icon(button, self._icon(action, colour))
+        button.show_icon(self._icon(action, colour))
         (button.enable if enabled else button.disable)()
         (button.select if on else button.unselect)()
 
     def _icon(self, action: str, colour: Colour) -> pygame.Surface:
-        key = (action, colour)
-        if key not in self._painted:
-            size = self._ui.px(ICON * self._size / BUTTON)
-            self._painted[key] = painted_icon(self._icons[action], size, colour)
-        return self._painted[key]
+        return painted_icon(self._icons[action], self._ui.px(ICON * self._size / BUTTON), colour)
 
 
 class Bar:

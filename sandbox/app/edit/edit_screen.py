@@ -24,6 +24,7 @@ from sandbox.app.edit.editing import PointerTool
 from sandbox.app.edit.side.options import OPTIONS_HEIGHT, OptionsRow
 from sandbox.app.edit.side.side import Side
 from sandbox.app.edit.watch import Watch
+from sandbox.app.play.side_panel import ROOM_FOR_PANEL
 from sandbox.app.play.stage import PICK_RADIUS
 from sandbox.app.play.status import STATUS_HEIGHT, counted_parts
 from sandbox.app.play.toolbar import BAR_HEIGHT
@@ -65,7 +66,9 @@ class EditScreen:
         self.ui = app.ui
         self.history = history
         self.level_file = level_file
-        self.show_side = True
+        # Whether the person wants the panel at the side; None: it is shown where there is room.
+        self._wants_side: bool | None = None
+        self.side: Side | None = None
         self.camera = Camera(viewport=self._viewport())
         self.view = View(self)
         self.tool = "select"
@@ -197,9 +200,10 @@ class EditScreen:
         return palette_width(self.ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT)
 
     @property
-    def notices_corner(self) -> tuple[float, float]:
-        """Where notices begin, from the lower left corner [layout units]."""
-        return self._palette_width + RULER + 12.0, 0.0
+    def notices_place(self) -> tuple[float, float, float]:
+        """Where notices begin, from the lower left corner, and how far right they may reach [layout units]."""
+        left, _, width, _ = self.camera.viewport
+        return self._palette_width + RULER + 12.0, 0.0, (left + width) / self.scale
 
     @property
     def without_button(self) -> tuple[str, ...]:
@@ -224,15 +228,24 @@ class EditScreen:
         left = self._palette_width
         self.options = OptionsRow(self, ui.rect(left, BAR_HEIGHT, width - left, OPTIONS_HEIGHT))
         self.rulers = Rulers(ui)
-        self.side = Side(ui, self, self._side_place()) if self.show_side else None
+        if self.show_side:
+            self.side = Side(ui, self, self._side_place())
+        elif self.side is not None:
+            self.side.close()
+            self.side = None
 
     def _side_place(self) -> pygame.Rect:
         ui, (width, height), top = self.ui, self.ui.units, BAR_HEIGHT + OPTIONS_HEIGHT
         return ui.rect(width - SIDE_WIDTH, top, SIDE_WIDTH, height - top - STATUS_HEIGHT)
 
+    @property
+    def show_side(self) -> bool:
+        """Whether the panel at the side is shown."""
+        return self.ui.units[0] >= ROOM_FOR_PANEL if self._wants_side is None else self._wants_side
+
     def toggle_side(self) -> None:
         """Hide or show the panel at the side."""
-        self.show_side = not self.show_side
+        self._wants_side = not self.show_side
         self.app.rebuild()
 
     def show_parts(self, path: Path | None = None) -> None:

@@ -74,7 +74,6 @@ class Editing(Protocol):
     history: History
     camera: Camera
     snapping: bool
-    show_side: bool
     # The keyboard cursor [m], and the mouse [pixels], where they are over the level.
     cursor: Point | None
     pointer: Pixel | None
@@ -82,6 +81,11 @@ class Editing(Protocol):
     @property
     def actions(self) -> dict[str, Callable[[], object]]:
         """What can be done, by the names of the table of shortcuts."""
+        ...
+
+    @property
+    def show_side(self) -> bool:
+        """Whether the panel at the side is shown."""
         ...
 
     # The document.

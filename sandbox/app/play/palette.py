@@ -11,7 +11,7 @@ from sandbox.app.draw.colours import ACCENT, TEXT, Colour
 from sandbox.app.draw.part_pictures import picture_of
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.icons import painted_icon
-from sandbox.app.widgets.ui import Ui, set_icon
+from sandbox.app.widgets.ui import Ui
 from sandbox.editor.tools.icons import Icon, IconPen
 from sandbox.tools.parts import PARTS
 
@@ -96,13 +96,10 @@ class PartsPalette:
             self._pictures = {part: picture_of(part, self._ui.px(PICTURE)) for part in PARTS}
         for name, button in self.buttons.items():
             is_chosen = name == state.tool
-            set_icon(button, self._icon(name, ACCENT if is_chosen else TEXT))
+            button.show_icon(self._icon(name, ACCENT if is_chosen else TEXT))
             (button.select if is_chosen else button.unselect)()
 
     def _icon(self, name: str, colour: Colour) -> pygame.Surface:
-        if name not in DEEDS:
-            return self._pictures[name]
-        key = f"{name} {colour}"
-        if key not in self._pictures:
-            self._pictures[key] = painted_icon(DEEDS[name], self._ui.px(ICON), colour)
-        return self._pictures[key]
+        if name in DEEDS:
+            return painted_icon(DEEDS[name], self._ui.px(ICON), colour)
+        return self._pictures[name]

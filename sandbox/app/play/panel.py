@@ -76,7 +76,8 @@ class Panel:
     """The panel at the right of a window; `say` shows a line to the person.
 
     choose: what is done with a strength of the "hand", with a "view" that is shown or no longer, with how "springs" are
-    set ("pad" or "sliders"), the "fold" of the world ("open" or "folded"), and of two runs the "side" to show.
+    set ("pad" or "sliders"), the "fold" of the world ("open" or "folded"), another tick "rate" [1/s], and of two runs
+    the "side" to show.
     """
 
     def __init__(
@@ -100,7 +101,9 @@ class Panel:
         self.firmness = FirmnessRows(playback, say)
         self._offered = self._present()
         full = FULL_HEIGHT + (FIRMNESS_HEIGHT if self.firmness.shown else 0.0)
-        self.by_pad = height >= full + PAD_MORE if shape.springs is None else shape.springs == "pad"
+        # With the world folded, if need be.
+        least = TIGHTEST * (full + PAD_MORE - WORLD_HEIGHT)
+        self.by_pad = height >= least if shape.springs is None else shape.springs == "pad"
         full += (PAD_MORE if self.by_pad else 0.0) + (0.0 if shape.side is None else SIDES_HEIGHT)
         self.is_folded = (self.by_pad and height < TIGHTEST * full) if shape.world is None else not shape.world
         full -= WORLD_HEIGHT if self.is_folded else 0.0
@@ -228,12 +231,15 @@ class Panel:
         options = [(name, SOLVER_LABELS.get(name, name), "Solver") for name in SOLVERS]
         self.solver = ui.choice(self._row(ROW, 8), options, self._choose_solver, self.back)
         ui.label(self._row(18, 2), "Substeps", self.back, "@muted")
-        counts = [(str(count), str(count), "") for count in SUBSTEPS]
+        counts = [(str(count), str(count), "Springs move per second as they did") for count in SUBSTEPS]
         counts.insert(0, (AUTO, "Auto", "Every tick takes as many as it needs, 1 to 8"))
         self.substeps = ui.choice(self._row(ROW - 2, 6), counts, self._choose_substeps, self.back)
-        self.iterations, self.warm_start = self._beside(
-            ("Iterations", "Warm start (0 to 1)"), (self._type_iterations, self._type_warm_start)
+        self.iterations, self.warm_start, self.rate = self._beside(
+            ("Iterations", "Warm start", "Ticks/s"),
+            (self._type_iterations, self._type_warm_start, self._type_rate),
         )
+        self.warm_start.entry.set_tooltip("0 to 1")
+        self.rate.entry.set_tooltip("Ticks a second; the run begins anew with another number of them")
         ui.label(self._place(MARGIN, 0, HAND_LABEL, ROW - 2), "Hand", self.back, "@muted")
         options = [(name, name.capitalize(), _strength_tip(strength)) for name, strength in STRENGTHS.items()]
         place = self._row(ROW - 2, 8, MARGIN + HAND_LABEL, INSIDE - HAND_LABEL)
@@ -274,6 +280,7 @@ class Panel:
         self.substeps.show(str(settings.substeps))
         self.iterations.show(str(settings.iterations))
         self.warm_start.show(f"{settings.warm_start:g}")
+        self.rate.show(f"{settings.tick_rate:g}")
         if self._refreshes % LOOK_EVERY == 0 or self.playback.clock.paused:
             self._show_energy()
         self._refreshes += 1
@@ -505,6 +512,14 @@ class Panel:
             return False
         self._submit(SetSolver(iterations=int(value)))
         return True
+
+    def _type_rate(self, text: str) -> bool:
+        """Ask how to go on at another tick rate; the run has the old one until it begins anew."""
+        if not text.strip().isdecimal():
+            self._say(f"Ticks a second: {text.strip() or 'nothing'!r} is not a whole number.")
+        elif int(text) != self.playback.session.world.settings.tick_rate:
+            self._choose["rate"](text)
+        return False
 
     def _type_warm_start(self, text: str) -> bool:
         value = typed_number(self._say, text, "Warm start", 0.0, 1.0)

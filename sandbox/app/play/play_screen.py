@@ -12,6 +12,7 @@ from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colou
 from sandbox.app.draw.detail import FULL, NO_EFFECTS
 from sandbox.app.draw.views.overlays import NAMES as OVERLAYS
 from sandbox.app.edit.bake_choice import ask_to_keep
+from sandbox.app.edit.rate_choice import ask_for_pace
 from sandbox.app.graphs.graph_dock import GraphDock
 from sandbox.app.loop import SPEEDS
 from sandbox.app.play.drive_keys import DriveKeys
@@ -23,7 +24,7 @@ from sandbox.app.play.out_of_view import OutOfView
 from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
 from sandbox.app.play.panel import PANEL_WIDTH, Panel, PanelShape
 from sandbox.app.play.playback import Playback
-from sandbox.app.play.side_panel import SidePanel
+from sandbox.app.play.side_panel import ROOM_FOR_PANEL, SidePanel
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
@@ -45,8 +46,6 @@ from sandbox.tools.parts import PARTS
 
 # Where the button is that frees what is stuck, below the bar, and its size [layout units].
 FREE_PLACE, FREE_SIZE = (16.0, 12.0), (110.0, 34.0)
-# Narrower windows begin without the panel [layout units].
-ROOM_FOR_PANEL = 800.0
 # The button that begins again, in the middle [layout units].
 AGAIN_SIZE = (150.0, 40.0)
 # Under what the strength of the hand is remembered.
@@ -125,9 +124,10 @@ class PlayScreen:
         return self.time.height + self.graphs.height(self._ui)
 
     @property
-    def notices_corner(self) -> tuple[float, float]:
-        """Where the notices are, from the left and above the status line [layout units]."""
-        return (16.0 if self.palette is None else self.palette.right + 10.0), self._below
+    def notices_place(self) -> tuple[float, float, float]:
+        """Where notices begin, from the lower left corner, and how far right they may reach [layout units]."""
+        left = 16.0 if self.palette is None else self.palette.right + 10.0
+        return left, self._below, self.area[2] / self._ui.scale
 
     def build(self, ui: Ui) -> None:
         """Lay the bar and the panel out anew."""
@@ -154,6 +154,7 @@ class PlayScreen:
             height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
             choices: dict[str, Callable[[str], None]] = {
                 "hand": self.choose_strength, "view": self._app.act, "springs": self._set_by, "fold": self._fold,
+                "rate": self._ask_rate,
             }  # fmt: skip
             self.panel = self._make_panel(ui, choices, height)
             if before is not None and before.playback.level is self.playback.level:
@@ -177,6 +178,13 @@ class PlayScreen:
         self._app.rebuild()
         if self.panel is not None:
             self.panel.choose_material(None if material is None else names.index(material))
+
+    def _ask_rate(self, typed: str) -> None:
+        """Ask how to begin anew at another tick rate."""
+        if self.of_document:
+            self._app.say("This run is of the level in the editor: change its ticks a second there, on the page Level.")
+        else:
+            ask_for_pace(self._app, self.playback, int(typed))
 
     def _fold(self, how: str) -> None:
         self.shape.world = how == "open"

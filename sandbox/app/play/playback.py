@@ -14,6 +14,7 @@ from sandbox.app.play.travel import Travel
 from sandbox.level.format.model import Level
 from sandbox.physics.energy import Dissipation
 from sandbox.physics.snapshot import Snapshot, state_hash
+from sandbox.physics.step import expect
 from sandbox.physics.world import World
 from sandbox.session.commands import Command, CommandError, Redo, Undo
 from sandbox.session.replay.recording import Replay, ReplayError
@@ -23,6 +24,8 @@ from sandbox.tools.tool import Response
 # Wall time [s] that the ticks of one frame may take; the ticks beyond it are lost and the run falls behind real time,
 # but the window goes on answering.
 TICK_BUDGET = 0.05
+# Frames without a tick after something has joined the run: the one that adds it, and the one that lays out its ticks.
+FRAMES_TO_JOIN = 2
 
 
 class Listener(Protocol):
@@ -57,7 +60,8 @@ class Playback:
         self._taken_over = False
         self._passed_over = False
         self._submitted = False
-        self._has_grown = False
+        # Frames that what joins a run takes for itself.
+        self._making_room = 0
         # Grows with every command of the person's that was applied.
         self.revision = 0
 
@@ -202,7 +206,8 @@ class Playback:
             self.session.apply_pending()
         except CommandError as error:
             self._give_up(error)
-        self._has_grown = len(self.session.world.joined) > len(joined)
+        if len(self.session.world.joined) > len(joined):
+            self._making_room = FRAMES_TO_JOIN
         if submitted:
             self.revision += 1
             self.current = self.session.snapshot()
@@ -234,9 +239,8 @@ class Playback:
 
     def advance(self, frame_time: float) -> int:
         """Let frame_time [s] of wall time pass; returns the ticks that were made."""
-        if self._has_grown and not self.clock.paused:
-            # What joined has taken its time already, and so will drawing it: its first tick waits for the next frame.
-            self._has_grown, self.clock.accumulator = False, self.clock.accumulator + frame_time * self.clock.speed
+        if self._making_room and not self.clock.paused:
+            self._make_room()
             return 0
         due = self.clock.ticks(frame_time, self.session.world.settings.tick_rate)
         if self.travel.target is not None:
@@ -265,6 +269,12 @@ class Playback:
                 self.previous = self.current
         self._drain()
         return done
+
+    def _make_room(self) -> None:
+        """Let a frame do one part of what joining takes: adding and drawing it anew, what its ticks need, a tick."""
+        self._making_room -= 1
+        if self._making_room == 0:
+            expect(self.session.world)
 
     def _hurry(self, target: int) -> int:
         """Make as many ticks towards a tick as a frame has time for."""

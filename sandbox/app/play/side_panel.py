@@ -6,6 +6,9 @@ from typing import Protocol
 from sandbox.app.play.coefficient_pad import CoefficientPad
 from sandbox.app.play.playback import Playback
 
+# Narrower windows begin without a panel at their side [layout units].
+ROOM_FOR_PANEL = 800.0
+
 
 class SidePanel(Protocol):
     """A panel beside a run."""

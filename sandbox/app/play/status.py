@@ -63,9 +63,9 @@ class StatusLine:
         surface: pygame.Surface,
         parts: list[tuple[str, Colour]],
         right: float,
-        notices_corner: tuple[float, float] | None,
+        notices_place: tuple[float, float, float] | None,
     ) -> None:
-        """Draw parts of text from the left up to `right`, notices so far from the left and above; in layout units."""
+        """Draw parts of text from the left up to `right`, notices from the left, above, and up to; in layout units."""
         ui = self.ui
         height = ui.px(STATUS_HEIGHT)
         top = surface.get_height() - height
@@ -78,18 +78,18 @@ class StatusLine:
                 break
             surface.blit(picture, (x, top + (height - picture.get_height()) // 2))
             x += picture.get_width() + ui.px(18)
-        if notices_corner is not None:
-            left, above = notices_corner
-            self._draw_notices_above(surface, top - ui.px(above), left)
+        if notices_place is not None:
+            left, above, end = notices_place
+            self._draw_notices_above(surface, top - ui.px(above), left, ui.px(end))
 
     def draw_notices(self, surface: pygame.Surface, left: float) -> None:
         """Draw the notices alone, over a page that covers the line."""
-        self._draw_notices_above(surface, surface.get_height(), left)
+        self._draw_notices_above(surface, surface.get_height(), left, surface.get_width())
 
-    def _draw_notices_above(self, surface: pygame.Surface, bottom: int, left: float) -> None:
+    def _draw_notices_above(self, surface: pygame.Surface, bottom: int, left: float, end: int) -> None:
         ui = self.ui
         y = bottom - ui.px(12)
-        widest = min(ui.px(520), surface.get_width() - ui.px(left + 46))
+        widest = min(ui.px(520), end - ui.px(left + 46))
         for notice in reversed(self.notices):
             lines = [self._text(line, TEXT) for line in wrapped(notice.text, ui.font(13), widest, 6)]
             height = sum(line.get_height() for line in lines) + ui.px(16)

@@ -13,13 +13,16 @@ from sandbox.app.play.travel import Mark
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.icons import ICONS, painted_icon
-from sandbox.app.widgets.ui import Ui, set_icon
+from sandbox.app.widgets.painted import wrapped
+from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.session.session import Branch
 
 # Layout units.
 HEIGHT, BUTTON, GAP, ICON, EDGE = 44.0, 30.0, 4.0, 16.0, 10.0
-CLOCK_WIDTH = 118.0
+CLOCK_WIDTH, CLOCK_TEXT = 118.0, 12.0
+# A shorter track has no clock beside it.
+LEAST_TRACK = 80.0
 # Under what it is remembered whether the bar is wanted.
 WANTED = "timeline"
 # Buttons at the left and at the right of the track: action and picture.
@@ -69,9 +72,11 @@ class TimeBar:
         right = width - EDGE - len(RIGHT) * (BUTTON + GAP) + GAP
         for number, (action, picture) in enumerate(RIGHT):
             self._add(action, picture, right + number * (BUTTON + GAP), back)
-        right -= CLOCK_WIDTH + GAP
-        self._clock = ui.label(ui.rect(right, 0, CLOCK_WIDTH, HEIGHT), "", back, "@number")
-        place = ui.rect(x, 4, max(right - x, 40.0), HEIGHT - 8)
+        self._clock = None
+        if right - CLOCK_WIDTH - x >= LEAST_TRACK:
+            right -= CLOCK_WIDTH + GAP
+            self._clock = ui.label(ui.rect(right, 0, CLOCK_WIDTH, HEIGHT), "", back, "@number")
+        place = ui.rect(x, 4, max(right - x - GAP, 1.0), HEIGHT - 8)
         self.track = TimeTrack(ui, place, self._playback().travel, self._playback().seek, self._hold, back)
         self.show()
 
@@ -104,13 +109,15 @@ class TimeBar:
             text = f"{pointed / rate:.2f} s"
         else:
             text = f"{session.tick / rate:.1f} of {playback.length / rate:.1f} s"
-        self._clock.set_text(text)
+        if self._clock is not None:
+            font, widest = self._ui.font(CLOCK_TEXT), self._ui.px(CLOCK_WIDTH)
+            self._clock.set_text(wrapped(text, font, widest, 1)[0])
         for action, on in (("backwards", playback.clock.speed < 0.0), ("loop", travel.looping)):
             button = self.buttons[action]
             if on != button.is_selected:
                 (button.select if on else button.unselect)()
                 picture = dict(LEFT + RIGHT)[action]
-                set_icon(button, painted_icon(ICONS[picture], self._ui.px(ICON), ACCENT if on else TEXT))
+                button.show_icon(painted_icon(ICONS[picture], self._ui.px(ICON), ACCENT if on else TEXT))
 
     # Actions.
 

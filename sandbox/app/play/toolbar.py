@@ -13,7 +13,7 @@ from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.icons import ICONS, painted_icon
 from sandbox.app.widgets.painted import wrapped
-from sandbox.app.widgets.ui import Ui, set_icon
+from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
 BAR_HEIGHT = 52.0
@@ -118,7 +118,6 @@ class Toolbar:
         self._state: BarState | None = None
         width = ui.units[0]
         self.back = ui.panel(ui.rect(0, 0, width, BAR_HEIGHT))
-        self._icons: dict[tuple[str, Colour], pygame.Surface] = {}
         self._pictures = dict(entry for group in (*LEFT, RIGHT) for entry in group)
         wanted = [action for action in self._pictures if action != "keep" or of_document]
         shown = fitting(wanted, width - 2 * MARGIN)
@@ -184,14 +183,11 @@ class Toolbar:
         """Show an action's button in a colour, on or off, where it is on the bar."""
         button = self.buttons.get(action)
         if button is not None:
-            set_icon(button, self._icon(picture or self._pictures[action], colour))
+            button.show_icon(self._icon(picture or self._pictures[action], colour))
             (button.select if on else button.unselect)()
 
     def _icon(self, name: str, colour: Colour) -> pygame.Surface:
-        key = (name, colour)
-        if key not in self._icons:
-            self._icons[key] = painted_icon(ICONS[name], self._ui.px(ICON), colour)
-        return self._icons[key]
+        return painted_icon(ICONS[name], self._ui.px(ICON), colour)
 
     def _add(self, action: str, do: Callable[[], None] | None = None, tip: str = "") -> None:
         """A button of an action at the next place; do: in place of what the table of shortcuts has."""

@@ -10,7 +10,7 @@ from sandbox.app.draw.colours import ACCENT, TEXT
 from sandbox.app.draw.views.overlays import NAMES
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.icons import ICONS, painted_icon
-from sandbox.app.widgets.ui import Ui, set_icon
+from sandbox.app.widgets.ui import Ui
 
 ICON = 17.0
 GAP = 3.0
@@ -35,6 +35,6 @@ class ViewRow:
         """Mark those that are shown."""
         for name in self._shown ^ shown:
             is_on = name in shown
-            set_icon(self.buttons[name], painted_icon(ICONS[name], self._ui.px(ICON), ACCENT if is_on else TEXT))
+            self.buttons[name].show_icon(painted_icon(ICONS[name], self._ui.px(ICON), ACCENT if is_on else TEXT))
             (self.buttons[name].select if is_on else self.buttons[name].unselect)()
         self._shown = frozenset(shown)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -50,14 +51,8 @@ class Sample:
 class Bank:
     """Samples by their notes."""
 
-    def __init__(self) -> None:
-        self._samples: dict[Note, Sample] = {}
-
     def __getitem__(self, note: Note) -> Sample:
-        found = self._samples.get(note)
-        if found is None:
-            found = self._samples[note] = _sample(MAKERS[note.kind](note))
-        return found
+        return _sample(note)
 
     def make(self, note: Note) -> None:
         """Make a sample before it is wanted."""
@@ -69,7 +64,9 @@ def note(kind: str, pitch: float, stuff: str = "") -> Note:
     return Note(kind, min(max(waves.step_of(pitch), 0), STEPS - 1), stuff)
 
 
-def _sample(wave: Wave) -> Sample:
+@cache
+def _sample(note: Note) -> Sample:
+    wave = MAKERS[note.kind](note)
     mono = np.round(wave * LARGEST).astype(np.int16)
     size = int(GRAIN * RATE)
     padded = np.zeros(-(-len(wave) // size) * size)

@@ -7,9 +7,12 @@ import pygame
 from sandbox.app.play.coefficient_pad import CoefficientPad
 from sandbox.app.play.playback import Playback
 from sandbox.app.sweeps.pad_sweeps import PadSweeps, measures_of
+from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
 
 THEORY = "Theory"
+# Size of a menu's text, and what the menu has beside it [layout units].
+MENU_TEXT, MENU_EDGES = 13.0, 40.0
 
 
 class PadMaps:
@@ -17,7 +20,13 @@ class PadMaps:
 
     def __init__(self, ui: Ui, place: pygame.Rect, playback: Playback, sweeps: PadSweeps, container: Any) -> None:
         self._ui, self.sweeps = ui, sweeps
-        self._figures = {THEORY: None, **measures_of(playback.level)}
+        self._figures: dict[str, str | None] = {THEORY: None}
+        room = place.width - ui.px(MENU_EDGES)
+        for name, figure in measures_of(playback.level).items():
+            # Names of checks may be of any length; two that begin alike are told apart by their numbers.
+            (shown,) = wrapped(name, ui.font(MENU_TEXT), room, 1)
+            number = len(self._figures)
+            self._figures[shown if shown not in self._figures else f"{number} {shown}"] = figure
         self.menu = ui.menu(place, list(self._figures), self._chosen, self._choose, container)
 
     @property

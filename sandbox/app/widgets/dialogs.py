@@ -6,6 +6,7 @@ from typing import Any
 
 from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.edit.side.rows import MENU_ROWS, Row, RowList
+from sandbox.app.edit.side.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.ui import Again, Ui
 
@@ -16,20 +17,23 @@ LINE_HEIGHT = 21.0
 MOST_LINES = 14
 # Characters of a fault that fit on a line of the box.
 LINE_CHARACTERS = 74
-# Height of a row of a list.
-ROW_HEIGHT = 29.0
+# Height of a row of a list, and of a choice; room around buttons for the ring of the keyboard.
+ROW_HEIGHT, CHOICE_ROW, RING = 29.0, 42.0, 4.0
+# The text of buttons, what they have around it, and what is between columns of them.
+BUTTON_TEXT, BUTTON_ROOM, COLUMN_GAP = 13.0, 24.0, 10.0
 
 # A button: its label, and what it does.
 Choice = tuple[str, Callable[[], object]]
 
 
 def _box(
-    ui: Ui, title: str, height: float, close: Callable[[], None], again: Again, is_question: bool = False
-) -> tuple[Any, Any, float]:
+    ui: Ui, title: str, height: float, close: Callable[[], None], again: Again, is_question: bool = False,
+    widest: float = WIDTH, *, is_page: bool = False,
+) -> tuple[Any, Any, float]:  # fmt: skip
     """A modal box with a title in the middle: the sheet, the box and its width in layout units."""
     width, tall = ui.units
-    box_width = min(WIDTH, width - 40)
-    sheet = ui.open_sheet(close, again=again, is_question=is_question)
+    box_width = min(widest, width - 40)
+    sheet = ui.open_sheet(close, again=again, is_question=is_question, is_page=is_page)
     box = ui.panel(ui.rect((width - box_width) / 2, max((tall - height) / 2, 10), box_width, height), sheet, "@dialog")
     ui.label(ui.rect(MARGIN, MARGIN - 6, box_width - 2 * MARGIN, 28), title, box, "@title")
     return sheet, box, box_width
@@ -122,9 +126,13 @@ def choose(
 
     is_question: it stays until it is answered, also where another screen comes.
     """
+    columns, widest = _columns_that_fit(ui, [label for label, _ in choices], columns)
     rows = -(-len(choices) // columns)
     lines = 1 + len(text) // LINE_CHARACTERS if text else 0
-    height = MARGIN * 2 + 38 + lines * LINE_HEIGHT + rows * 42 + 44
+    around = MARGIN * 2 + 38 + lines * LINE_HEIGHT + 44
+    # What does not fit is scrolled to.
+    tall = min(rows * CHOICE_ROW, ui.units[1] - 20 - around)
+    height = around + tall
 
     def close() -> None:
         ui.close_sheet(sheet)
@@ -136,17 +144,28 @@ def choose(
     def again(other_ui: Ui) -> None:
         choose(other_ui, title, text, choices, columns, is_question=is_question)
 
-    sheet, box, width = _box(ui, title, height, close, again, is_question)
+    scrolls = tall < rows * CHOICE_ROW
+    sheet, box, width = _box(ui, title, height, close, again, is_question, widest, is_page=scrolls)
     inside = width - 2 * MARGIN
     TextBlock(ui, ui.rect(MARGIN, MARGIN + 32, inside, lines * LINE_HEIGHT + 4), text, box, 13.0, TEXT)
-    top, buttons = MARGIN + 40 + lines * LINE_HEIGHT, []
-    wide = (inside - 10 * (columns - 1)) / columns
+    place = ui.rect(MARGIN - RING, MARGIN + 40 + lines * LINE_HEIGHT - RING, inside + 2 * RING + BAR_WIDTH, tall)
+    area, buttons = ScrollArea(ui, place, box), []
+    wide = (inside - COLUMN_GAP * (columns - 1)) / columns
     for index, (label, action) in enumerate(choices):
-        place = ui.rect(MARGIN + index % columns * (wide + 10), top + index // columns * 42, wide, 34)
+        x, y = RING + index % columns * (wide + COLUMN_GAP), RING + index // columns * CHOICE_ROW
         style = "@primary" if index == 0 and columns == 1 else ""
-        buttons.append(ui.button(place, label, partial(do, action), box, style=style))
+        place = ui.rect(x, y, wide, CHOICE_ROW - 8)
+        buttons.append(ui.button(place, label, partial(do, action), area.content, style=style))
+    area.set_height(ui.px(rows * CHOICE_ROW))
     ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="@quiet")
     ui.focus_on(buttons[0])
+
+
+def _columns_that_fit(ui: Ui, labels: Sequence[str], columns: int) -> tuple[int, float]:
+    """Columns of buttons with these labels, as many as are asked for or one, and the width of a box for them."""
+    longest = max(ui.font(BUTTON_TEXT).size(label)[0] for label in labels) / ui.scale + BUTTON_ROOM
+    needed = columns * longest + COLUMN_GAP * (columns - 1) + 2 * MARGIN
+    return (columns if needed <= ui.units[0] - 40 else 1), max(WIDTH, needed if columns > 1 else 0.0)
 
 
 def choose_row(ui: Ui, title: str, rows: Sequence[Row], take: Callable[[int], object]) -> None:

@@ -3,7 +3,9 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pygame_gui.elements import UIButton, UITextEntryLine
+from pygame_gui.elements import UITextEntryLine
+
+from sandbox.app.widgets.button import Button
 
 
 @dataclass
@@ -54,7 +56,7 @@ class Field:
 class Choice:
     """A row of buttons of which one is chosen."""
 
-    buttons: dict[str, UIButton]
+    buttons: dict[str, Button]
     chosen: str = ""
 
     def show(self, chosen: str) -> None:

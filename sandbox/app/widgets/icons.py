@@ -1,12 +1,16 @@
 """Icons, drawn by program: sharp at every scale."""
 
 import math
+from functools import lru_cache
 
 import pygame
 
 from sandbox.app.draw.colours import Colour
 from sandbox.app.widgets.pen import Pen
 from sandbox.editor.tools.icons import Icon, IconPen, draw_pin, draw_spring
+
+# Icons that are kept, in their sizes and colours; most have 2 kB.
+MOST_ICONS = 500
 
 
 def _drag(pen: IconPen) -> None:
@@ -248,7 +252,12 @@ ICONS: dict[str, Icon] = {
 
 
 def painted_icon(icon: Icon, size: int, colour: Colour) -> pygame.Surface:
-    """An icon of size [pixels] with straight alpha."""
+    """An icon of size [pixels] with straight alpha; who asks for the same one again gets the same picture."""
+    return _painted(icon, size, tuple(colour))
+
+
+@lru_cache(MOST_ICONS)
+def _painted(icon: Icon, size: int, colour: tuple[int, ...]) -> pygame.Surface:
     pen = Pen(size, colour)
     icon(pen)
     # Scaling mixes in the colour of transparent pixels: only their alpha may count.

@@ -1,18 +1,17 @@
 """Theme: the look of the widgets in assets/theme.json, at a scale."""
 
 import json
-from collections import OrderedDict
 from typing import Any
 
 import i18n
 import pygame
 import pygame_gui
 from pygame_gui.core import gui_font_pygame
-from pygame_gui.core.surface_cache import SurfaceCache
 from pygame_gui.core.ui_appearance_theme import UIAppearanceTheme
 
 from sandbox.app.draw.colours import shown_theme
 from sandbox.app.widgets.fonts import FONT, SafeFont, font_file
+from sandbox.app.widgets.shapes import Shapes
 from sandbox.level.format.shipped import shipped_folder
 
 # Theme entries that are pixels at scale 1.
@@ -28,8 +27,6 @@ gui_font_pygame.Font = SafeFont  # type: ignore[assignment, misc]
 _THEMES: dict[tuple[float, str], UIAppearanceTheme] = {}
 # A tip beside a panel is this far from it [pixels].
 TIP_GAP = 8
-# Pictures of buttons and the like that are kept; most have 10 kB, none has more than 160.
-MOST_SHAPES = 500
 
 
 def _read(name: str) -> dict[str, Any]:
@@ -103,38 +100,13 @@ class Manager(pygame_gui.UIManager):
         return theme
 
 
-class _Shapes(SurfaceCache):
-    # The library's cache takes 4 MB at once and copies each picture into them, and counts users of a theme that are
-    # taken away: those of a window that is let go of as a whole are not.
-    def __init__(self) -> None:
-        super().__init__()
-        self.cache_surfaces.clear()
-        self._pictures: OrderedDict[str, pygame.Surface] = OrderedDict()
-
-    def add_surface_to_cache(self, surface: pygame.Surface, string_id: str) -> None:
-        self._pictures[string_id] = surface
-        if len(self._pictures) > MOST_SHAPES:
-            self._pictures.popitem(last=False)
-
-    def find_surface_in_cache(self, lookup_id: str) -> pygame.Surface | None:
-        if lookup_id in self._pictures:
-            self._pictures.move_to_end(lookup_id)
-        return self._pictures.get(lookup_id)
-
-    def remove_user_from_cache_item(self, string_id: str) -> None:
-        pass
-
-    def update(self) -> None:
-        pass
-
-
 class _Theme(UIAppearanceTheme):
     # The library keeps these lists under keys that take it 1 ms to join, of widgets that lie five deep: most of the
     # time that a page of the panel takes.
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
         self._combined: dict[tuple[tuple[str | None, ...] | None, ...], list[str]] = {}
-        self._shape_cache = _Shapes()
+        self._shape_cache = Shapes()
 
     def build_all_combined_ids(self, *ids: Any) -> list[str]:
         key = tuple(None if each is None else tuple(each) for each in ids)

@@ -1,4 +1,4 @@
-"""Ui: the widgets of the app. It, theme.py, fields.py and painted.py know pygame_gui; others get callbacks."""
+"""Ui: the widgets of the app. Of its files, those of widgets alone know pygame_gui; others get callbacks."""
 
 import html
 import warnings
@@ -14,6 +14,7 @@ from pygame_gui.core import ObjectID, UIContainer, UIElement
 from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITextEntryLine
 
 from sandbox.app.draw.colours import ACCENT
+from sandbox.app.widgets.button import Button
 from sandbox.app.widgets.fields import Choice, Field
 from sandbox.app.widgets.layout import WindowLayout
 from sandbox.app.widgets.painted import ENTER_KEYS, Painted
@@ -90,13 +91,12 @@ class Ui(WindowLayout):
         style: str = "",
         icon: pygame.Surface | None = None,
         tip: str = "",
-    ) -> UIButton:
+    ) -> Button:
         """A button with text or an icon."""
-        button = UIButton(
-            rect, text, self.manager, container=container, object_id=_style(style), tool_tip_text=_escaped(tip) or None
-        )
-        if icon is not None:
-            set_icon(button, icon)
+        button = Button(
+            rect, text, self.manager, container=container, object_id=_style(style), icon=icon,
+            tool_tip_text=_escaped(tip) or None,
+        )  # fmt: skip
         self._actions[button] = action
         self._add_focusable(button)
         return button
@@ -417,16 +417,6 @@ class Ui(WindowLayout):
 
 
 _NO_MARGINS = {"left": 0, "right": 0, "top": 0, "bottom": 0}
-
-
-def set_icon(button: UIButton, icon: pygame.Surface) -> None:
-    """Show a picture on a button."""
-    images = [icon.premul_alpha()]
-    button.normal_images = button.hovered_images = button.selected_images = button.disabled_images = images
-    positions = [(0.5, 0.5)]
-    button.normal_image_positions = button.hovered_image_positions = positions
-    button.selected_image_positions = button.disabled_image_positions = positions
-    button.rebuild()
 
 
 def _style(style: str) -> ObjectID | None:

@@ -1,7 +1,7 @@
 """Copies of what is selected: as text, pasted, duplicated, in a row and in a circle.
 
 A fragment is a level of its own: selected bodies, loose particles and terrain, loose springs and welds between them,
-and the materials that they are made of.
+the materials that they are made of, and the tick rate that these are for.
 """
 
 from collections.abc import Iterable
@@ -11,12 +11,13 @@ from sandbox.editor.edits.collision_groups import without_lost_groups
 from sandbox.editor.edits.grouping import taken_groups
 from sandbox.editor.edits.moving import move, rotate
 from sandbox.editor.edits.names import free_ids, owner_of, renamed, rewired, taken_ids
+from sandbox.editor.edits.pace import set_rate_in_pace
 from sandbox.editor.items import Item, Selection, chosen_bodies, chosen_particles, chosen_terrain, items_of, keys
 from sandbox.editor.scene import make_scene
 from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.limits import DEFAULT_MATERIAL, PARTICLE_LIMIT, SPRING_LIMIT
-from sandbox.level.format.model import Level, Material, NissenMaterial, ParticleDef, SpringDef
+from sandbox.level.format.model import Level, Material, NissenMaterial, ParticleDef, Settings, SpringDef
 from sandbox.level.format.parse import parse_level
 from sandbox.level.format.quantities import Point, replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
@@ -77,6 +78,7 @@ def fragment(document: Document) -> Level:
         format=level.format,
         version=level.version,
         name=level.name,
+        settings=Settings(tick_rate=level.settings.tick_rate),
         materials={name: material for name, material in level.materials.items() if name in used},
         terrain=tuple(terrain),
         bodies=tuple(bodies),
@@ -126,7 +128,10 @@ def _arrayed(document: Document, copies: list[Level]) -> Document:
 
 
 def inserted(level: Level, copies: Iterable[Level]) -> tuple[Level, Selection]:
-    """A level with the contents of others, sound by themselves, and which items these became. Raises EditError."""
+    """A level with the contents of others, sound by themselves, and which items these became. Raises EditError.
+
+    What was made for another tick rate goes on as fast per second as it did there.
+    """
     ids, groups = taken_ids(level), taken_groups(level)
     bodies, particles, springs, welds = (
         list(part) for part in (level.bodies, level.particles, level.springs, level.welds)
@@ -135,6 +140,7 @@ def inserted(level: Level, copies: Iterable[Level]) -> tuple[Level, Selection]:
     materials = dict(level.materials)
     selection: set[Item] = set()
     for copy in copies:
+        copy = set_rate_in_pace(Document(copy), level.settings.tick_rate).level
         copy = _renamed(copy, ids, groups, materials)
         selection |= {Item("body", body.id) for body in copy.bodies}
         selection |= {Item("particle", particle.id) for particle in copy.particles}

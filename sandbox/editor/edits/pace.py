@@ -23,10 +23,10 @@ def set_rate_in_pace(document: Document, tick_rate: int) -> Document:
     swings too fast for the new rate.
     """
     old = document.level
+    if tick_rate == old.settings.tick_rate:
+        return document
     document = set_setting(document, "tick_rate", tick_rate)
     times = old.settings.tick_rate / tick_rate
-    if times == 1.0:
-        return document
     users = {part.__dict__.get("material", DEFAULT_MATERIAL) for part in (*old.bodies, *old.springs)}
     materials: dict[str, Any] = dict(old.materials)
     if DEFAULT_MATERIAL in users:

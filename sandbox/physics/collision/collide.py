@@ -24,6 +24,7 @@ from sandbox.physics.collision.broad_phase import (
 )
 from sandbox.physics.collision.contacts import bound_solids, carry_over, fill_boxes, find_contacts, find_terrain
 from sandbox.physics.collision.inversion import Inversions, Triangles, find_inverted, new_inversions, triangles_of
+from sandbox.physics.collision.meeting import Meetings, new_meetings
 from sandbox.physics.collision.outline import Outline, colliders_of, outline_of
 from sandbox.physics.collision.overlaps import (
     CROSSINGS,
@@ -113,6 +114,7 @@ class CollisionRoom(NamedTuple):
     islands: Islands
     work: Work
     inversions: Inversions
+    meetings: Meetings
     overlaps: Overlaps
     moved: Flags
     counts: Slots
@@ -147,7 +149,9 @@ def _bound_terrain(items: Any) -> None:
 def _find_overlaps(outline: Outline, colliders: Colliders, room: CollisionRoom, larges: int) -> bool:
     # Which bodies part in this step; whether there is room for them.
     overlaps = room.overlaps
-    room.counts[CROSSED] = find_crossings(room.boxes, room.grid, larges, colliders, outline, overlaps)
+    room.counts[CROSSED] = find_crossings(
+        room.boxes, room.grid, larges, colliders, outline, room.meetings, overlaps
+    )  # fmt: skip
     if overlaps.counts[CROSSINGS] > overlaps.edge.shape[0]:
         return False
     room.counts[OVERLAPPING] = pair_overlaps(
@@ -418,8 +422,9 @@ def _make_room(outline: Outline, triangles: Triangles, wanted: Slots) -> Collisi
         new_boxes(particles, objects), new_grid(objects, entries), new_pairs(particles, pairs),
         new_pairs(particles, terrain_pairs), np.zeros((len(outline.solid), 5)), room_near(), room_for(contacts),
         room_for(contacts), room_to_keep(contacts), new_islands(particles, contacts), new_work(particles, contacts),
-        new_inversions(triangles), new_overlaps(len(outline.solid_of), crossings, overlaps),
-        np.zeros(particles, np.bool_), np.zeros(DONE + 1, np.int64),
+        new_inversions(triangles), new_meetings(len(outline.solid_of)),
+        new_overlaps(len(outline.solid_of), crossings, overlaps), np.zeros(particles, np.bool_),
+        np.zeros(DONE + 1, np.int64),
     )  # fmt: skip
 
 

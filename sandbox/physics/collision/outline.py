@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sandbox.physics.collision.close_edges import CloseEdges, close_edges
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_RIGHT, TERRAIN_GROUP
 from sandbox.physics.collision.types import Colliders, Flags
 from sandbox.physics.state import Slots
@@ -21,8 +22,8 @@ class Outline(NamedTuple):
     that a spring or a constraint holds. solid (k, 2): first edge and one past the last of each owner's edges where any
     is solid, terrain's last. dynamic (2,): edges of bodies, and how many of those in solid are bodies'. Shapes are the
     owners of edges of bodies, in the order of their edges: shape, by vertex, -1: none; solid_of = by shape, the row of
-    solid, -1: lines alone; particles of shape s: member[member_start[s]:member_start[s + 1]]. spring_end: one particle
-    of each spring.
+    solid, -1: lines alone; particles of shape s: member[member_start[s]:member_start[s + 1]]. close: edges
+    of lines alone that were made close to each other. spring_end: one particle of each spring.
     """
 
     edge_a: Slots
@@ -42,6 +43,7 @@ class Outline(NamedTuple):
     solid_of: Slots
     member_start: Slots
     member: Slots
+    close: CloseEdges
     spring_end: Slots
 
 
@@ -68,6 +70,7 @@ def _make_outline(world: World) -> Outline:
     held = np.diff(near_start) > 0
     held[world.corner_particle] = True
     solid = _solid(owner[edge_a] if len(edge_a) else edge_a, side)
+    shape, solid_of, member_start, member = _shapes(world, owner, a, solid)
     return Outline(
         edge_a,
         edge_b,
@@ -81,7 +84,11 @@ def _make_outline(world: World) -> Outline:
         _shielded(world, chosen),
         held,
         np.array([len(chosen), np.count_nonzero(solid[:, 0] < len(chosen))]),
-        *_shapes(world, owner, a, solid),
+        shape,
+        solid_of,
+        member_start,
+        member,
+        close_edges(world.origin, a, b, shape[a], solid_of < 0),
         world.particle_a.astype(np.int64),
     )
 

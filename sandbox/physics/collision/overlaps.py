@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.broad_phase import Boxes, Grid, bucket_of, cell_number, overlap
+from sandbox.physics.collision.meeting import Meetings, cross, find_meetings, may_cross
 from sandbox.physics.collision.narrow_phase import DISC, TERRAIN, closest, may_collide, winds
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, Flags, KeptContacts
@@ -20,9 +21,6 @@ from sandbox.physics.state import Floats, Slots
 # Outlines of solid bodies that overlap deeper than this many radii of a particle part, until nothing crosses. Less
 # takes contacts from what is only pressed together, more leaves what has been pushed through.
 DEEP = 1.0
-# By this share of a radius two outlines are taken apart before they are compared, so that ones that lie exactly on each
-# other cross.
-APART_X, APART_Y = 1e-3, 0.6e-3
 # Places in `counts`: crossings, pairs, and those of them that part.
 CROSSINGS, OVERLAPS, PARTED = range(3)
 
@@ -55,40 +53,6 @@ def new_overlaps(shapes: int, crossings: int, pairs: int) -> Overlaps:
     )  # fmt: skip
 
 
-@inlined_kernel
-def _side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
-    # Signed area of the triangle a, b, p, doubled: above 0 where p is on the left of a b.
-    return (bx - ax) * (py - ay) - (by - ay) * (px - ax)
-
-
-@inner_kernel
-def _cross(e: int, f: int, apart: float, position: Floats, colliders: Colliders) -> tuple[float, float]:
-    # Where edge e crosses edge f, which is looked at a little apart: the shares along both; -1: nowhere.
-    a = colliders.edge_a[e]
-    b = colliders.edge_b[e]
-    c = colliders.edge_a[f]
-    d = colliders.edge_b[f]
-    ax = position[a, 0]
-    ay = position[a, 1]
-    bx = position[b, 0]
-    by = position[b, 1]
-    cx = position[c, 0] + APART_X * apart
-    cy = position[c, 1] + APART_Y * apart
-    dx = position[d, 0] + APART_X * apart
-    dy = position[d, 1] + APART_Y * apart
-    if max(ax, bx) < min(cx, dx) or max(cx, dx) < min(ax, bx):
-        return -1.0, -1.0
-    if max(ay, by) < min(cy, dy) or max(cy, dy) < min(ay, by):
-        return -1.0, -1.0
-    of_c = _side(ax, ay, bx, by, cx, cy)
-    of_d = _side(ax, ay, bx, by, dx, dy)
-    of_a = _side(cx, cy, dx, dy, ax, ay)
-    of_b = _side(cx, cy, dx, dy, bx, by)
-    if (of_c > 0.0) == (of_d > 0.0) or (of_a > 0.0) == (of_b > 0.0):
-        return -1.0, -1.0
-    return of_a / (of_a - of_b), of_c / (of_c - of_d)
-
-
 @inner_kernel
 def _note_crossing(e: int, f: int, colliders: Colliders, outline: Outline, found: Overlaps, count: int) -> int:
     # Note where edge e, of the lower shape, crosses edge f, if it may not; the number of crossings then.
@@ -107,12 +71,12 @@ def _note_crossing(e: int, f: int, colliders: Colliders, outline: Outline, found
         apart = colliders.radius[c]
     elif a == c or a == colliders.edge_b[f] or colliders.edge_b[e] == c or colliders.edge_b[e] == colliders.edge_b[f]:
         return count
-    along_e, along_f = _cross(e, f, apart, colliders.position, colliders)
+    along_e, along_f = cross(e, f, apart, colliders.position, colliders)
     if along_e < 0.0:
         return count
     if s == t and not solid_s:
         # A mesh may be made of lines that cross.
-        made_so, _ = _cross(e, f, apart, colliders.origin, colliders)
+        made_so, _ = cross(e, f, apart, colliders.origin, colliders)
         if made_so >= 0.0:
             return count
     if count < found.edge.shape[0]:
@@ -137,7 +101,7 @@ def _compare(
 
 @inner_kernel
 def find_crossings(
-    boxes: Boxes, grid: Grid, larges: int, colliders: Colliders, outline: Outline, found: Overlaps
+    boxes: Boxes, grid: Grid, larges: int, colliders: Colliders, outline: Outline, meetings: Meetings, found: Overlaps
 ) -> int:
     """Where outlines cross others or themselves; the number of crossings, counted on where there is no room."""
     count = 0
@@ -146,10 +110,10 @@ def find_crossings(
     cells = grid.cells
     particles = boxes.filter.shape[0]
     buckets = grid.start.shape[0] - 1
-    # Of a world of lines alone, a rope bridge and a car, this would be a third of a tick.
-    for e in range(outline.dynamic[0] if outline.dynamic[1] > 0 else 0):
+    find_meetings(colliders, outline, meetings)
+    for e in range(outline.dynamic[0]):
         k = particles + e
-        if not boxes.is_target[k]:
+        if not (boxes.is_target[k] and may_cross(e, colliders, meetings)):
             continue
         left = cells[k, 0]
         bottom = cells[k, 1]
@@ -350,7 +314,7 @@ def pair_overlaps(
     Contacts between those that part are left out of the step: see `may_collide`. kept: the contacts of the last step.
     """
     found.counts[OVERLAPS] = 0
-    if outline.dynamic[1] == 0:
+    if outline.dynamic[0] == 0:
         return 0
     for p in range(colliders.parting.shape[0]):
         colliders.parting[p] = False

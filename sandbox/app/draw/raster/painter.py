@@ -4,7 +4,6 @@ import functools
 import gc
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 import pygame
@@ -40,65 +39,61 @@ class MarkList:
     """Collects marks of a layer, in the order in which they are drawn."""
 
     def __init__(self) -> None:
-        self._rows: list[tuple[NDArray[Any], ...]] = []
+        # Ends of marks, and of each further column as many values, or one for all.
+        self._rows: list[tuple[Floats, ArrayLike, ArrayLike, ArrayLike, ArrayLike, ArrayLike, ArrayLike]] = []
 
-    def _add(
+    def rows(
         self, ends: Floats, half: ArrayLike, colour: ArrayLike, alpha: ArrayLike, kind: ArrayLike,
         extra: ArrayLike = 0, along: ArrayLike = 0.0,
     ) -> None:  # fmt: skip
-        count = len(ends)
-        if count:
-            columns = tuple(np.broadcast_to(value, count) for value in (half, colour, alpha, kind, extra))
-            self._rows.append((ends, *columns, np.broadcast_to(along, (count, 2))))
+        """Marks of any kind, column by column as MarkArrays has them, or one value for all."""
+        if len(ends):
+            self._rows.append((ends, half, colour, alpha, kind, extra, along))
 
     def strokes(self, ends: Floats, half: ArrayLike, colour: ArrayLike, alpha: ArrayLike = 1.0) -> None:
         """Lines (m, 4) [pixels] of a half width (m,), 0xRRGGBB (m,), 0..1 (m,)."""
-        self._add(ends, half, colour, alpha, STROKE)
+        self.rows(ends, half, colour, alpha, STROKE)
 
     def hairs(self, ends: Floats, colour: ArrayLike) -> None:
         """Lines (m, 4) [pixels] a pixel wide, with steps."""
-        self._add(ends, 0.5, colour, 1.0, HAIR)
+        self.rows(ends, 0.5, colour, 1.0, HAIR)
 
     def strips(
         self, ends: Floats, half: ArrayLike, tile: ArrayLike, along: ArrayLike, tint: ArrayLike = 0, by: ArrayLike = 0.0
     ) -> None:
         """Lines with a tile (m,), periods of it at their ends (m, 2), and a colour (m,) laid over it by 0..1 (m,)."""
-        self._add(ends, half, tint, by, STRIP, tile, along)
+        self.rows(ends, half, tint, by, STRIP, tile, along)
 
     def discs(
         self, at: Floats, radius: ArrayLike, colour: ArrayLike, alpha: ArrayLike = 1.0, glow: bool = False
     ) -> None:
         """Discs at (m, 2) [pixels]; glow: they fade to nothing at their rim."""
-        self._add(np.concatenate([at, at], axis=1), radius, colour, alpha, GLOW if glow else DISC)
+        self.rows(np.concatenate([at, at], axis=1), radius, colour, alpha, GLOW if glow else DISC)
 
     def balls(
         self, at: Floats, radius: ArrayLike, turn: Floats, colour: ArrayLike, mark: ArrayLike, style: ArrayLike
     ) -> None:
         """Lit balls; turn (m, 2): cosine and sine, as seen; mark: the colour of what turns; style: a kind of mark."""
-        self._add(np.concatenate([at, turn], axis=1), radius, colour, 1.0, style, mark)
+        self.rows(np.concatenate([at, turn], axis=1), radius, colour, 1.0, style, mark)
 
     def mixed(self, ends: Floats, half: ArrayLike, colour: ArrayLike, alpha: ArrayLike, kind: ArrayLike) -> None:
         """Strokes, discs and glows in any order."""
-        self._add(ends, half, colour, alpha, kind)
-
-    def rows(
-        self, ends: Floats, half: Floats, colour: Slots, alpha: Floats, kind: Slots, extra: Slots, along: Floats
-    ) -> None:
-        """Marks of any kind, column by column as MarkArrays has them."""
-        self._rows.append((ends, half, colour, alpha, kind, extra, along))
+        self.rows(ends, half, colour, alpha, kind)
 
     def arrays(self) -> MarkArrays | None:
         """All of them, None where there are none."""
         if not self._rows:
             return None
-        ends, half, colour, alpha, kind, extra, along = (
-            np.concatenate(column) for column in zip(*self._rows, strict=True)
+        count, last = sum(len(row[0]) for row in self._rows), 0
+        floats, numbers = np.empty((2, count)), np.empty((3, count), dtype=np.int64)
+        made = MarkArrays(
+            np.empty((count, 4)), floats[0], numbers[0], floats[1], np.empty((count, 2)), numbers[1], numbers[2]
         )
-        return MarkArrays(
-            np.ascontiguousarray(ends, dtype=np.float64), half.astype(np.float64), colour.astype(np.int64),
-            alpha.astype(np.float64), np.ascontiguousarray(along, dtype=np.float64), extra.astype(np.int64),
-            kind.astype(np.int64),
-        )  # fmt: skip
+        for ends, half, colour, alpha, kind, extra, along in self._rows:
+            own, last = slice(last, last + len(ends)), last + len(ends)
+            made.ends[own], made.half[own], made.colour[own], made.alpha[own] = ends, half, colour, alpha
+            made.along[own], made.extra[own], made.kind[own] = along, extra, kind
+        return made
 
 
 @dataclass

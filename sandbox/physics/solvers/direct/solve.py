@@ -71,6 +71,12 @@ def _lent(world: World) -> LentArrays:
 spring_constant = implicit_spring_constant
 
 
+def expect(world: World) -> None:
+    """Order and lay out the system that this solver makes of a world."""
+    layout_of(world)
+    world.derived(_lent)
+
+
 def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None:
     """Bring the velocities to the end of a substep; slow_velocity, energy_bank and tension go with them.
 

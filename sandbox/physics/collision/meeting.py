@@ -1,0 +1,193 @@
+"""Where lines may cross at all: what of a shape is near others, and which shapes cannot cross themselves.
+
+A truss or a wheel that has kept its form crosses itself nowhere but where it was made so, and a car on a bridge meets
+it under its wheels alone. So most edges need not be compared with any other to know where lines cross (overlaps.py).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from sandbox.physics.collision.outline import Outline
+from sandbox.physics.collision.types import Colliders, Flags
+from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.state import Floats, Slots
+
+# By this share of a radius two outlines are taken apart before they are compared, so that ones that lie exactly on each
+# other cross.
+APART_X, APART_Y = 1e-3, 0.6e-3
+# Of a distance in a form what counts: rounding must not make two edges that touch look apart.
+SURE = 0.99
+
+
+class Meetings(NamedTuple):
+    """Of shapes in a step: box [m] (s, 4) = left, bottom, right, top, radii included; meeting (s, 4): around all that
+    the boxes of others share with it, left above right: nothing. group, collides (s,): those of all its particles.
+    intact (s,): it crosses itself nowhere but where it was made so.
+    """
+
+    box: Floats
+    meeting: Floats
+    group: Slots
+    collides: Slots
+    intact: Flags
+
+
+def new_meetings(shapes: int) -> Meetings:
+    """Meetings to be filled in."""
+    box, meeting = np.zeros((2, shapes, 4))
+    group, collides = np.zeros((2, shapes), np.int64)
+    return Meetings(box, meeting, group, collides, np.zeros(shapes, np.bool_))
+
+
+@inner_kernel
+def _bound(s: int, colliders: Colliders, outline: Outline, meetings: Meetings) -> None:
+    box = meetings.box
+    group = 0
+    collides = 0
+    box[s, 0] = box[s, 1] = math.inf
+    box[s, 2] = box[s, 3] = -math.inf
+    for i in range(outline.member_start[s], outline.member_start[s + 1]):
+        p = outline.member[i]
+        group |= colliders.group[p]
+        collides |= colliders.collides[p]
+        for axis in range(2):
+            box[s, axis] = min(box[s, axis], colliders.position[p, axis] - colliders.radius[p])
+            box[s, 2 + axis] = max(box[s, 2 + axis], colliders.position[p, axis] + colliders.radius[p])
+    meetings.group[s] = group
+    meetings.collides[s] = collides
+
+
+@inlined_kernel
+def _side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
+    # Signed area of the triangle a, b, p, doubled: above 0 where p is on the left of a b.
+    return (bx - ax) * (py - ay) - (by - ay) * (px - ax)
+
+
+@inner_kernel
+def cross(e: int, f: int, apart: float, position: Floats, colliders: Colliders) -> tuple[float, float]:
+    """Where edge e crosses edge f, which is looked at a little apart: the shares along both; -1: nowhere."""
+    a = colliders.edge_a[e]
+    b = colliders.edge_b[e]
+    c = colliders.edge_a[f]
+    d = colliders.edge_b[f]
+    ax = position[a, 0]
+    ay = position[a, 1]
+    bx = position[b, 0]
+    by = position[b, 1]
+    cx = position[c, 0] + APART_X * apart
+    cy = position[c, 1] + APART_Y * apart
+    dx = position[d, 0] + APART_X * apart
+    dy = position[d, 1] + APART_Y * apart
+    if max(ax, bx) < min(cx, dx) or max(cx, dx) < min(ax, bx):
+        return -1.0, -1.0
+    if max(ay, by) < min(cy, dy) or max(cy, dy) < min(ay, by):
+        return -1.0, -1.0
+    of_c = _side(ax, ay, bx, by, cx, cy)
+    of_d = _side(ax, ay, bx, by, dx, dy)
+    of_a = _side(cx, cy, dx, dy, ax, ay)
+    of_b = _side(cx, cy, dx, dy, bx, by)
+    if (of_c > 0.0) == (of_d > 0.0) or (of_a > 0.0) == (of_b > 0.0):
+        return -1.0, -1.0
+    return of_a / (of_a - of_b), of_c / (of_c - of_d)
+
+
+@inner_kernel
+def _bent(s: int, colliders: Colliders, outline: Outline) -> float:
+    # The square of how far [m] a particle is at most from where its shape's form, moved and turned as a whole, has it.
+    position, origin = colliders.position, colliders.origin
+    first, last = outline.member_start[s], outline.member_start[s + 1]
+    if first == last:
+        return math.inf
+    x = 0.0
+    y = 0.0
+    form_x = 0.0
+    form_y = 0.0
+    for i in range(first, last):
+        p = outline.member[i]
+        x += position[p, 0]
+        y += position[p, 1]
+        form_x += origin[p, 0]
+        form_y += origin[p, 1]
+    x /= last - first
+    y /= last - first
+    form_x /= last - first
+    form_y /= last - first
+    along = 0.0
+    across = 0.0
+    for i in range(first, last):
+        p = outline.member[i]
+        fx, fy = origin[p, 0] - form_x, origin[p, 1] - form_y
+        dx, dy = position[p, 0] - x, position[p, 1] - y
+        along += fx * dx + fy * dy
+        across += fx * dy - fy * dx
+    size = math.sqrt(along * along + across * across)
+    if not size > 0.0:
+        return math.inf
+    cosine = along / size
+    sine = across / size
+    farthest = 0.0
+    for i in range(first, last):
+        p = outline.member[i]
+        fx, fy = origin[p, 0] - form_x, origin[p, 1] - form_y
+        dx = position[p, 0] - x - (cosine * fx - sine * fy)
+        dy = position[p, 1] - y - (sine * fx + cosine * fy)
+        farthest = max(farthest, dx * dx + dy * dy)
+    return farthest
+
+
+@inner_kernel
+def _is_intact(s: int, colliders: Colliders, outline: Outline) -> bool:
+    # Two edges have come together by no more than both are bent: only those that were made that close are looked at.
+    close = outline.close
+    if not close.beyond[s] > 0.0:
+        return False
+    near = 4.0 * _bent(s, colliders, outline) / SURE
+    if not near < close.beyond[s] * close.beyond[s]:
+        return False
+    for k in range(close.start[s], close.start[s + 1]):
+        if close.distance[k] * close.distance[k] > near:
+            break
+        along, _ = cross(close.edge[k, 0], close.edge[k, 1], 0.0, colliders.position, colliders)
+        if along >= 0.0:
+            return False
+    return True
+
+
+@inner_kernel
+def find_meetings(colliders: Colliders, outline: Outline, meetings: Meetings) -> None:
+    """Look where shapes are, and which of them have kept their form."""
+    shapes = outline.solid_of.shape[0]
+    box, meeting = meetings.box, meetings.meeting
+    for s in range(shapes):
+        _bound(s, colliders, outline, meetings)
+        meetings.intact[s] = _is_intact(s, colliders, outline)
+    for s in range(shapes):
+        meeting[s, 0] = meeting[s, 1] = math.inf
+        meeting[s, 2] = meeting[s, 3] = -math.inf
+        for t in range(shapes if meetings.intact[s] else 0):
+            if t == s or not (meetings.collides[s] & meetings.group[t] and meetings.collides[t] & meetings.group[s]):
+                continue
+            left, bottom = max(box[s, 0], box[t, 0]), max(box[s, 1], box[t, 1])
+            right, top = min(box[s, 2], box[t, 2]), min(box[s, 3], box[t, 3])
+            if left <= right and bottom <= top:
+                meeting[s, 0], meeting[s, 1] = min(meeting[s, 0], left), min(meeting[s, 1], bottom)
+                meeting[s, 2], meeting[s, 3] = max(meeting[s, 2], right), max(meeting[s, 3], top)
+
+
+@inner_kernel
+def may_cross(e: int, colliders: Colliders, meetings: Meetings) -> bool:
+    """Whether an edge of a body may cross any other edge that it was not made to cross."""
+    a = colliders.edge_a[e]
+    b = colliders.edge_b[e]
+    s = colliders.shape[a]
+    if not meetings.intact[s]:
+        return True
+    meeting = meetings.meeting
+    reach = max(colliders.radius[a], colliders.radius[b])
+    for axis in range(2):
+        x, y = colliders.position[a, axis], colliders.position[b, axis]
+        if max(x, y) + reach < meeting[s, axis] or min(x, y) - reach > meeting[s, 2 + axis]:
+            return False
+    return True
