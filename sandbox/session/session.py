@@ -23,8 +23,8 @@ from sandbox.session.replay.writer import Recorder
 
 # Ends of the run that are kept when another one begins in the past, newest last.
 BRANCH_LIMIT = 9
-# Ticks between two calls of `progress` while re-stepping.
-PROGRESS_TICKS = 120
+# Ticks between two calls of `progress` while re-stepping: few, as a tick of a full world takes a tenth of a second.
+PROGRESS_TICKS = 4
 # Of more springs that break in one tick the message says how many they are, not their names.
 MOST_NAMED = 3
 

@@ -299,11 +299,12 @@ def test_keyframes_are_thinned_within_their_budget_and_undo_still_works(session,
 def test_long_re_stepping_reports_its_progress(session):
     seen = []
     session.submit(Pin(3))
-    _advance(session, 500)
+    _advance(session, 30)
     session.progress = lambda done, total: seen.append((done, total))
     session.undo()
     session.apply_pending()
-    assert seen and all(0 < done <= total == 500 for done, total in seen)
+    # A few ticks may take seconds: they are reported too.
+    assert len(seen) >= 5 and all(0 < done <= total == 30 for done, total in seen)
 
 
 def test_undo_steps_from_where_the_gesture_began_and_undoing_to_and_fro_steps_nothing(session, monkeypatch):
