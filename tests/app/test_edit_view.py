@@ -99,11 +99,11 @@ def test_the_forecast_shows_where_a_rope_will_hang_and_changes_nothing(edit):
 
 def test_the_window_can_be_resized_and_the_panel_hidden(driver):
     middle = driver.editor.camera.centre
-    driver.app.display.window.size = (700, 480)
+    driver.app.display.window.size = (820, 480)
     driver.frames(2)
-    assert driver.editor.camera.viewport[2] < 400 and driver.editor.camera.centre == middle
+    assert driver.editor.camera.viewport[2] < 500 and driver.editor.camera.centre == middle
     driver.key(pygame.K_h)
-    assert driver.editor.camera.viewport[0] + driver.editor.camera.viewport[2] == 700
+    assert driver.editor.camera.viewport[0] + driver.editor.camera.viewport[2] == 820
     assert set(driver.editor.palette.tools) == set(driver.editor.pointer_tools)
 
 
