@@ -141,3 +141,13 @@ def test_all_of_the_header_and_two_cards_fit_into_every_window(page, size):
         assert window.contains(card.rect)
     page.app.display.window.size = before
     page.frames(2)
+
+
+def test_a_large_window_has_larger_cards_five_side_by_side(page):
+    before = page.app.display.size
+    page.app.display.window.size = (1920, 1080)
+    page.frames(2)
+    toys = next(group for group in page.app.gallery.groups if group.title == "Toys")
+    assert toys.columns == 5 and toys.width > 340
+    page.app.display.window.size = before
+    page.frames(2)

@@ -6,6 +6,7 @@ import numpy as np
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, LINE, MUTED, SURFACE, TEXT, Colour
+from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.energy import spring_lengths
 from sandbox.physics.query import shown_particles
@@ -79,15 +80,17 @@ def draw_chip(
     area = pygame.Rect(viewport)
     title = ui.font(17, True).render(name, True, ACCENT)
     fonts = [ui.font(TEXT_SIZE), *[ui.font(SMALL_SIZE)] * (len(lines) - 1)]
-    texts = [font.render(line, True, TEXT if k == 0 else MUTED) for k, (font, line) in enumerate(
-        zip(fonts, lines, strict=True))]  # fmt: skip
     inset, gap = ui.px(PADDING), ui.px(10)
     most = area.width - 2 * ui.px(MARGIN)
+    room = max(most - 2 * inset - gap - title.get_width(), 1)
+    texts = []
+    for font, line in zip(fonts, lines, strict=True):
+        shown = line if font.size(line)[0] <= room else wrapped(line, font, room, 1)[0]
+        texts.append(font.render(shown, True, MUTED if texts else TEXT))
     width = min(most, title.get_width() + gap + max(text.get_width() for text in texts) + 2 * inset)
     height = sum(text.get_height() for text in texts) + 2 * ui.px(5)
     place = pygame.Rect(area.left + ui.px(MARGIN), area.top + ui.px(MARGIN), width, height)
     _card(surface, place, ui)
-    surface.set_clip(place.inflate(-ui.px(4), 0))
     surface.blit(title, title.get_rect(midleft=(place.left + inset, place.centery)))
     y = place.top + ui.px(5)
     for text in texts:

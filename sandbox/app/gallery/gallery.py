@@ -1,6 +1,7 @@
 """Gallery: levels as cards with pictures, by sections, found by what is typed; and saved recordings as a list."""
 
 import json
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -36,9 +37,11 @@ from sandbox.level.format.files import parse_level, read_bytes, shipped_folder, 
 from sandbox.physics import jit
 
 # Sizes in layout units.
-CARD_WIDTH, SMALL_WIDTH = 218.0, 218.0
+LEAST_WIDTH, MOST_WIDTH = 218.0, 420.0
 SMALL_HEIGHT = 54.0
 GAP = 16.0
+# Large windows have larger cards, not more than so many side by side, until cards have their greatest width.
+COLUMNS = 5
 MARGIN = 36.0
 HEADING = 40.0
 SECTION_GAP = 4.0
@@ -117,8 +120,9 @@ class Gallery:
 
     def _group(self, title: str, line: str = "", *, is_shortcut: bool = False) -> Group:
         """A group of cards, as many side by side as fit."""
-        least = SMALL_WIDTH if is_shortcut else CARD_WIDTH
-        columns = max(1, int((self._width + GAP) // (least + GAP)))
+        columns = max(1, int((self._width + GAP) // (LEAST_WIDTH + GAP)))
+        if not is_shortcut:
+            columns = max(min(columns, COLUMNS), math.ceil((self._width + GAP) / (MOST_WIDTH + GAP)))
         width = (self._width - GAP * (columns - 1)) / columns
         height = SMALL_HEIGHT if is_shortcut else width * PICTURE_RATIO + TEXT_HEIGHT
         group = Group(title, line, columns, width, height, is_shortcut=is_shortcut)

@@ -25,8 +25,9 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.level.format.writing import write_file
 
-# Layout units: the dock's share of the window's height and its bounds, and the row of buttons.
-SHARE, LOWEST, HIGHEST = 0.30, 172.0, 270.0
+# The dock's share of the window's height, and the most of it; its bounds, and the row of buttons [layout units].
+SHARE, MOST_SHARE = 0.30, 0.40
+LOWEST, HIGHEST = 172.0, 270.0
 ROW, GAP, EDGE, FILE_WIDTH, SPAN_WIDTH, TAB = 26.0, 6.0, 10.0, 46.0, 54.0, 70.0
 ONE_WIDTH = 92.0
 # Times [s] that can be seen at once.
@@ -60,7 +61,8 @@ class GraphDock:
 
     def height(self, ui: Ui) -> float:
         """The room that it takes [layout units]."""
-        return min(max(SHARE * ui.units[1], LOWEST), HIGHEST) if self.is_shown else 0.0
+        tall = ui.units[1]
+        return min(max(SHARE * tall, LOWEST), MOST_SHARE * tall, HIGHEST) if self.is_shown else 0.0
 
     # Building.
 

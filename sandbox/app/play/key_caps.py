@@ -10,6 +10,8 @@ from sandbox.app.widgets.ui import Ui
 # Sizes in layout units.
 CAP, GAP, INSET = 26.0, 5.0, 14.0
 TEXT_SIZE = 12.5
+# What they take of the lower edge, from a level that has some: in a narrower world, notices lie above them.
+KEYS_HEIGHT, ROOM_BESIDE = CAP + INSET, 720.0
 
 
 def draw_key_caps(

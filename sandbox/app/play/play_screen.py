@@ -17,7 +17,7 @@ from sandbox.app.graphs.graph_dock import GraphDock
 from sandbox.app.loop import SPEEDS
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.hand_labels import draw_labels
-from sandbox.app.play.key_caps import draw_key_caps
+from sandbox.app.play.key_caps import KEYS_HEIGHT, ROOM_BESIDE, draw_key_caps
 from sandbox.app.play.legend import Legend
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.out_of_view import OutOfView
@@ -48,6 +48,8 @@ from sandbox.tools.parts import PARTS
 FREE_PLACE, FREE_SIZE = (16.0, 12.0), (110.0, 34.0)
 # The button that begins again, in the middle [layout units].
 AGAIN_SIZE = (150.0, 40.0)
+# A world that is lower has notices over its graphs [layout units].
+ROOM_FOR_NOTICES = 150.0
 # Under what the strength of the hand is remembered.
 HAND = "hand"
 # And how springs are set: "pad" or "sliders".
@@ -126,8 +128,14 @@ class PlayScreen:
     @property
     def notices_place(self) -> tuple[float, float, float]:
         """Where notices begin, from the lower left corner, and how far right they may reach [layout units]."""
+        end = self.area[2] / self._ui.scale
+        if self.area[3] < self._ui.px(ROOM_FOR_NOTICES):
+            return 16.0, self.time.height, end
         left = 16.0 if self.palette is None else self.palette.right + 10.0
-        return left, self._below, self.area[2] / self._ui.scale
+        # Keys in the upper one of two worlds are in nobody's way.
+        is_lowest, is_narrow = self.viewport[3] == self.area[3], self.viewport[2] < self._ui.px(ROOM_BESIDE)
+        keys = KEYS_HEIGHT if is_lowest and is_narrow and self._keys.shown() else 0.0
+        return left, self._below + keys, end
 
     def build(self, ui: Ui) -> None:
         """Lay the bar and the panel out anew."""

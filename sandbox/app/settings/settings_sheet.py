@@ -11,7 +11,7 @@ from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
-WIDTH, HEIGHT = 720.0, 600.0
+WIDTH, HEIGHT = 720.0, 676.0
 MARGIN = 24.0
 TOP, BOTTOM = 104.0, 66.0
 ROW, KEY_ROW, HEADING = 56.0, 30.0, 36.0

@@ -364,22 +364,24 @@ class Ui(WindowLayout):
         start = ring.index(here) if here in ring else (-1 if by > 0 else 0)
         self._set_focus(ring[(start + by) % len(ring)])
 
+    @property
+    def _topmost(self) -> list[UIElement]:
+        return self._sheets[-1].widgets if self._sheets else self._page
+
     def _ring(self) -> list[UIElement]:
         """What Tab goes through: the widgets of the topmost page."""
-        ring = self._sheets[-1].widgets if self._sheets else self._page
+        ring = self._topmost
         return [widget for widget in ring if widget.alive() and widget.visible and getattr(widget, "is_enabled", True)]
 
     @property
     def focus_place(self) -> int | None:
-        """Which widget of the topmost page has the keyboard, counted as Tab does."""
-        ring = self._ring()
-        return ring.index(self._focus) if self._focus in ring else None
+        """Which widget of the topmost page has the keyboard, those counted that Tab leaves out now."""
+        return self._topmost.index(self._focus) if self._focus in self._topmost else None
 
     def focus_at(self, place: int | None) -> None:
-        """Give the keyboard to a widget of the topmost page by its place, where there is one."""
-        ring = self._ring()
-        if place is not None and place < len(ring):
-            self._set_focus(ring[place])
+        """Give the keyboard to a widget of the topmost page by its place, where there is one that can have it."""
+        if place is not None and place < len(self._topmost) and self._topmost[place] in self._ring():
+            self._set_focus(self._topmost[place])
 
     def focus_on(self, widget: UIElement) -> None:
         """Give a widget the keyboard."""

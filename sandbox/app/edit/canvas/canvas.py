@@ -268,6 +268,7 @@ class ScenePainter:
 def draw_grid(surface: pygame.Surface, camera: Camera, scale: float) -> None:
     """Draw the lines that the pointer snaps to, and brighter ones that the rulers name."""
     left, top, width, height = camera.viewport
+    thick = max(1, round(scale))
     (x0, y1), (x1, y0) = camera.to_world((left, top)), camera.to_world((left + width, top + height))
     for wanted, colour in ((SNAP_STEP, GRID_FINE), (GRID_STEP, GRID)):
         spacing = grid_spacing(camera.zoom, wanted * scale)
@@ -276,9 +277,9 @@ def draw_grid(surface: pygame.Surface, camera: Camera, scale: float) -> None:
                 at = camera.to_pixels((index * spacing, index * spacing))
                 tone = GRID_AXIS if index == 0 else colour
                 if vertical:
-                    surface.fill(tone, (round(at[0]), top, 1, height))
+                    surface.fill(tone, (round(at[0]), top, thick, height))
                 else:
-                    surface.fill(tone, (left, round(at[1]), width, 1))
+                    surface.fill(tone, (left, round(at[1]), width, thick))
 
 
 def moved_by(scene: Scene, chosen: SelectionMasks, matrix: NDArray[np.float64]) -> Scene:

@@ -63,11 +63,14 @@ class Rulers:
         """Marks and numbers along a ruler that begins at `start` [m]."""
         ruler.fill(SURFACE)
         length, size = ruler.get_size()
+        thick = self._ui.px(1)
         index = math.floor(start / spacing) * PARTS
         while (x := round(place(index * spacing / PARTS))) < length:
             is_numbered = index % PARTS == 0
             tall = round(size * (LONG if is_numbered else SHORT))
-            ruler.fill(MUTED if is_numbered else LINE, (x, size - tall, 1, tall))
+            ruler.fill(MUTED if is_numbered else LINE, (x, size - tall, thick, tall))
             if is_numbered:
-                ruler.blit(self._ui.font(9).render(f"{index // PARTS * spacing:.6g}", True, MUTED), (x + 3, 0))
+                number = self._ui.font(9).render(f"{index // PARTS * spacing:.6g}", True, MUTED)
+                if x + 3 * thick + number.get_width() <= length:
+                    ruler.blit(number, (x + 3 * thick, 0))
             index += 1
