@@ -63,7 +63,8 @@ $(VENV)/installed: $(BIN)/python pyproject.toml
 	touch $@
 
 $(VENV)/installed-dev: $(BIN)/python pyproject.toml
-	$(BIN)/python -m pip install --quiet --editable ".[dev]"
+	# Byte code of what is imported is made then; most of what is installed never is.
+	$(BIN)/python -m pip install --quiet --no-compile --editable ".[dev]"
 	touch $(VENV)/installed $@
 
 clean:
