@@ -62,8 +62,8 @@ $(VENV)/installed: $(BIN)/python pyproject.toml
 	$(BIN)/python -m compileall -q sandbox
 	touch $@
 
+# Byte code is made of what is imported, when it is; most of what is installed here never is.
 $(VENV)/installed-dev: $(BIN)/python pyproject.toml
-	# Byte code of what is imported is made then; most of what is installed never is.
 	$(BIN)/python -m pip install --quiet --no-compile --editable ".[dev]"
 	touch $(VENV)/installed $@
 
