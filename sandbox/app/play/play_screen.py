@@ -12,6 +12,7 @@ from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colou
 from sandbox.app.draw.detail import FULL, NO_EFFECTS
 from sandbox.app.draw.views.overlays import NAMES as OVERLAYS
 from sandbox.app.edit.bake_choice import ask_to_keep
+from sandbox.app.edit.rate_choice import ask_for_pace
 from sandbox.app.graphs.graph_dock import GraphDock
 from sandbox.app.loop import SPEEDS
 from sandbox.app.play.drive_keys import DriveKeys
@@ -23,7 +24,6 @@ from sandbox.app.play.out_of_view import OutOfView
 from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
 from sandbox.app.play.panel import PANEL_WIDTH, Panel, PanelShape
 from sandbox.app.play.playback import Playback
-from sandbox.app.play.rate_choice import ask_for_pace
 from sandbox.app.play.side_panel import ROOM_FOR_PANEL, SidePanel
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import Stage
