@@ -83,7 +83,7 @@ def draw_chip(
     inset, gap = ui.px(PADDING), ui.px(10)
     most = area.width - 2 * ui.px(MARGIN)
     room = max(most - 2 * inset - gap - title.get_width(), 1)
-    texts = []
+    texts: list[pygame.Surface] = []
     for font, line in zip(fonts, lines, strict=True):
         shown = line if font.size(line)[0] <= room else wrapped(line, font, room, 1)[0]
         texts.append(font.render(shown, True, MUTED if texts else TEXT))
