@@ -344,6 +344,7 @@ class App:
             self._draw()
             with self.profile.part("flip"):
                 self.display.flip()
+        self._progress.end()
         self._seen = self.screen
         spent = time.perf_counter() - started
         self.profile.end_frame(spent)
