@@ -62,8 +62,9 @@ $(VENV)/installed: $(BIN)/python pyproject.toml
 	$(BIN)/python -m compileall -q sandbox
 	touch $@
 
+# Byte code is made of what is imported, when it is; most of what is installed here never is.
 $(VENV)/installed-dev: $(BIN)/python pyproject.toml
-	$(BIN)/python -m pip install --quiet --editable ".[dev]"
+	$(BIN)/python -m pip install --quiet --no-compile --editable ".[dev]"
 	touch $(VENV)/installed $@
 
 clean:

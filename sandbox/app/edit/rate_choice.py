@@ -4,6 +4,7 @@ from functools import partial
 
 from sandbox.app.application import Application
 from sandbox.app.play.playback import Playback
+from sandbox.app.sentences import sentence
 from sandbox.app.widgets.dialogs import choose
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.bake import keep_coefficients
@@ -34,8 +35,7 @@ def ask_for_pace(app: Application, playback: Playback, rate: int) -> None:
         try:
             level = level_at_rate(playback.level, playback.session.world, rate, in_pace)
         except EditError as error:
-            text = str(error)
-            app.say(f"{text[0].upper()}{text[1:]}.")
+            app.say(sentence(error))
             return
         app.start(Playback(level))
         app.say(f"From the beginning at {rate} ticks a second; E edits the level with them.")
