@@ -38,7 +38,7 @@ from sandbox.app.share.sharing import Sharing
 from sandbox.app.shortcuts import Mode, use_keys
 from sandbox.app.sound.sounds import Sounds
 from sandbox.app.start_request import StartRequest
-from sandbox.app.toy.toy_start import start_toy
+from sandbox.app.toy.toy_start import ToyStarter
 from sandbox.app.widgets.dialogs import show_lines
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.files import read_level
@@ -79,6 +79,7 @@ class App:
         self.share_page = SharePage(self, self.sharing)
         self.sounds = Sounds(self.chosen, time.perf_counter)
         self._progress = RunProgress(self)
+        self._toys = ToyStarter()
         self._own_actions = self._actions()
         self._figures = Figures()
         self._counted = [0.0, 0, 0, 0.0]
@@ -306,9 +307,7 @@ class App:
 
     def _start_toy(self) -> None:
         if self.play is not None:
-            self.say(
-                start_toy(self.play.playback.level) or "The desk toy opens. Drag its window, and the world shakes."
-            )
+            self.say(self._toys.start(self.play.playback.level))
 
     def _open_settings(self) -> None:
         SettingsSheet(self.ui, self.chosen)
@@ -344,6 +343,7 @@ class App:
             self._draw()
             with self.profile.part("flip"):
                 self.display.flip()
+        self._progress.end()
         self._seen = self.screen
         spent = time.perf_counter() - started
         self.profile.end_frame(spent)

@@ -12,6 +12,8 @@ PATIENCE = 0.3
 DRAWN_EVERY = 0.05
 # A pause between two reports longer than this [s] is the beginning of something new.
 NEW_AFTER = 1.0
+# What is begun while the bar is seen is meant for what it hides, and not for a dialog that comes after it.
+BEGUN = (pygame.KEYDOWN, pygame.TEXTINPUT, pygame.MOUSEBUTTONDOWN, pygame.MOUSEWHEEL)
 
 
 class RunProgress:
@@ -21,6 +23,7 @@ class RunProgress:
         self._app = app
         self._started = self._last = self._drawn = 0.0
         self._done = 0
+        self._is_seen = False
 
     def show(self, done: int, total: int) -> None:
         """Draw the bar, where it has taken long enough to wonder."""
@@ -30,7 +33,13 @@ class RunProgress:
         self._last, self._done = now, done
         if now - self._started < PATIENCE or now - self._drawn < DRAWN_EVERY:
             return
-        self._drawn = now
+        self._drawn, self._is_seen = now, True
         pygame.event.pump()
         draw_bar(self._app.display.surface, self._app.ui, done / max(total, 1), "Playing the run again")
         self._app.display.flip()
+
+    def end(self) -> None:
+        """As a frame ends: forget what was pressed in it, where the bar was seen."""
+        if self._is_seen:
+            self._is_seen = False
+            pygame.event.clear(BEGUN)

@@ -419,6 +419,28 @@ def test_a_long_run_played_again_shows_how_far_it_is(driver, monkeypatch):
     assert shown == sorted(shown) and 0.3 < shown[0] < shown[-1] <= 1.0
 
 
+def test_keys_pressed_while_a_run_is_played_again_are_not_typed_into_what_comes_after_it(driver, monkeypatch):
+    now, actions = [0.0], driver.app.screen.actions
+    monkeypatch.setattr("sandbox.app.progress.time.perf_counter", lambda: now[0])
+
+    def played_again(key):
+        for done in range(0, 1000, 100):
+            now[0] += 0.06
+            driver.playback.session.progress(done, 1000)
+        pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=key, mod=0, unicode="", scancode=0))
+
+    driver.frames(2)
+    before = driver.stage.tool_name
+    reset = actions["reset"]
+    actions["reset"] = lambda: played_again(pygame.K_c)
+    driver.key(pygame.K_r)
+    driver.frames(2)
+    assert driver.stage.tool_name == before
+    actions["reset"] = reset
+    driver.key(pygame.K_c)
+    assert driver.stage.tool_name == "cut"
+
+
 def test_there_is_no_display_where_none_is_named_or_none_answers(monkeypatch):
     command = [sys.executable, "-c", "from sandbox.app.display import has_display; print(has_display())"]
     for names in ({}, {"DISPLAY": ":4321"}):

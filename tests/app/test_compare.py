@@ -4,7 +4,8 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.compare.compare_screen import CompareScreen
+from sandbox.app.compare.compare_screen import PILL_TOP, CompareScreen
+from sandbox.app.play.legend import MARGIN
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import Grab, Pin, SetCoefficients
 from tests.app.conftest import small_level
@@ -151,3 +152,15 @@ def test_halves_are_alike_in_any_window_and_f9_leads_back(pair):
     pair.key(pygame.K_F9)
     pair.frames(1)
     assert not isinstance(pair.app.play, CompareScreen)
+
+
+def test_the_legend_leaves_what_stands_over_the_halves_free(pair, monkeypatch):
+    corners = []
+    monkeypatch.setattr("sandbox.app.play.legend.Legend.draw", lambda *rest: corners.append(rest[-1]))
+    ui = pair.app.ui
+    for size, below in (((1280, 720), PILL_TOP + 10), ((600, 900), 50)):
+        pair.app.display.window.size = size
+        pair.frames(3)
+        left, top, width, _ = pair.app.play.viewport
+        assert corners[-1][0] == left + width
+        assert corners[-1][1] + ui.px(MARGIN) >= top + ui.px(below)

@@ -27,6 +27,18 @@ def driver(edit):
     return edit(small_level())
 
 
+@pytest.mark.parametrize(("place", "is_seen"), [(8.0, True), (200.0, False)])
+def test_a_thing_far_from_the_levels_view_does_not_make_it_tiny(edit, place, is_seen):
+    ball = {"id": "ball", "position": [place, 0.0], "mass": 1.0, "radius": 0.1}
+    driver = edit(small_level(particles=[ball], view=[-4.0, -2.0, 4.0, 3.0]))
+    driver.frames()
+    surface = driver.app.display.surface
+    assert (0 < driver.at(place, 0.0)[0] < surface.get_width()) == is_seen
+    assert driver.at(4.0, 0.0)[0] - driver.at(-4.0, 0.0)[0] > surface.get_width() / 4
+    driver.app.screen.fit()
+    assert 0 < driver.at(place, 0.0)[0] < surface.get_width()
+
+
 def test_parts_the_selection_and_the_ghost_are_seen(driver):
     plain = pixels(driver)
     x, y = (round(value) for value in driver.at(2.5, 0))

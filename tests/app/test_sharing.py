@@ -9,6 +9,7 @@ import re
 import stat
 import weakref
 from itertools import pairwise
+from pathlib import Path
 from types import SimpleNamespace
 
 import imageio_ffmpeg
@@ -21,6 +22,7 @@ from sandbox.app.play.playback import Playback
 from sandbox.app.share import desktop
 from sandbox.app.share.film import film_of_view
 from sandbox.app.share.gif import GifWriter
+from sandbox.app.share.movie import MovieWriter
 from sandbox.app.share.sharing import Sharing
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.player.reel import STEPS
@@ -205,6 +207,17 @@ def test_a_full_disk_is_a_line_and_leaves_nothing(sharing, folder, monkeypatch):
     work_off(sharing)
     assert sharing.note == "small.gif cannot be written: No space left on device."
     assert (sharing.step, files(folder)) == ("choose", [])
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="a device that is full is Linux's")
+def test_a_film_says_what_the_system_refuses_and_not_what_its_writer_was_about():
+    writer, picture = MovieWriter(Path("/dev/full"), (16, 16), 30.0), pygame.Surface((16, 16), 0, 32)
+    with pytest.raises(OSError) as refusal:
+        writer.add(picture)
+        while not writer.is_closed():
+            pass
+    writer.give_up()
+    assert refusal.value.strerror == "No space left on device"
 
 
 def test_what_is_not_installed_is_named_and_a_picture_can_still_be_kept(sharing, folder, monkeypatch):

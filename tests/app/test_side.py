@@ -5,12 +5,15 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from sandbox.app.edit.side.checks import Trial
 from sandbox.app.edit.side.rows import RowList
 from sandbox.app.edit.side.side import PAGES
 from sandbox.editor.edits.additions import add_object
 from sandbox.editor.items import Item
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import parse_level, read_level
+from sandbox.level.format.model import Level
+from sandbox.level.format.quantities import replaced
 from tests.app.conftest import small_level
 
 ROPE, PAIR = Item("body", "rope"), Item("body", "pair")
@@ -503,6 +506,15 @@ def test_results_are_those_of_the_level_that_ran(driver):
     driver.fill(entry(driver, "at_most"), "5")
     assert page.list.rows[1].detail == "y of ball at most 5"
     assert page.list.rows[0].detail.startswith("holds")
+
+
+def test_results_go_with_every_part_of_the_level_that_runs():
+    before = small_level(**LOOSE, walls={"box": [-9, -9, 9, 9]}, contacts={})
+    trial = Trial(before)
+    trial.is_stopped = True
+    said = {"format", "version", "name", "description", "author", "licence", "tags", "view", "checks", "look", "extras"}
+    changed = {part: replaced(before, **{part: object()}) for part in Level.model_fields}
+    assert {part for part, level in changed.items() if trial.holds_for(level)} == said
 
 
 def test_a_click_in_the_history_goes_there_and_undone_steps_stay(driver):

@@ -57,6 +57,20 @@ def test_the_knob_is_dragged_back_and_the_same_run_follows(timeline):
     assert state_hash(playback.session.world) == end
 
 
+def test_a_bookmark_that_a_run_begun_again_has_not_come_to_is_not_on_the_track(timeline):
+    timeline.key(pygame.K_b, SHIFT)
+    marked = timeline.playback.session.tick
+    timeline.key(pygame.K_r)
+    timeline.frames(2)
+    assert not track(timeline).marks
+    timeline.key(pygame.K_PERIOD, SHIFT)
+    assert timeline.notices[-1] == "There is no mark after this."
+    timeline.key(pygame.K_SPACE)
+    while timeline.playback.session.tick <= marked:
+        timeline.frames()
+    assert [mark.tick for mark in track(timeline).marks] == [marked]
+
+
 def test_a_press_near_a_mark_goes_to_it_and_keys_go_from_mark_to_mark(timeline):
     session = timeline.playback.session
     x, y = on_track(timeline, 30)

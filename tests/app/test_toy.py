@@ -1,6 +1,7 @@
 """The desk toy: its window feels how it is moved, sleeps while nothing moves, and remembers its place."""
 
 import math
+from types import SimpleNamespace
 
 import pygame
 import pytest
@@ -279,12 +280,20 @@ def test_sound_is_off_at_first_and_what_was_chosen_is_remembered(desk):
 
 
 def test_the_app_starts_a_toy_of_the_level_that_is_played(driver, monkeypatch):
-    started = []
-    monkeypatch.setattr(toy_start.subprocess, "Popen", lambda command, **_: started.append(command))
+    started, ended = [], []
+
+    def popen(command, **_):
+        started.append(command)
+        return SimpleNamespace(poll=lambda: 0 if ended else None)
+
+    monkeypatch.setattr(toy_start.subprocess, "Popen", popen)
     driver.key(pygame.K_t, pygame.KMOD_CTRL)
     assert started[0][2:4] == ["sandbox", "toy"]
     assert toy_start.data_folder() / "toy.json" == toy_start.Path(started[0][4])
     assert any("desk toy opens" in notice for notice in driver.notices)
+    driver.app.act("toy")
+    assert len(started) == 1 and "is open already" in driver.notices[-1]
+    ended.append(True)
     monkeypatch.setattr(toy_start.subprocess, "Popen", lambda *_, **__: (_ for _ in ()).throw(OSError(2, "no such")))
     driver.app.act("toy")
     assert any("cannot be started: no such" in notice for notice in driver.notices)

@@ -24,6 +24,8 @@ from sandbox.app.widgets.ui import Ui
 SIDES = ("A", "B")
 # Layout units: halves that are lower have no figures over them; how far down the line about both is.
 ROOM_FOR_FIGURES, PILL_TOP = 260.0, 76.0
+# How far down the legend has room: below what stands over the halves, and below that line where it is between them.
+BELOW_CAPTION, BELOW_PILL = 44.0, 84.0
 WELCOME = "The same level twice. Choose A or B in the panel and set its springs; what your hand does is done to both."
 
 
@@ -213,6 +215,12 @@ class CompareScreen(PlayScreen):
         left, top, width, height = self.area
         across = left + width // 2
         return across, top + (self._ui.px(PILL_TOP) if self._is_wide else height // 2)
+
+    @property
+    def _legend_corner(self) -> tuple[int, int]:
+        """It leaves what stands over the halves free, which is as wide as they are."""
+        right, top = super()._legend_corner
+        return right, top + self._ui.px(BELOW_PILL if self._is_wide else BELOW_CAPTION)
 
     def _measured(self) -> list[tuple[str, Playback]]:
         if self.beside is None:

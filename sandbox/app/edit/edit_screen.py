@@ -52,6 +52,8 @@ NUDGE_LEAP = 10
 LARGE_SELECTION = 1_000
 # Scenes of so many states are kept, for who goes back to them; one of 20,000 particles takes some megabytes.
 SCENES_KEPT = 4
+# Of a view: what makes it no wider and no higher than this many times is fitted in with it.
+FARTHEST = 3.0
 # View [m] of a level in which nothing is yet.
 FIRST_VIEW: Box = (-6.0, -3.0, 6.0, 4.0)
 
@@ -266,11 +268,12 @@ class EditScreen:
         self.options.focus()
 
     def fit(self) -> None:
-        """Show the level's view and all particles; again, or without a view: terrain and walls too."""
+        """Show the level's view and the particles about it; again, or without a view: all, terrain and walls too."""
         level, scene, before = self.document.level, self.scene, (self.camera.centre, self.camera.zoom)
         walls = None if level.walls is None else level.walls.box
         if level.view is not None:
-            self._fit_to(level.view, scene.bounds(frozenset(item for item in scene.items if item.kind != "terrain")))
+            about = scene.bounds(frozenset(item for item in scene.items if item.kind != "terrain"))
+            self._fit_to(level.view, about if about is not None and _is_about(about, level.view) else None)
         if level.view is None or before == (self.camera.centre, self.camera.zoom):
             self._fit_to(level.view, walls, scene.bounds())
 
@@ -453,3 +456,12 @@ class EditScreen:
         if self.pointer_tool.matrix is not None or isinstance(self.pointer_tool, DrawTool):
             self.pointer_tool.cancel()
         self.history.end_merge()
+
+
+def _is_about(box: Box, view: Box) -> bool:
+    """Whether a box is so near a view [m] that both are seen well together."""
+    wide, high = view[2] - view[0], view[3] - view[1]
+    return (
+        max(box[2], view[2]) - min(box[0], view[0]) <= FARTHEST * wide
+        and max(box[3], view[3]) - min(box[1], view[1]) <= FARTHEST * high
+    )

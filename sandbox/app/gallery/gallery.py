@@ -212,7 +212,8 @@ class Gallery:
             return
         if not is_shipped:
             # Levels of one's own are often still without a name.
-            card.show_texts(level.name, f"{one_line(path.name)}  {level.description}".strip(), level.tags)
+            about = [one_line(path.name), *([level.description] if level.description else [])]
+            card.show_texts(level.name, ": ".join(about), level.tags)
         if picture is not None:
             return
         while not self._has_kernels(level.has_contacts):

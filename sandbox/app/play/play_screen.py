@@ -449,10 +449,15 @@ class PlayScreen:
         surface.set_clip(None)
         self.graphs.draw(surface)
         surface.set_clip(self.viewport)
-        renderer, (left, top, width, _) = self.stage.renderer, self.viewport
-        solver = self.playback.current.settings.solver
-        self._legend.draw(surface, self._ui, renderer.overlays, renderer.theme, solver, (left + width, top))
+        renderer, solver = self.stage.renderer, self.playback.current.settings.solver
+        self._legend.draw(surface, self._ui, renderer.overlays, renderer.theme, solver, self._legend_corner)
         surface.set_clip(None)
+
+    @property
+    def _legend_corner(self) -> tuple[int, int]:
+        """Upper right corner [pixels] of where the legend has room."""
+        left, top, width, _ = self.viewport
+        return left + width, top
 
     def status(self, figures: Figures) -> list[tuple[str, Colour]]:
         """State, recording, tick and figures of the run."""

@@ -155,7 +155,7 @@ class TimeBar:
         playback.clock.paused = True
         self._reveal()
         mark = playback.travel.mark_beside(playback.session.tick, by)
-        if mark is None:
+        if mark is None or mark.tick > playback.length:
             self._app.say("There is no mark after this." if by > 0 else "There is no mark before this.")
         else:
             playback.seek(mark.tick)

@@ -51,7 +51,9 @@ class TimeTrack(Painted):
         fresh = (tick, length, reached, marks, travel.span, travel.looping, travel.target, self.pointed)
         if fresh != self._shown:
             self._shown = fresh
-            self.tick, self.length, self.reached, self.marks = tick, max(length, 1), reached, marks
+            self.tick, self.length, self.reached = tick, max(length, 1), reached
+            # Bookmarks outlive a reset: the run comes to them.
+            self.marks = [mark for mark in marks if mark.tick <= length]
             self.repaint()
 
     def pixel_of(self, tick: float) -> int:
@@ -125,7 +127,7 @@ class TimeTrack(Painted):
         px, middle = self.ui.px, size[1] // 2
         surface = pygame.Surface(size, pygame.SRCALPHA)
         span = self.travel.span
-        if span is not None:
+        if span is not None and span[0] < self.length:
             left, right = (round(self._x_of(tick)) for tick in span)
             band = pygame.Rect(left, px(3), max(right - left, 2), size[1] - px(6))
             colour = ACCENT if self.travel.looping else MUTED

@@ -64,4 +64,6 @@ class MovieWriter:
         lines = self._told.read().decode(errors="replace").splitlines()
         # Before the words stands which of its parts says them.
         said = [text for line in lines if (text := re.sub(r"^\[[^]]*\] ", "", line).strip())]
-        return OSError(0, said[0] if said else "ffmpeg has stopped", str(self._path))
+        # And before what the system refuses stands what ffmpeg was about.
+        reason = said[0].rpartition(": ")[2] if said else "ffmpeg has stopped"
+        return OSError(0, reason, str(self._path))

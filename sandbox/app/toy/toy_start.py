@@ -47,13 +47,22 @@ def run_toy(
         toy.close()
 
 
-def start_toy(level: "Level") -> str | None:
-    """Open a level as a toy in a process of its own, which goes on when this one ends; why not, where it cannot be."""
-    file = data_folder() / "toy.json"
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        write_level(level, file)
-        subprocess.Popen([sys.executable, "-m", "sandbox", "toy", str(file)], start_new_session=True)
-    except OSError as error:
-        return f"The desk toy cannot be started: {error.strerror or error}."
-    return None
+class ToyStarter:
+    """Opens levels as toys, each in a process of its own, which goes on when this one ends."""
+
+    def __init__(self) -> None:
+        self._last: tuple[subprocess.Popen[bytes], Level] | None = None
+
+    def start(self, level: "Level") -> str:
+        """Open a level as a toy, unless it is the one that was opened last and still is; what came of it, in a line."""
+        if self._last is not None and self._last[0].poll() is None and self._last[1] is level:
+            return "The desk toy of this level is open already; a second would lie on it. Escape in it closes it."
+        file = data_folder() / "toy.json"
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            write_level(level, file)
+            process = subprocess.Popen([sys.executable, "-m", "sandbox", "toy", str(file)], start_new_session=True)
+        except OSError as error:
+            return f"The desk toy cannot be started: {error.strerror or error}."
+        self._last = process, level
+        return "The desk toy opens. Drag its window, and the world shakes."

@@ -39,7 +39,7 @@ class Trial:
 
     def holds_for(self, level: Level) -> bool:
         """Whether its results are those of a level: only what runs has to be the same."""
-        parts = ("bodies", "particles", "springs", "welds", "materials", "settings")
+        parts = ("bodies", "particles", "springs", "welds", "materials", "settings", "contacts", "walls", "terrain")
         return all(getattr(level, part) is getattr(self.level, part) for part in parts)
 
     def wait(self) -> None:
