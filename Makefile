@@ -8,7 +8,8 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
-WORKERS ?= 2
+# One more than two processors: tests wait for windows and processes a tenth of their time.
+WORKERS ?= 3
 # Byte code is kept whatever the environment says, or each of many processes would compile the package anew.
 unexport PYTHONDONTWRITEBYTECODE
 
