@@ -1,10 +1,10 @@
-"""A command: its parser below that of the program, and what all commands that open a window take."""
+"""A command: its parser below that of the program, and what several of them take."""
 
 import argparse
 from collections.abc import Callable
 from typing import Any
 
-from sandbox.terminal import scale
+from sandbox.terminal import count, scale, seconds
 
 # What argparse gives for `add_subparsers`; its type has no public name.
 Commands = Any
@@ -23,3 +23,10 @@ def add_look_options(app: argparse.ArgumentParser) -> None:
     """How the widgets look."""
     app.add_argument("--scale", type=scale, help="size of the widgets, 0.5 to 4; default: as in the settings")
     app.add_argument("--theme", choices=("dark", "light", "system"), help="for this time; default: as in the settings")
+
+
+def add_length_options(run: argparse.ArgumentParser, text: str) -> None:
+    """How long a run is, in one of two units; text: of what, and how long without them."""
+    length = run.add_mutually_exclusive_group()
+    length.add_argument("--seconds", type=seconds, help=f"simulated time{text}")
+    length.add_argument("--ticks", type=count, help="the same, in ticks")

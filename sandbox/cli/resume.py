@@ -2,18 +2,16 @@
 
 import argparse
 
-from sandbox.cli.command import Commands, add_command
+from sandbox.cli.command import Commands, add_command, add_length_options
 from sandbox.cli.inputs import EXIT_OK, Refused, recording_of
-from sandbox.terminal import Progress, count, interrupted_between_ticks, seconds
+from sandbox.terminal import Progress, interrupted_between_ticks
 
 
 def add(commands: Commands) -> None:
     """The command."""
     parser = add_command(commands, "resume", resume_file, "go on with a recording that was cut off, and make it whole")
     parser.add_argument("file", metavar="FILE")
-    length = parser.add_mutually_exclusive_group()
-    length.add_argument("--seconds", type=seconds, help="simulated time in all; default: up to where it was cut off")
-    length.add_argument("--ticks", type=count, help="the same, in ticks")
+    add_length_options(parser, " in all; default: up to where it was cut off")
 
 
 def resume_file(options: argparse.Namespace) -> int:

@@ -6,10 +6,10 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.command import Commands, add_command
+from sandbox.cli.command import Commands, add_command, add_length_options
 from sandbox.cli.inputs import EXIT_OK, EXIT_REFUSED, Refused, level_of
 from sandbox.cli.running import run_with_bar
-from sandbox.terminal import count, seconds, substeps, tell
+from sandbox.terminal import count, substeps, tell
 
 if TYPE_CHECKING:
     from sandbox.level.format.model import Level
@@ -21,9 +21,7 @@ def add(commands: Commands) -> None:
     """The command."""
     parser = add_command(commands, "run", run, "run a level headless and print what came of it")
     parser.add_argument("level", metavar="LEVEL")
-    length = parser.add_mutually_exclusive_group()
-    length.add_argument("--seconds", type=seconds, help="simulated time; default 10")
-    length.add_argument("--ticks", type=count, help="the same, in ticks")
+    add_length_options(parser, "; default 10")
     parser.add_argument("--solver", help="instead of the level's solver")
     parser.add_argument("--substeps", type=substeps, help="instead of the level's: a power of two, 1 to 64, or auto")
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")

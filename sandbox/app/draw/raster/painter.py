@@ -76,10 +76,6 @@ class MarkList:
         """Lit balls; turn (m, 2): cosine and sine, as seen; mark: the colour of what turns; style: a kind of mark."""
         self.rows(np.concatenate([at, turn], axis=1), radius, colour, 1.0, style, mark)
 
-    def mixed(self, ends: Floats, half: ArrayLike, colour: ArrayLike, alpha: ArrayLike, kind: ArrayLike) -> None:
-        """Strokes, discs and glows in any order."""
-        self.rows(ends, half, colour, alpha, kind)
-
     def arrays(self) -> MarkArrays | None:
         """All of them, None where there are none."""
         if not self._rows:

@@ -180,7 +180,7 @@ def _draw_faces(
     shown = _moods(load, speed, blinks)[_WHEN]
     half = np.maximum(_HALF[:, None] * size, _LEAST[:, None])[shown]
     part = np.nonzero(shown)[0]
-    marks.mixed(ends[shown].reshape(-1, 4), half, _COLOUR[part], _ALPHA[part], _KIND[part])
+    marks.rows(ends[shown].reshape(-1, 4), half, _COLOUR[part], _ALPHA[part], _KIND[part])
 
 
 def _towards(pointer: tuple[float, float], centre: Floats, size: Floats) -> Floats:
