@@ -191,23 +191,22 @@ def _grid_lines(camera: Camera, scale: float) -> tuple[list[int], list[int]]:
 
 @functools.lru_cache(maxsize=1)
 def stage_pictures(size: tuple[int, int], theme: Theme) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
-    """The stage (h, w) without and with its grid everywhere: takes 0.1 s, and the next run has mostly the same."""
+    """The stage (h, w) without and with its grid everywhere: the next run has mostly the same."""
     width, height = size
-    y, x = np.mgrid[0:height, 0:width].astype(np.float32)
-    share = (y / max(height, 1))[..., None]
-    top, bottom = (np.array(colour, dtype=np.float32) for colour in theme.stage)
-    colour = top * (1 - share) + bottom * share
+    y, x = np.arange(height, dtype=np.float32)[:, None], np.arange(width, dtype=np.float32)
+    share = y / np.float32(max(height, 1))
     away = np.sqrt(((x - width / 2) / (0.62 * width)) ** 2 + ((y - 0.46 * height) / (0.72 * height)) ** 2)
     # A lamp behind the stage; the grid fades with the distance from the middle, and all of it towards the corners.
-    colour += (np.clip(1 - 1.25 * away, 0, 1) ** 2)[..., None] * np.array(theme.lamp, dtype=np.float32)
-    fade = np.clip(1.15 - 1.05 * away, 0, 1)[..., None] * np.float32(GRID_SHARE)
-    gridded = colour + (np.array(theme.grid, dtype=np.float32) - colour) * fade
-    dark = (1 - theme.vignette * np.clip(away - 0.55, 0, 1.2) ** 1.6)[..., None]
+    lit = np.clip(1 - 1.25 * away, 0, 1) ** 2
+    fade = np.clip(1.15 - 1.05 * away, 0, 1) * np.float32(GRID_SHARE)
+    dark = 1 - np.float32(theme.vignette) * np.clip(away - 0.55, 0, 1.2) ** np.float32(1.6)
     # An ordered dither, or the gradient shows as bands.
-    bayer = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]], dtype=np.float32) / 16 - 0.47
-    dither = np.tile(bayer, (height // 4 + 1, width // 4 + 1))[:height, :width, None]
-    pictures = []
-    for each in (colour, gridded):
-        channels = np.clip(each * dark + dither + 0.5, 0, 255).astype(np.uint32)
-        pictures.append(0xFF000000 | channels[..., 0] << 16 | channels[..., 1] << 8 | channels[..., 2])
-    return pictures[0].astype(np.uint32), pictures[1].astype(np.uint32)
+    bayer = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]], dtype=np.float32) / 16 + 0.03
+    dither = np.tile(bayer, (height // 4 + 1, width // 4 + 1))[:height, :width]
+    bare, gridded = (np.full((height, width), 0xFF, dtype=np.uint32) for _ in range(2))
+    for top, bottom, lamp, grid in zip(*theme.stage, theme.lamp, theme.grid, strict=True):
+        colour = top * (1 - share) + bottom * share + lit * lamp
+        for picture, shown in ((bare, colour), (gridded, colour + (grid - colour) * fade)):
+            picture <<= 8
+            picture |= np.clip(shown * dark + dither, 0, 255).astype(np.uint8)
+    return bare, gridded
