@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from sandbox.level.format.look import PALETTE
+from sandbox.level.format.quantities import significant
 from sandbox.physics.equation import at_other_step
 from sandbox.session.commands import AddBody, AddParticle, Command
 
@@ -23,6 +24,8 @@ ROUND = 24
 SOFT, HARD = 0.1, 0.0
 # Ticks a second that Cs and Cd of the parts' materials are given for.
 USUAL_RATE = 60
+# Significant digits of the Cs and Cd that they have at another.
+DIGITS = 6
 # Keys of the cart's motors: back and ahead.
 CART_KEYS = ("q", "w")
 COLOURS = tuple(PALETTE)
@@ -153,5 +156,5 @@ def _at_rate(material: dict[str, float], tick_rate: int) -> dict[str, float]:
         pair = at_other_step(material["stiffness"], material["damping"], USUAL_RATE / tick_rate)
     except ValueError:
         return material
-    stiffness, damping = (float(f"{value:.6g}") for value in pair)
+    stiffness, damping = (significant(value, DIGITS) for value in pair)
     return material | {"stiffness": stiffness, "damping": damping}

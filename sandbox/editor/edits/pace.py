@@ -9,7 +9,7 @@ from sandbox.editor.items import Definition, with_same
 from sandbox.level.faults.level_error import shown
 from sandbox.level.format.limits import DEFAULT_MATERIAL, PERIOD_RANGE
 from sandbox.level.format.model import NissenMaterial
-from sandbox.level.format.quantities import replaced
+from sandbox.level.format.quantities import replaced, significant
 from sandbox.physics.equation import at_other_step
 
 # Significant digits of Cs and Cd that are worked out.
@@ -56,5 +56,5 @@ def _in_pace(part: Any, times: float, whose: str) -> Any:
         pair = at_other_step(part.stiffness, part.damping, times)
     except ValueError as error:
         raise EditError(f"{whose}: {error}; soften it first, or take a higher rate") from None
-    stiffness, damping = (float(f"{value:.{DIGITS}g}") for value in pair)
+    stiffness, damping = (significant(value, DIGITS) for value in pair)
     return replaced(part, stiffness=stiffness, damping=damping)

@@ -16,7 +16,7 @@ from sandbox.editor.tools.drawing_outline import OutlineDrawing
 from sandbox.editor.tools.editor_tool import EditorTool
 from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
-from sandbox.level.format.quantities import replaced
+from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.fitting import Loop, fitting_spacing
 from sandbox.level.kinds.jelly import BoxShape, CircleShape, JellyDef, PolygonShape
@@ -50,7 +50,7 @@ def jelly_spacing(width: float, height: float, cells: int | None) -> float:
         return shorter / cells
     # A long thin jelly is coarser, but one cell thick at least.
     spacing = min(max(shorter / CELLS_ACROSS, math.sqrt(width * height / JELLY_CELLS)), shorter)
-    return float(f"{spacing:.{SPACING_DIGITS}g}") if spacing > 0.0 else 0.0
+    return significant(spacing, SPACING_DIGITS) if spacing > 0.0 else 0.0
 
 
 def fitted(polygon: Loop, sized: dict[str, Any]) -> dict[str, Any]:

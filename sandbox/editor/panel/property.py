@@ -23,11 +23,10 @@ from sandbox.editor.panel.typed import (
     read_pairs,
     read_touched,
     read_words,
-    significant,
     stepped,
     touched_text,
 )
-from sandbox.level.format.quantities import Description
+from sandbox.level.format.quantities import Description, significant
 
 # Makes a document in which a field is what the function makes of its value.
 Change = Callable[[Document, Callable[[Any], Any]], Document]

@@ -7,6 +7,7 @@ from typing import Any, NoReturn
 
 from sandbox.editor.document import EditError
 from sandbox.level.faults.level_error import shown
+from sandbox.level.format.quantities import significant
 
 # Digits that a number is shown with where they say all of it.
 DIGITS = 9
@@ -28,11 +29,6 @@ def exact_text(value: float) -> str:
     """A number as short as it can be without becoming another one; of lists, all of which are read when one changes."""
     text = number_text(value)
     return text if float(text) == value else repr(value)
-
-
-def significant(value: float, digits: int) -> float:
-    """A number rounded to so many digits, as a person reads it."""
-    return float(f"{value:.{digits}g}")
 
 
 def stepped(value: float, steps: int, low: float | None, high: float | None, *, whole: bool = False) -> float:

@@ -42,6 +42,11 @@ class Description(BaseModel):
     model_config = ConfigDict(strict=True, frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True)
 
 
+def significant(value: float, digits: int) -> float:
+    """A number rounded to so many digits, as a person reads it."""
+    return float(f"{value:.{digits}g}")
+
+
 Described = TypeVar("Described", bound=Description)
 
 # Looked up once: a copy costs little more than these calls.
