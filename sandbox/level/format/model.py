@@ -180,7 +180,7 @@ class ParticleDef(Description):
     spin: TurnRate = Field(default=0.0, description="How fast its disc turns at the start, anticlockwise.")
     group: Group = None
     look: ParticleLook | None = Field(default=None, description="How it looks; null = automatic.")
-    extras: Extras = Field(default={})
+    extras: Extras = Field(default_factory=dict)
 
 
 class SpringDef(Description):
@@ -200,7 +200,7 @@ class SpringDef(Description):
         default=None, description="Lengths between which it is driven; null = it is no hydraulic."
     )
     group: Group = None
-    extras: Extras = Field(default={})
+    extras: Extras = Field(default_factory=dict)
 
     @property
     def given_length(self) -> float | None:
@@ -238,7 +238,7 @@ class TerrainDef(Description):
     friction: Friction = None
     restitution: Restitution = None
     group: Group = None
-    extras: Extras = Field(default={})
+    extras: Extras = Field(default_factory=dict)
 
 
 class Level(Description):
@@ -279,7 +279,7 @@ class Level(Description):
         default=(), max_length=CHECK_LIMIT, description="What must hold of the level's run."
     )
     look: LevelLook | None = Field(default=None, description="How it looks; null = automatic.")
-    extras: Extras = Field(default={})
+    extras: Extras = Field(default_factory=dict)
 
     @property
     def has_contacts(self) -> bool:

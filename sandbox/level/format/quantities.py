@@ -124,7 +124,10 @@ Rate = Annotated[float, Field(ge=0.0, le=RATE_LIMIT, json_schema_extra=unit("m/s
 Key = Annotated[str, Field(pattern=KEY_PATTERN)]
 Seconds = Annotated[float, Field(ge=0.0, le=SECONDS_LIMIT, json_schema_extra=unit("s"))]
 Index = Annotated[int, Field(ge=0)]
-Extras = Annotated[dict[str, Any], Field(description="Data of other tools; kept and ignored.")]
+# A default of {} would be copied, item by item of a level, deeply; what makes a new one has no place in the schema.
+Extras = Annotated[
+    dict[str, Any], Field(description="Data of other tools; kept and ignored.", json_schema_extra={"default": {}})
+]
 Group = Annotated[Name | None, Field(description="Group that it is selected and moved with in the editor.")]
 Corners = Annotated[tuple[Point, ...], Field(min_length=2, max_length=CORNER_LIMIT)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]

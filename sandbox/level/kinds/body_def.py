@@ -93,7 +93,7 @@ class BodyDef(Description):
     collision_group: CollisionGroup = None
     group: Group = None
     look: BodyLook | None = Field(default=None, description="How it looks; null = as its material says, or automatic.")
-    extras: Extras = Field(default={})
+    extras: Extras = Field(default_factory=dict)
 
 
 class BendingDef(Description):
