@@ -194,6 +194,10 @@ def test_lists_are_typed_with_and_without_brackets(level):
         ("rope", "id", "deck", '"deck" is taken; all bodies, loose particles and terrain need ids of their own'),
         ("rope", "id", "a.b", None),
         ("wheel", "thickness", "2", '"wheel": thickness: 2.0 is not below the radius, 2.0'),
+        ("box", "firmness.sag", "-1", '"box": firmness.sag: -0.01 is below the limit 0'),
+        ("box", "firmness.hz", "-1", '"box": firmness.hz: -1.0 is below the limit 0.01'),
+        ("box", "firmness.hz", "-6785", '"box": firmness.hz: -6785.0 is below the limit 0.01'),
+        ("box", "firmness.hz", "1e300", '"box": firmness.hz: 1e+300 is above the limit 1000'),
     ],
 )
 def test_a_wrong_text_gives_one_line_and_changes_nothing(level, name, field, text, fault):

@@ -9,6 +9,7 @@ from sandbox.app.play.playback import Playback
 from sandbox.app.widgets.fields import Choice, Field, typed_number
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
+from sandbox.level.format.quantities import significant
 from sandbox.physics import jit
 from sandbox.physics.firmness import LARGEST_READ, WORDS, OutOfReach, Reach, coefficients_of, lowest_mode_of, word_of
 from sandbox.physics.forms import Firmness
@@ -17,6 +18,8 @@ from sandbox.session.commands import SetFirmness
 ALL_BODIES = "All bodies"
 DASH = "–"
 MIXED = "mixed"
+# Digits of readings.
+DIGITS = 3
 
 
 class FirmnessRows:
@@ -119,7 +122,7 @@ class FirmnessRows:
         pair = coefficients_of(self.playback.session.world, slot, self._mode(slot))
         if pair is None:
             return None
-        sag, hz, ratio = (float(f"{value:.3g}") for value in self._reach(slot).reading(*pair))
+        sag, hz, ratio = (significant(value, DIGITS) for value in self._reach(slot).reading(*pair))
         return sag, hz, ratio
 
     def _kept(self, slot: int, place: int) -> float | None:

@@ -1,10 +1,11 @@
 """How soft bodies are as a whole, as a panel shows it: in words, by sag, by frequency and damping ratio."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from functools import partial
 from typing import Any
 
-from sandbox.editor.document import Document, EditError
+from sandbox.editor.document import Document, EditError, validated
 from sandbox.editor.edits.fields import change_items
 from sandbox.editor.items import Definition, Item
 from sandbox.editor.panel.field_info import FieldInfo, abouts
@@ -12,7 +13,7 @@ from sandbox.editor.panel.property import Property, same
 from sandbox.level.faults.level_error import shown
 from sandbox.level.format.limits import DEFAULT_MATERIAL, FREQUENCY_RANGE, SAG_LIMIT
 from sandbox.level.format.model import Level, NissenMaterial
-from sandbox.level.format.quantities import significant
+from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BodyDef, FirmnessDef
 from sandbox.physics.equation import of_body
@@ -126,8 +127,11 @@ def _given(level: Level, body: BodyDef, asked: Asked) -> tuple[Firmness | None, 
     if reach.lowest_mode == 0.0:
         raise EditError(f"the form of {shown(body.id)} is not stiff without pins, so it has no firmness")
     wanted = asked(reach, body.firmness)
+    if wanted is None:
+        return None, None
+    validated(replaced(body, firmness=asdict(wanted)))
     try:
-        return wanted, None if wanted is None else reach.nearest(wanted)
+        return wanted, reach.nearest(wanted)
     except OutOfReach as error:
         raise EditError(f"{shown(body.id)}: {error}") from None
 
@@ -138,7 +142,7 @@ def _with_firmness(document: Document, bodies: Mapping[Item, BodyDef], asked: As
     def change(part: Definition) -> Any:
         assert isinstance(part, BodyDef)
         _, given = _given(level, part, asked)
-        return None if given is None else {"sag": given.sag, "hz": given.hz, "ratio": given.ratio}
+        return None if given is None else asdict(given)
 
     return change_items(document, frozenset(bodies), "firmness", change)
 
