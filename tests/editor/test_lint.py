@@ -28,6 +28,7 @@ from sandbox.level.format.model import (
     WallsDef,
 )  # fmt: skip
 from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.kinds.bridge import BridgeDef
 from sandbox.level.kinds.jelly import BoxShape, JellyDef
 from sandbox.level.kinds.rope import RopeDef
@@ -254,6 +255,14 @@ def test_a_weight_that_is_welded_on_counts_for_the_limit():
     load = spring_loads(build_world(level))
     assert f"add up to {load.max():.3g} at" in finding.text
     assert finding.text.startswith(f'{int(np.sum(load >= 4.0))} springs of "rope"')
+
+
+@pytest.mark.parametrize("substeps", [1, 4])
+def test_the_firmness_of_a_body_counts_for_the_limit(substeps):
+    settings = Settings(solver="single_pass", substeps=substeps)
+    level = level_of(bodies=(cube("firm", 0.0, 2.0, firmness=FirmnessDef(hz=4.0, ratio=0.9)),), settings=settings)
+    text, *_ = texts(level)
+    assert f"add up to {spring_loads(build_world(level)).max():.3g} at" in text
 
 
 @pytest.mark.parametrize("path", LEVELS, ids=lambda path: path.stem)

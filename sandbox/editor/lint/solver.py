@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from sandbox.editor.lint.finding import Finding, Rule, called, called_spring, middle_of, place_of
 from sandbox.editor.scene import Scene
 from sandbox.level.build.constraints import add_constraints
+from sandbox.level.build.forms import add_forms
 from sandbox.level.build.materials import coefficients
 from sandbox.level.format.model import Level, NissenMaterial
 from sandbox.physics.settings import WorldSettings
@@ -47,8 +48,12 @@ def _network(level: Level, scene: Scene) -> World:
     materials = {name: level.materials.get(name, NissenMaterial()) for name in scene.materials}
     for name, values in coefficients(scene.material, materials).items():
         setattr(world, name, values)
+    world.lowest_mode = np.zeros(len(scene.rest_length))
     world.position, world.energy_bank, world.spin = scene.position, *np.zeros((2, count))
-    add_constraints(world, scene.parts.names.layout, level, scene.parts.bodies.made, first, materials)
+    made = scene.parts.bodies.made
+    firsts = add_constraints(world, scene.parts.names.layout, level, made, first, materials)
+    world.trust()
+    add_forms(world, level, made, materials, firsts)
     return world
 
 

@@ -41,7 +41,7 @@ def build_world(level: Level) -> World:
     add_actuators(world, level, plan, slots)
     world.reserve_grabs()
     firsts = add_constraints(world, plan.layout, level, plan.bodies, slots, materials)
-    add_forms(world, level, plan, materials, firsts)
+    add_forms(world, level, plan.bodies, materials, firsts)
     world.terrain, world.surface = terrain_of(level), surface_of(level)
     world.source = level
     return world

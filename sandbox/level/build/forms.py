@@ -1,23 +1,28 @@
 """Bodies of a level whose firmness can be set, made known to its world, with the firmness that the level asks."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
-from sandbox.level.build.plan import Plan
 from sandbox.level.format.model import HookeMaterial, Level, Material
+from sandbox.level.kinds.expansion import Expansion
 from sandbox.physics.firmness import Reach, set_firmness
 from sandbox.physics.forms import FirmBody
 from sandbox.physics.world import TRIANGLE, World
 
 
 def add_forms(
-    world: World, level: Level, plan: Plan, materials: dict[str, Material], first_constraint: list[int]
-) -> None:
+    world: World, level: Level, bodies: Sequence[Expansion[Any]], materials: dict[str, Material],
+    first_constraint: list[int],
+) -> None:  # fmt: skip
     """Give the world the forms of those bodies that enough holds to be stiff without pins, and set their firmness.
 
-    first_constraint: where the constraints of each body begin, and where the last end.
+    bodies: what those of the level expand to; first_constraint: where the constraints of each body begin, and where the
+    last end.
     """
     first_spring = 0
-    for number, (body, made) in enumerate(zip(level.bodies, plan.bodies, strict=True)):
+    for number, (body, made) in enumerate(zip(level.bodies, bodies, strict=True)):
         springs = first_spring + np.arange(len(made.pairs))
         first_spring += len(made.pairs)
         constraints = np.arange(first_constraint[number], first_constraint[number + 1])
