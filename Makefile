@@ -2,6 +2,7 @@
 # Kernels are compiled before, or each worker would compile all of them.
 # make goldens: run the kept recordings whole, bit for bit; minutes. make goldens-anew: record them anew, which only a
 # change of what a tick computes is a reason to.
+# make bounds: every test, with kernels that look whether an index lies in its array, which they leave to us else.
 # make abuse: what stirring, throwing and driving does to things, in figures; hours.
 # make soak: random mouse and keyboard at the app for minutes, and a while in a window on a virtual screen.
 # make pictures: draw the gallery's pictures of shipped levels anew, after one was changed, and those of docs/.
@@ -13,7 +14,7 @@ WORKERS ?= 3
 # Byte code is kept whatever the environment says, or each of many processes would compile the package anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: play install test lint goldens goldens-anew pictures bench abuse soak clean
+.PHONY: play install test lint bounds goldens goldens-anew pictures bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
@@ -29,6 +30,10 @@ lint: $(VENV)/installed-dev
 	$(BIN)/ruff format --check sandbox tests examples
 	$(BIN)/mypy
 	$(BIN)/mypy --strict --follow-imports=silent examples
+
+bounds: export NUMBA_BOUNDSCHECK := 1
+bounds: export NUMBA_CACHE_DIR := $(CURDIR)/$(VENV)/bounds
+bounds: test
 
 goldens: $(VENV)/installed-dev
 	-$(BIN)/sandbox prepare

@@ -20,6 +20,8 @@ IMPORTED = (
     "numba.core.codegen.JITCodeLibrary",
     "numba.core.environment.lookup_environment",
     "numba.core.compiler.Compiler",
+    "numba.core.compiler_machinery.register_pass",
+    "numba.core.typed_passes.NativeLowering",
     "numba.core.caching.NullCache",
     "numba.core.datamodel.default_manager",
     "numba.core.typing.templates.AttributeTemplate",
@@ -166,6 +168,26 @@ def missing(self):
     raise AttributeError({name!r})
 setattr(linking._EntryLibrary, {name!r}, property(missing, lambda self, value: None))
 assert not linking.links_once()
+"""
+    assert outcome(change) == expected()
+
+
+def test_an_index_below_0_counts_from_no_end_and_is_found_where_bounds_are_looked_at(outcome):
+    change = """
+import numba
+numba.config.BOUNDSCHECK = 1
+from sandbox.physics import jit
+
+@jit.kernel
+def write(values, k):
+    values[k] = 1.0
+
+for k in (-1, 3):
+    try:
+        write(np.zeros(3), k)
+    except IndexError:
+        continue
+    raise AssertionError(k)
 """
     assert outcome(change) == expected()
 
