@@ -1,12 +1,13 @@
 """No triangle of a jelly turns over, whatever is done to it; what holds it costs nobody energy or momentum."""
 
 import itertools
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from sandbox.physics.collision.inversion import triangles_of
+from sandbox.physics.collision.inversion import find_inverted, new_inversions, triangles_of
 from sandbox.physics.constraints import AREA
 from sandbox.physics.energy import total_energy
 from sandbox.physics.jit import COMPILED
@@ -14,6 +15,7 @@ from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
 from tests.bench import jelly_abuse
 from tests.support import folding
+from tests.support.overlaps import overlaps
 from tests.support.physics_scenes import network, run, scaled
 
 CASES = list(itertools.product(folding.DEEDS, folding.SHAPES, folding.COEFFICIENTS, (1, 4)))
@@ -103,6 +105,42 @@ def test_what_a_moved_pin_folds_is_let_go_and_comes_back():
         world.unpin(corner)
     run(world, scaled(300, 60))
     assert folding.areas(world).min() > 0.9
+
+
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize("inner", [False, True])
+def test_triangles_that_go_on_round_a_particle_of_the_outline_are_seen_from_every_side(way, inner):
+    # Five about the first particle, or six that close the ring.
+    corners = 6
+    angles = np.append(0.0, np.arange(corners) * math.tau / corners)
+    points = np.stack([np.cos(angles), np.sin(angles)], axis=1) * (np.arange(corners + 1) > 0)[:, None]
+    world = network(points, [])
+    ring = [[0, 1 + k, 1 + (k + 1) % corners][::way] for k in range(corners if inner else corners - 1)]
+    world.add_constraints(AREA, ring)
+    triangles = triangles_of(world)
+    found, marked = new_inversions(triangles), np.zeros(world.particle_count, np.bool_)
+    for between, turned in itertools.product((0.98, 1.02), np.linspace(0.0, math.tau, 17)):
+        apart = math.tau / corners if inner else between * math.tau / (corners - 1)
+        turn = turned + apart * np.arange(corners)
+        world.position[1 : corners + 1] = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        find_inverted(world.position, world.constraint_rest, triangles, found, marked)
+        assert marked[: corners + 1].all() == marked.any() == (between > 1.0 and not inner)
+        # Their triangles are held all the same.
+        assert not found.is_inverted.any()
+
+
+def test_a_jelly_that_is_folded_over_at_its_outline_comes_back_and_turns_no_triangle_over():
+    world = folding.wound()
+    start, most = total_energy(world), 0.0
+    assert max(overlaps(world).depth.values()) > 1.0
+    for _ in range(10):
+        step(world)
+        most = max(most, total_energy(world))
+        assert folding.areas(world).min() > 0.0
+    assert not overlaps(world).depth
+    assert most <= start
+    run(world, scaled(50, 10))
+    assert folding.areas(world).min() > scaled(9, 5) / 10.0
 
 
 def test_a_jelly_on_its_floors_has_their_energy_and_gets_no_more_out_of_them():

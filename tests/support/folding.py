@@ -72,6 +72,21 @@ def make(deed: str, shape: str, coefficients: tuple[float, float], **settings: A
     return build_world(level(deed, shape, coefficients, **settings))
 
 
+def wound() -> World:
+    """A disc of jelly by itself, whose outline a stirred heap has left folded over; no triangle is turned over."""
+    body = {"type": "jelly", "id": "j", "shape": {"circle": 0.55}, "spacing": 0.25, "material": "m"}
+    given = {
+        "format": "spring-sandbox/level", "version": 1, "name": "wound", "settings": {"gravity": (0.0, 0.0)},
+        "bodies": [body], "contacts": {}, "materials": {"m": {"stiffness": 0.1, "damping": 0.5}},
+    }  # fmt: skip
+    world = build_world(Level.model_validate_json(json.dumps(given)))
+    world.position[:13] = (
+        (-0.18, -0.23), (-0.07, -0.06), (0.05, 0.01), (0.05, -0.18), (0.07, -0.18), (-0.24, -0.02), (-0.03, 0.13),
+        (0.24, 0.02), (0.27, -0.18), (-0.32, -0.03), (-0.0, 0.22), (0.27, 0.23), (-0.12, 0.27),
+    )  # fmt: skip
+    return world
+
+
 def areas(world: World, body: str = "") -> Floats:
     """Areas of all triangles of a world, or of a body, as shares of those wanted."""
     triangles = triangles_of(world)

@@ -1,7 +1,9 @@
 """Inversion: which jellies are so out of shape that springs and areas alone may not find back.
 
 A jelly is a group of triangles that share sides. It is inverted while a triangle of it is turned over, or drawn out to
-LARGEST times its area, or while the triangles about one of its inner particles do not wind round that just once.
+LARGEST times its area, or while the triangles about one of its inner particles do not wind round that just once. It is
+wound where those about a particle of its outline go on round that beyond where they began: then its outline crosses
+itself there though no triangle is turned over, and what is next to it, which may not touch it, does not hold it apart.
 """
 
 import functools
@@ -29,7 +31,8 @@ class Jellies(NamedTuple):
 
     Of triangles: group (t,) and member (t, 3) = their corners among the k. first (g,): a triangle of each jelly; start
     (g+1,): where its particles begin; particle (k,); corner (k,): one of the 3 t corners that stands there; inner (k,):
-    whether triangles are all round it.
+    whether triangles are all round it. fan (f, 4): a particle of an outline, the next one on that, and the other two
+    corners of each triangle about it but the first; those of jelly g: fan[fan_start[g]:fan_start[g + 1]].
     """
 
     group: Slots
@@ -39,6 +42,8 @@ class Jellies(NamedTuple):
     particle: Slots
     corner: Slots
     inner: Flags
+    fan: Slots
+    fan_start: Slots
 
 
 def group_triangles(corners: Slots) -> Jellies:
@@ -66,7 +71,26 @@ def _grouped(content: bytes) -> Jellies:
     ends = np.unique(np.append(pairs[:, 0] << 32 | pairs[:, 1], pairs[:, 1] << 32 | pairs[:, 0])) >> 32
     neighbours, triangles = (np.bincount(each, minlength=len(particles)) for each in (ends, member.reshape(-1)))
     start = np.searchsorted(particles >> 32, np.arange(len(first) + 1))
-    return Jellies(group, member, first, start, particles & 0xFFFFFFFF, corner, neighbours == triangles)
+    fan, fan_start = _fans(corners, keys, group, len(first))
+    return Jellies(group, member, first, start, particles & 0xFFFFFFFF, corner, neighbours == triangles, fan, fan_start)
+
+
+def _fans(corners: Slots, keys: Slots, group: Slots, groups: int) -> tuple[Slots, Slots]:
+    """The fans of triangles about particles of outlines, see Jellies. keys (3 t,): of sides, the same where shared."""
+    _, side, count = np.unique(keys, return_inverse=True, return_counts=True)
+    about = np.stack([np.roll(corners, -k, axis=1) for k in range(3)], axis=-1).reshape(-1, 3)
+    owner = np.repeat(group, 3) << 32 | about[:, 0]
+    begins = np.flatnonzero(count[side] == 1)
+    # Where two fans meet in a particle, neither is told from the other.
+    begun, at, fans = np.unique(owner[begins], return_index=True, return_counts=True)
+    begun, following = begun[fans == 1], about[begins[at[fans == 1]], 1]
+    chosen = np.flatnonzero(np.isin(owner, begun))
+    chosen = chosen[np.argsort(group[chosen // 3], kind="stable")]
+    following = following[np.searchsorted(begun, owner[chosen])]
+    beyond = following != about[chosen, 1]
+    chosen, following = chosen[beyond], following[beyond]
+    fan = np.stack([about[chosen, 0], following, about[chosen, 1], about[chosen, 2]], axis=1)
+    return fan, np.searchsorted(group[chosen // 3], np.arange(groups + 1))
 
 
 @inlined_kernel
@@ -98,6 +122,27 @@ def wind(place: Floats, a: int, b: int, c: int, member: Slots, at: int, turns: S
     return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 
 
+@inlined_kernel
+def _doubled_area(place: Floats, a: int, b: int, c: int) -> float:
+    return (place[b, 0] - place[a, 0]) * (place[c, 1] - place[a, 1]) - (place[b, 1] - place[a, 1]) * (
+        place[c, 0] - place[a, 0]
+    )
+
+
+@inner_kernel
+def is_wound(g: int, once: int, place: Floats, fan: Slots, fan_start: Slots) -> bool:
+    """Whether jelly g is wound. once: 1 where its triangles run counter-clockwise, else -1; fan: see Jellies."""
+    for f in range(fan_start[g], fan_start[g + 1]):
+        p = fan[f, 0]
+        begin = fan[f, 1]
+        if (
+            once * _doubled_area(place, p, fan[f, 2], begin) >= 0.0
+            and once * _doubled_area(place, p, begin, fan[f, 3]) > 0.0
+        ):
+            return True
+    return False
+
+
 class Triangles(NamedTuple):
     """The triangles of a world that keep their areas, t of them: constraint (t,), corners (t, 3), and their jellies."""
 
@@ -123,7 +168,7 @@ def is_out_of_shape(area: float, wanted: float, form: float) -> bool:
 def find_inverted(
     position: Floats, constraint_rest: Floats, triangles: Triangles, found: Inversions, inverted: Flags
 ) -> None:
-    """Mark the particles, of all those in jellies, that belong to an inverted jelly."""
+    """Find the inverted jellies; mark the particles, of all those in jellies, that belong to them or to wound ones."""
     corners = triangles.corners
     jellies = triangles.jellies
     turns = found.turns
@@ -143,7 +188,7 @@ def find_inverted(
         for i in range(jellies.start[g], jellies.start[g + 1]):
             if jellies.inner[i] and turns[i] != once:
                 found.is_inverted[g] = True
-        if found.is_inverted[g]:
+        if found.is_inverted[g] or is_wound(g, once, position, jellies.fan, jellies.fan_start):
             for i in range(jellies.start[g], jellies.start[g + 1]):
                 inverted[jellies.particle[i]] = True
 

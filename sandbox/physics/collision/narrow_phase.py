@@ -156,7 +156,7 @@ def find_near(p: int, e: int, colliders: Colliders, near: Near, count: int) -> i
     if colliders.inverse_mass[p] + colliders.inverse_mass[a] + colliders.inverse_mass[b] == 0.0:
         return count
     own = colliders.owner[a] == colliders.owner[p]
-    # An inverted jelly would be kept so by its own edges.
+    # An inverted or wound jelly would be kept so by its own edges.
     if own and (colliders.inverted[p] or colliders.edge_start[p] == colliders.edge_start[p + 1]):
         return count
     if are_joined(p, a, colliders) or are_joined(p, b, colliders):

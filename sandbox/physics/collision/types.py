@@ -22,10 +22,10 @@ class Colliders(NamedTuple):
     inverse_mass [1/kg], turning [1/kg] = the weight of its surface (turning.py), 0: it does not turn, rolling. By edge:
     edge_a, edge_b, side (1: solid on the left, 0: two sides), number = its spring, or of
     terrain. Edges of vertex v: edge_of[edge_start[v]:edge_start[v + 1]]; particles that a spring joins to p: near_of
-    likewise. shielded (n,): see outline.py. inverted, by vertex: whether its body is now, and so does not touch itself.
-    shape, by vertex: the number of the outline of its owner, -1: none. parting, by vertex: whether it gives way to
-    shapes that its own parts from; parted (k, 3): these pairs of shapes, the lower first, and how many of two vertices
-    must give way for them not to touch, parted_count (1,) of them.
+    likewise. shielded (n,): see outline.py. inverted, by vertex: whether its body is now, or wound, and so does not
+    touch itself. shape, by vertex: the number of the outline of its owner, -1: none. parting, by vertex: whether it
+    gives way to shapes that its own parts from; parted (k, 3): these pairs of shapes, the lower first, and how many of
+    two vertices must give way for them not to touch, parted_count (1,) of them.
     """
 
     position: Floats

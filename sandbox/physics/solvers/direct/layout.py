@@ -321,8 +321,11 @@ def _lay_out_goals(constraints: Constraints, body: Slots, bodies: int, form: Flo
         group=group,
         member=member,
         inner=jellies.inner,
+        fan=jellies.fan,
+        fan_start=jellies.fan_start,
         turns=np.zeros(len(jellies.particle), dtype=np.int64),
         inverted=np.zeros(len(sample), dtype=np.bool_),
+        drawn=np.zeros(len(sample), dtype=np.bool_),
     )
 
 

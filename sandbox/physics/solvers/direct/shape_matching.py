@@ -1,13 +1,13 @@
-"""Shape matching of an inverted jelly: what its springs and areas cannot find alone, since a step up lies before it.
+"""Shape matching of jellies out of shape: what springs and areas cannot find alone, since a step up lies before it.
 
-While a jelly is inverted (inversion.py), each of its particles is joined by a spring of the jelly's own Cs and Cd to
-its target: its place in the form, moved and turned to fit the particles (Mueller and others 2005). Those push no
-jelly as a whole, and let it lose its spin; what they add to the body's energy was lost by the body before.
+While a jelly is inverted or wound (inversion.py), each of its particles is joined by a spring of the jelly's own Cs
+and Cd to its target: its place in the form, moved and turned to fit the particles (Mueller and others 2005). Those push
+no jelly as a whole, and let it lose its spin; what they add to the body's energy was lost by the body before.
 """
 
 import math
 
-from sandbox.physics.collision.inversion import is_out_of_shape, wind
+from sandbox.physics.collision.inversion import is_out_of_shape, is_wound, wind
 from sandbox.physics.equation import implicit_masses
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.system import Goals, Rows, Span, System
@@ -18,8 +18,8 @@ ROUND = 1e-3
 
 
 @inner_kernel
-def find_inverted(body: int, span: Span, system: System) -> bool:
-    """Whether any jelly of a body is inverted, and which: into the goals' `inverted`."""
+def find_drawn(body: int, span: Span, system: System) -> bool:
+    """Whether any jelly of a body is inverted or wound, and which: into the goals' `inverted` and `drawn`."""
     rows, constraints, goals = system.rows, system.constraints, system.goals
     first_group = goals.of_body[body]
     last_group = goals.of_body[body + 1]
@@ -41,14 +41,15 @@ def find_inverted(body: int, span: Span, system: System) -> bool:
             rows.position, constraints.row[first], constraints.row[first + 1], constraints.row[first + 2],
             goals.member, k, goals.turns,
         )  # fmt: skip
-    any_inverted = False
+    any_drawn = False
     for g in range(first_group, last_group):
         round_once = 1 if constraints.rest[goals.sample[g], 1] > 0.0 else -1
         for i in range(goals.start[g], goals.start[g + 1]):
             if goals.inner[i] and goals.turns[i] != round_once:
                 goals.inverted[g] = True
-        any_inverted = any_inverted or goals.inverted[g]
-    return any_inverted
+        goals.drawn[g] = goals.inverted[g] or is_wound(g, round_once, rows.position, goals.fan, goals.fan_start)
+        any_drawn = any_drawn or goals.drawn[g]
+    return any_drawn
 
 
 @inner_kernel
@@ -89,7 +90,7 @@ def _fit(g: int, rows: Rows, goals: Goals) -> tuple[float, float, float, float, 
 
 @inner_kernel
 def match_shape(body: int, span: Span, system: System, h: float) -> bool:
-    """Join the inverted jellies of a body to their form: into `inertia` and `aim`; whether there are any.
+    """Join the jellies of a body that are out of shape to their form: into `inertia` and `aim`; whether there are any.
 
     K |v' - w|^2 / 2 with w = the jelly's velocity - Cs / Cd times the way from the target to the particle / h.
     """
@@ -99,7 +100,7 @@ def match_shape(body: int, span: Span, system: System, h: float) -> bool:
     for g in range(goals.of_body[body], goals.of_body[body + 1]):
         # Of a free body with other parts it would push those: its momentum is kept.
         whole = goals.start[g + 1] - goals.start[g] == span.last_row - span.first_row
-        if not goals.inverted[g] or not (system.bodies.anchored[body] or whole):
+        if not goals.drawn[g] or not (system.bodies.anchored[body] or whole):
             continue
         k = goals.sample[g]
         stiff, restoring = implicit_masses(constraints.stiffness[k], constraints.damping[k], 1.0)

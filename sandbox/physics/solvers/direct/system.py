@@ -76,7 +76,7 @@ class Inputs(NamedTuple):
 class Bodies(NamedTuple):
     """First row, spring and constraint of each body and one past the last; free particle of lowest slot; if anchored.
 
-    The rest is scratch: touched by contacts; underdamped: some Cs is above its Cd; inverted, matched: see
+    The rest is scratch: touched by contacts; underdamped: some Cs is above its Cd; drawn, matched: see
     shape_matching.py; before [J]: energy once forces, pins and drives have moved; held [J]: what its energy bank holds.
     """
 
@@ -87,7 +87,7 @@ class Bodies(NamedTuple):
     anchored: Flags
     touched: Flags
     underdamped: Flags
-    inverted: Flags
+    drawn: Flags
     matched: Flags
     before: Floats
     held: Floats
@@ -203,7 +203,7 @@ class Goals(NamedTuple):
 
     of_body (b+1,): first group of each body; start (g+1,): first particle of each; row (k,), form [m] (k, 2); sample
     (g,): a constraint of each. Of constraints (t,): group, -1: in none, and member (t, 3) = their corners among the k.
-    inner (k,): whether triangles are all round a particle. turns (k,) and inverted (g,) are scratch.
+    inner (k,), fan (f, 4), fan_start (g+1,): see Jellies. Scratch: turns (k,); inverted (g,); drawn (g,): or wound.
     """
 
     of_body: Slots
@@ -214,8 +214,11 @@ class Goals(NamedTuple):
     group: Slots
     member: Slots
     inner: Flags
+    fan: Slots
+    fan_start: Slots
     turns: Slots
     inverted: Flags
+    drawn: Flags
 
 
 class System(NamedTuple):
