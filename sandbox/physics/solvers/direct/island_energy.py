@@ -306,8 +306,8 @@ def store_energies(contacts: Contacts, touch: Touch, system: System, state: Stat
         island = islands.island[k]
         limit = islands.limit[k]
         is_body = k < islands.counts[BODIES]
-        # As in solve.py: a body out of shape keeps all that it lost for the way back to its form.
-        if is_body and bodies.drawn[islands.body[k]] and not bodies.anchored[islands.body[k]]:
+        # As in solve.py: an inverted body keeps all that it lost for the way back to its form.
+        if is_body and bodies.inverted[islands.body[k]] and not bodies.anchored[islands.body[k]]:
             limit = max(limit, islands.held[k] + islands.before[k] - islands.after[k])
         stored = max(0.0, min(islands.allowed[island] - islands.total[island], limit))
         islands.allowed[island] -= stored

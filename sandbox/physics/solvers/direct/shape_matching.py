@@ -18,13 +18,13 @@ ROUND = 1e-3
 
 
 @inner_kernel
-def find_drawn(body: int, span: Span, system: System) -> bool:
-    """Whether any jelly of a body is inverted or wound, and which: into the goals' `inverted` and `drawn`."""
+def find_inverted(body: int, span: Span, system: System) -> tuple[bool, bool]:
+    """Whether any jelly of a body is inverted, or at least wound, and which: into the goals' `inverted` and `drawn`."""
     rows, constraints, goals = system.rows, system.constraints, system.goals
     first_group = goals.of_body[body]
     last_group = goals.of_body[body + 1]
     if first_group == last_group:
-        return False
+        return False, False
     for i in range(goals.start[first_group], goals.start[last_group]):
         goals.turns[i] = 0
     for g in range(first_group, last_group):
@@ -41,6 +41,7 @@ def find_drawn(body: int, span: Span, system: System) -> bool:
             rows.position, constraints.row[first], constraints.row[first + 1], constraints.row[first + 2],
             goals.member, k, goals.turns,
         )  # fmt: skip
+    any_inverted = False
     any_drawn = False
     for g in range(first_group, last_group):
         round_once = 1 if constraints.rest[goals.sample[g], 1] > 0.0 else -1
@@ -48,8 +49,9 @@ def find_drawn(body: int, span: Span, system: System) -> bool:
             if goals.inner[i] and goals.turns[i] != round_once:
                 goals.inverted[g] = True
         goals.drawn[g] = goals.inverted[g] or is_wound(g, round_once, rows.position, goals.fan, goals.fan_start)
+        any_inverted = any_inverted or goals.inverted[g]
         any_drawn = any_drawn or goals.drawn[g]
-    return any_drawn
+    return any_inverted, any_drawn
 
 
 @inner_kernel

@@ -22,7 +22,7 @@ from sandbox.physics.solvers.direct.factor import refine, solve_linear
 from sandbox.physics.solvers.direct.families import find_tension, keep_tension, linearise, load, potential, update
 from sandbox.physics.solvers.direct.motion import copy, hold_spin, hold_triangles, kinetic, scale
 from sandbox.physics.solvers.direct.newton import minimise
-from sandbox.physics.solvers.direct.shape_matching import find_drawn, match_shape, release_shape
+from sandbox.physics.solvers.direct.shape_matching import find_inverted, match_shape, release_shape
 from sandbox.physics.solvers.direct.system import Inputs, Span, State, System, span_of
 
 # Directions are those at x + h AHEAD (v' - s). Lower explodes taut ropes, higher gains nothing.
@@ -44,11 +44,13 @@ def open_body(body: int, span: Span, system: System, state: State, inputs: Input
     bodies.underdamped[body] = underdamped
     bodies.before[body] = kinetic(span, rows.mass, rows.target) + moved
     bodies.held[body] = open_bank(body, span, system, state.energy_bank, moved, h)
-    bodies.drawn[body] = False
+    bodies.inverted[body] = False
     bodies.matched[body] = False
-    if span.last_constraint > span.first_constraint and find_drawn(body, span, system):
-        bodies.drawn[body] = True
-        bodies.matched[body] = match_shape(body, span, system, h)
+    if span.last_constraint > span.first_constraint:
+        inverted, drawn = find_inverted(body, span, system)
+        bodies.inverted[body] = inverted
+        if drawn:
+            bodies.matched[body] = match_shape(body, span, system, h)
 
 
 @inner_kernel
@@ -126,8 +128,8 @@ def step_body(body: int, span: Span, system: System, state: State, h: float) -> 
             after = _damp(span, system, allowed, h)
     limit = bank_limit(body, system)
     saved = held + before - after
-    # A body out of shape keeps all that it lost for the way back to its form; one that grabs move, no more than others.
-    if saved > limit and not (bodies.drawn[body] and not bodies.anchored[body]):
+    # An inverted body keeps all that it lost for the way back to its form; one that grabs move, no more than others do.
+    if saved > limit and not (bodies.inverted[body] and not bodies.anchored[body]):
         reserve(body, span, system, state, saved - limit)
         saved = limit
     state.energy_bank[bodies.lowest[body]] = saved if saved > 0.0 else 0.0

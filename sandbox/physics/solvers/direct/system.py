@@ -76,7 +76,7 @@ class Inputs(NamedTuple):
 class Bodies(NamedTuple):
     """First row, spring and constraint of each body and one past the last; free particle of lowest slot; if anchored.
 
-    The rest is scratch: touched by contacts; underdamped: some Cs is above its Cd; drawn, matched: see
+    The rest is scratch: touched by contacts; underdamped: some Cs is above its Cd; inverted, matched: see
     shape_matching.py; before [J]: energy once forces, pins and drives have moved; held [J]: what its energy bank holds.
     """
 
@@ -87,7 +87,7 @@ class Bodies(NamedTuple):
     anchored: Flags
     touched: Flags
     underdamped: Flags
-    drawn: Flags
+    inverted: Flags
     matched: Flags
     before: Floats
     held: Floats
