@@ -28,9 +28,11 @@ def test_no_energy_appears_after_the_hands_have_let_go(name):
 
 
 # With banks that kept what hands had put in, or all that contacts of a stiff rope might cost, these grew by .3 to 32 %.
-# Where the parts of a tick had other k, the last two had 2.9 and 1.6 times the energy of the release.
+# Where the parts of a tick had other k, the last two had 2.9 and 1.6 times the energy of the release. In 138 two discs
+# travel together in small steps and bounce; in 567 a jelly that was folded over sprang back with what a crash had cost.
 @pytest.mark.parametrize(
-    ("seed", "substeps"), [(348, None), (360, None), (424, None), (449, None), (460, None), (29, AUTO), (32, AUTO)]
+    ("seed", "substeps"),
+    [(k, None) for k in (138, 348, 360, 424, 449, 460, 567)] + [(29, AUTO), (32, AUTO)],
 )
 def test_in_random_scenes_no_energy_appears(seed, substeps):
     found = energies(*random_scene(seed, substeps=substeps), 90)

@@ -150,6 +150,18 @@ def test_discs_bounce_the_same_wherever_in_a_tick_they_meet_the_ground(tick_rate
     np.testing.assert_allclose(peaks / drops, 0.25, atol=0.02)
 
 
+def test_discs_that_touch_each_other_bounce_no_higher_than_one_alone():
+    w = world(FLOOR)
+    add_discs(w, [(0.0, 0.4), (5.0, 0.4), (5.2, 0.4)], restitution=1.0, friction=0.0)
+    heights = []
+    for _ in range(scaled(300, 120)):
+        step(w)
+        heights.append(w.position[:3, 1] - 0.1)
+    # After several bounces they are back to where they were dropped, to within what they fall in a small step.
+    assert 0.3 - 1e-3 < np.max(heights[-60:]) <= np.max(heights) < 0.3 + 1e-5
+    assert np.ptp(heights, axis=1).max() < 1e-9
+
+
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
 def test_discs_of_very_unequal_mass_in_a_closed_box_never_gain_energy(restitution):
     w = world(Chain([(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)], "hollow"), gravity=(0.0, 0.0))

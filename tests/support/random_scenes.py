@@ -10,9 +10,11 @@ import numpy as np
 
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.parse import parse_level
+from sandbox.physics.collision.outline import outline_of
 from sandbox.physics.energy import kinetic_energy, total_energy
 from sandbox.physics.settings import Substeps
 from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.solvers.contact.free_contacts import small_steps
 from sandbox.physics.step import step
 from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import World
@@ -160,12 +162,14 @@ def energies(world: World, drags: list[Drag], after: int) -> Energies:
         world.release(hand)
     live = world.particle_active & (world.inverse_mass > 0.0)
     weight = (world.mass * world.gravity_scale)[live, None] * np.array(world.settings.gravity)
-    lowest, half = float(np.sum(weight[:, 1])) * BOX[1], 0.5 * substep_time(world.settings)
+    lowest, h = float(np.sum(weight[:, 1])) * BOX[1], substep_time(world.settings)
+    # What nothing holds falls in small steps.
+    half = np.where(outline_of(world).held[live], 0.5 * h, 0.5 * h / small_steps(h))[:, None]
     rows = []
     for tick in range(after + 1):
         if tick:
             step(world)
-        back = half * float(np.sum(weight * world.velocity[live]))
+        back = float(np.sum(half * weight * world.velocity[live]))
         rows.append((total_energy(world) + lowest + back, kinetic_energy(world)))
     return Energies(*np.array(rows).T)
 

@@ -55,7 +55,7 @@ from sandbox.physics.forces import Forces, add_gravity_and_air, forces_of
 from sandbox.physics.integrate import advance, follow, turn
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
 from sandbox.physics.sanitise import LOST, UNSOUND, CheckedArrays, are_sound, checked_arrays, keep_if_sound
-from sandbox.physics.solvers.contact.free_contacts import Work, new_work, solve_free_contacts
+from sandbox.physics.solvers.contact.free_contacts import Work, new_work, small_steps, solve_free_contacts
 from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, new_islands, sort_free_contacts
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.substeps import Cadence
@@ -230,7 +230,7 @@ def _before_solver(
             particles.parting_reserve,
         )  # fmt: skip
         part_overlaps(outline, colliders, room.bounds, moved, room.overlaps, room.moved)
-    find_bounces(contacts, count, start, particles.velocity, h)
+    find_bounces(contacts, count, start, particles.velocity, outline.held, h, h / small_steps(h))
     carry_over(contacts, count, room.kept, room.counts[KEPT])
     bound = find_islands(contacts, count, particles.inverse_mass, outline.held, room.islands)
     found = sort_free_contacts(count, room.islands) if bound < count else 0

@@ -2,7 +2,7 @@
 
 import math
 
-from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.collision.types import Contacts, Flags, weight_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import Floats
 
@@ -11,8 +11,13 @@ SLOWEST_BOUNCE = 0.5
 
 
 @inner_kernel
-def find_bounces(contacts: Contacts, count: int, start: Floats, velocity: Floats, h: float) -> None:
-    """The bounce [m/s] of every contact, from the velocities before and after gravity and all else from outside."""
+def find_bounces(
+    contacts: Contacts, count: int, start: Floats, velocity: Floats, held: Flags, h: float, small: float
+) -> None:
+    """The bounce [m/s] of every contact, from the velocities before and after gravity and all else from outside.
+
+    held (n,): particles that a spring or a constraint holds, which fall in steps of h [s]; others in those of `small`.
+    """
     for c in range(count):
         contacts.bounce[c] = -1.0
         if contacts.restitution[c] == 0.0:
@@ -28,13 +33,18 @@ def find_bounces(contacts: Contacts, count: int, start: Floats, velocity: Floats
                 after += weight * (velocity[p, 0] * nx + velocity[p, 1] * ny)
         gap = contacts.gap[c]
         if after < -SLOWEST_BOUNCE and gap + h * after < 0.0:
-            contacts.bounce[c] = _bounce(contacts.restitution[c], -before, (before - after) / h, gap, h)
+            p = contacts.particle[c]
+            q = contacts.end_a[c]
+            fallen = h if held[p] and (q < 0 or held[q]) else small
+            contacts.bounce[c] = _bounce(contacts.restitution[c], -before, (before - after) / h, gap, fallen, h)
 
 
 @inner_kernel
-def _bounce(restitution: float, speed: float, fall: float, gap: float, h: float) -> float:
-    # The velocity after a step in which what approaches at `speed` bounces off at the height of the surface, not where
-    # the step begins: symplectic Euler keeps v^2/2 + g x - g h v/2 in free fall, and restitution^2 is left.
-    energy = 0.5 * speed * speed + fall * gap + 0.5 * fall * h * speed
-    left = 2.0 * (restitution * restitution * energy - fall * gap) + 0.25 * fall * fall * h * h
-    return max(0.0, math.sqrt(max(0.0, left)) - 0.5 * fall * h)
+def _bounce(restitution: float, speed: float, fall: float, gap: float, fallen: float, h: float) -> float:
+    # The velocity v after a step of h in which what approaches at `speed` bounces off at the height of the surface, not
+    # where the step begins, and then is at gap + h v: symplectic Euler in steps of `fallen` keeps v^2/2 + g x - g
+    # fallen v/2 in free fall, and restitution^2 is left.
+    energy = 0.5 * speed * speed + fall * gap + 0.5 * fall * fallen * speed
+    late = h - 0.5 * fallen
+    left = 2.0 * (restitution * restitution * energy - fall * gap) + fall * fall * late * late
+    return max(0.0, math.sqrt(max(0.0, left)) - fall * late)
