@@ -103,6 +103,11 @@ class PlayScreen:
         return self.stage.playback
 
     @property
+    def moves(self) -> bool:
+        """Whether time passes in the run: not while a page is open."""
+        return self.playback.moves and not self._ui.has_sheet
+
+    @property
     def has_contacts(self) -> bool:
         """Whether things touch in the run."""
         return self.playback.session.world.has_contacts

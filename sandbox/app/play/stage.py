@@ -240,7 +240,9 @@ class Stage:
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
         """Apply what is due and let time pass; pointer: where the mouse is over the world, if it is."""
         if frame_time > 0.0:
-            self.detail.note(frame_time)
+            # What stands is drawn rarely, which says nothing of how long drawing takes.
+            if not self.playback.clock.paused:
+                self.detail.note(frame_time)
             self.renderer.detail = self.detail.level if self.fixed_detail is None else self.fixed_detail
         with profile.part("commands"):
             self.playback.apply_pending()

@@ -75,6 +75,11 @@ class CataloguePage:
 
     # What there is.
 
+    @property
+    def moves(self) -> bool:
+        """Whether cards are still filled in."""
+        return len(self._unfilled) > 0
+
     def refresh(self) -> None:
         """Show what there is by now, and which part is in hand."""
         if self._looked <= 0:
