@@ -23,8 +23,8 @@ NAME_HEIGHT = 24.0
 CORNER = 7.0
 TEXT_SIZE, FAULT_SIZE = 12.0, 10.5
 FAULT_LINES = 4
-# How much of the picture shows of a part that cannot be had here, of 255.
-PALE = 90
+# How much of the picture is veiled of a part that cannot be had here, of 255.
+VEIL = 165
 STEPS = {pygame.K_LEFT: -1, pygame.K_RIGHT: 1, pygame.K_UP: -2, pygame.K_DOWN: 2}
 
 
@@ -90,8 +90,12 @@ class PartCard(Lit, Pressable):
         pygame.draw.rect(card, BACKGROUND, place, border_top_left_radius=corner, border_top_right_radius=corner)
         is_broken = self.is_read and self.part.level is None
         if self.picture is not None:
-            self.picture.set_alpha(PALE if self.refusal else 255)
             card.blit(self.picture, self.picture.get_rect(center=place.center))
+            if self.refusal:
+                veil = pygame.Surface(place.size)
+                veil.fill(BACKGROUND)
+                veil.set_alpha(VEIL)
+                card.blit(veil, place)
         elif is_broken:
             self._paint_fault(card, place)
         if self.is_read:
