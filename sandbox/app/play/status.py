@@ -17,6 +17,8 @@ STATUS_HEIGHT = 30.0
 NOTICE_SECONDS = 6.0
 SECONDS_A_LETTER = 0.06
 NOTICES = 4
+# It fades in its last moments, and a frame is never so late [s] that it has gone before.
+FADING, SOON = 0.4, 0.6
 # Motors that are named one by one; of more the line says how many are at their limit.
 NAMED_MOTORS = 2
 
@@ -50,6 +52,11 @@ class StatusLine:
         for notice in list(self.notices):
             if notice.text == text:
                 self.notices.remove(notice)
+
+    @property
+    def moves(self) -> bool:
+        """Whether a notice fades, or is about to."""
+        return any(notice.left < SOON for notice in self.notices)
 
     def update(self, frame_time: float) -> None:
         """Let notices age by frame_time [s]."""
@@ -103,7 +110,7 @@ class StatusLine:
             for line in lines:
                 card.blit(line, (ui.px(19), line_y))
                 line_y += line.get_height()
-            card.set_alpha(round(255 * min(1.0, notice.left / 0.4)))
+            card.set_alpha(round(255 * min(1.0, notice.left / FADING)))
             surface.blit(card, (ui.px(left), y))
             y -= ui.px(8)
 
