@@ -14,7 +14,7 @@ from sandbox.physics.collision.outline import outline_of
 from sandbox.physics.energy import kinetic_energy, total_energy
 from sandbox.physics.settings import Substeps
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.contact.free_contacts import small_steps
+from sandbox.physics.solvers.contact.small_steps import small_steps
 from sandbox.physics.step import step
 from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import World

@@ -55,8 +55,9 @@ from sandbox.physics.forces import Forces, add_gravity_and_air, forces_of
 from sandbox.physics.integrate import advance, follow, turn
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
 from sandbox.physics.sanitise import LOST, UNSOUND, CheckedArrays, are_sound, checked_arrays, keep_if_sound
-from sandbox.physics.solvers.contact.free_contacts import Work, new_work, small_steps, solve_free_contacts
+from sandbox.physics.solvers.contact.free_contacts import Work, new_work, solve_free_contacts
 from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, new_islands, sort_free_contacts
+from sandbox.physics.solvers.contact.small_steps import small_steps
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.substeps import Cadence
 from sandbox.physics.terrain import Terrain

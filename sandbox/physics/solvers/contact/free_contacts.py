@@ -19,13 +19,9 @@ from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inlined_kernel, inner_kernel, unsigned
 from sandbox.physics.solvers.contact.free_islands import Islands
 from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH
+from sandbox.physics.solvers.contact.small_steps import MOST_SMALL_STEPS, small_steps
 from sandbox.physics.state import Floats, Slots
 
-# A small step is no longer than this [s]: 8 of them at 60 Hz. With a quarter of them, heaps of 50 layers sink into each
-# other by a seventh of a radius; twice as many double the time.
-SMALL_STEP = 1.0 / 480.0
-# Small steps of a step at most, where an island would sink too deep.
-MOST_SMALL_STEPS = 64
 # Part of an overlap that a small step removes, and 1 - Cd of a contact while it does. More of the first, or less of the
 # second, shakes heaps; less of the first, or more of the second, lets them sink into each other.
 OVERLAP_SHARE = 0.05
@@ -224,15 +220,6 @@ def _fill_pair(contacts: Contacts, c: int, k: int, colliders: Colliders, work: W
             row[k, WAY] = COMING
             row[k, BOUNCE] = -1.0
             row[k, ALONG], row[k, ACROSS] = 0.0, 0.0
-
-
-@inlined_kernel
-def small_steps(h: float) -> int:
-    """In how many small steps what nothing holds, and no load presses, goes through one of h [s]."""
-    count = 1
-    while count < MOST_SMALL_STEPS and h > SMALL_STEP * count * (1.0 + 1e-9):
-        count *= 2
-    return count
 
 
 @inner_kernel
