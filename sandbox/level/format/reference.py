@@ -110,7 +110,7 @@ _NAMES = f"""\
   the shape is sure to come back, not which way it looks.
 - A ring keeps the area inside it as a whole, times its `inflation`. Of Cs and Cd above 0.99 that area takes 0.99: where
   springs and area ask for what cannot both be, the area gives way.
-- While a triangle of a jelly is turned over, or its triangles wind round an inner particle more than once, the jelly is
+- While a triangle of a jelly is turned over, or its triangles wind round a particle more than once, the jelly is
   tangled: it is also drawn to its form as a whole, with Cs and Cd of its material, and does not touch itself. That
   adds no energy that it has not lost before, and keeps its momentum, but not its spin.
 - `bending` puts an angular spring on every particle where just two springs of the body meet, of a rope, a ring, or a
