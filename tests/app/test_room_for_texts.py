@@ -11,7 +11,7 @@ from sandbox.editor.items import items_of
 from tests.app.conftest import small_level
 
 # Sizes of windows [pixels], and scales.
-WINDOWS = [((640, 480), 1.0), ((800, 600), 1.0), ((1280, 720), 1.0), ((1280, 720), 1.5), ((1280, 960), 2.0)]
+WINDOWS = [((640, 480), 1.0), ((800, 600), 1.5), ((1280, 720), 1.0), ((1280, 720), 1.5), ((640, 480), 2.0)]
 
 
 def show_panel(app):
