@@ -22,6 +22,9 @@ SEEN = "_seen_by_tests"
 MOST_MEMORY = 1.0e9
 # So much more memory [bytes] than after the last search for garbage is worth another.
 WORTH_A_SEARCH = 100e6
+# After how many objects more, and how many such searches, the next generation of them is searched for garbage: the
+# usual numbers cost tests a twentieth of their time.
+SEARCHES_AFTER = 3_000, 20, 50
 # A setting of the C library, by its number in malloc.h: what is as large [bytes] gets pages of its own.
 M_MMAP_THRESHOLD, OWN_PAGES_FROM = -3, 1_000_000
 
@@ -51,6 +54,7 @@ def pytest_collection_finish():
     """Leave what is imported out of garbage collection, which takes long, and is put off while so much is alive."""
     gc.collect()
     gc.freeze()
+    gc.set_threshold(*SEARCHES_AFTER)
     if hasattr(ctypes.pythonapi, "mallopt"):
         # Pictures that are let go of return to the system, and leave no holes that the next do not fit in.
         ctypes.pythonapi.mallopt(M_MMAP_THRESHOLD, OWN_PAGES_FROM)

@@ -106,27 +106,30 @@ def canonical_bytes(array: NDArray[Any]) -> bytes:
 # most arrays are those of the tick before. Arrays larger than so much [bytes] are hashed anew rather than kept.
 _LAST: dict[str, tuple[bytes, str | None]] = {}
 _LARGEST_KEPT = 1_000_000
+_NOTHING: tuple[bytes | None, str | None] = (None, None)
+_COLUMNS = tuple((column.name, column.stored, column) for column in COLUMNS)
 
 
-def _digest(column: Column, array: NDArray[Any]) -> str | None:
-    """Hash of an array, None of one that is left out as it is as usual."""
-    present = array.tobytes()
-    last, digest = _LAST.get(column.stored, (None, None))
-    if present != last:
-        is_usual = column.sparse and not (array != column.usual).any()
-        digest = None if is_usual else hashlib.blake2b(canonical_bytes(array), digest_size=8).hexdigest()
-        if len(present) <= _LARGEST_KEPT:
-            _LAST[column.stored] = present, digest
+def _digest(column: Column, array: NDArray[Any], present: bytes) -> str | None:
+    """Hash of an array, None of one that is left out as it is as usual; present: its bytes, which are kept."""
+    is_usual = column.sparse and not (array != column.usual).any()
+    digest = None if is_usual else hashlib.blake2b(canonical_bytes(array), digest_size=8).hexdigest()
+    if len(present) <= _LARGEST_KEPT:
+        _LAST[column.stored] = present, digest
     return digest
 
 
 def hash_by_array(world: World | Snapshot) -> dict[str, str]:
     """blake2b of each state array in use, 16 hexadecimal digits, by its name in files."""
     arrays, hashes = vars(world), {}
-    for column in COLUMNS:
-        digest = _digest(column, arrays[column.name])
+    for name, stored, column in _COLUMNS:
+        array = arrays[name]
+        present = array.tobytes()
+        last, digest = _LAST.get(stored, _NOTHING)
+        if present != last:
+            digest = _digest(column, array, present)
         if digest is not None:
-            hashes[column.stored] = digest
+            hashes[stored] = digest
     return hashes
 
 

@@ -21,15 +21,19 @@ needs_numba = pytest.mark.skipif(
 
 @functools.cache
 def runs(solver, *mode, interpreted=False, attempt=0):
-    """What the script prints for each number of substeps in one process: how kernels ran, then a hash per tick."""
+    """What the script prints for each number of substeps in one process: how kernels ran, then a hash per tick.
+
+    After the first of them, what substeps do not change is left out.
+    """
     environment = {**os.environ, "NUMBA_DISABLE_JIT": "1" if interpreted else "0"}
     substeps = (1,) if mode else SUBSTEPS
     command = [sys.executable, str(SCRIPT), solver, ",".join(map(str, substeps)), str(TICKS), *mode]
     ended = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stderr
-    lines = ended.stdout.splitlines()
-    size = len(lines) // len(substeps)
-    return {number: lines[k * size : (k + 1) * size] for k, number in enumerate(substeps)}
+    printed = ended.stdout.splitlines()
+    begins = [k for k, line in enumerate(printed) if line in ("compiled", "interpreted")]
+    blocks = [printed[first:end] for first, end in zip(begins, [*begins[1:], None], strict=True)]
+    return dict(zip(substeps, blocks, strict=True))
 
 
 def lines(solver, *mode):
