@@ -9,6 +9,7 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.calm import CALM_RATE, Calm, wait_for_event
 from sandbox.app.compare.compare_screen import CompareScreen
 from sandbox.app.compare.hooke_lesson import HookeLesson
 from sandbox.app.compare.twin import TwinPlayback
@@ -64,6 +65,7 @@ class App:
         self._take_up()
         self.profile = profile or Profile()
         self._collector = IdleCollector()
+        self.calm = Calm()
         self._notices: deque[Notice] = deque(maxlen=NOTICES)
         self._description = ""
         self.running = True
@@ -345,9 +347,16 @@ class App:
                 self.display.flip()
         self._progress.end()
         self._seen = self.screen
+        self.calm.follow(frame_time, bool(events) or any(pygame.mouse.get_pressed()) or self.moves)
         spent = time.perf_counter() - started
         self.profile.end_frame(spent)
         self._count(frame_time, spent)
+
+    @property
+    def moves(self) -> bool:
+        """Whether something in the window changes by itself, or works in its frames at what it will show."""
+        parts = (self.screen, self.gallery, self.status, self.guide, self.sharing)
+        return not self.ready or any(part is not None and part.moves for part in parts)
 
     def _sound(self) -> None:
         play, covered = self.play, self.ui.has_sheet or self.gallery is not None or self.display.hidden
@@ -465,7 +474,13 @@ def run_app(
             profile.reached("the first page")
             if app.play is not None and app.play.playback.session.tick:
                 profile.reached("the first tick")
-            clock.tick(FRAME_RATE if app.ready or app.play is None else WAITING_RATE)
+            if not app.calm.has_come:
+                clock.tick(FRAME_RATE if app.ready or app.play is None else WAITING_RATE)
+                continue
+            if wait_for_event(1.0 / CALM_RATE):
+                # Time that passed asleep is not made up for by what the event sets going.
+                before = max(before, time.perf_counter() - 1.0 / FRAME_RATE)
+            profile.rested()
     finally:
         # Whatever ended the loop, a recording gets its last line.
         app.close()

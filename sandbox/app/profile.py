@@ -46,6 +46,10 @@ class Profile:
             self.longest_stop = max(self.longest_stop, (now[0] - self._shown[0], now[1] - self._shown[1]))
         self._shown = now
 
+    def rested(self) -> None:
+        """Note that nothing was to be shown until now."""
+        self._shown = None
+
     def reached(self, what: str) -> None:
         """Note when something came about, the first time that it does."""
         self.first_times.setdefault(what, time.perf_counter())

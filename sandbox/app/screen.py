@@ -39,6 +39,11 @@ class Screen(Protocol):
         ...
 
     @property
+    def moves(self) -> bool:
+        """Whether what it shows changes by itself, or it works at that in its frames."""
+        ...
+
+    @property
     def camera(self) -> Camera:
         """What part of the world is seen."""
         ...

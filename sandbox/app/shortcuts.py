@@ -48,6 +48,7 @@ SHORTCUTS = (
     Shortcut("tool_rope", ("7",), "Rope", "Parts", "play"),
     Shortcut("tool_balloon", ("8",), "Balloon", "Parts", "play"),
     Shortcut("tool_cart", ("9",), "Cart: Q and W drive it", "Parts", "play"),
+    Shortcut("catalogue", ("U",), "Parts of your own, and ready ones", "Parts", "play"),
     Shortcut("tool_push", ("0",), "Push: click bursts, drag pushes", "Parts", "play"),
     Shortcut("tool_wind", ("V",), "Wind: it blows along a drag", "Parts", "play"),
     Shortcut("tool_delete", ("X",), "Delete: click takes a thing out", "Parts", "play"),

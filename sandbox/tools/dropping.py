@@ -1,8 +1,9 @@
-"""DropTool: a click drops a part under the pointer, a drag throws it."""
+"""Dropping: a click drops a part under the pointer, a drag throws it."""
 
 from collections.abc import Callable
 
 from sandbox.physics.snapshot import Snapshot
+from sandbox.session.commands import Command
 from sandbox.tools.parts import COLOURS, PARTS, Loop, Point, in_pace
 from sandbox.tools.sizing import resized
 from sandbox.tools.tool import CLICK_SHARE, NOTHING, PointerEvent, Response, Submission
@@ -13,19 +14,18 @@ THROW_SECONDS = 0.08
 FASTEST_THROW = 25.0
 
 
-class DropTool:
-    """Drop the part of that name; size [m]; place [m]: where its ghost is, None = nowhere.
+class ThrowTool:
+    """Drops or throws what subclasses make; place [m]: where its ghost is, None = nowhere. Each drop is a gesture."""
 
-    Each drop is a gesture; parts take the toys' colours in turn.
-    """
-
-    def __init__(self, new_gesture: Callable[[], int], part: str) -> None:
-        self.part, self.size = PARTS[part], 1.0
+    def __init__(self, new_gesture: Callable[[], int]) -> None:
         self.place: Point | None = None
-        self.count = 0
         self._new_gesture = new_gesture
         self._pressed_at: Point | None = None
         self._trail: list[tuple[float, Point]] = []
+
+    def made(self, place: Point, velocity: Point, snapshot: Snapshot) -> tuple[Command, ...]:
+        """The commands that add it at a place [m], with a velocity [m/s]. Raises ValueError, with one line."""
+        raise NotImplementedError
 
     def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
         """Follow the pointer; drop on the release."""
@@ -39,15 +39,12 @@ class DropTool:
             return NOTHING
         velocity = self._thrown(event)
         self._pressed_at = None
-        made = self.part.make(self.size, event.position, velocity, self.colour)
-        command = in_pace(made, snapshot.settings.tick_rate)
-        self.count += 1
-        return Response((Submission(command, self._new_gesture()),))
-
-    @property
-    def colour(self) -> str:
-        """The colour of what is dropped next."""
-        return COLOURS[self.count % len(COLOURS)]
+        try:
+            commands = self.made(event.position, velocity, snapshot)
+        except ValueError as error:
+            return Response(message=f"{error}.")
+        gesture = self._new_gesture()
+        return Response(tuple(Submission(command, gesture) for command in commands))
 
     def _thrown(self, event: PointerEvent) -> Point:
         """The velocity [m/s] of the pointer in the last moment."""
@@ -60,6 +57,34 @@ class DropTool:
         vx, vy = ((event.position[axis] - start[axis]) / (event.seconds - began) for axis in range(2))
         share = min(1.0, FASTEST_THROW / max((vx * vx + vy * vy) ** 0.5, 1e-9))
         return share * vx, share * vy
+
+    def cancel(self) -> Response:
+        """Drop nothing."""
+        self._pressed_at = self.place = None
+        return NOTHING
+
+    def reconcile(self, snapshot: Snapshot) -> None:
+        """Nothing is remembered."""
+
+
+class DropTool(ThrowTool):
+    """Drop the part of that name; size [m]. Parts take the toys' colours in turn."""
+
+    def __init__(self, new_gesture: Callable[[], int], part: str) -> None:
+        super().__init__(new_gesture)
+        self.part, self.size = PARTS[part], 1.0
+        self.count = 0
+
+    def made(self, place: Point, velocity: Point, snapshot: Snapshot) -> tuple[Command, ...]:
+        """The part in its present size."""
+        made = self.part.make(self.size, place, velocity, self.colour)
+        self.count += 1
+        return (in_pace(made, snapshot.settings.tick_rate),)
+
+    @property
+    def colour(self) -> str:
+        """The colour of what is dropped next."""
+        return COLOURS[self.count % len(COLOURS)]
 
     def resize(self, steps: float) -> None:
         """Make what is dropped larger, by so many steps of the wheel."""
@@ -74,10 +99,25 @@ class DropTool:
         loops = [[(x + self.size * px, y + self.size * py) for px, py in loop] for loop in self.part.ghost]
         return [[*loop, loop[0]] if self.part.solid else loop for loop in loops]
 
-    def cancel(self) -> Response:
-        """Drop nothing."""
-        self._pressed_at = self.place = None
-        return NOTHING
 
-    def reconcile(self, snapshot: Snapshot) -> None:
-        """Nothing is remembered."""
+class CatalogueTool(ThrowTool):
+    """Drop a part of the catalogue; make: see `made`; size: its width and height [m]."""
+
+    def __init__(
+        self, new_gesture: Callable[[], int], make: Callable[[Point, Point], tuple[Command, ...]], size: Point
+    ) -> None:
+        super().__init__(new_gesture)
+        self._make, self._size = make, size
+
+    def made(self, place: Point, velocity: Point, snapshot: Snapshot) -> tuple[Command, ...]:
+        """The part as it was kept."""
+        return self._make(place, velocity)
+
+    @property
+    def ghost(self) -> list[Loop]:
+        """The box [m] around what would be dropped."""
+        if self.place is None:
+            return []
+        (x, y), (width, height) = self.place, self._size
+        corners = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5))
+        return [[(x + dx * width, y + dy * height) for dx, dy in corners]]

@@ -6,6 +6,7 @@ import pytest
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.draw.part_pictures import PartGhost
 from sandbox.app.play.palette import NAMES
+from sandbox.app.play.stage import CATALOGUE
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.session.commands import AddBody, AddParticle, Push, Remove, SetAir
@@ -42,7 +43,7 @@ def commands(driver):
 
 def test_the_strip_folds_out_and_every_part_and_deed_has_a_key_a_button_and_a_picture(player):
     palette = player.app.play.palette
-    assert list(palette.buttons) == list(NAMES)
+    assert list(palette.buttons) == [*NAMES, CATALOGUE]
     for name, key in KEYS.items():
         player.key(ord(key))
         assert player.stage.tool_name == name

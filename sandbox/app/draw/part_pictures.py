@@ -6,12 +6,13 @@ import math
 import numpy as np
 import pygame
 
-from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.camera import Box, Camera, bounds
 from sandbox.app.draw.picture import draw_picture
 from sandbox.app.draw.renderer import Renderer
 from sandbox.level.format.limits import FORMAT, VERSION
 from sandbox.level.format.model import Level
 from sandbox.level.format.parse import parse_level
+from sandbox.physics.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.session import Session
 from sandbox.tools.parts import COLOURS, PARTS
@@ -44,6 +45,8 @@ class PartGhost:
     def __init__(self) -> None:
         self._key: tuple[object, ...] = ()
         self._picture: pygame.Surface | None = None
+        # What is in hand of the catalogue: a level, its state, and the box around it.
+        self._known: tuple[Level, Snapshot, Box] | None = None
 
     def picture(self, part: str, size: float, colour: str, zoom: float, like: Renderer) -> pygame.Surface | None:
         """A part of a size [m], in the middle of its picture; None where that would be too large.
@@ -52,29 +55,56 @@ class PartGhost:
         """
         key = part, size, colour, zoom, like.scale, like.theme.name, like.compiled
         if key != self._key:
-            self._key, self._picture = key, self._drawn(part, size, colour, zoom, like)
+            half, self._key = _half(part) * size, key
+            self._picture = None
+            if _pixels(2.4 * half, zoom) <= GHOST_MOST:
+                self._picture = self._drawn(*_alone(part, size, colour), (-half, -half, half, half), zoom, like)
         return self._picture
 
-    def _drawn(self, part: str, size: float, colour: str, zoom: float, like: Renderer) -> pygame.Surface | None:
-        side = 2 * math.ceil(1.2 * _half(part) * size * zoom)
-        if not 0 < side <= GHOST_MOST:
-            return None
-        level, state = _alone(part, size, colour)
+    def picture_of_level(self, part: Level, zoom: float, like: Renderer) -> pygame.Surface | None:
+        """A part of the catalogue, in the middle of its picture; None where that would be too large."""
+        if self._known is None or self._known[0] is not part:
+            state = Session(part).snapshot()
+            self._known = part, state, box_of(state)
+        _, state, (left, bottom, right, top) = self._known
+        key = id(part), zoom, like.scale, like.theme.name, like.compiled
+        if key != self._key:
+            is_small = max(_pixels(1.2 * side, zoom) for side in (right - left, top - bottom)) <= GHOST_MOST
+            self._key = key
+            self._picture = self._drawn(part, state, (left, bottom, right, top), zoom, like) if is_small else None
+        return self._picture
+
+    def _drawn(self, level: Level, state: Snapshot, box: Box, zoom: float, like: Renderer) -> pygame.Surface:
+        """A state of a level in a picture of a box [m] and some room around it."""
+        left, bottom, right, top = box
+        size = _pixels(1.2 * (right - left), zoom), _pixels(1.2 * (top - bottom), zoom)
         on = []
         for ground in (0, 255):
-            surface = pygame.Surface((side, side), 0, 32)
+            surface = pygame.Surface(size, 0, 32)
             surface.fill((ground, ground, ground))
             renderer = Renderer(like.scale, level)
             renderer.theme, renderer.compiled, renderer.has_stage = like.theme, like.compiled, False
-            renderer.draw(surface, Camera(zoom=zoom, viewport=(0, 0, side, side)), state, state, 1.0)
+            camera = Camera(((left + right) / 2, (bottom + top) / 2), zoom, (0, 0, *size))
+            renderer.draw(surface, camera, state, state, 1.0)
             on.append(pygame.surfarray.array3d(surface).astype(np.float64))
         # What of a black and a white ground shows through says how much of each pixel is covered.
         cover = 1.0 - (on[1] - on[0]).mean(axis=2) / 255.0
         colours = on[0] / np.maximum(cover, 1.0 / 255.0)[..., None]
-        picture = pygame.Surface((side, side), pygame.SRCALPHA)
+        picture = pygame.Surface(size, pygame.SRCALPHA)
         pygame.surfarray.blit_array(picture, np.clip(colours, 0, 255).astype(np.uint8))
         pygame.surfarray.pixels_alpha(picture)[...] = np.clip(255.0 * GHOST_SHARE * cover, 0, 255).astype(np.uint8)
         return picture
+
+
+def box_of(state: Snapshot) -> Box:
+    """The box [m] around all particles of a state, with their discs."""
+    shown = shown_particles(state)
+    position, radius = state.position[shown], state.radius[shown, None]
+    return bounds(np.concatenate([position - radius, position + radius]))
+
+
+def _pixels(length: float, zoom: float) -> int:
+    return max(2 * math.ceil(length * zoom / 2), 2)
 
 
 def _half(part: str) -> float:

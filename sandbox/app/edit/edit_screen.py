@@ -390,6 +390,12 @@ class EditScreen:
 
     # A frame.
 
+    @property
+    def moves(self) -> bool:
+        """Whether one of its parts is at work at what it will show."""
+        has_new = self._is_side_late or (self.side is not None and self.side.moves)
+        return has_new or self.view.moves or self.watch.moves
+
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
         """Follow the pointer, look for faults a little, and show the state in the widgets."""
         self.view.update(frame_time, ready)

@@ -91,6 +91,11 @@ class Guide:
         self._card = None
         self.build()
 
+    @property
+    def moves(self) -> bool:
+        """Whether the ring swells."""
+        return self._card is not None and self.tour is not None and not self.tour.is_over
+
     def update(self, frame_time: float) -> None:
         """Follow what the person does, and show the step."""
         self._seconds += frame_time

@@ -68,6 +68,13 @@ class Watch:
         self.forecast = None
         self._level = None
 
+    @property
+    def moves(self) -> bool:
+        """Whether it is at work, or about to be."""
+        level, forecast = self._screen.document.level, self.forecast
+        is_waiting = level is not self._level or self._since < PATIENCE
+        return is_waiting or self._lint is not None or (forecast is not None and not self._is_told)
+
     def update(self, frame_time: float, ready: bool = True) -> None:
         """Go on with both for a moment; ready: kernels are there, or a forecast would take many frames at a time."""
         level = self._screen.document.level

@@ -284,6 +284,11 @@ class Gallery:
 
     # A frame.
 
+    @property
+    def moves(self) -> bool:
+        """Whether cards are still filled in, or one plays."""
+        return len(self._unfilled) > 0 or (self._preview is not None and self._preview[1].moves)
+
     def update(self, has_kernels: Callable[[bool], bool], frame_time: float) -> None:
         """Go on filling cards for a while, those whose kernels are there (see Preparation); show what has the focus."""
         self._has_kernels = has_kernels

@@ -36,7 +36,13 @@ class Preview:
         self._rested = self._played = 0.0
         self._steps = self._prepare()
         self._session: Session | None = None
+        self._has_ended = False
         self.picture: pygame.Surface | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Whether it plays, or is about to: not where the level cannot be played in a card."""
+        return not self._has_ended
 
     def update(self, frame_time: float) -> bool:
         """Let frame_time [s] pass; True where there is another picture."""
@@ -45,8 +51,10 @@ class Preview:
             return False
         end = time.perf_counter() + BUDGET
         while self._session is None:
+            went_on = next(self._steps, None)
+            self._has_ended = went_on is None and self._session is None
             # It has ended, or waits for kernels.
-            if not next(self._steps, False) or time.perf_counter() > end:
+            if not went_on or time.perf_counter() > end:
                 return False
         self._advance(self._session, frame_time)
         return True

@@ -9,6 +9,7 @@ import pygame
 
 from sandbox.app.draw.colours import ACCENT, TEXT, Colour
 from sandbox.app.draw.part_pictures import picture_of
+from sandbox.app.play.stage import CATALOGUE
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.ui import Ui
@@ -52,8 +53,18 @@ def _freeze(pen: IconPen) -> None:
         pen.line((9.5, y - 2.5 if y < 12 else y + 2.5), (x, y), (14.5, y - 2.5 if y < 12 else y + 2.5))
 
 
+def _catalogue(pen: IconPen) -> None:
+    pen.line((3.5, 3.5), (10, 3.5), (10, 10), (3.5, 10), (3.5, 3.5))
+    pen.disc(17.2, 6.8, 3.6, 1.6)
+    pen.line((6.8, 14), (10.4, 20.5), (3.2, 20.5), (6.8, 14))
+    pen.line((17.2, 13.6), (17.2, 20.8))
+    pen.line((13.6, 17.2), (20.8, 17.2))
+
+
 DEEDS: dict[str, Icon] = {"push": _push, "wind": _wind, "delete": _delete, "freeze": _freeze}
 NAMES = (*PARTS, *DEEDS)
+# The button of the catalogue goes by the name of the tool that has a part of it in hand.
+ICONS = {**DEEDS, CATALOGUE: _catalogue}
 
 
 @dataclass(frozen=True)
@@ -71,18 +82,19 @@ class PartsPalette:
         self._ui = ui
         self._state: PaletteState | None = None
         self._pictures: dict[str, pygame.Surface] = {}
-        rows = max(1, min(len(NAMES), int((height - 2 * TOP - 2 * EDGE) // LEAST_STEP)))
-        columns = -(-len(NAMES) // rows)
-        rows = -(-len(NAMES) // columns)
+        count = len(NAMES) + 1
+        rows = max(1, min(count, int((height - 2 * TOP - 2 * EDGE) // LEAST_STEP)))
+        columns = -(-count // rows)
+        rows = -(-count // columns)
         width, tall = columns * (BUTTON + GAP) - GAP + 2 * EDGE, rows * LEAST_STEP - GAP + 2 * EDGE
         # Its right edge [layout units].
         self.right = LEFT + width
         self.back = ui.panel(ui.rect(LEFT, top + TOP, width, tall), style="@card")
         self.buttons: dict[str, Any] = {}
-        for number, name in enumerate(NAMES):
+        for number, name in enumerate((*NAMES, CATALOGUE)):
             column, row = divmod(number, rows)
             place = ui.rect(EDGE + column * (BUTTON + GAP), EDGE + row * LEAST_STEP, BUTTON, BUTTON)
-            action = f"tool_{name}"
+            action = "catalogue" if name == CATALOGUE else f"tool_{name}"
             self.buttons[name] = ui.button(
                 place, "", functools.partial(press, action), self.back, tip=tip_of(action, "play"), style="@quiet"
             )
@@ -100,6 +112,6 @@ class PartsPalette:
             (button.select if is_chosen else button.unselect)()
 
     def _icon(self, name: str, colour: Colour) -> pygame.Surface:
-        if name in DEEDS:
-            return painted_icon(DEEDS[name], self._ui.px(ICON), colour)
+        if name in ICONS:
+            return painted_icon(ICONS[name], self._ui.px(ICON), colour)
         return self._pictures[name]

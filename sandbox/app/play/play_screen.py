@@ -15,6 +15,7 @@ from sandbox.app.edit.bake_choice import ask_to_keep
 from sandbox.app.edit.rate_choice import ask_for_pace
 from sandbox.app.graphs.graph_dock import GraphDock
 from sandbox.app.loop import SPEEDS
+from sandbox.app.parts.part_page import PartPage
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.hand_labels import draw_labels
 from sandbox.app.play.key_caps import KEYS_HEIGHT, ROOM_BESIDE, draw_key_caps
@@ -37,6 +38,7 @@ from sandbox.app.share.film import Film, last_ticks
 from sandbox.app.shortcuts import Mode, tip_of
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
+from sandbox.level.format.model import Level
 from sandbox.physics.joints.readings import motor_readings
 from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.solvers import SOLVERS
@@ -76,6 +78,7 @@ class PlayScreen:
         self.show_panel = app.ui.units[0] >= ROOM_FOR_PANEL
         self.show_palette = False
         self.palette: PartsPalette | None = None
+        self.part_page: PartPage | None = None
         self.panel: SidePanel | None = None
         self.stage = Stage(playback, (0, 0, *app.ui.size), app.ui.scale)
         self.time = TimeBar(app, lambda: self.playback)
@@ -103,6 +106,12 @@ class PlayScreen:
     def playback(self) -> Playback:
         """The run."""
         return self.stage.playback
+
+    @property
+    def moves(self) -> bool:
+        """Whether time passes in the run, which it does not while a page is open, or pictures of parts are to come."""
+        is_filling = self.part_page is not None and self.part_page.moves
+        return is_filling or (self.playback.moves and not self._ui.has_sheet)
 
     @property
     def has_contacts(self) -> bool:
@@ -214,6 +223,7 @@ class PlayScreen:
             "tool_cut": lambda: stage.choose_tool("cut"),
             **{f"tool_{name}": lambda name=name: self._take_up(name) for name in NAMES},  # type: ignore[misc]
             "palette": self._toggle_palette,
+            "catalogue": self._open_catalogue,
             "let_go": stage.let_go,
             **{name: partial(stage.toggle_view, name) for name in OVERLAYS},
             "hand": self._next_strength,
@@ -268,7 +278,27 @@ class PlayScreen:
         if not self.show_palette:
             self.show_palette = True
             self._app.rebuild()
-        if name in PARTS and not self.has_contacts:
+        if name in PARTS:
+            self._say_what_touches()
+
+    def _open_catalogue(self, offset: float = 0.0) -> None:
+        """Choose a part of the catalogue to drop."""
+        world = self.playback.session.world
+        self.part_page = PartPage(
+            self._ui, world, lambda: self._app.ready, self._take_part, self._open_catalogue, offset
+        )
+
+    def _take_part(self, part: Level, by_key: bool) -> None:
+        """Have a part in hand; by a key: where the arrows move it."""
+        self.stage.take_part(part)
+        if by_key:
+            self._ui.blur()
+            self.stage.move_cursor(0, 0, 0)
+        self._app.say(f"{part.name}: a click drops it, a drag throws it. U has other parts, Escape ends it.")
+        self._say_what_touches()
+
+    def _say_what_touches(self) -> None:
+        if not self.has_contacts:
             self._app.say("Nothing touches anything in this level: what you drop passes through all else.")
 
     def _zoom(self, steps: int) -> None:
@@ -380,6 +410,8 @@ class PlayScreen:
             self.panel.refresh()
             self.panel.show_choices(self.stage.drag.strength, self.stage.renderer.overlays.shown)
         self.time.show()
+        if self.part_page is not None:
+            self.part_page.update()
         if self.palette is not None:
             self.palette.show(PaletteState(self.stage.tool_name, ready))
         self.toolbar.show(

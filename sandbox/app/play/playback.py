@@ -76,6 +76,11 @@ class Playback:
         return self.replay is not None and not self._taken_over
 
     @property
+    def moves(self) -> bool:
+        """Whether time passes in it, or it is on its way to another tick."""
+        return not self.clock.paused or self.clock.single_steps > 0 or self._submitted or self.travel.target is not None
+
+    @property
     def outcome(self) -> str:
         """What came of a replay that was watched, while the run is at its end or no longer follows it; else ""."""
         return self.verdict if self._taken_over or self.session.tick == self.length else ""

@@ -8,19 +8,23 @@ import pygame
 
 from sandbox.app.draw.camera import Box, Camera, bounds
 from sandbox.app.draw.detail import Detail
-from sandbox.app.draw.part_pictures import PartGhost
+from sandbox.app.draw.part_pictures import PartGhost, box_of
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Overlay, Renderer
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.stability_paint import StabilityPaint
 from sandbox.app.profile import Profile
+from sandbox.editor.edits.joining import joining_commands
+from sandbox.level.format.model import Level
 from sandbox.physics.joints.pulls import Pull, pulls_of
 from sandbox.physics.query import nearest_particle, shown_particles
 from sandbox.physics.snapshot import Snapshot
+from sandbox.session.commands import Command
+from sandbox.session.session import Session
 from sandbox.tools.blowing import PushTool, WindTool
 from sandbox.tools.cut import CutTool
 from sandbox.tools.drag import DragTool
-from sandbox.tools.dropping import DropTool
+from sandbox.tools.dropping import CatalogueTool, DropTool, ThrowTool
 from sandbox.tools.parts import PARTS
 from sandbox.tools.pin import PinTool
 from sandbox.tools.taking import DeleteTool, FreezeTool
@@ -35,6 +39,8 @@ CURSOR_STEP, CURSOR_LEAP = 4.0, 24.0
 SIZE_SHARE, WIND_SPEED = 0.12, 40.0
 
 Pixel = tuple[float, float]
+# The tool that has a part of the catalogue in hand.
+CATALOGUE = "part"
 
 
 class Stage:
@@ -49,6 +55,8 @@ class Stage:
         self._hovered: int | None = None
         # What the wheel made of the parts and the ring [m]; 0: nothing yet.
         self.size = 0.0
+        # The part of the catalogue that is in hand, or was last.
+        self.part: Level | None = None
         self._paint = StabilityPaint()
         self._ghost = PartGhost()
         self.detail = Detail()
@@ -67,6 +75,25 @@ class Stage:
             **{part: DropTool(new_gesture, part) for part in PARTS},
         }  # fmt: skip
         self.tool_name = "drag"
+        if self.part is not None:
+            self.tools[CATALOGUE] = self._catalogue_tool(self.part)
+
+    def _catalogue_tool(self, part: Level) -> CatalogueTool:
+        left, bottom, right, top = box_of(Session(part).snapshot())
+        size = right - left, top - bottom
+
+        def make(place: tuple[float, float], velocity: tuple[float, float]) -> tuple[Command, ...]:
+            # The pointer is in the middle of what it throws.
+            at = place[0] - (left + right) / 2, place[1] - (bottom + top) / 2
+            return joining_commands(part, self.playback.session.world, at, velocity)
+
+        return CatalogueTool(self.playback.session.new_gesture, make, size)
+
+    def take_part(self, part: Level) -> None:
+        """Have a part of the catalogue in hand."""
+        self.part = part
+        self.tools[CATALOGUE] = self._catalogue_tool(part)
+        self.choose_tool(CATALOGUE)
 
     @property
     def tool(self) -> Tool:
@@ -240,7 +267,9 @@ class Stage:
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
         """Apply what is due and let time pass; pointer: where the mouse is over the world, if it is."""
         if frame_time > 0.0:
-            self.detail.note(frame_time)
+            # What stands is drawn rarely, which says nothing of how long drawing takes.
+            if not self.playback.clock.paused:
+                self.detail.note(frame_time)
             self.renderer.detail = self.detail.level if self.fixed_detail is None else self.fixed_detail
         with profile.part("commands"):
             self.playback.apply_pending()
@@ -250,7 +279,7 @@ class Stage:
             self.playback.advance(frame_time)
         self._hovered = None
         tool = self.tool
-        if isinstance(tool, (DropTool, PushTool)):
+        if isinstance(tool, (ThrowTool, PushTool)):
             # A ghost follows the mouse before anything is pressed.
             at = self.cursor if self.cursor is not None else None if pointer is None else self.camera.to_world(pointer)
             tool.place = at
@@ -268,6 +297,10 @@ class Stage:
             part, size, colour = self.tool.part.name, self.tool.size, self.tool.colour
             picture = self._ghost.picture(part, size, colour, self.camera.zoom, self.renderer)
             overlay.ghost_picture = None if picture is None else (picture, self.tool.place)
+        if isinstance(self.tool, CatalogueTool) and self.tool.place is not None and self.part is not None:
+            picture = self._ghost.picture_of_level(self.part, self.camera.zoom, self.renderer)
+            if picture is not None:
+                overlay.ghost, overlay.ghost_picture = [], (picture, self.tool.place)
         if "stability" in self.renderer.overlays.shown:
             overlay.stability = self._paint.shares(playback.session.world, playback.revision)
         alpha = playback.clock.alpha(playback.session.world.settings.tick_rate)

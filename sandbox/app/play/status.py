@@ -21,6 +21,8 @@ NOTICES = 4
 LOW_EDGE, LOW_BOTTOM, LOW_INSET = 10.0, 4.0, 5.0
 # A part of the line that has less room is left out, not shortened [layout units].
 LEAST_PART = 60.0
+# It fades in its last moments, and a frame is never so late [s] that it has gone before.
+FADING, SOON = 0.4, 0.6
 # Motors that are named one by one; of more the line says how many are at their limit.
 NAMED_MOTORS = 2
 
@@ -58,9 +60,18 @@ class StatusLine:
             if notice.text == text:
                 self.notices.remove(notice)
 
+    @property
+    def moves(self) -> bool:
+        """Whether a notice fades, or is about to."""
+        return any(notice.left < SOON for notice in self._ageing)
+
+    @property
+    def _ageing(self) -> list[Notice]:
+        return list(self.notices)[-1 if self._one_by_one else 0 :]
+
     def update(self, frame_time: float) -> None:
         """Let notices age by frame_time [s]."""
-        for notice in list(self.notices)[-1 if self._one_by_one else 0 :]:
+        for notice in self._ageing:
             notice.left -= frame_time
             if notice.left <= 0.0:
                 self.notices.remove(notice)
@@ -121,7 +132,7 @@ class StatusLine:
         for line in lines:
             card.blit(line, (ui.px(19), y))
             y += line.get_height()
-        card.set_alpha(round(255 * min(1.0, notice.left / 0.4)))
+        card.set_alpha(round(255 * min(1.0, notice.left / FADING)))
         return card
 
     def _font(self, colour: Colour) -> pygame.font.Font:

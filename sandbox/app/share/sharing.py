@@ -206,6 +206,11 @@ class Sharing:
 
     # A frame.
 
+    @property
+    def moves(self) -> bool:
+        """Whether it is at work, or its page shows the film."""
+        return self.is_open or self._slices is not None or self._copying is not None
+
     def update(self, frame_time: float) -> None:
         """Let frame_time [s] pass, and go on with the work for a part of it."""
         if self._slices is not None:

@@ -100,6 +100,11 @@ class ScenePainter:
         self._finer: pygame.Surface | None = None
         self._work: Iterator[None] | None = None
 
+    @property
+    def moves(self) -> bool:
+        """Whether a smooth picture is being made."""
+        return self._work is not None
+
     def draw(self, surface: pygame.Surface, camera: Camera, scene: Scene, chosen: SelectionMasks, hidden: bool) -> None:
         """Draw grid, scene and selection, from the layer that is kept where it still holds.
 

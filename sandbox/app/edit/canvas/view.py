@@ -37,6 +37,11 @@ class View:
         """Circle a place [m] for a moment."""
         self._spot = (place, 0.0)
 
+    @property
+    def moves(self) -> bool:
+        """Whether a place is circled for a moment, or a smooth picture is being made."""
+        return self._spot is not None or self._painter.moves
+
     def update(self, frame_time: float, ready: bool) -> None:
         """Let frame_time [s] pass; ready: whether the kernels are there."""
         self._painter.compiled, self._painter.scale = ready, self._screen.scale

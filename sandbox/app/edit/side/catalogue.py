@@ -1,20 +1,16 @@
 """CataloguePage: ready parts and a person's own, with pictures, to be put on the sheet by a click or a drag."""
 
-from collections.abc import Iterator
-from contextlib import suppress
 from html import escape
 from pathlib import Path
 from typing import Any
 
 import pygame
 
-from sandbox.app.draw.colours import DANGER, MUTED, TEXT, shown_theme
+from sandbox.app.draw.colours import DANGER, MUTED, TEXT
 from sandbox.app.edit.canvas.pointer import DrawTool
 from sandbox.app.edit.editing import Editing
-from sandbox.app.edit.side.part_card import NAME_HEIGHT, PICTURE_RATIO, PartCard
+from sandbox.app.edit.side.part_card import NAME_HEIGHT, PICTURE_RATIO, PartCard, fill_card
 from sandbox.app.edit.side.scroll import ScrollArea
-from sandbox.app.picture_cache import draw_in_slices, find_picture, forget_old_pictures, keep_picture, kept_picture
-from sandbox.app.picture_cache import picture_key as key_of_level
 from sandbox.app.screen import Pixel
 from sandbox.app.sentences import sentence
 from sandbox.app.shortcuts import tip_of
@@ -24,9 +20,6 @@ from sandbox.app.widgets.painted import TextBlock
 from sandbox.editor.storage.level_file import StorageError
 from sandbox.editor.storage.part_files import PartFile, catalogue, delete_part, rename_part
 from sandbox.editor.tools.drawing_part import PartDrawing
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.files import read_bytes
-from sandbox.physics import jit
 
 # Sizes in layout units.
 BUTTON_HEIGHT = 28.0
@@ -86,6 +79,11 @@ class CataloguePage:
         )  # fmt: skip
 
     # What there is.
+
+    @property
+    def moves(self) -> bool:
+        """Whether cards are still filled in."""
+        return len(self._unfilled) > 0
 
     def refresh(self) -> None:
         """Show what there is by now, and which part is in hand."""
@@ -161,33 +159,8 @@ class CataloguePage:
             if self._is_low and part.level is not None:
                 card.set_tooltip(escape(f"{part.name}. {part.level.description}".strip(), quote=False))
             self.cards.append(card)
-            self._unfilled.add(self._fill(card))
+            self._unfilled.add(fill_card(card, lambda: self._screen.ready))
         return y + -(-len(parts) // columns) * (height + GAP)
-
-    def _fill(self, card: PartCard) -> Iterator[bool]:
-        """Read a card's part and draw its picture, a slice at each turn; False where it has to wait."""
-        level, theme = card.part.level, shown_theme()
-        card.show()
-        yield True
-        if level is None:
-            return
-        try:
-            # A level of the same content is drawn after it has moved, and kept by another key.
-            key = key_of_level(b"part " + read_bytes(card.part.path))
-        except LevelError:
-            return
-        picture = find_picture(card.part.path, key, card.picture_size, theme)
-        if picture is not None:
-            card.show(picture)
-            return
-        while not self._screen.ready:
-            yield False
-        picture = yield from draw_in_slices(level, theme, 0.0)
-        card.show(pygame.transform.smoothscale(picture, card.picture_size))
-        if jit.COMPILED:
-            with suppress(OSError):
-                keep_picture(picture, kept_picture(key, theme))
-                forget_old_pictures(kept_picture(key, theme).parent)
 
     def _describe(self) -> None:
         part = self._chosen

@@ -1,14 +1,21 @@
 """PartCard: a part of the catalogue with its picture; a click takes it up, a drag carries it to the sheet."""
 
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from typing import Any, Protocol
 
 import pygame
 
-from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, LINE, SURFACE, TEXT
+from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT, shown_theme
+from sandbox.app.picture_cache import draw_in_slices, find_picture, forget_old_pictures, keep_picture, kept_picture
+from sandbox.app.picture_cache import picture_key as key_of_level
 from sandbox.app.screen import Pixel
 from sandbox.app.widgets.painted import ENTER_KEYS, Lit, Pressable, wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.part_files import PartFile
+from sandbox.level.faults.level_error import LevelError
+from sandbox.level.format.files import read_bytes
+from sandbox.physics import jit
 
 # Sizes in layout units.
 PICTURE_RATIO = 9 / 16
@@ -18,6 +25,8 @@ TEXT_SIZE, FAULT_SIZE = 12.0, 10.5
 FAULT_LINES = 4
 # A narrower card has smaller letters.
 ROOM_FOR_NAME, SMALL_TEXT = 100.0, 11.0
+# How much of the picture is veiled of a part that cannot be had here, of 255.
+VEIL = 165
 # Arrow keys: cards to the right, and rows down.
 STEPS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
 
@@ -43,7 +52,10 @@ class Hands(Protocol):
 
 
 class PartCard(Lit, Pressable):
-    """One part; it shows its name once `is_read` is set, and a frame while it `is_taken`; columns: of such cards."""
+    """One part; it shows its name once `is_read` is set, and a frame while it `is_taken`; columns: of such cards.
+
+    refusal: why it cannot be had here; then it is pale.
+    """
 
     ui: Ui
 
@@ -52,6 +64,7 @@ class PartCard(Lit, Pressable):
         self.part, self._hands, self._columns = part, hands, columns
         self.picture: pygame.Surface | None = None
         self.is_read = self.is_taken = self._is_held = False
+        self.refusal = ""
         ui.add(self)
         self.repaint()
 
@@ -81,12 +94,17 @@ class PartCard(Lit, Pressable):
         is_broken = self.is_read and self.part.level is None
         if self.picture is not None:
             card.blit(self.picture, self.picture.get_rect(center=place.center))
+            if self.refusal:
+                veil = pygame.Surface(place.size)
+                veil.fill(BACKGROUND)
+                veil.set_alpha(VEIL)
+                card.blit(veil, place)
         elif is_broken:
             self._paint_fault(card, place)
         if self.is_read:
             font = ui.font(TEXT_SIZE if size[0] >= ui.px(ROOM_FOR_NAME) else SMALL_TEXT, self.is_taken)
             name = wrapped(self.part.name, font, size[0] - ui.px(12), 1)[0]
-            text = font.render(name, True, DANGER if is_broken else TEXT)
+            text = font.render(name, True, DANGER if is_broken else MUTED if self.refusal else TEXT)
             middle = place.bottom + (size[1] - place.bottom) // 2
             card.blit(text, text.get_rect(midleft=(ui.px(8), middle)))
         is_lit = self.is_taken or self.hovered or self.ui.focus is self
@@ -134,3 +152,29 @@ class PartCard(Lit, Pressable):
     def _pixel(self, event: pygame.event.Event) -> Pixel:
         x, y = self.ui.manager.calculate_scaled_mouse_position(event.pos)
         return x, y
+
+
+def fill_card(card: PartCard, is_ready: Callable[[], bool]) -> Iterator[bool]:
+    """Read a card's part and draw its picture, a slice at each turn; False while kernels are not ready for that."""
+    level, theme = card.part.level, shown_theme()
+    card.show()
+    yield True
+    if level is None:
+        return
+    try:
+        # A level of the same content is drawn after it has moved, and kept by another key.
+        key = key_of_level(b"part " + read_bytes(card.part.path))
+    except LevelError:
+        return
+    picture = find_picture(card.part.path, key, card.picture_size, theme)
+    if picture is not None:
+        card.show(picture)
+        return
+    while not is_ready():
+        yield False
+    picture = yield from draw_in_slices(level, theme, 0.0)
+    card.show(pygame.transform.smoothscale(picture, card.picture_size))
+    if jit.COMPILED:
+        with suppress(OSError):
+            keep_picture(picture, kept_picture(key, theme))
+            forget_old_pictures(kept_picture(key, theme).parent)

@@ -103,6 +103,11 @@ class Side:
         self.page.refresh()
         self._count_findings()
 
+    @property
+    def moves(self) -> bool:
+        """Whether pictures of parts are still to come."""
+        return isinstance(self.page, CataloguePage) and self.page.moves
+
     def _count_findings(self) -> None:
         count = len(self._screen.findings)
         button = self._tab_button("findings")

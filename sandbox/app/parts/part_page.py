@@ -1,0 +1,159 @@
+"""PartPage: the catalogue while a level is played: a part that is chosen is in hand, to be dropped and thrown."""
+
+from collections.abc import Callable, Iterator
+
+from sandbox.app.draw.colours import MUTED, TEXT, WARNING, Colour
+from sandbox.app.edit.side.part_card import NAME_HEIGHT, PICTURE_RATIO, PartCard, fill_card
+from sandbox.app.edit.side.scroll import ScrollArea
+from sandbox.app.screen import Pixel
+from sandbox.app.sentences import sentence
+from sandbox.app.slice_queue import SliceQueue
+from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.ui import Ui
+from sandbox.editor.document import EditError
+from sandbox.editor.edits.joining import joining_commands
+from sandbox.editor.storage.part_files import PartFile, catalogue
+from sandbox.level.format.model import Level
+from sandbox.physics.world import World
+
+# Sizes in layout units.
+WIDTH, HEIGHT = 690.0, 620.0
+MARGIN, GAP = 24.0, 10.0
+# Cards are this wide at least; on a page that is lower than this they are smaller.
+LEAST_CARD, LEAST_OF_LOW, LOW = 130.0, 82.0, 420.0
+TOP, BOTTOM = 56.0, 66.0
+HEADING, LINE = 28.0, 22.0
+BUTTON = 34.0
+# Wall time [s] of a frame that cards are filled in.
+FILL_BUDGET = 0.008
+NOTHING_OWN = "In the editor, select something and keep it as a part: Ctrl+K. Then it is here, too."
+HINT = "Click a part, then the world: a click drops it, a drag throws it."
+
+
+Take = Callable[[Level, bool], object]
+
+
+class PartPage:
+    """A modal page; what cannot join the world is pale, and says why where it is pointed at.
+
+    is_ready: whether pictures can be drawn. take: called with the part that is chosen, and whether by a key. again:
+    opens the page anew, scrolled to an offset [pixels].
+    """
+
+    def __init__(
+        self, ui: Ui, world: World, is_ready: Callable[[], bool], take: Take, again: Callable[[float], object],
+        offset: float = 0.0,
+    ) -> None:  # fmt: skip
+        self._ui, self._world, self._is_ready, self._take = ui, world, is_ready, take
+        width, height = (min(most, room - 16) for most, room in zip((WIDTH, HEIGHT), ui.units, strict=True))
+        self._width = width - 2 * MARGIN - 12
+        least = LEAST_CARD if height >= LOW else LEAST_OF_LOW
+        self._columns = max(2, int((self._width + GAP) // (least + GAP)))
+        self.sheet = ui.open_sheet(self.close, is_page=True, again=lambda _: again(self.area.offset))
+        place = ui.rect((ui.units[0] - width) / 2, (ui.units[1] - height) / 2, width, height)
+        box = ui.panel(place, self.sheet, "@dialog")
+        ui.label(ui.rect(MARGIN, 16, self._width, 28), "Parts", box, "@title")
+        self.area = ScrollArea(ui, ui.rect(MARGIN, TOP, self._width + 12, height - TOP - BOTTOM), box)
+        self.cards: list[PartCard] = []
+        self._unfilled = SliceQueue()
+        found = catalogue()
+        sections = [("Your own", [part for part in found if part.is_own])]
+        # What can be had at once comes first.
+        sections.insert(bool(sections[0][1]), ("Ready", [part for part in found if not part.is_own]))
+        y = -GAP
+        for title, parts in sections:
+            y = self._add_section(title, parts, y + GAP)
+        self.area.set_height(ui.px(y))
+        self.area.scroll_to(offset)
+        self._note = TextBlock(ui, ui.rect(MARGIN, height - BOTTOM + 12, self._width - 110, BOTTOM - 18), "", box, 12.0)
+        place = ui.rect(width - MARGIN - 100, height - MARGIN - 26, 100, BUTTON)
+        ui.button(place, "Close", self.close, box, style="@primary")
+        ui.focus_on(self.cards[0])
+
+    def close(self) -> None:
+        """Take the page away."""
+        self._ui.close_sheet(self.sheet)
+
+    def _add_section(self, title: str, parts: list[PartFile], y: float) -> float:
+        """Cards under a heading from a place [layout units] on; where they end."""
+        ui, content = self._ui, self.area.content
+        TextBlock(ui, ui.rect(3, y, self._width, HEADING), title, content, 14.0, TEXT, is_bold=True)
+        y += HEADING
+        if not parts:
+            TextBlock(ui, ui.rect(3, y, self._width, LINE), NOTHING_OWN, content, 12.0)
+            return y + LINE
+        columns = self._columns
+        width = (self._width - 6 - GAP * (columns - 1)) / columns
+        height = width * PICTURE_RATIO + NAME_HEIGHT
+        for index, part in enumerate(parts):
+            row, column = divmod(index, columns)
+            place = ui.rect(3 + column * (width + GAP), y + row * (height + GAP), width, height)
+            card = PartCard(ui, place, part, self, content, columns)
+            self.cards.append(card)
+            self._unfilled.add(self._fill(card))
+        return y + -(-len(parts) // columns) * (height + GAP)
+
+    def _fill(self, card: PartCard) -> Iterator[bool]:
+        yield True
+        card.refusal = refusal(card.part, self._world)
+        yield from fill_card(card, self._is_ready)
+
+    # A frame.
+
+    @property
+    def moves(self) -> bool:
+        """Whether cards are still filled in."""
+        return self.sheet.alive() and len(self._unfilled) > 0
+
+    def update(self) -> None:
+        """Go on filling cards, and say what is pointed at."""
+        if not self.sheet.alive():
+            return
+        self._unfilled.go_on(FILL_BUDGET)
+        hovered = (card for card in self.cards if card.hovered)
+        focused = (card for card in self.cards if self._ui.focus is card)
+        card = next(hovered, None) or next(focused, None)
+        text, colour = (HINT, MUTED) if card is None else _said_of(card)
+        if (text, colour) != (self._note.text, self._note.colour):
+            self._note.colour = colour
+            self._note.show_text(text)
+
+    # What the cards ask.
+
+    def take(self, part: PartFile, by_key: bool) -> None:
+        """Have a part in hand, and close the page; not where it cannot join."""
+        if part.level is not None and not refusal(part, self._world):
+            self.close()
+            self._take(part.level, by_key)
+
+    def carry(self, pixel: Pixel) -> None:
+        """Nothing is dragged off the page."""
+
+    def drop(self, pixel: Pixel) -> None:
+        """Nothing is dragged off the page."""
+
+    def go(self, card: PartCard, by: int) -> None:
+        """Give the keyboard to the card that many further."""
+        index = self.cards.index(card) + by
+        if 0 <= index < len(self.cards):
+            self._ui.focus_on(self.cards[index])
+            self.area.follow_focus()
+
+
+def refusal(part: PartFile, world: World) -> str:
+    """Why a part cannot join a world, in one line; empty where it can."""
+    if part.level is None:
+        return part.fault
+    try:
+        joining_commands(part.level, world, (0.0, 0.0))
+    except EditError as error:
+        return sentence(error)
+    return ""
+
+
+def _said_of(card: PartCard) -> tuple[str, Colour]:
+    """What is said of a part, and in which colour."""
+    level = card.part.level
+    if card.refusal or level is None:
+        return card.refusal or card.part.fault, WARNING
+    return f"{card.part.name}. {level.description or HINT}", MUTED

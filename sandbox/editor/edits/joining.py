@@ -1,0 +1,123 @@
+"""Parts of the catalogue that join a running world: the commands that add one, or why there are none."""
+
+from dataclasses import fields
+from typing import Any
+
+from sandbox.editor.document import EditError
+from sandbox.editor.edits.copying import inserted, shifted
+from sandbox.editor.edits.names import owner_of, rewired, with_owner
+from sandbox.level.build.joining import Joiners
+from sandbox.level.build.surfaces import group_bits
+from sandbox.level.faults.level_error import LevelError, one_line, shown
+from sandbox.level.format.model import Level, Material, ParticleDef
+from sandbox.level.format.quantities import Description, Point, replaced
+from sandbox.level.kinds.mesh import MeshDef
+from sandbox.physics.world import World
+from sandbox.session.commands import AddBody, AddParticle, Command
+
+# What a loose particle has that its command says, and what only the editor or the eye knows.
+SAID = frozenset(field.name for field in fields(AddParticle))
+UNSEEN = frozenset(("id", "group", "extras", "angle"))
+# What it has that does nothing while a spring holds it.
+OF_FREE_DISCS = frozenset(("rolls", "rolling", "spin"))
+
+
+def joining_commands(part: Level, world: World, at: Point, velocity: Point = (0.0, 0.0)) -> tuple[Command, ...]:
+    """The commands that add a part with its origin at a point [m], thrown at a velocity [m/s]; one gesture.
+
+    Materials of the same name and values are shared, others get a name of their own; what was made for another tick
+    rate moves per second alike. Raises EditError, with one line, where commands cannot add all of it.
+    """
+    source = world.source
+    assert isinstance(source, Level)
+    known = _materials(world, source)
+    bare = Level(
+        format=source.format, version=source.version, name=source.name, settings=source.settings, materials=known,
+        contacts=source.contacts,
+    )  # fmt: skip
+    joined, _ = inserted(bare, [shifted(_able_to_join(part, source), *at)])
+    commands: list[Command] = []
+    if joined.bodies:
+        add = _add_body(joined, known, velocity)
+        try:
+            Joiners(world, {name: value for name, value in vars(add).items() if value is not None}).check_room(world)
+        except LevelError as error:
+            raise EditError(one_line(error.faults[0])) from None
+        commands.append(add)
+    return *commands, *(_add_particle(each, velocity) for each in joined.particles)
+
+
+def _materials(world: World, source: Level) -> dict[str, Material]:
+    """The materials that a world knows, by name; the level's go before those that have joined it."""
+    known: dict[str, Material] = {}
+    for level in (source, *(joined.source for joined in world.joined)):
+        known = {**level.materials, **known}
+    return known
+
+
+def _able_to_join(part: Level, source: Level) -> Level:
+    """The part with its loose particles that springs or welds hold as bodies. Raises EditError where it cannot join."""
+    if part.terrain:
+        raise EditError(f"{shown(part.name)} has terrain, which cannot join a run; build it into a level")
+    known, bits = group_bits(source), group_bits(part)
+    lost = [name for name in bits if name not in known]
+    if lost:
+        raise EditError(f"{shown(part.name)} has the collision group {shown(lost[0])}, which this level does not have")
+    named = {owner_of(name) for pair in ((each.a, each.b) for each in part.springs) for name in pair}
+    named |= {owner_of(name) for pair in part.welds for name in pair}
+    held = [particle for particle in part.particles if particle.id in named]
+    for particle in part.particles:
+        unsaid = _unsaid(particle, particle.id in named)
+        if unsaid:
+            raise EditError(f"{shown(particle.id)} is a loose particle with {unsaid}, which cannot join a run")
+    ids = {particle.id for particle in held}
+    part, _ = rewired(part, lambda name: with_owner(f"{name}.0", name) if name in ids else name)
+    loose = tuple(particle for particle in part.particles if particle.id not in ids)
+    return replaced(part, bodies=(*part.bodies, *map(_as_mesh, held)), particles=loose)
+
+
+def _unsaid(particle: ParticleDef, is_held: bool) -> str:
+    """The first thing that a particle says and no command can; empty where there is none."""
+    said = SAID | UNSEEN
+    if is_held:
+        said |= OF_FREE_DISCS | frozenset(MeshDef.model_fields) - {"look"}
+    for name, field in ParticleDef.model_fields.items():
+        if name not in said and getattr(particle, name) != field.default:
+            return name.replace("_", " ")
+    return ""
+
+
+def _as_mesh(particle: ParticleDef) -> MeshDef:
+    """A body of a single particle."""
+    same = ("id", "velocity", "gravity_scale", "friction", "restitution", "collides", "collision_group", "group")
+    return MeshDef(
+        type="mesh",
+        particles=(particle.position,),
+        masses=(particle.mass,),
+        particle_radius=particle.radius,
+        pinned=(0,) if particle.pinned else (),
+        **{name: getattr(particle, name) for name in same},
+    )
+
+
+def _add_body(level: Level, known: dict[str, Material], velocity: Point) -> AddBody:
+    first, *others = (_said(replaced(body, velocity=_sum(body.velocity, velocity))) for body in level.bodies)
+    users = {body.material for body in level.bodies} | {spring.material for spring in level.springs}
+    new = {name: _said(each) for name, each in level.materials.items() if name in users and name not in known}
+    springs = tuple(map(_said, level.springs))
+    return AddBody(first, tuple(others) or None, springs or None, level.welds or None, new or None)
+
+
+def _add_particle(particle: ParticleDef, velocity: Point) -> AddParticle:
+    given = {name: getattr(particle, name) for name in SAID}
+    return AddParticle(**given | {"velocity": None if particle.pinned else _sum(particle.velocity, velocity)})
+
+
+def _sum(one: Point, other: Point) -> Point:
+    return one[0] + other[0], one[1] + other[1]
+
+
+def _said(part: Description) -> dict[str, Any]:
+    """What a level file says of a definition, without what goes without saying."""
+    said: dict[str, Any] = part.model_dump(mode="json", exclude_defaults=True)
+    return said

@@ -1,0 +1,196 @@
+"""The loop goes slowly while nothing moves: it says so by itself of every screen, and an event wakes it at once."""
+
+import time
+from types import SimpleNamespace
+
+import pygame
+import pytest
+
+from sandbox.app import calm
+from sandbox.app.app import App, run_app
+from sandbox.app.calm import CALM_AFTER, CALM_RATE, Calm
+from sandbox.app.display import Display
+from sandbox.app.loop import FRAME_RATE
+from sandbox.app.profile import Profile
+from sandbox.app.start_request import StartRequest
+from tests.app.conftest import FRAME, small_level
+
+
+class FakeTime:
+    """A clock that goes on only while somebody waits; `on_nap` is called at every nap."""
+
+    def __init__(self):
+        self.now = 0.0
+        self.on_nap = lambda: None
+
+    def perf_counter(self):
+        return self.now
+
+    def sleep(self, seconds):
+        self.now += seconds
+        self.on_nap()
+
+    thread_time = staticmethod(time.thread_time)
+
+
+@pytest.fixture
+def fake_time(monkeypatch):
+    made = FakeTime()
+    monkeypatch.setattr("sandbox.app.app.time", made)
+    monkeypatch.setattr(calm, "time", made)
+    return made
+
+
+def key_event(kind, key):
+    return pygame.event.Event(kind, key=key, mod=0, unicode="", scancode=0)
+
+
+def let_calm_come(driver):
+    """Do nothing for long enough; whether the loop may go slowly then."""
+    driver.app.status.notices.clear()
+    driver.pass_unseen(round(1.6 * CALM_AFTER / FRAME))
+    return driver.app.calm.has_come
+
+
+def test_calm_comes_after_a_while_in_which_nothing_happens_and_goes_at_once():
+    followed = Calm()
+    followed.follow(0.9 * CALM_AFTER, is_busy=False)
+    assert not followed.has_come
+    followed.follow(0.2 * CALM_AFTER, is_busy=False)
+    assert followed.has_come
+    followed.follow(FRAME, is_busy=True)
+    assert not followed.has_come
+
+
+def test_waiting_ends_at_an_event_which_stays_in_the_queue_in_its_order(driver, fake_time):
+    pygame.event.clear()
+    assert not calm.wait_for_event(0.1) and fake_time.now == pytest.approx(0.1)
+
+    def type_two():
+        if fake_time.now > 0.15:
+            fake_time.on_nap = lambda: None
+            for key in (pygame.K_a, pygame.K_b):
+                pygame.event.post(key_event(pygame.KEYDOWN, key))
+
+    fake_time.on_nap = type_two
+    assert calm.wait_for_event(10.0) and fake_time.now < 0.15 + 2 * calm.NAP
+    assert calm.wait_for_event(10.0) and fake_time.now < 0.15 + 2 * calm.NAP
+    assert [event.key for event in pygame.event.get(pygame.KEYDOWN)] == [pygame.K_a, pygame.K_b]
+
+
+def test_a_run_moves_until_it_is_paused_and_a_page_over_it_stops_it(driver):
+    assert not let_calm_come(driver)
+    driver.app.act("pause")
+    assert let_calm_come(driver)
+    driver.key(pygame.K_PERIOD)
+    assert not driver.app.calm.has_come
+    driver.app.act("pause")
+    assert not let_calm_come(driver)
+    driver.app.act("help")
+    assert let_calm_come(driver)
+
+
+def test_notices_wake_it_to_fade_and_pictures_stay_as_detailed_as_they_were(driver):
+    driver.app.act("pause")
+    assert let_calm_come(driver)
+    driver.app.say("A line.")
+    driver.app.frame(0.1)
+    assert driver.app.calm.has_come
+    driver.app.status.notices[0].left = 0.65
+    driver.app.frame(0.1)
+    assert not driver.app.calm.has_come
+    for _ in range(60):
+        driver.app.frame(0.1)
+    assert not driver.app.status.notices
+    assert driver.stage.detail.level == 0
+
+
+def test_a_button_that_is_held_keeps_it_awake(driver, monkeypatch):
+    driver.app.act("pause")
+    monkeypatch.setattr(pygame.mouse, "get_pressed", lambda: (True, False, False))
+    assert not let_calm_come(driver)
+
+
+def test_an_editor_that_has_said_what_it_found_rests_until_the_level_is_another(edit):
+    driver = edit(small_level())
+    assert let_calm_come(driver)
+    driver.editor.toggle_forecast()
+    driver.app.frame(0.1)
+    assert not driver.app.calm.has_come
+    assert let_calm_come(driver)
+    assert driver.editor.hanging is not None
+    driver.editor.show((0.0, 0.0))
+    driver.app.frame(0.1)
+    assert not driver.app.calm.has_come
+    driver.editor.show_parts()
+    driver.frames()
+    assert driver.editor.moves == (len(driver.editor.side.page._unfilled) > 0)
+
+
+def test_the_tour_pulses_until_it_is_over(edit):
+    driver = edit()
+    driver.app.guide.begin()
+    assert not let_calm_come(driver)
+    driver.app.guide.skip()
+    assert let_calm_come(driver)
+
+
+def test_the_gallery_rests_once_its_cards_are_filled_and_none_plays(driver, fake_time):
+    driver.app.open_gallery()
+    gallery = driver.app.gallery
+    assert gallery.moves
+    gallery._unfilled._works.clear()
+    assert let_calm_come(driver)
+    card = next(card for card in gallery.cards if card in gallery._paths)
+    driver.app.ui.focus_on(card)
+    assert not let_calm_come(driver)
+    # One that cannot be played is as still as its picture.
+    gallery._preview[1]._session, gallery._preview[1]._steps = None, iter(())
+    assert let_calm_come(driver)
+
+
+def test_the_loop_slows_down_wakes_at_a_key_and_makes_up_for_no_time_that_it_slept(documents, fake_time, monkeypatch):
+    times, ticks, asked = [], [], []
+    frame = App.frame
+
+    def noted_frame(app, frame_time):
+        times.append(frame_time)
+        app.preparation.finish()
+        app._draw = lambda: None
+        app.status.notices.clear()
+        if len(times) == 2:
+            app.act("pause")
+        before = app.play.playback.session.tick
+        frame(app, frame_time)
+        ticks.append(app.play.playback.session.tick - before)
+        if asked and not app.play.playback.clock.paused:
+            app.running = False
+
+    def press_space():
+        if fake_time.now > 3.06:
+            fake_time.on_nap = lambda: None
+            asked.append(fake_time.now)
+            pygame.event.post(key_event(pygame.KEYDOWN, pygame.K_SPACE))
+            pygame.event.post(key_event(pygame.KEYUP, pygame.K_SPACE))
+
+    monkeypatch.setattr(App, "frame", noted_frame)
+    clock = SimpleNamespace(tick=lambda rate: fake_time.sleep(1.0 / rate))
+    monkeypatch.setattr(pygame.time, "Clock", lambda: clock)
+    fake_time.on_nap = press_space
+    profile = Profile()
+    run_app(Display(1.0), StartRequest(small_level()), profile, 20.0, {})
+    slow = [each for each in times if each > 1.5 / FRAME_RATE]
+    assert slow == pytest.approx([1.0 / CALM_RATE] * len(slow)) and 17 <= len(slow) <= 20
+    assert fake_time.now - asked[0] < 2 * calm.NAP
+    assert times[-1] <= 1.0 / FRAME_RATE + 1e-9 and ticks[-1] <= 1
+    assert profile.frames == len(times)
+
+
+def test_a_frame_that_was_late_on_purpose_is_no_stop():
+    profile = Profile()
+    profile.shown()
+    profile.rested()
+    profile.shown()
+    assert profile.longest_stop == (0.0, 0.0)
+    profile.shown()
+    assert profile.longest_stop > (0.0, 0.0)
