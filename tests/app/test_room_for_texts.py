@@ -25,6 +25,7 @@ PLAYED = {
     "sliders": lambda app: app.play._set_by("sliders"),
     "world": lambda app: app.play._fold("open"),
     "everything": lambda app: [app.act(name) for name in ("graphs", "timeline", "palette")],
+    "catalogue": lambda app: app.act("catalogue"),
     "compare": lambda app: app.act("compare"),
     "lesson": lambda app: app.start_lesson(),
     "more": lambda app: app.play.toolbar._show_menu() if app.play.toolbar.left_out else None,
