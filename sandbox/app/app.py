@@ -26,7 +26,7 @@ from sandbox.app.loop import FRAME_RATE
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.playback import Playback
-from sandbox.app.play.status import NOTICES, Notice, StatusLine, draw_bar, draw_spinner
+from sandbox.app.play.status import NOTICES, STATUS_HEIGHT, Notice, StatusLine, draw_bar, draw_spinner
 from sandbox.app.preparing import Preparation
 from sandbox.app.profile import Profile
 from sandbox.app.progress import RunProgress
@@ -391,17 +391,21 @@ class App:
             self.screen.draw(surface, self.profile)
         with self.profile.part("ui"):
             if self.screen is not None:
-                corner = None if self.ui.has_sheet else self.screen.notices_place
                 parts = self.sharing.status() + self.screen.status(self._figures)
                 if not self.ready and self.mode == "edit":
                     parts.append(("preparing the physics", WARNING))
-                self.status.draw(surface, parts, self.ui.units[0], corner)
+                self.status.draw(surface, parts)
+                if self.gallery is None:
+                    is_under = False if self.ui.has_sheet else None
+                    self.status.draw_notices(surface, self.screen.notices_place, over_page=is_under)
             self.ui.draw(surface)
             if self.gallery is not None:
                 self.gallery.draw(surface)
             self.guide.draw(surface)
             if (self.screen is None or self.ui.has_sheet) and not self.ui.shows_page:
-                self.status.draw_notices(surface, 16.0)
+                # What was said before lies under the page; a gallery covers all.
+                place = 16.0, -STATUS_HEIGHT, self.ui.units[0]
+                self.status.draw_notices(surface, place, over_page=True if self.gallery is None else None)
             # A level can be drawn before the physics is there.
             if self._waited > WAIT_UNSEEN and self.play is not None:
                 self._draw_waiting(surface)

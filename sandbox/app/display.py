@@ -15,8 +15,8 @@ from sandbox.level.format.shipped import shipped_folder
 # Window at scale 1, and the smallest that everything fits in.
 WINDOW_SIZE = (1280, 720)
 SMALLEST_WINDOW = (640, 440)
-# What everything is laid out for at least [layout units]: the smallest window at twice its scale.
-FEWEST_UNITS = (320, 220)
+# What everything is laid out for at least [layout units]: in less, pages have no room for their buttons.
+FEWEST_UNITS = (480, 360)
 INVISIBLE_DRIVERS = ("dummy", "offscreen", "evdev")
 SCALE_RANGE = (0.5, 4.0)
 # Desktops higher than this [pixels] have small pixels, unless told otherwise.

@@ -12,6 +12,10 @@ from sandbox.app.shortcuts import Mode
 from sandbox.app.widgets.ui import Ui
 
 Pixel = tuple[float, float]
+# Left edge, how far above the status line, right end [layout units].
+NoticesPlace = tuple[float, float, float]
+# A world that is lower or narrower has notices over the status line [layout units].
+ROOM_FOR_NOTICES = 280.0
 Pointer = Literal["down", "move", "up"]
 
 
@@ -30,8 +34,8 @@ class Screen(Protocol):
     actions: dict[str, Callable[[], object]]
 
     @property
-    def notices_place(self) -> tuple[float, float, float]:
-        """Where notices cover no widgets [layout units]: left edge, how far above the status line, right end."""
+    def notices_place(self) -> NoticesPlace | None:
+        """Where notices cover no widgets; None: they would cover most of the world, and lie over the status line."""
         ...
 
     @property

@@ -34,9 +34,11 @@ STILL = 0.05
 class Measured:
     """What a metric is measured of: fields that it needs, and those that it may have; its unit.
 
-    at_least: the bound that holds where a check names none; momentary: whether it has a value at every tick.
+    words: a check of it as a sentence; {owner}, {of} and {other} stand for what it is measured of, {bounds} for what it
+    must keep. at_least: the bound that holds where a check names none; momentary: whether it has a value at every tick.
     """
 
+    words: str
     unit: str = ""
     needs: tuple[str, ...] = ()
     may_have: tuple[str, ...] = ()
@@ -49,21 +51,27 @@ class Measured:
 
 
 METRICS: dict[str, Measured] = {
-    "max_strain": Measured(momentary=False),
-    "rms_strain": Measured(momentary=False),
-    "strain": Measured(may_have=("body",)),
-    "kinetic_energy": Measured("J"),
-    "potential_energy": Measured("J"),
-    "energy": Measured("J"),
-    "max_speed": Measured("m/s"),
-    "non_finite": Measured(),
-    "broken_springs": Measured(may_have=("body",)),
-    "x": Measured("m", ("particle",)),
-    "y": Measured("m", ("particle",)),
-    "speed": Measured("m/s", ("particle",)),
-    "distance": Measured("m", ("particle", "other")),
-    "inside": Measured("m", ("box",), ("particle", "body"), at_least=0.0),
-    "settled": Measured("s", (), ("body",), at_least=1.0),
+    "max_strain": Measured("the largest strain of the last 2 s is {bounds}", momentary=False),
+    "rms_strain": Measured("the root mean square strain of the last 2 s is {bounds}", momentary=False),
+    "strain": Measured("the largest strain{of} is {bounds}", may_have=("body",)),
+    "kinetic_energy": Measured("the energy of motion is {bounds}", "J"),
+    "potential_energy": Measured("the energy of springs and height is {bounds}", "J"),
+    "energy": Measured("the energy is {bounds}", "J"),
+    "max_speed": Measured("the speed of the fastest particle is {bounds}", "m/s"),
+    "non_finite": Measured("{bounds} particles have no place or speed"),
+    "broken_springs": Measured("{bounds} springs{of} break", may_have=("body",)),
+    "x": Measured("x{of} is {bounds}", "m", ("particle",)),
+    "y": Measured("y{of} is {bounds}", "m", ("particle",)),
+    "speed": Measured("the speed{of} is {bounds}", "m/s", ("particle",)),
+    "distance": Measured("the distance from {owner} to {other} is {bounds}", "m", ("particle", "other")),
+    "inside": Measured("{owner} is inside the box by {bounds}", "m", ("box",), ("particle", "body"), at_least=0.0),
+    "settled": Measured("{owner} stands still for {bounds}", "s", (), ("body",), at_least=1.0),
+}
+# What people say of some metrics with bounds that most checks of them have: the least and the largest value.
+PROMISES = {
+    ("non_finite", -math.inf, 0.0): "every place and speed is a number",
+    ("broken_springs", -math.inf, 0.0): "no spring{of} breaks",
+    ("inside", 0.0, math.inf): "{owner} is inside the box",
 }
 # Fields that only some metrics take.
 SUBJECTS = ("particle", "other", "body", "box")
@@ -147,6 +155,16 @@ def wanted_text(check: CheckDef) -> str:
     low, high = bounds_of(check)
     parts = [f"at least {low:g}"] if low > -math.inf else []
     return " and ".join([*parts, *([f"at most {high:g}"] if high < math.inf else [])])
+
+
+def promise_text(check: CheckDef) -> str:
+    """What a check promises, in words for people: "the speed of ball is at most 2 m/s"."""
+    measured, owner = METRICS[check.metric], check.particle or check.body
+    words = PROMISES.get((check.metric, *bounds_of(check)), measured.words)
+    return words.format(
+        owner=owner or "everything", of="" if owner is None else f" of {owner}", other=check.other,
+        bounds=f"{wanted_text(check)} {measured.unit}".rstrip(),
+    )  # fmt: skip
 
 
 def judge(check: CheckDef, value: float, at: float | None = None) -> CheckResult:

@@ -386,16 +386,16 @@ def test_a_window_that_holds_next_to_nothing_is_laid_out_smaller_and_cut_off(ope
         driver.key(pygame.K_a, CTRL)
     window = driver.app.display.window
     window.minimum_size = (1, 1)
-    for size, chosen, scale in (((640, 440), 4.0, 2.0), ((200, 150), 1.0, 0.625), ((1, 1), 1.0, 0.5)):
+    for size, chosen, scale in (((640, 440), 4.0, 440 / 360), ((300, 225), 1.0, 0.625), ((1, 1), 1.0, 0.5)):
         driver.app.scale, window.size = chosen, size
         driver.app.rebuild()
         driver.frames(2)
-        assert driver.app.ui.scale == scale and min(driver.app.ui.units) >= 220
+        assert driver.app.ui.scale == pytest.approx(scale) and min(driver.app.ui.units) >= 359.9
     # One press of the key makes things smaller, however large they were asked for.
     driver.app.scale, window.size = 4.0, (640, 440)
     driver.frames(2)
     driver.key(pygame.K_MINUS, CTRL)
-    assert driver.app.ui.scale == pytest.approx(2.0 / 1.125)
+    assert driver.app.ui.scale == pytest.approx(440 / 360 / 1.125)
 
 
 def test_a_window_made_smaller_and_larger_again_shows_what_it_showed(driver):

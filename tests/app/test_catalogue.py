@@ -144,3 +144,21 @@ def test_the_page_and_the_part_in_hand_survive_a_new_layout(driver):
     assert driver.editor.side.tab == "parts" and card(driver, "Tower").is_taken
     driver.click_at(3, -2)
     assert ids(driver)[-1] == "tower"
+
+
+def test_a_low_page_shows_two_whole_rows_of_three_with_texts_as_tips_and_its_buttons_below(driver):
+    driver.app.display.window.size = (1280, 720)
+    driver.app.chosen.choose("scale", 2.0)
+    driver.frames(2)
+    if not driver.editor.show_side:
+        driver.editor.toggle_side()
+    driver.key(pygame.K_p, SHIFT)
+    shown = page(driver)
+    whole = [card for card in shown.cards if shown.area.view.rect.contains(card.rect)]
+    assert len(whole) == 6 and len({card.rect.top for card in whole}) == 2
+    assert "D drives it" in card(driver, "Car").tool_tip_text
+    driver.key(pygame.K_DOWN)
+    assert driver.app.ui.focus is shown.cards[3]
+    shown.area.scroll_to(9999)
+    driver.frames(1)
+    assert shown.area.view.rect.contains(shown.keep.rect) and shown.keep.rect.top > shown.cards[-1].rect.bottom

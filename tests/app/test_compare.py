@@ -155,12 +155,12 @@ def test_halves_are_alike_in_any_window_and_f9_leads_back(pair):
 
 
 def test_the_legend_leaves_what_stands_over_the_halves_free(pair, monkeypatch):
-    corners = []
-    monkeypatch.setattr("sandbox.app.play.legend.Legend.draw", lambda *rest: corners.append(rest[-1]))
+    rooms = []
+    monkeypatch.setattr("sandbox.app.play.legend.Legend.draw", lambda *rest: rooms.append(rest[-1]))
     ui = pair.app.ui
     for size, below in (((1280, 720), PILL_TOP + 10), ((600, 900), 50)):
         pair.app.display.window.size = size
         pair.frames(3)
         left, top, width, _ = pair.app.play.viewport
-        assert corners[-1][0] == left + width
-        assert corners[-1][1] + ui.px(MARGIN) >= top + ui.px(below)
+        assert rooms[-1].right == left + width
+        assert rooms[-1].top + ui.px(MARGIN) >= top + ui.px(below)

@@ -8,14 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sandbox.app.draw.backdrop import _grid_lines
 from sandbox.app.draw.camera import Camera, bounds, grid_spacing
 from sandbox.app.draw.lines import Canvas
 from sandbox.app.draw.picture import crop_of, draw_picture, save_picture, view_of
+from sandbox.app.draw.raster.bodies import BodyRows, Flush, Outlines, Skins
 from sandbox.app.draw.raster.cells import SHEET, CellArrays
-from sandbox.app.draw.raster.painter import MarkList, Painter
+from sandbox.app.draw.raster.painter import BodyLayer, MarkList, Painter
 from sandbox.app.draw.renderer import Renderer
 from sandbox.app.draw.strain_colours import strain_tones
-from sandbox.app.draw.textures import Tiles
+from sandbox.app.draw.textures import Tiles, grains, skin_table
 from sandbox.app.draw.themes import THEMES
 from sandbox.app.loop import LONGEST_FRAME, SPEEDS, TickClock
 from sandbox.app.play.playback import Playback, interpolated
@@ -75,6 +77,14 @@ def test_bounds_leave_out_what_is_not_finite():
 def test_grid_lines_are_never_closer_than_wanted_and_never_ten_times_farther(zoom):
     pixels = grid_spacing(zoom, 64.0) * zoom
     assert 64.0 * (1 - 1e-6) <= pixels < 640.0
+
+
+@pytest.mark.parametrize(("scale", "thick"), [(1.0, 1), (2.0, 2), (3.0, 3)])
+def test_lines_of_the_grid_are_as_thick_as_the_scale_asks_for(scale, thick):
+    columns, rows = _grid_lines(Camera((0.0, 0.0), 40.0, (0, 0, 640, 480)), scale)
+    for found, middle in ((columns, 320), (rows, 240)):
+        assert len(found) == len(set(found)) and set(found) >= {middle - thick // 2 + k for k in range(thick)}
+        assert middle - thick // 2 - 1 not in found and middle - thick // 2 + thick not in found
 
 
 def test_the_clock_gives_the_same_number_of_ticks_at_every_frame_rate():
@@ -350,3 +360,26 @@ def test_a_kernel_that_leaves_garbage_which_holds_the_pixels_leaves_no_locked_su
     if painter.begin(surface):
         painter.marks(layer, Tiles(THEMES["dark"]).array)
     assert not surface.get_locked()
+
+
+@pytest.mark.skipif(not COMPILED, reason="bodies are lit by kernels")
+@pytest.mark.parametrize("half", [0.9, 2.7])
+def test_the_line_round_a_body_is_as_dark_where_its_sides_meet_as_between(half):
+    along = np.arange(20.0, 100.0, 5.0)
+    sides = [np.column_stack(side) for side in (
+        (along, np.full(16, 20.3)), (np.full(16, 100.0), along), (120 - along, np.full(16, 100.3)),
+        (np.full(16, 20.0), 120 - along),
+    )]  # fmt: skip
+    corners, nothing = np.concatenate(sides), np.zeros((1, 2), dtype=np.int64)
+    rows = BodyRows(np.array([[0, 1]]), np.array([[0, -1, 0x802040]]), np.array([[12.0, half, 0.9]]), nothing)
+    skins = Skins(skin_table("jelly", 0xF2557B, THEMES["light"])[None], grains())
+    flush = Flush(np.zeros((0, 4)), np.zeros(2, dtype=np.int64))
+    surface, painter = pygame.Surface((120, 120), 0, 32), Painter()
+    surface.fill((255, 255, 255))
+    assert painter.begin(surface)
+    painter.bodies(
+        BodyLayer(Outlines(corners, np.array([0, 64])), rows, skins, flush, np.full(1, 0xF2557B, dtype=np.int64))
+    )
+    # Across the upper line, away from the corners of the square: every column is the same.
+    seen = pygame.surfarray.array3d(surface)[40:80, 14:20].astype(int)
+    assert np.ptp(seen, axis=0).max() <= 1 and np.ptp(seen, axis=1).max() > 60

@@ -1,25 +1,27 @@
-"""Notices: whole in any window, and beside the parts to play with."""
+"""Notices: whole in any window, beside the parts to play with, under pages, and never over most of a low world."""
 
 import pygame
 import pytest
 
+from sandbox.app.draw.colours import TEXT
 from sandbox.app.play.key_caps import KEYS_HEIGHT
 from sandbox.app.play.palette import PartsPalette
 from sandbox.app.play.playback import Playback
+from sandbox.app.play.status import STATUS_HEIGHT
 from sandbox.level.format.files import load_level
 
 LONG = "A line of many words " * 12
 
 
-def seen(driver, text):
-    """Columns of pixels of the window that a notice changes."""
+def seen(driver, text, axis=0):
+    """Columns of pixels of the window that a notice changes; axis 1: rows."""
     driver.app._describe("")
     driver.frames(2)
     before = pygame.surfarray.array3d(driver.app.display.surface)
     driver.app.say(text)
     driver.frames(1)
     after = pygame.surfarray.array3d(driver.app.display.surface)
-    return (before != after).any(axis=(1, 2)).nonzero()[0]
+    return (before != after).any(axis=(1 - axis, 2)).nonzero()[0]
 
 
 def test_a_notice_is_as_narrow_as_the_window(driver):
@@ -49,3 +51,49 @@ def test_a_notice_leaves_the_keys_of_a_level_in_sight(driver, size, above):
     driver.frames(2)
     assert driver.app.play._keys.shown()
     assert driver.app.play.notices_place[1] == driver.app.play._below + above
+
+
+def test_in_a_low_world_one_notice_at_a_time_lies_over_the_status_line(driver):
+    driver.app.act("pause")
+    driver.app.act("compare")
+    driver.app.display.window.size = (640, 480)
+    driver.frames(2)
+    driver.app._notices.clear()
+    line = driver.app.ui.size[1] - driver.app.ui.px(STATUS_HEIGHT)
+    assert driver.app.play.notices_place is None
+    assert seen(driver, "A short line.", axis=1).min() > line - 12
+    driver.app.say(LONG)
+    first, second = driver.app._notices
+    left = first.left, second.left
+    driver.frames(6)
+    assert first.left == left[0] and second.left < left[1], "what is not seen waits"
+    driver.app.display.window.size = (1280, 720)
+    driver.frames(2)
+    assert driver.app.play.notices_place is not None
+    driver.frames(2)
+    assert first.left < left[0]
+
+
+def test_what_was_said_before_a_page_opened_lies_under_it_and_what_is_said_of_the_page_over_it(driver):
+    driver.app.act("pause")
+    driver.app._describe("")
+    driver.app.act("open")
+    driver.frames(3)
+    shown = pygame.surfarray.array3d(driver.app.display.surface)
+    driver.key(pygame.K_ESCAPE)
+    driver.app.say(LONG)
+    driver.app.act("open")
+    driver.frames(3)
+    under = abs(pygame.surfarray.array3d(driver.app.display.surface).astype(int) - shown)
+    driver.app._notices.clear()
+    driver.app.say(LONG)
+    driver.frames(1)
+    over = abs(pygame.surfarray.array3d(driver.app.display.surface).astype(int) - shown)
+    assert 0 < under.max() < 60 < 120 < over.max()
+
+
+def test_the_last_part_of_the_status_line_that_has_any_room_is_shortened(driver):
+    status, surface = driver.app.status, driver.app.display.surface
+    status.draw(surface, [("a part of the line " * 20, TEXT)])
+    row = pygame.surfarray.array3d(surface)[:, -20]
+    assert (row[-200:] != row[-1]).any() and (row[-8:] == row[-1]).all()

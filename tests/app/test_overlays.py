@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pygame
@@ -15,7 +16,7 @@ from sandbox.app.draw.textures import Tiles
 from sandbox.app.draw.themes import THEMES
 from sandbox.app.draw.things.frame import Frame
 from sandbox.app.draw.views.overlays import LONGEST_ARROW, NAMES, Overlays, Scale, stability_tones
-from sandbox.app.play.legend import rows_of
+from sandbox.app.play.legend import Legend, rows_of
 from sandbox.app.shortcuts import SHORTCUTS
 from sandbox.level.format.parse import parse_level
 from sandbox.physics.query import shown_particles, shown_springs
@@ -125,6 +126,20 @@ def test_every_overlay_has_a_row_in_the_legend_and_a_key(solver):
     assert rows_of(Overlays(), solver) == []
     keys = {entry.action: entry.keys for entry in SHORTCUTS if entry.mode == "play"}
     assert all(keys[name] for name in NAMES)
+
+
+@pytest.mark.parametrize(
+    ("size", "scale"), [((1200, 800), 1.0), ((700, 420), 1.5), ((300, 200), 1.33), ((90, 60), 2.0)]
+)
+def test_the_legend_stays_in_its_room_smaller_or_with_fewer_rows(size, scale):
+    pygame.font.init()
+    ui, drawn = SimpleNamespace(scale=scale, px=lambda units: round(units * scale)), pygame.Surface((1400, 900))
+    overlays, room = Overlays(set(NAMES), Scale(2.0), Scale(50.0), Scale(1000.0)), pygame.Rect((100, 50), size)
+    Legend().draw(drawn, ui, overlays, THEMES["light"], "direct", room)
+    covered = pygame.surfarray.array3d(drawn).any(axis=2)
+    outside = covered.copy()
+    outside[room.left : room.right, room.top : room.bottom] = False
+    assert not outside.any() and covered.any() == (size != (90, 60))
 
 
 def test_keys_and_buttons_show_overlays_with_their_legend_and_take_them_away(driver):

@@ -3,6 +3,7 @@
 import pygame
 import pytest
 
+from sandbox.app.edit.side.part_card import SMALL_TEXT
 from sandbox.app.play.stage import CATALOGUE
 from sandbox.editor.storage.part_files import keep_part
 from sandbox.session.replay.reader import read_replay
@@ -85,6 +86,18 @@ def test_a_part_is_thrown_stays_in_hand_and_escape_ends_it(player, monkeypatch):
     assert len(player.world.joined) == 1
     player.key(pygame.K_ESCAPE)
     assert player.stage.tool_name == "drag"
+
+
+def test_a_low_window_shows_two_whole_rows_of_small_cards_with_all_their_names(player):
+    player.app.display.window.size = (1280, 720)
+    player.app.chosen.choose("scale", 2.0)
+    player.pass_unseen(40)
+    player.frames(1)
+    shown = page(player)
+    whole = [card for card in shown.cards if shown.area.view.rect.contains(card.rect)]
+    assert len({card.rect.top for card in whole}) >= 2 and len(whole) >= shown._columns + 2
+    font = player.app.ui.font(SMALL_TEXT)
+    assert all(font.size(card.part.name)[0] <= card.rect.width - player.app.ui.px(12) for card in shown.cards)
 
 
 def test_what_cannot_join_is_pale_says_why_and_is_not_taken(player):

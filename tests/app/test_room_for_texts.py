@@ -11,7 +11,7 @@ from sandbox.editor.items import items_of
 from tests.app.conftest import small_level
 
 # Sizes of windows [pixels], and scales.
-WINDOWS = [((640, 480), 1.0), ((800, 600), 1.0), ((1280, 720), 1.0), ((1280, 720), 1.5), ((1280, 960), 2.0)]
+WINDOWS = [((640, 480), 1.0), ((800, 600), 1.5), ((1280, 720), 1.0), ((1280, 720), 1.5), ((640, 480), 2.0)]
 
 
 def show_panel(app):
@@ -25,6 +25,7 @@ PLAYED = {
     "sliders": lambda app: app.play._set_by("sliders"),
     "world": lambda app: app.play._fold("open"),
     "everything": lambda app: [app.act(name) for name in ("graphs", "timeline", "palette")],
+    "catalogue": lambda app: app.act("catalogue"),
     "compare": lambda app: app.act("compare"),
     "lesson": lambda app: app.start_lesson(),
     "more": lambda app: app.play.toolbar._show_menu() if app.play.toolbar.left_out else None,

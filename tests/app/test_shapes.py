@@ -66,3 +66,13 @@ def test_a_picture_that_is_shown_later_looks_as_one_that_was_given_at_once(ui):
     assert pygame.image.tobytes(button.image, "RGBA") != pygame.image.tobytes(fresh.image, "RGBA")
     button.show_icon(stop)
     assert pygame.image.tobytes(button.image, "RGBA") == pygame.image.tobytes(fresh.image, "RGBA")
+
+
+@pytest.mark.parametrize("theme", ["dark", "light"])
+def test_what_of_an_icon_is_half_transparent_is_half_the_button_it_lies_on(driver, theme):
+    driver.app.chosen.choose("theme", theme)
+    ui, icon = driver.app.ui, pygame.Surface((12, 12), pygame.SRCALPHA)
+    icon.fill((200, 100, 50, 128))
+    bare, shown = (ui.button(pygame.Rect(4, 4, 34, 34), "", lambda: None, icon=each) for each in (None, icon))
+    below, mixed = bare.image.get_at((17, 17)), shown.image.get_at((17, 17))
+    assert all(abs(2 * mixed[k] - below[k] - icon.get_at((0, 0))[k]) <= 6 for k in range(3))

@@ -487,7 +487,8 @@ def test_checks_are_added_changed_run_and_deleted(driver):
     press(driver, page.buttons[2])
     page.trial.wait()
     driver.frames(2)
-    assert [row.detail.split(":")[0] for row in page.list.rows] == ["holds", "fails", "holds"]
+    assert [row.detail.split()[0] for row in page.list.rows] == ["holds", "fails", "holds"]
+    assert page.list.rows[2].detail == "holds with 0: every place and speed is a number, after 0.1 s"
     press(driver, page.buttons[1])
     assert [check.name for check in level(driver).checks] == ["still", "low"]
     assert page.list.rows[0].detail.startswith("holds")
@@ -504,7 +505,7 @@ def test_results_are_those_of_the_level_that_ran(driver):
     driver.frames(2)
     click_row(driver, page.list, 1)
     driver.fill(entry(driver, "at_most"), "5")
-    assert page.list.rows[1].detail == "y of ball at most 5"
+    assert page.list.rows[1].detail == "y of ball is at most 5 m, after 0.25 s"
     assert page.list.rows[0].detail.startswith("holds")
 
 

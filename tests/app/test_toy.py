@@ -8,10 +8,11 @@ import pytest
 
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.toy import toy_start
+from sandbox.app.toy.desk import KEPT, MOST_PLACES, Desk
 from sandbox.app.toy.frame_motion import FARTHEST, FASTEST, HARDEST, FrameMotion
 from sandbox.app.toy.rest import DROWSY, WATCHED
 from sandbox.app.toy.toy import Toy
-from sandbox.app.toy.toy_window import KEPT, SIDE, ToyWindow
+from sandbox.app.toy.toy_window import SIDE, ToyWindow
 from sandbox.cli import main
 from sandbox.editor.storage.preferences import preference, preferences_file, set_preference
 from sandbox.session.replay.reader import read_replay
@@ -29,11 +30,12 @@ BOX = {
 }
 
 
-class Desk:
+class Person:
     """A toy on a desktop that shows nothing, driven by frames of a fixed length."""
 
     def __init__(self, record=None, level=None):
-        self.toy = Toy(ToyWindow(1.0), level or small_level(**BOX), Chosen(), record)
+        chosen, level = Chosen(), level or small_level(**BOX)
+        self.toy = Toy(ToyWindow(1.0, level=level.name), level, chosen, record)
         self.frames(1)
 
     @property
@@ -72,7 +74,7 @@ def desk(documents):
     desks = []
 
     def make(**given):
-        desks.append(Desk(**given))
+        desks.append(Person(**given))
         return desks[-1]
 
     yield make
@@ -177,7 +179,7 @@ def test_a_drag_of_the_empty_box_moves_the_window_and_one_of_a_thing_holds_it(de
     one.post(pygame.MOUSEBUTTONUP, button=1, pos=(60, 60))
     one.frames(1)
     assert one.toy.window.place == (place[0] + 30, place[1] - 10)
-    assert preference(KEPT)["place"] == list(one.toy.window.place)
+    assert preference(KEPT)["places"] == {"Small": list(one.toy.window.place)}
     at = one.toy.camera.to_pixels(tuple(one.world.position[one.world.particle_slot("ball")].tolist()))
     at = tuple(map(round, at))
     one.post(pygame.MOUSEBUTTONDOWN, button=1, pos=at)
@@ -209,18 +211,45 @@ def test_keys_of_the_level_drive_it_in_a_window_of_its_shape(desk):
     assert width == pytest.approx(2.5 * height, rel=0.01) and width * height == pytest.approx(SIDE * SIDE, rel=0.01)
 
 
-def test_it_opens_where_it_was_left_and_on_the_desktop_where_that_is_gone(desk):
+def test_it_opens_where_that_of_its_level_was_left_and_on_the_desktop_where_that_is_gone(desk):
     one = desk()
     one.toy.window.move_to((37, 41))
     one.toy.close()
+    other = desk(level=small_level(**BOX | {"name": "Other"}))
+    width, height = pygame.display.get_desktop_sizes()[0]
+    assert other.toy.window.place == (width - SIDE - 48, height - SIDE - 48)
+    other.toy.close()
     again = desk()
     assert again.toy.window.place == (37, 41)
+    again.toy.close()
     for lost in ([99_999, 5], [1], "left", [1.5, 2], None):
-        set_preference(KEPT, {"place": lost})
-        window = ToyWindow(1.0)
-        width, height = pygame.display.get_desktop_sizes()[0]
+        set_preference(KEPT, {"places": {"Small": lost}, "open": lost})
+        window = ToyWindow(1.0, level="Small")
         assert 0 <= window.place[0] <= width - SIDE and 0 <= window.place[1] <= height - SIDE
-        window.window.destroy()
+        window.close()
+    for number in range(MOST_PLACES + 3):
+        sheet = Desk(f"level {number}")
+        sheet.keep((number, 0), (10, 10))
+        sheet.leave()
+    assert len(preference(KEPT)["places"]) == MOST_PLACES and "level 3" in preference(KEPT)["places"]
+
+
+def test_toys_that_are_open_at_once_stand_side_by_side_and_never_one_on_another(documents):
+    windows = [ToyWindow(1.0, level=name) for name in ("one", "two", "two", "three", "four")]
+    for window in windows:
+        window.keep(sound="on")
+    places = [pygame.Rect(window.place, window.size) for window in windows]
+    screen = pygame.Rect((0, 0), pygame.display.get_desktop_sizes()[0])
+    assert all(screen.contains(place) for place in places)
+    assert all(place.collidelist(places[:number]) < 0 for number, place in enumerate(places))
+    assert places[1].right < places[0].left and places[1].top == places[0].top
+    assert preference(KEPT)["sound"] == "on" and set(preference(KEPT)["places"]) == {"one", "two", "three", "four"}
+    # What is closed is in nobody's way, also where the one that has its seat now stands elsewhere.
+    windows[0].close()
+    anew = ToyWindow(1.0, level="five")
+    assert anew.place == places[0].topleft
+    for window in (anew, *windows[1:]):
+        window.close()
 
 
 def test_a_broken_file_of_preferences_is_set_aside(desk, documents):

@@ -59,6 +59,7 @@ def test_round_directions_draw_the_pointer_and_say_which(scene):
     at = snap(scene, (10 + 3 * math.cos(turned), 10 + 3 * math.sin(turned) + 0.02), 0.2, None, (10.0, 10.0))
     assert at.hint == "105°"
     assert snap(scene, (8.0, 9.99), 0.2, None, (10.0, 10.0)).hint == "180°"
+    assert snap(scene, (11.0, 9.43), 0.2, None, (10.0, 10.0)).hint == "-30°", "as what is drawn says it"
     assert snap(scene, (12.0, 11.5), 0.2, None, (10.0, 10.0)).kind == "free"
 
 

@@ -1,9 +1,11 @@
 """What a level promises of its own run: each metric at a time, always and eventually."""
 
 import json
+from typing import get_args
 
 import pytest
 
+from sandbox.level.checks import METRICS, Metric, promise_text
 from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format.files import parse_level
 from sandbox.session.check_run import checks_as_they_end, run_checks
@@ -43,6 +45,24 @@ def test_always_fails_at_the_worst_tick_and_eventually_holds_at_the_first():
     assert eventually.value <= 2.0 and eventually.at == pytest.approx((2 * 2.1 / 9.81) ** 0.5, abs=0.02)
     assert never.at == 0.25 and "eventually from 0 to 0.25 s is at best" in never.text
     assert always.text.startswith("c0: FAILS: y of ball always from 0 to 0.5 s is at worst")
+
+
+def test_what_checks_promise_is_said_as_sentences():
+    said = {
+        "every place and speed is a number": {"metric": "non_finite", "at_most": 0},
+        "at most 2 particles have no place or speed": {"metric": "non_finite", "at_most": 2},
+        "no spring of rope breaks": {"metric": "broken_springs", "at_most": 0, "body": "rope"},
+        "at least 3 springs break": {"metric": "broken_springs", "at_least": 3},
+        "ball is inside the box": {"metric": "inside", "particle": "ball", "box": [0, 0, 1, 1]},
+        "everything stands still for at least 1 s": {"metric": "settled"},
+        "y of ball is at least -1 and at most 2.5 m":
+            {"metric": "y", "particle": "ball", "at_least": -1, "at_most": 2.5},
+        "the distance from ball to rope.end is at most 4 m":
+            {"metric": "distance", "particle": "ball", "other": "rope.end", "at_most": 4},
+        "the largest strain of the last 2 s is at most 0.5": {"metric": "max_strain", "at_most": 0.5},
+    }  # fmt: skip
+    assert [promise_text(check) for check in level(*said.values()).checks] == list(said)
+    assert set(METRICS) == set(get_args(Metric))
 
 
 def test_a_ball_lands_inside_a_box_settles_and_its_energy_falls():

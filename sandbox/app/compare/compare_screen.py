@@ -22,10 +22,14 @@ from sandbox.app.screen import Pixel, Pointer
 from sandbox.app.widgets.ui import Ui
 
 SIDES = ("A", "B")
-# Layout units: halves that are lower have no figures over them; how far down the line about both is.
-ROOM_FOR_FIGURES, PILL_TOP = 260.0, 76.0
+# Layout units: halves that are narrower or lower have no figures over them; how far down the line about both is.
+ROOM_FOR_FIGURES, PILL_TOP = (190.0, 260.0), 76.0
+# Halves that are lower would be seen behind notices [layout units].
+ROOM_FOR_NOTICES = 400.0
 # How far down the legend has room: below what stands over the halves, and below that line where it is between them.
 BELOW_CAPTION, BELOW_PILL = 44.0, 84.0
+# How far the caption of a lower half is moved down for that line.
+BELOW_LINE = 8.0
 WELCOME = "The same level twice. Choose A or B in the panel and set its springs; what your hand does is done to both."
 
 
@@ -35,6 +39,7 @@ class CompareScreen(PlayScreen):
     welcome: ClassVar[str] = WELCOME
     # Below what stands over the halves.
     again_top = 104.0
+    room_for_notices = ROOM_FOR_NOTICES
 
     def __init__(self, app: Application, playback: TwinPlayback, other: TwinPlayback, source: Path | None) -> None:
         playback.pair(other)
@@ -200,12 +205,16 @@ class CompareScreen(PlayScreen):
         its.renderer.compiled, its.renderer.detail = mine.renderer.compiled, mine.renderer.detail
         its.renderer.has_effects = mine.renderer.has_effects
         its.draw(surface, profile)
+        top_of_first = self.viewport[1]
         left, top, width, height = self.other_viewport
         end = (left, top + height) if self._is_wide else (left + width, top)
         pygame.draw.line(surface, LINE, (left, top), end, max(2, self._ui.px(2)))
         for side, viewport, lines in zip(SIDES, (self.viewport, self.other_viewport), self.captions(), strict=True):
-            is_low = viewport[3] < self._ui.px(ROOM_FOR_FIGURES)
-            draw_chip(surface, self._ui, viewport, side, lines[:1] if is_low else lines)
+            is_small = any(long < self._ui.px(room) for long, room in zip(viewport[2:], ROOM_FOR_FIGURES, strict=True))
+            # The line about both lies on the upper edge of the lower half.
+            below = self._ui.px(BELOW_LINE) if viewport[1] != top_of_first else 0
+            place = pygame.Rect(viewport[0], viewport[1] + below, viewport[2], viewport[3] - below)
+            draw_chip(surface, self._ui, place, side, lines[:1] if is_small else lines)
         if self.difference.text:
             draw_pill(surface, self._ui, self._pill_place, self.difference.text, TEXT)
 
@@ -217,10 +226,10 @@ class CompareScreen(PlayScreen):
         return across, top + (self._ui.px(PILL_TOP) if self._is_wide else height // 2)
 
     @property
-    def _legend_corner(self) -> tuple[int, int]:
+    def _legend_room(self) -> pygame.Rect:
         """It leaves what stands over the halves free, which is as wide as they are."""
-        right, top = super()._legend_corner
-        return right, top + self._ui.px(BELOW_PILL if self._is_wide else BELOW_CAPTION)
+        room, above = super()._legend_room, self._ui.px(BELOW_PILL if self._is_wide else BELOW_CAPTION)
+        return pygame.Rect(room.left, room.top + above, room.width, max(room.height - above, 0))
 
     def _measured(self) -> list[tuple[str, Playback]]:
         if self.beside is None:

@@ -73,20 +73,17 @@ def _card(surface: pygame.Surface, place: pygame.Rect, ui: Ui) -> None:
     surface.blit(card, place)
 
 
-def draw_chip(
-    surface: pygame.Surface, ui: Ui, viewport: tuple[int, int, int, int], name: str, lines: Sequence[str]
-) -> None:
-    """A card at the top of a viewport [pixels] with a run's name and lines about it."""
-    area = pygame.Rect(viewport)
+def draw_chip(surface: pygame.Surface, ui: Ui, area: pygame.Rect, name: str, lines: Sequence[str]) -> None:
+    """A card at the top of an area [pixels] with a run's name and lines about it."""
     title = ui.font(17, True).render(name, True, ACCENT)
     fonts = [ui.font(TEXT_SIZE), *[ui.font(SMALL_SIZE)] * (len(lines) - 1)]
     inset, gap = ui.px(PADDING), ui.px(10)
     most = area.width - 2 * ui.px(MARGIN)
     room = max(most - 2 * inset - gap - title.get_width(), 1)
     texts: list[pygame.Surface] = []
-    for font, line in zip(fonts, lines, strict=True):
-        shown = line if font.size(line)[0] <= room else wrapped(line, font, room, 1)[0]
-        texts.append(font.render(shown, True, MUTED if texts else TEXT))
+    for colour, font, line in zip([TEXT] + [MUTED] * len(lines), fonts, lines, strict=False):
+        for shown in [line] if font.size(line)[0] <= room else wrapped(line, font, room, 2):
+            texts.append(font.render(shown, True, colour))
     width = min(most, title.get_width() + gap + max(text.get_width() for text in texts) + 2 * inset)
     height = sum(text.get_height() for text in texts) + 2 * ui.px(5)
     place = pygame.Rect(area.left + ui.px(MARGIN), area.top + ui.px(MARGIN), width, height)

@@ -182,10 +182,12 @@ def _grid_lines(camera: Camera, scale: float) -> tuple[list[int], list[int]]:
     spacing = grid_spacing(camera.zoom, GRID_STEP * scale)
     (x0, y1), (x1, y0) = camera.to_world((0, 0)), camera.to_world((width, height))
     found: list[list[int]] = []
+    thick = max(1, round(scale))
     for axis, low, high, most in ((0, x0, x1, width), (1, y0, y1, height)):
         lines = range(int(np.ceil(low / spacing)), int(np.floor(high / spacing)) + 1)
         places = [round(camera.to_pixels((index * spacing, index * spacing))[axis]) for index in lines]
-        found.append([place for place in places if 0 <= place < most])
+        shown = (place + more for place in places for more in range(-(thick // 2), thick - thick // 2))
+        found.append([place for place in shown if 0 <= place < most])
     return found[0], found[1]
 
 

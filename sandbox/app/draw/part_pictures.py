@@ -32,6 +32,8 @@ def picture_of(part: str, size: int) -> pygame.Surface:
     large = draw_picture(level, state, (times * size, times * size), (-half, -half, half, half), 1.0)
     # Round corners, as buttons have.
     mask = pygame.Surface(large.get_size(), pygame.SRCALPHA)
+    # What is outside has the colours of the picture too, or the corners would be dark once they are made small.
+    mask.fill((255, 255, 255, 0))
     pygame.draw.rect(mask, (255, 255, 255, 255), mask.get_rect(), border_radius=times * size // 6)
     mask.blit(large, (0, 0), special_flags=pygame.BLEND_RGB_MULT)
     return pygame.transform.smoothscale(mask, (size, size))

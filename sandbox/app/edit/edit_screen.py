@@ -29,7 +29,7 @@ from sandbox.app.play.stage import PICK_RADIUS
 from sandbox.app.play.status import STATUS_HEIGHT, counted_parts
 from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.profile import Profile
-from sandbox.app.screen import Figures, Pixel, Pointer
+from sandbox.app.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
 from sandbox.app.sentences import sentence
 from sandbox.app.shortcuts import Mode
 from sandbox.app.widgets.ui import Ui
@@ -202,9 +202,11 @@ class EditScreen:
         return palette_width(self.ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT)
 
     @property
-    def notices_place(self) -> tuple[float, float, float]:
+    def notices_place(self) -> NoticesPlace | None:
         """Where notices begin, from the lower left corner, and how far right they may reach [layout units]."""
-        left, _, width, _ = self.camera.viewport
+        left, _, width, height = self.camera.viewport
+        if min(width, height) < ROOM_FOR_NOTICES * self.scale:
+            return None
         return self._palette_width + RULER + 12.0, 0.0, (left + width) / self.scale
 
     @property

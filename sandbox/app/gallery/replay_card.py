@@ -48,7 +48,7 @@ def fill_replay(card: Card, path: Path, has_kernels: Callable[[bool], bool]) -> 
 
 def date_of(path: Path) -> str:
     """When a file was written."""
-    return time.strftime("%d %B %Y, %H:%M", time.localtime(path.stat().st_mtime))
+    return time.strftime("%d %b %Y, %H:%M", time.localtime(path.stat().st_mtime))
 
 
 def _length(replay: Replay) -> str:

@@ -19,7 +19,8 @@ from sandbox.physics.world import World
 # Sizes in layout units.
 WIDTH, HEIGHT = 690.0, 620.0
 MARGIN, GAP = 24.0, 10.0
-LEAST_CARD = 130.0
+# Cards are this wide at least; on a page that is lower than this they are smaller.
+LEAST_CARD, LEAST_OF_LOW, LOW = 130.0, 82.0, 420.0
 TOP, BOTTOM = 56.0, 66.0
 HEADING, LINE = 28.0, 22.0
 BUTTON = 34.0
@@ -46,6 +47,8 @@ class PartPage:
         self._ui, self._world, self._is_ready, self._take = ui, world, is_ready, take
         width, height = (min(most, room - 16) for most, room in zip((WIDTH, HEIGHT), ui.units, strict=True))
         self._width = width - 2 * MARGIN - 12
+        least = LEAST_CARD if height >= LOW else LEAST_OF_LOW
+        self._columns = max(2, int((self._width + GAP) // (least + GAP)))
         self.sheet = ui.open_sheet(self.close, is_page=True, again=lambda _: again(self.area.offset))
         place = ui.rect((ui.units[0] - width) / 2, (ui.units[1] - height) / 2, width, height)
         box = ui.panel(place, self.sheet, "@dialog")
@@ -54,8 +57,12 @@ class PartPage:
         self.cards: list[PartCard] = []
         self._unfilled = SliceQueue()
         found = catalogue()
-        y = self._add_section("Your own", [part for part in found if part.is_own], 0.0)
-        y = self._add_section("Ready", [part for part in found if not part.is_own], y + GAP)
+        sections = [("Your own", [part for part in found if part.is_own])]
+        # What can be had at once comes first.
+        sections.insert(bool(sections[0][1]), ("Ready", [part for part in found if not part.is_own]))
+        y = -GAP
+        for title, parts in sections:
+            y = self._add_section(title, parts, y + GAP)
         self.area.set_height(ui.px(y))
         self.area.scroll_to(offset)
         self._note = TextBlock(ui, ui.rect(MARGIN, height - BOTTOM + 12, self._width - 110, BOTTOM - 18), "", box, 12.0)
@@ -75,13 +82,13 @@ class PartPage:
         if not parts:
             TextBlock(ui, ui.rect(3, y, self._width, LINE), NOTHING_OWN, content, 12.0)
             return y + LINE
-        self._columns = columns = max(2, int((self._width + GAP) // (LEAST_CARD + GAP)))
+        columns = self._columns
         width = (self._width - 6 - GAP * (columns - 1)) / columns
         height = width * PICTURE_RATIO + NAME_HEIGHT
         for index, part in enumerate(parts):
             row, column = divmod(index, columns)
             place = ui.rect(3 + column * (width + GAP), y + row * (height + GAP), width, height)
-            card = PartCard(ui, place, part, self, content)
+            card = PartCard(ui, place, part, self, content, columns)
             self.cards.append(card)
             self._unfilled.add(self._fill(card))
         return y + -(-len(parts) // columns) * (height + GAP)
@@ -126,8 +133,8 @@ class PartPage:
         """Nothing is dragged off the page."""
 
     def go(self, card: PartCard, by: int) -> None:
-        """Give the keyboard to the card beside, or in the next row."""
-        index = self.cards.index(card) + (by if abs(by) == 1 else self._columns * (1 if by > 0 else -1))
+        """Give the keyboard to the card that many further."""
+        index = self.cards.index(card) + by
         if 0 <= index < len(self.cards):
             self._ui.focus_on(self.cards[index])
             self.area.follow_focus()

@@ -12,13 +12,17 @@ from sandbox.app.draw.strain_colours import FULL_STRAIN, SLIGHT_STRAIN, strain_t
 from sandbox.app.draw.themes import Theme
 from sandbox.app.draw.views.overlays import ARROW, BAR, DOT, POINT, Overlays, stability_tones
 from sandbox.app.play.hand_labels import newtons
+from sandbox.app.widgets.fonts import plain_font
+from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.solvers import SOLVERS
 
 # Sizes in layout units: of the card and its rows, and of what stands beside their words.
-MARGIN, PADDING, ROW, SAMPLE, TEXT_SIZE = 12.0, 10.0, 19.0, 60.0, 12.0
+MARGIN, PADDING, ROW, SAMPLE, TEXT_SIZE, CORNER = 12.0, 10.0, 19.0, 60.0, 12.0, 8.0
 RAMP = 7.0
 OPACITY = 225
+# How much of a world's width and height it takes, where it can be made as small as this for that.
+SHARE, SMALLEST = (0.5, 0.6), 0.8
 
 Draw = Callable[["_Sample"], None]
 
@@ -61,34 +65,56 @@ class Legend:
         self._card: pygame.Surface | None = None
 
     def draw(
-        self, surface: pygame.Surface, ui: Ui, overlays: Overlays, theme: Theme, solver: str, corner: tuple[int, int]
+        self, surface: pygame.Surface, ui: Ui, overlays: Overlays, theme: Theme, solver: str, room: pygame.Rect
     ) -> None:
-        """Draw it with its upper right corner there [pixels], if anything is shown."""
+        """Draw it in the upper right corner of a room [pixels], if anything is shown."""
         rows = rows_of(overlays, solver)
-        if not rows:
+        room = room.inflate(-2 * ui.px(MARGIN), -2 * ui.px(MARGIN))
+        if not rows or room.width < ui.px(SAMPLE) or room.height < ui.px(ROW):
             return
-        key = (tuple(text for text, _ in rows), theme.name, ui.scale)
+        key = (tuple(text for text, _ in rows), theme.name, ui.scale, room.size)
         if key != self._key or self._card is None:
-            self._key, self._card = key, _painted(ui, rows, theme)
-        margin = ui.px(MARGIN)
-        surface.blit(self._card, self._card.get_rect(topright=(corner[0] - margin, corner[1] + margin)))
+            self._key, self._card = key, _fitted(ui.scale, rows, theme, room.size)
+        surface.blit(self._card, self._card.get_rect(topright=room.topright))
 
 
-def _painted(ui: Ui, rows: list[tuple[str, Draw]], theme: Theme) -> pygame.Surface:
-    font, line = ui.font(TEXT_SIZE), ui.px(ROW)
-    texts = [font.render(text, True, theme.text) for text, _ in rows]
-    inset, sample = ui.px(PADDING), ui.px(SAMPLE)
-    size = (max(text.get_width() for text in texts) + sample + 3 * inset, len(rows) * line + 2 * inset - ui.px(4))
+def _fitted(scale: float, rows: list[tuple[str, Draw]], theme: Theme, room: tuple[int, int]) -> pygame.Surface:
+    """The card, smaller where it would take much of a room [pixels].
+
+    Words that have no room there end in an ellipsis; rows that have none are left out, and counted.
+    """
+    card = _painted(scale, rows, theme)
+    share = min(part * most / is_ for part, most, is_ in zip(SHARE, room, card.get_size(), strict=True))
+    if share < 1.0:
+        scale *= max(share, SMALLEST)
+        card = _painted(scale, rows, theme, room[0])
+    fitting = int((room[1] - (2 * PADDING - 4.0) * scale) // round(ROW * scale))
+    if fitting < len(rows):
+        shown = rows[: max(fitting - 1, 0)]
+        card = _painted(scale, [*shown, (f"and {len(rows) - len(shown)} more", _nothing)], theme, room[0])
+    return card
+
+
+def _painted(scale: float, rows: list[tuple[str, Draw]], theme: Theme, most: int = 10_000) -> pygame.Surface:
+    """The card with all rows, at most so wide [pixels]."""
+    font, line, gap = plain_font(round(TEXT_SIZE * scale), False), round(ROW * scale), round(4.0 * scale)
+    inset, sample = round(PADDING * scale), round(SAMPLE * scale)
+    room = max(most - sample - 3 * inset, 1)
+    texts = [font.render(wrapped(text, font, room, 1)[0], True, theme.text) for text, _ in rows]
+    size = (min(max(text.get_width() for text in texts), room) + sample + 3 * inset, len(rows) * line + 2 * inset - gap)
     card = pygame.Surface(size, 0, 32)
     card.fill(theme.card)
     canvas = Canvas(card)
     for row, (text, (_, draw)) in enumerate(zip(texts, rows, strict=True)):
-        middle = inset + row * line + (line - ui.px(4)) / 2
-        draw(_Sample(canvas, inset, middle, sample, ui.scale, theme))
+        middle = inset + row * line + (line - gap) / 2
+        draw(_Sample(canvas, inset, middle, sample, scale, theme))
         card.blit(text, (sample + 2 * inset, round(middle - text.get_height() / 2)))
-    pygame.draw.rect(card, theme.line, card.get_rect(), 1)
-    card.set_alpha(OPACITY)
-    return card
+    result = pygame.Surface(size, pygame.SRCALPHA)
+    corner = round(CORNER * scale)
+    pygame.draw.rect(result, (255, 255, 255, OPACITY), result.get_rect(), border_radius=corner)
+    result.blit(card, (0, 0), special_flags=pygame.BLEND_RGB_MULT)
+    pygame.draw.rect(result, theme.line, result.get_rect(), 1, border_radius=corner)
+    return result
 
 
 def rows_of(overlays: Overlays, solver: str) -> list[tuple[str, Draw]]:
@@ -120,6 +146,10 @@ def rows_of(overlays: Overlays, solver: str) -> list[tuple[str, Draw]]:
             of = "proven limit" if kind.proven_limit else "limit of a single pass, no proof for this solver"
             rows += [(f"share of the {of}", _stability), ("beyond it", _past)]
     return rows
+
+
+def _nothing(sample: _Sample) -> None:
+    """Words alone."""
 
 
 def _strain(sample: _Sample) -> None:

@@ -89,7 +89,7 @@ class PartsPalette:
         width, tall = columns * (BUTTON + GAP) - GAP + 2 * EDGE, rows * LEAST_STEP - GAP + 2 * EDGE
         # Its right edge [layout units].
         self.right = LEFT + width
-        self.back = ui.panel(ui.rect(LEFT, top + TOP, width, tall))
+        self.back = ui.panel(ui.rect(LEFT, top + TOP, width, tall), style="@card")
         self.buttons: dict[str, Any] = {}
         for number, name in enumerate((*NAMES, CATALOGUE)):
             column, row = divmod(number, rows)

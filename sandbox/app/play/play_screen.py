@@ -33,7 +33,7 @@ from sandbox.app.play.stuck import NOTICE, StuckBodies
 from sandbox.app.play.time_bar import TimeBar
 from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.profile import Profile
-from sandbox.app.screen import Figures, Pixel, Pointer
+from sandbox.app.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
 from sandbox.app.share.film import Film, last_ticks
 from sandbox.app.shortcuts import Mode, tip_of
 from sandbox.app.widgets.ui import Ui
@@ -50,8 +50,8 @@ from sandbox.tools.parts import PARTS
 FREE_PLACE, FREE_SIZE = (16.0, 12.0), (110.0, 34.0)
 # The button that begins again, in the middle [layout units].
 AGAIN_SIZE = (150.0, 40.0)
-# A world that is lower has notices over its graphs [layout units].
-ROOM_FOR_NOTICES = 150.0
+# Graphs and timeline have that much room beside a panel, or are as wide as the window [layout units].
+ROOM_BESIDE_PANEL = 340.0
 # Under what the strength of the hand is remembered.
 HAND = "hand"
 # And how springs are set: "pad" or "sliders".
@@ -64,6 +64,8 @@ class PlayScreen:
     mode: Mode = "play"
     # How far the button that begins again is below the bar [layout units].
     again_top = 16.0
+    # A world that is lower or narrower has notices over the status line [layout units].
+    room_for_notices = ROOM_FOR_NOTICES
 
     def __init__(
         self, app: Application, playback: Playback, source: Path | None = None, of_document: bool = False
@@ -135,11 +137,11 @@ class PlayScreen:
         return self.time.height + self.graphs.height(self._ui)
 
     @property
-    def notices_place(self) -> tuple[float, float, float]:
+    def notices_place(self) -> NoticesPlace | None:
         """Where notices begin, from the lower left corner, and how far right they may reach [layout units]."""
+        if min(self.area[2], self.viewport[3]) < self._ui.px(self.room_for_notices):
+            return None
         end = self.area[2] / self._ui.scale
-        if self.area[3] < self._ui.px(ROOM_FOR_NOTICES):
-            return 16.0, self.time.height, end
         left = 16.0 if self.palette is None else self.palette.right + 10.0
         # Keys in the upper one of two worlds are in nobody's way.
         is_lowest, is_narrow = self.viewport[3] == self.area[3], self.viewport[2] < self._ui.px(ROOM_BESIDE)
@@ -163,12 +165,16 @@ class PlayScreen:
         place = ui.rect(left, BAR_HEIGHT + self.again_top, *AGAIN_SIZE)
         self.again = ui.button(place, "Again", self._reset, style="@primary", tip=tip_of("reset", "play"))
         self.again.hide()
-        self.graphs.build(ui, self.area[2] / ui.scale, ui.units[1] - STATUS_HEIGHT - self.time.height)
-        self.time.build(ui, self.area[2] / ui.scale, ui.units[1] - STATUS_HEIGHT)
+        # Beside a panel in a narrow window they have no room: they lie below it.
+        wide, below_panel = self.area[2] / ui.scale, 0.0
+        if wide < ROOM_BESIDE_PANEL:
+            wide, below_panel = ui.units[0], self._below
+        self.graphs.build(ui, wide, ui.units[1] - STATUS_HEIGHT - self.time.height)
+        self.time.build(ui, wide, ui.units[1] - STATUS_HEIGHT)
         self.stage.renderer.follow_theme()
         before, self.panel = self.panel, None
         if self.show_panel:
-            height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT
+            height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT - below_panel
             choices: dict[str, Callable[[str], None]] = {
                 "hand": self.choose_strength, "view": self._app.act, "springs": self._set_by, "fold": self._fold,
                 "rate": self._ask_rate,
@@ -482,14 +488,13 @@ class PlayScreen:
         self.graphs.draw(surface)
         surface.set_clip(self.viewport)
         renderer, solver = self.stage.renderer, self.playback.current.settings.solver
-        self._legend.draw(surface, self._ui, renderer.overlays, renderer.theme, solver, self._legend_corner)
+        self._legend.draw(surface, self._ui, renderer.overlays, renderer.theme, solver, self._legend_room)
         surface.set_clip(None)
 
     @property
-    def _legend_corner(self) -> tuple[int, int]:
-        """Upper right corner [pixels] of where the legend has room."""
-        left, top, width, _ = self.viewport
-        return left + width, top
+    def _legend_room(self) -> pygame.Rect:
+        """Where the legend has room [pixels]."""
+        return pygame.Rect(self.viewport)
 
     def status(self, figures: Figures) -> list[tuple[str, Colour]]:
         """State, recording, tick and figures of the run."""

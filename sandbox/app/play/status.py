@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, NOTICE, SURFACE, TEXT, WARNING, Colour
-from sandbox.app.screen import Figures
+from sandbox.app.screen import Figures, NoticesPlace
 from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.joints.readings import MotorReading
@@ -17,6 +17,10 @@ STATUS_HEIGHT = 30.0
 NOTICE_SECONDS = 6.0
 SECONDS_A_LETTER = 0.06
 NOTICES = 4
+# Where notices over the status line are from the edges [layout units].
+LOW_EDGE, LOW_BOTTOM, LOW_INSET = 10.0, 4.0, 5.0
+# A part of the line that has less room is left out, not shortened [layout units].
+LEAST_PART = 60.0
 # It fades in its last moments, and a frame is never so late [s] that it has gone before.
 FADING, SOON = 0.4, 0.6
 # Motors that are named one by one; of more the line says how many are at their limit.
@@ -25,10 +29,11 @@ NAMED_MOTORS = 2
 
 @dataclass
 class Notice:
-    """A line for the person, that goes after some seconds."""
+    """A line for the person, that goes after some seconds; of_page: it was said while a page lay over the screen."""
 
     text: str
     left: float = NOTICE_SECONDS
+    of_page: bool = False
 
 
 class StatusLine:
@@ -37,15 +42,17 @@ class StatusLine:
     def __init__(self, ui: Ui, notices: deque[Notice]) -> None:
         self.ui = ui
         self.notices = notices
+        # Whether the newest notice alone is shown; then the others wait.
+        self._one_by_one = False
         self._texts: dict[tuple[str, Colour], pygame.Surface] = {}
 
     def say(self, text: str) -> None:
         """Show a line for some seconds."""
         for notice in self.notices:
             if notice.text == text:
-                notice.left = NOTICE_SECONDS
+                notice.left, notice.of_page = NOTICE_SECONDS, self.ui.has_sheet
                 return
-        self.notices.append(Notice(text, max(NOTICE_SECONDS, len(text) * SECONDS_A_LETTER)))
+        self.notices.append(Notice(text, max(NOTICE_SECONDS, len(text) * SECONDS_A_LETTER), self.ui.has_sheet))
 
     def take_back(self, text: str) -> None:
         """Show a line no longer."""
@@ -56,70 +63,87 @@ class StatusLine:
     @property
     def moves(self) -> bool:
         """Whether a notice fades, or is about to."""
-        return any(notice.left < SOON for notice in self.notices)
+        return any(notice.left < SOON for notice in self._ageing)
+
+    @property
+    def _ageing(self) -> list[Notice]:
+        return list(self.notices)[-1 if self._one_by_one else 0 :]
 
     def update(self, frame_time: float) -> None:
         """Let notices age by frame_time [s]."""
-        for notice in list(self.notices):
+        for notice in self._ageing:
             notice.left -= frame_time
             if notice.left <= 0.0:
                 self.notices.remove(notice)
 
-    def draw(
-        self,
-        surface: pygame.Surface,
-        parts: list[tuple[str, Colour]],
-        right: float,
-        notices_place: tuple[float, float, float] | None,
-    ) -> None:
-        """Draw parts of text from the left up to `right`, notices from the left, above, and up to; in layout units."""
+    def draw(self, surface: pygame.Surface, parts: list[tuple[str, Colour]]) -> None:
+        """Draw parts of text from the left; of those that have no room figures are left out, words shortened."""
         ui = self.ui
-        height = ui.px(STATUS_HEIGHT)
+        height, end = ui.px(STATUS_HEIGHT), surface.get_width() - ui.px(8)
         top = surface.get_height() - height
         pygame.draw.rect(surface, SURFACE, (0, top, surface.get_width(), height))
-        parts_end = ui.px(right)
         x = ui.px(16)
         for text, colour in parts:
             picture = self._text(text, colour)
-            if x + picture.get_width() > parts_end:
-                break
-            surface.blit(picture, (x, top + (height - picture.get_height()) // 2))
+            if x + picture.get_width() > end:
+                if colour == MUTED or end - x < ui.px(LEAST_PART):
+                    break
+                shortened = wrapped(text, self._font(colour), end - x, 1)[0]
+                picture = self._text(shortened, colour)
+            surface.blit(picture, (x, top + (height - picture.get_height()) // 2), (0, 0, end - x, height))
             x += picture.get_width() + ui.px(18)
-        if notices_place is not None:
-            left, above, end = notices_place
-            self._draw_notices_above(surface, top - ui.px(above), left, ui.px(end))
 
-    def draw_notices(self, surface: pygame.Surface, left: float) -> None:
-        """Draw the notices alone, over a page that covers the line."""
-        self._draw_notices_above(surface, surface.get_height(), left, surface.get_width())
+    def draw_notices(self, surface: pygame.Surface, place: NoticesPlace | None, *, over_page: bool | None) -> None:
+        """Draw notices above a place [layout units]: left edge, how far above the status line, right end.
 
-    def _draw_notices_above(self, surface: pygame.Surface, bottom: int, left: float, end: int) -> None:
-        ui = self.ui
-        y = bottom - ui.px(12)
-        widest = min(ui.px(520), end - ui.px(left + 46))
-        for notice in reversed(self.notices):
-            lines = [self._text(line, TEXT) for line in wrapped(notice.text, ui.font(13), widest, 6)]
-            height = sum(line.get_height() for line in lines) + ui.px(16)
-            width = max(line.get_width() for line in lines) + ui.px(30)
-            y -= height
-            card = pygame.Surface((width, height), pygame.SRCALPHA)
-            pygame.draw.rect(card, (*NOTICE, 240), card.get_rect(), border_radius=ui.px(8))
-            pygame.draw.rect(card, LINE, card.get_rect(), 1, border_radius=ui.px(8))
-            pygame.draw.rect(card, ACCENT, (ui.px(8), ui.px(9), ui.px(3), height - ui.px(18)), border_radius=ui.px(2))
-            line_y = ui.px(8)
-            for line in lines:
-                card.blit(line, (ui.px(19), line_y))
-                line_y += line.get_height()
-            card.set_alpha(round(255 * min(1.0, notice.left / FADING)))
+        place: None = the newest alone, over the status line. over_page: those said while a page was open, or those said
+        before; None = all.
+        """
+        shown = [notice for notice in self.notices if over_page is None or notice.of_page == over_page]
+        self._one_by_one = place is None and over_page is None
+        ui, bottom = self.ui, surface.get_height()
+        if place is None:
+            edge = ui.px(LOW_EDGE)
+            for notice in shown[-1:]:
+                card = self._card(notice, surface.get_width() - 2 * edge, surface.get_width() - 2 * edge, LOW_INSET)
+                surface.blit(card, (edge, bottom - card.get_height() - ui.px(LOW_BOTTOM)))
+            return
+        left, above, end = place
+        y = bottom - ui.px(STATUS_HEIGHT + above + 12)
+        for notice in reversed(shown):
+            card = self._card(notice, 0, min(ui.px(550), ui.px(end - left - 16)), 8.0)
+            y -= card.get_height()
             surface.blit(card, (ui.px(left), y))
             y -= ui.px(8)
+
+    def _card(self, notice: Notice, least: int, most: int, inset: float) -> pygame.Surface:
+        """A notice on a card at least and at most so wide [pixels]; inset [layout units]: above and below its text."""
+        ui = self.ui
+        lines = [self._text(line, TEXT) for line in wrapped(notice.text, self._font(TEXT), most - ui.px(30), 6)]
+        height = sum(line.get_height() for line in lines) + ui.px(2 * inset)
+        width = max(least, max(line.get_width() for line in lines) + ui.px(30))
+        card = pygame.Surface((width, height), pygame.SRCALPHA)
+        # Over the world something of it shows; over the status line nothing of that.
+        pygame.draw.rect(card, (*NOTICE, 255 if least else 240), card.get_rect(), border_radius=ui.px(8))
+        pygame.draw.rect(card, LINE, card.get_rect(), 1, border_radius=ui.px(8))
+        stripe = (ui.px(8), ui.px(inset + 1), ui.px(3), height - ui.px(2 * inset + 2))
+        pygame.draw.rect(card, ACCENT, stripe, border_radius=ui.px(2))
+        y = ui.px(inset)
+        for line in lines:
+            card.blit(line, (ui.px(19), y))
+            y += line.get_height()
+        card.set_alpha(round(255 * min(1.0, notice.left / FADING)))
+        return card
+
+    def _font(self, colour: Colour) -> pygame.font.Font:
+        return self.ui.font(13 if colour == TEXT else 12)
 
     def _text(self, text: str, colour: Colour) -> pygame.Surface:
         key = (text, colour)
         if key not in self._texts:
             if len(self._texts) > 400:
                 self._texts.clear()
-            self._texts[key] = self.ui.font(13 if colour == TEXT else 12).render(text, True, colour)
+            self._texts[key] = self._font(colour).render(text, True, colour)
         return self._texts[key]
 
 

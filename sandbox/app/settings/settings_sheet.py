@@ -7,7 +7,7 @@ from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.settings.chosen import SETTINGS, Amount, Chosen, OneOf
 from sandbox.app.settings.key_row import KeyRow
 from sandbox.app.shortcuts import Mode, Shortcut, shortcuts, spoken, with_keys
-from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.painted import TextBlock, text_height
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
@@ -18,7 +18,7 @@ ROW, KEY_ROW, HEADING = 56.0, 30.0, 36.0
 LABEL_SHARE = 0.42
 # A narrower page has the label of a row above its buttons.
 ROOM_BESIDE = 520.0
-BUTTON = 34.0
+BUTTON, TIP_TEXT = 34.0, 11.0
 PAGES = (("general", "General", ""), ("play", "Keys in play", ""), ("edit", "Keys in editor", ""))
 KEYS_NOTE = "Press a row, then the new keys. Delete takes keys away, Escape leaves them as they are."
 
@@ -119,10 +119,11 @@ class SettingsSheet:
         is_beside = self._width >= ROOM_BESIDE
         wide = self._width * LABEL_SHARE - 12 if is_beside else self._width
         TextBlock(ui, ui.rect(0, self._y, wide, 20), label, content, 13.0, TEXT)
-        TextBlock(ui, ui.rect(0, self._y + 19, wide, 30), tip, content, 11.0)
+        tall = 30.0 if is_beside else text_height(tip, ui.font(TIP_TEXT), ui.px(wide)) / ui.scale + 1
+        TextBlock(ui, ui.rect(0, self._y + 19, wide, tall), tip, content, TIP_TEXT)
         if is_beside:
             return self._width * LABEL_SHARE, self._width * (1 - LABEL_SHARE) - 4
-        self._y += 40
+        self._y += 23 + tall
         return 0.0, self._width - 4
 
     def _add_choice(self, setting: OneOf) -> None:

@@ -160,7 +160,9 @@ class ShareForm:
         bottom = self._height - MARGIN - BUTTON - 8
         place = self._ui.rect(self._right, top, self._side, max(bottom - top, 18))
         if self.step == "choose":
-            place = self._ui.rect(MARGIN, self._height - MARGIN - BUTTON, self._preview_width, BUTTON + 6)
+            # Left of both buttons.
+            wide = min(self._preview_width, self._width - 2 * MARGIN - 2 * BUTTON_WIDTH - 20)
+            place = self._ui.rect(MARGIN, self._height - MARGIN - BUTTON, wide, BUTTON + 14)
         self.note = TextBlock(self._ui, place, "", self._box, 12.0, TEXT)
 
     def _build_work(self) -> None:

@@ -63,7 +63,7 @@ class Toy:
         self.preparation = Preparation(self._switched)
         self.motion = FrameMotion()
         self.rest = Rest()
-        self.choices = ToyChoices(chosen, window.kept.get("sound"))
+        self.choices = ToyChoices(chosen, window.desk.kept.get("sound"))
         self.sounds = Sounds(self.choices, time.perf_counter)
         self.profile = Profile()
         self.running, self.asleep, self.hovered = True, False, False

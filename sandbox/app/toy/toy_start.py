@@ -36,7 +36,7 @@ def run_toy(
 
     level, chosen = find(), Chosen(theme=theme)
     left, bottom, right, top = level.view or (0.0, 0.0, 1.0, 1.0)
-    window = ToyWindow(scale or chosen["scale"], (right - left) / max(top - bottom, 1e-9))
+    window = ToyWindow(scale or chosen["scale"], (right - left) / max(top - bottom, 1e-9), level.name)
     for line in (*chosen.faults, window.refusal):
         if line:
             tell(line)
@@ -56,7 +56,7 @@ class ToyStarter:
     def start(self, level: "Level") -> str:
         """Open a level as a toy, unless it is the one that was opened last and still is; what came of it, in a line."""
         if self._last is not None and self._last[0].poll() is None and self._last[1] is level:
-            return "The desk toy of this level is open already; a second would lie on it. Escape in it closes it."
+            return "The desk toy of this level is open already. Escape in it closes it."
         file = data_folder() / "toy.json"
         try:
             file.parent.mkdir(parents=True, exist_ok=True)

@@ -21,8 +21,8 @@ class Button(UIButton):
             self.rebuild()
 
     def _set_any_images_from_theme(self) -> bool:
-        # In place of those of the theme, which has none.
-        images = [] if self._icon is None else [self._icon.premul_alpha()]
+        # In place of those of the theme, which has none. The library lays them on by straight alpha.
+        images = [] if self._icon is None else [self._icon]
         self.normal_images = self.hovered_images = self.selected_images = self.disabled_images = images
         positions = [(0.5, 0.5)] * len(images)
         self.normal_image_positions = self.hovered_image_positions = positions

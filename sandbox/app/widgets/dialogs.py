@@ -4,10 +4,12 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
+import pygame
+
 from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.edit.side.rows import MENU_ROWS, Row, RowList
 from sandbox.app.edit.side.scroll import BAR_WIDTH, ScrollArea
-from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.painted import TextBlock, text_height
 from sandbox.app.widgets.ui import Again, Ui
 
 # Sizes in layout units.
@@ -21,6 +23,7 @@ LINE_CHARACTERS = 74
 ROW_HEIGHT, CHOICE_ROW, RING = 29.0, 42.0, 4.0
 # The text of buttons, what they have around it, and what is between columns of them.
 BUTTON_TEXT, BUTTON_ROOM, COLUMN_GAP = 13.0, 24.0, 10.0
+HINT_TEXT = 12.0
 
 # A button: its label, and what it does.
 Choice = tuple[str, Callable[[], object]]
@@ -42,8 +45,10 @@ def _box(
 def show_lines(ui: Ui, title: str, lines: list[str], other: Choice | None = None) -> None:
     """Show lines until they are closed; more than fit are counted; other: what else can be done, on a second button."""
     shown = lines[:MOST_LINES] + ([f"... and {len(lines) - MOST_LINES} more"] if len(lines) > MOST_LINES else [])
-    rows = sum(1 + len(line) // LINE_CHARACTERS for line in shown)
-    height = min(MARGIN * 2 + 40 + rows * LINE_HEIGHT + 60, ui.units[1] - 20)
+    inside, text = ui.px(min(WIDTH, ui.units[0] - 40) - 2 * MARGIN), "\n".join(shown)
+    tall = text_height(text, ui.font(13.0), inside)
+    # What does not fit is scrolled to.
+    height = min(MARGIN * 2 + 94 + tall / ui.scale, ui.units[1] - 20)
 
     def close() -> None:
         ui.close_sheet(sheet)
@@ -57,13 +62,21 @@ def show_lines(ui: Ui, title: str, lines: list[str], other: Choice | None = None
         show_lines(other_ui, title, lines, other)
 
     sheet, box, width = _box(ui, title, height, close, again)
-    place = ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN, height - MARGIN * 2 - 84)
-    TextBlock(ui, place, "\n".join(shown), box, 13.0, TEXT)
+    place = ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN + BAR_WIDTH, height - MARGIN * 2 - 84)
+    area = ScrollArea(ui, place, box)
+    TextBlock(ui, pygame.Rect(0, 0, inside, tall), text, area.content, 13.0, TEXT)
+    area.set_height(tall)
     bottom = height - MARGIN - 34
     button = ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), "Close", close, box, style="@primary")
     if other is not None:
         ui.button(ui.rect(width - MARGIN - 310, bottom, 190, 34), other[0], do_other, box)
     ui.focus_on(button)
+
+
+def _hint_height(ui: Ui, hint: str) -> float:
+    """How high a hint is in a box [layout units]."""
+    inside = ui.px(min(WIDTH, ui.units[0] - 40) - 2 * MARGIN)
+    return text_height(hint, ui.font(HINT_TEXT), inside) / ui.scale + 4
 
 
 def ask(
@@ -81,7 +94,8 @@ def ask(
     other: the second button and what it does, instead of one that leaves everything as it is, as Escape does.
     then: what is done with a text that was taken, once the box is closed.
     """
-    height = 246.0
+    said = _hint_height(ui, hint)
+    height = 226.0 + said
 
     def close() -> None:
         ui.close_sheet(sheet)
@@ -109,10 +123,11 @@ def ask(
 
     sheet, box, width = _box(ui, title, height, close, again)
     inside = width - 2 * MARGIN
-    ui.label(ui.rect(MARGIN, MARGIN + 26, inside, 20), hint, box, "@muted")
-    field = ui.field(ui.rect(MARGIN, MARGIN + 52, inside, 34), text, lambda _: True, box, 400)
+    TextBlock(ui, ui.rect(MARGIN, MARGIN + 28, inside, said), hint, box, HINT_TEXT)
+    top = MARGIN + 32 + said
+    field = ui.field(ui.rect(MARGIN, top, inside, 34), text, lambda _: True, box, 400)
     field.enter = take
-    note = TextBlock(ui, ui.rect(MARGIN, MARGIN + 94, inside, 50), "", box, 12.0, WARNING)
+    note = TextBlock(ui, ui.rect(MARGIN, top + 42, inside, 50), "", box, 12.0, WARNING)
     bottom = height - MARGIN - 34
     ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="@primary")
     ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), other[0] if other else "Cancel", do_other, box)
@@ -199,7 +214,8 @@ def fill_in(
     answer: Callable[[list[str]], str | None],
 ) -> None:
     """Ask for several lines, (label, text) each; answer gives None where they are taken, else what is wrong."""
-    height = MARGIN * 2 + 62 + len(fields) * 42 + 78
+    said = _hint_height(ui, hint)
+    height = MARGIN * 2 + 42 + said + len(fields) * 42 + 78
 
     def close() -> None:
         ui.close_sheet(sheet)
@@ -217,10 +233,10 @@ def fill_in(
 
     sheet, box, width = _box(ui, title, height, close, again)
     inside = width - 2 * MARGIN
-    ui.label(ui.rect(MARGIN, MARGIN + 26, inside, 20), hint, box, "@muted")
+    TextBlock(ui, ui.rect(MARGIN, MARGIN + 28, inside, said), hint, box, HINT_TEXT)
     entries = []
     for index, (label, text) in enumerate(fields):
-        top = MARGIN + 56 + index * 42
+        top = MARGIN + 36 + said + index * 42
         ui.label(ui.rect(MARGIN, top, inside * 0.5, 34), label, box)
         entry = ui.field(ui.rect(MARGIN + inside * 0.5, top, inside * 0.5, 34), text, lambda _: True, box, 40)
         entry.enter = accept

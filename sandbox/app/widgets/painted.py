@@ -130,6 +130,16 @@ def wrapped(text: str, font: pygame.font.Font, widest: int, most_lines: int) -> 
     return lines or [""]
 
 
+def line_height(font: pygame.font.Font) -> int:
+    """From one line of a text that wraps to the next [pixels]."""
+    return round(font.get_linesize() * 0.95)
+
+
+def text_height(text: str, font: pygame.font.Font, widest: int) -> int:
+    """How high a text is [pixels] whose lines are no wider than `widest`."""
+    return sum(len(wrapped(each, font, widest, len(each) + 1)) for each in text.split("\n")) * line_height(font)
+
+
 class TextBlock(Painted):
     """Text that wraps; colour and size in layout units."""
 
@@ -158,9 +168,11 @@ class TextBlock(Painted):
         """As many lines as fit."""
         surface = pygame.Surface(size, pygame.SRCALPHA)
         font = self.ui.font(self.text_size, self.is_bold)
-        height = round(font.get_linesize() * 0.95)
+        height = line_height(font)
         y = 0
         for paragraph in self.text.split("\n"):
+            if y and y + height > size[1]:
+                break
             for line in wrapped(paragraph, font, size[0], max(1, (size[1] - y) // height)):
                 surface.blit(font.render(line, True, self.colour), (0, y))
                 y += height

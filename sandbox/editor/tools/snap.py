@@ -174,4 +174,4 @@ def _on_angle(point: Point, anchor: Point, within: float, grid: float | None) ->
         if along <= 0.0:
             return []
     place = _rounded(anchor[0] + along * cosine, anchor[1] + along * sine)
-    return [Snap(place, "angle", None, f"{degrees % 360}°")]
+    return [Snap(place, "angle", None, f"{180 - (180 - degrees) % 360}°")]

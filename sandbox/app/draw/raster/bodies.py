@@ -4,13 +4,14 @@ Coverage of the outline, blurred at half the size, is how high the skin stands; 
 of how far inside and how lit gives the colour. All bodies of a layer are drawn in one call, each with its line.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.draw.raster.coverage import add_outline, blur, clear, find_box
-from sandbox.app.draw.raster.mark_kernels import paint_segment
+from sandbox.app.draw.raster.mark_kernels import from_segment, row_of_capsule
 from sandbox.app.draw.raster.pixels import Floats, Packed, Singles, Slots, laid_over
 from sandbox.physics.jit import inner_kernel, kernel, unsigned
 
@@ -225,14 +226,39 @@ def _light_row(pixels, y, rows, b, skins, flush, scratch, place, clip):  # type:
 
 
 @inner_kernel
+def _paint_side(pixels, ox, oy, ax, ay, bx, by, half, colour, alpha, clip):  # type: ignore[no-untyped-def]
+    """A side of a closed line from a to b, the one before it from o to a; no pixel is covered by both.
+
+    What lies beyond b is the next side's, what lies beside the one before is that one's, and what lies between both,
+    round the corner a, is this one's: sides laid over each other would look like beads.
+    """
+    reach = half + 0.5
+    dx, dy, ex, ey = bx - ax, by - ay, ax - ox, ay - oy
+    length, back = math.sqrt(dx * dx + dy * dy), math.sqrt(ex * ex + ey * ey)
+    ux, uy = (dx / length, dy / length) if length > 1e-9 else (1.0, 0.0)
+    vx, vy = (ex / back, ey / back) if back > 1e-9 else (ux, uy)
+    for y in range(max(clip[1], int(max(min(ay, by) - reach, -1.0))), min(clip[3], int(max(ay, by) + reach) + 2)):
+        py = y + 0.5 - ay
+        low, high = row_of_capsule(py, ax, bx, ux, uy, reach)
+        for x in range(max(clip[0], int(max(low, 0.0))), min(clip[2], int(max(high, -1.0)) + 2)):
+            px = x + 0.5 - ax
+            along, behind = px * ux + py * uy, -(px * vx + py * vy)
+            if along >= length or (behind > 0.0 and (along < 0.0 or behind < back)):
+                continue
+            cover = reach - from_segment(along, py * ux - px * uy, length)
+            if cover > 0.0:
+                pixels[y, x] = laid_over(int(pixels[y, x]), colour, int(min(cover, 1.0) * alpha * 256.0))
+
+
+@inner_kernel
 def _paint_lines(pixels, outlines, rows, b, clip):  # type: ignore[no-untyped-def]
     point = outlines.point
     for loop in range(rows.loops[b, 0], rows.loops[b, 1]):
         first, last = outlines.start[loop], outlines.start[loop + 1]
         for i in range(first, last):
-            j = i + 1 if i + 1 < last else first
-            paint_segment(
-                pixels, point[i, 0], point[i, 1], point[j, 0], point[j, 1],
+            j, o = i + 1 if i + 1 < last else first, i - 1 if i > first else last - 1
+            _paint_side(
+                pixels, point[o, 0], point[o, 1], point[i, 0], point[i, 1], point[j, 0], point[j, 1],
                 rows.size[b, 1], rows.look[b, 2], rows.size[b, 2], clip,
             )  # fmt: skip
 

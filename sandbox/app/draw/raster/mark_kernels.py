@@ -32,7 +32,7 @@ class MarkArrays(NamedTuple):
 
 
 @inner_kernel
-def _row_of_capsule(py, ax, bx, ux, uy, reach):  # type: ignore[no-untyped-def]
+def row_of_capsule(py, ax, bx, ux, uy, reach):  # type: ignore[no-untyped-def]
     # From where to where a row of pixels, py below the first end, is in reach of a segment in direction u.
     low, high = min(ax, bx) - reach, max(ax, bx) + reach
     if abs(uy) > 1e-9:
@@ -42,7 +42,7 @@ def _row_of_capsule(py, ax, bx, ux, uy, reach):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _from_segment(along, across, length):  # type: ignore[no-untyped-def]
+def from_segment(along, across, length):  # type: ignore[no-untyped-def]
     # The distance of a place from a segment that begins at the origin.
     beyond = max(-along, along - length)
     return math.sqrt(beyond * beyond + across * across) if beyond > 0.0 else abs(across)
@@ -57,12 +57,12 @@ def paint_segment(pixels, ax, ay, bx, by, half, colour, alpha, clip):  # type: i
     ux, uy = (dx / length, dy / length) if length > 1e-9 else (1.0, 0.0)
     for y in range(max(clip[1], int(max(min(ay, by) - reach, -1.0))), min(clip[3], int(max(ay, by) + reach) + 2)):
         py = y + 0.5 - ay
-        low, high = _row_of_capsule(py, ax, bx, ux, uy, reach)
+        low, high = row_of_capsule(py, ax, bx, ux, uy, reach)
         for x in range(max(clip[0], int(max(low, 0.0))), min(clip[2], int(max(high, -1.0)) + 2)):
             px = x + 0.5 - ax
             along = px * ux + py * uy
             across = py * ux - px * uy
-            cover = reach - _from_segment(along, across, length)
+            cover = reach - from_segment(along, across, length)
             if cover > 0.0:
                 pixels[y, x] = laid_over(int(pixels[y, x]), colour, int(min(cover, 1.0) * alpha * 256.0))
 
@@ -83,12 +83,12 @@ def _paint_strip(pixels, marks, m, tiles, clip):  # type: ignore[no-untyped-def]
     tint, share = marks.colour[m], int(marks.alpha[m] * 256.0)
     for y in range(max(clip[1], int(max(min(ay, by) - reach, -1.0))), min(clip[3], int(max(ay, by) + reach) + 2)):
         py = y + 0.5 - ay
-        low, high = _row_of_capsule(py, ax, bx, ux, uy, reach)
+        low, high = row_of_capsule(py, ax, bx, ux, uy, reach)
         for x in range(max(clip[0], int(max(low, 0.0))), min(clip[2], int(max(high, -1.0)) + 2)):
             px = x + 0.5 - ax
             along = px * ux + py * uy
             across = py * ux - px * uy
-            cover = reach - _from_segment(along, across, length)
+            cover = reach - from_segment(along, across, length)
             if cover <= 0.0:
                 continue
             row = min(max(int((across * side + 1.0) * 8.0), 0), ACROSS - 1)

@@ -1,5 +1,6 @@
 """CataloguePage: ready parts and a person's own, with pictures, to be put on the sheet by a click or a drag."""
 
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -24,9 +25,11 @@ from sandbox.editor.tools.drawing_part import PartDrawing
 BUTTON_HEIGHT = 28.0
 SMALL_WIDTH = 62.0
 GAP = 6.0
-COLUMNS = 2
 HEADING = 24.0
 TEXT_HEIGHT = 64.0
+# A lower page has its buttons below the parts, smaller cards, and what it says of a part in the tips of these.
+ROOM_FOR_TEXT = 330.0
+COLUMNS, COLUMNS_OF_LOW = 2, 3
 # Wall time [s] of a frame that cards are filled in; and how many frames go by between two looks at the folders.
 FILL_BUDGET = 0.008
 LOOK_EVERY = 30
@@ -39,24 +42,16 @@ class CataloguePage:
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen, self._ui = screen, screen.ui
         ui, width = screen.ui, place.width - screen.ui.px(6)
-        small, gap, height = ui.px(SMALL_WIDTH), ui.px(GAP), ui.px(BUTTON_HEIGHT)
-        x = place.left + width - 2 * small - gap
-        wide = pygame.Rect(place.left, place.top, x - gap - place.left, height)
-        tip = tip_of("keep_part", "edit")
-        self.keep = ui.button(wide, "Keep as a part …", self._keep, container, style="@segment", tip=tip)
-        self.rename = ui.button(
-            pygame.Rect(x, place.top, small, height), "Rename", self._ask_name, container, style="@segment",
-            tip="Give a part of your own another name",
-        )  # fmt: skip
-        self.delete = ui.button(
-            pygame.Rect(x + small + gap, place.top, small, height), "Delete", self._ask_delete, container,
-            style="@segment", tip="Delete a part of your own; levels that have it keep it",
-        )  # fmt: skip
-        text_height = ui.px(TEXT_HEIGHT)
-        top = place.top + height + 2 * gap
-        self.area = ScrollArea(
-            ui, pygame.Rect(place.left, top, place.width, place.bottom - top - text_height - gap), container
-        )
+        self._is_low = place.height < ui.px(ROOM_FOR_TEXT)
+        self._columns = COLUMNS_OF_LOW if self._is_low else COLUMNS
+        above = 0 if self._is_low else ui.px(BUTTON_HEIGHT + 2 * GAP)
+        text_height = 0 if self._is_low else ui.px(TEXT_HEIGHT)
+        room = place.height - above - (0 if self._is_low else text_height + ui.px(GAP))
+        self.area = ScrollArea(ui, pygame.Rect(place.left, place.top + above, place.width, room), container)
+        if self._is_low:
+            self._add_buttons(ui.px(3), 0, width - ui.px(6), self.area.content)
+        else:
+            self._add_buttons(place.left, place.top, width, container)
         below = pygame.Rect(place.left, place.bottom - text_height, width, text_height)
         self._text = TextBlock(ui, below, "", container, 12.0)
         self.cards: list[PartCard] = []
@@ -65,6 +60,23 @@ class CataloguePage:
         self._chosen: PartFile | None = None
         self._unfilled = SliceQueue()
         self._looked = 0
+
+    def _add_buttons(self, left: int, top: int, width: int, container: Any) -> None:
+        """What is done with parts of one's own, side by side from a place [pixels] on."""
+        ui = self._ui
+        small, gap, height = ui.px(SMALL_WIDTH), ui.px(GAP), ui.px(BUTTON_HEIGHT)
+        x = left + width - 2 * small - gap
+        wide = pygame.Rect(left, top, x - gap - left, height)
+        tip = tip_of("keep_part", "edit")
+        self.keep = ui.button(wide, "Keep as a part …", self._keep, container, style="@segment", tip=tip)
+        self.rename = ui.button(
+            pygame.Rect(x, top, small, height), "Rename", self._ask_name, container, style="@segment",
+            tip="Give a part of your own another name",
+        )  # fmt: skip
+        self.delete = ui.button(
+            pygame.Rect(x + small + gap, top, small, height), "Delete", self._ask_delete, container,
+            style="@segment", tip="Delete a part of your own; levels that have it keep it",
+        )  # fmt: skip
 
     # What there is.
 
@@ -119,6 +131,10 @@ class CataloguePage:
         if not own:
             self._add_label(NOTHING_OWN, y, 12.0, 34.0, is_bold=False)
             y += 34.0
+        if self._is_low:
+            for button in (self.keep, self.rename, self.delete):
+                button.set_relative_position((button.relative_rect.left, self._ui.px(y)))
+            y += BUTTON_HEIGHT + GAP
         self.area.set_height(self._ui.px(y))
 
     def _add_label(self, text: str, y: float, size: float, height: float, *, is_bold: bool) -> None:
@@ -128,19 +144,23 @@ class CataloguePage:
         self._labels.append(TextBlock(ui, place, text, self.area.content, size, colour, is_bold=is_bold))
 
     def _add_section(self, title: str, parts: list[PartFile], y: float) -> float:
-        """Cards under a heading from a place [layout units] on; where they end."""
+        """Cards from a place [layout units] on, under a heading where that is not the top of a low page; their end."""
         ui = self._ui
-        self._add_label(title, y, 13.0, HEADING, is_bold=True)
-        y += HEADING
-        width = (self.area.view.rect.width / ui.scale - 6 - GAP * (COLUMNS - 1)) / COLUMNS
+        if y > 0.0 or not self._is_low:
+            self._add_label(title, y, 13.0, HEADING, is_bold=True)
+            y += HEADING
+        columns = self._columns
+        width = (self.area.view.rect.width / ui.scale - 6 - GAP * (columns - 1)) / columns
         height = width * PICTURE_RATIO + NAME_HEIGHT
         for index, part in enumerate(parts):
-            row, column = divmod(index, COLUMNS)
+            row, column = divmod(index, columns)
             place = ui.rect(3 + column * (width + GAP), y + row * (height + GAP), width, height)
-            card = PartCard(ui, place, part, self, self.area.content)
+            card = PartCard(ui, place, part, self, self.area.content, columns)
+            if self._is_low and part.level is not None:
+                card.set_tooltip(escape(f"{part.name}. {part.level.description}".strip(), quote=False))
             self.cards.append(card)
             self._unfilled.add(fill_card(card, lambda: self._screen.ready))
-        return y + -(-len(parts) // COLUMNS) * (height + GAP)
+        return y + -(-len(parts) // columns) * (height + GAP)
 
     def _describe(self) -> None:
         part = self._chosen

@@ -11,7 +11,7 @@ from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.rows import Row, RowList
 from sandbox.editor.document import Document
 from sandbox.editor.panel.level_properties import add_check, check_properties, delete_check
-from sandbox.level.checks import CheckDef, CheckResult, subject_text, time_text, wanted_text
+from sandbox.level.checks import METRICS, CheckDef, CheckResult, promise_text, time_text
 from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format.model import Level
 from sandbox.session.check_run import checks_as_they_end
@@ -134,10 +134,8 @@ class ChecksPage:
 
 
 def _row(check: CheckDef, result: CheckResult | None, is_running: bool) -> Row:
-    wanted = f"{subject_text(check)} {wanted_text(check)}"
-    if check.always or check.eventually:
-        wanted = f"{wanted} {time_text(check)}"
+    wanted = f"{promise_text(check)}, {time_text(check)}"
     if result is None:
         return Row(check.name, f"running: {wanted}" if is_running else wanted, DISABLED)
-    verdict = "holds" if result.passed else "fails"
-    return Row(check.name, f"{verdict}: {result.value:.4g}; {wanted}", ACCENT if result.passed else DANGER)
+    verdict = f"{'holds' if result.passed else 'fails'} with {result.value:.4g} {METRICS[check.metric].unit}".rstrip()
+    return Row(check.name, f"{verdict}: {wanted}", ACCENT if result.passed else DANGER)

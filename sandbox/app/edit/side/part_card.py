@@ -23,9 +23,12 @@ NAME_HEIGHT = 24.0
 CORNER = 7.0
 TEXT_SIZE, FAULT_SIZE = 12.0, 10.5
 FAULT_LINES = 4
+# A narrower card has smaller letters.
+ROOM_FOR_NAME, SMALL_TEXT = 100.0, 11.0
 # How much of the picture is veiled of a part that cannot be had here, of 255.
 VEIL = 165
-STEPS = {pygame.K_LEFT: -1, pygame.K_RIGHT: 1, pygame.K_UP: -2, pygame.K_DOWN: 2}
+# Arrow keys: cards to the right, and rows down.
+STEPS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
 
 
 class Hands(Protocol):
@@ -49,16 +52,16 @@ class Hands(Protocol):
 
 
 class PartCard(Lit, Pressable):
-    """One part; it shows its name once `is_read` is set, and a frame while it `is_taken`.
+    """One part; it shows its name once `is_read` is set, and a frame while it `is_taken`; columns: of such cards.
 
     refusal: why it cannot be had here; then it is pale.
     """
 
     ui: Ui
 
-    def __init__(self, ui: Ui, rect: pygame.Rect, part: PartFile, hands: Hands, container: Any) -> None:
+    def __init__(self, ui: Ui, rect: pygame.Rect, part: PartFile, hands: Hands, container: Any, columns: int) -> None:
         super().__init__(ui, rect, container)
-        self.part, self._hands = part, hands
+        self.part, self._hands, self._columns = part, hands, columns
         self.picture: pygame.Surface | None = None
         self.is_read = self.is_taken = self._is_held = False
         self.refusal = ""
@@ -99,7 +102,7 @@ class PartCard(Lit, Pressable):
         elif is_broken:
             self._paint_fault(card, place)
         if self.is_read:
-            font = ui.font(TEXT_SIZE, self.is_taken)
+            font = ui.font(TEXT_SIZE if size[0] >= ui.px(ROOM_FOR_NAME) else SMALL_TEXT, self.is_taken)
             name = wrapped(self.part.name, font, size[0] - ui.px(12), 1)[0]
             text = font.render(name, True, DANGER if is_broken else MUTED if self.refusal else TEXT)
             middle = place.bottom + (size[1] - place.bottom) // 2
@@ -107,6 +110,10 @@ class PartCard(Lit, Pressable):
         is_lit = self.is_taken or self.hovered or self.ui.focus is self
         rim, width = (ACCENT, 2.0 if self.is_taken else 1.2) if is_lit else (LINE, 1.2)
         pygame.draw.rect(card, rim, card.get_rect(), max(1, ui.px(width)), border_radius=corner)
+        # Pictures have corners of their own.
+        mask = pygame.Surface(size, pygame.SRCALPHA)
+        pygame.draw.rect(mask, (255, 255, 255), mask.get_rect(), border_radius=corner)
+        card.blit(mask, (0, 0), special_flags=pygame.BLEND_RGBA_MIN)
         return card
 
     def _paint_fault(self, card: pygame.Surface, place: pygame.Rect) -> None:
@@ -126,7 +133,8 @@ class PartCard(Lit, Pressable):
             self._hands.take(self.part, by_key=True)
             return True
         if event.key in STEPS:
-            self._hands.go(self, STEPS[event.key])
+            across, down = STEPS[event.key]
+            self._hands.go(self, across + down * self._columns)
             return True
         return False
 

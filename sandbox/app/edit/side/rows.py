@@ -17,13 +17,13 @@ LINE_HEIGHT = 17.0
 PADDING = 6.0
 INSET = 10.0
 SWATCH = 11.0
-TEXT_SIZE = 12.5
+TEXT_SIZE, DETAIL_SIZE = 12.5, 11.0
 MENU_ROWS = 12
 
 
 @dataclass(frozen=True)
 class Row:
-    """A row: text, a second line in grey, a spot of colour before it, the colour of the text."""
+    """A row: text, lines in grey below it, a spot of colour before it, the colour of the text."""
 
     text: str
     detail: str = ""
@@ -34,7 +34,7 @@ class Row:
 class RowList(Painted):
     """Rows to choose from; choose(index) is called by a click, Enter or Space; only what is seen is painted.
 
-    at_once: arrow keys choose as they go. most_lines: of a row's text, which wraps.
+    at_once: arrow keys choose as they go. most_lines: of a row's text, and of what is below it, which wrap.
     """
 
     def __init__(
@@ -54,7 +54,8 @@ class RowList(Painted):
         self.chosen: int | None = None
         self._choose, self._empty, self._at_once = choose, empty, at_once
         self._most_lines, self._background = most_lines, background
-        self._lines: list[list[str]] = []
+        # Of each row: its lines, and those below in grey.
+        self._lines: list[tuple[list[str], list[str]]] = []
         self._tops: list[int] = [0]
         self._offset = 0.0
         self._pointed: int | None = None
@@ -80,9 +81,11 @@ class RowList(Painted):
         self._lines, self._tops = [], [0]
         for row in self.rows:
             left = inset + (ui.px(SWATCH + 8) if row.swatch is not None else 0)
-            lines = wrapped(row.text, font, self.rect.width - left - inset, self._most_lines)
-            self._lines.append(lines)
-            count = len(lines) + (1 if row.detail else 0)
+            widest = self.rect.width - left - inset
+            lines = wrapped(row.text, font, widest, self._most_lines)
+            details = wrapped(row.detail, ui.font(DETAIL_SIZE), widest, self._most_lines) if row.detail else []
+            self._lines.append((lines, details))
+            count = len(lines) + len(details)
             self._tops.append(self._tops[-1] + count * ui.px(LINE_HEIGHT) + 2 * ui.px(PADDING))
 
     # Where things are.
@@ -189,13 +192,10 @@ class RowList(Painted):
             at = pygame.Rect(left, y + (line - swatch) // 2, swatch, swatch)
             pygame.draw.rect(surface, row.swatch, at, border_radius=ui.px(3))
             left += swatch + ui.px(8)
-        for text in self._lines[index]:
-            surface.blit(ui.font(TEXT_SIZE).render(text, True, row.colour), (left, y))
-            y += line
-        if row.detail:
-            widest = surface.get_width() - left - ui.px(INSET)
-            text = wrapped(row.detail, ui.font(11), widest, 1)[0]
-            surface.blit(ui.font(11).render(text, True, MUTED), (left, y))
+        for texts, size, colour in zip(self._lines[index], (TEXT_SIZE, DETAIL_SIZE), (row.colour, MUTED), strict=True):
+            for text in texts:
+                surface.blit(ui.font(size).render(text, True, colour), (left, y))
+                y += line
 
 
 class Picker(Lit, Pressable):
