@@ -50,6 +50,24 @@ def pytest_runtest_logfinish():
         _held = memory_held()
 
 
+def pytest_collection_modifyitems(config, items):
+    """Deal slow tests first, some to each worker: or one is left with them where the others have nothing more to do."""
+    workers = getattr(config, "workerinput", {}).get("workercount", 1)
+    slow = [item for item in items if item.get_closest_marker("slow")]
+    others = [item for item in items if not item.get_closest_marker("slow")]
+    left = len(items)
+    items.clear()
+    for worker in range(workers):
+        # The first workers get as many tests in a row.
+        size = left // (workers - worker)
+        left -= size
+        share = slow[worker::workers]
+        rest = max(size - len(share), 0)
+        items += share + others[:rest]
+        del others[:rest]
+    items += others
+
+
 def pytest_collection_finish():
     """Leave what is imported out of garbage collection, which takes long, and is put off while so much is alive."""
     gc.collect()

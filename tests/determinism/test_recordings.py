@@ -45,6 +45,7 @@ def _lengths(level) -> tuple[int, int]:
     return seconds * rate, max(1, min(INTERPRETED_TICKS, INTERPRETED_WORK // work))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("paths", SHARES, ids=lambda paths: "+".join(path.stem for path in paths))
 def test_played_levels_verify_in_every_way(paths, tmp_path):
     recordings, short_ones = [], []

@@ -3,6 +3,7 @@
 import os
 from dataclasses import dataclass
 
+import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import (
@@ -416,6 +417,7 @@ class EditingMachine(RuleBasedStateMachine):
             assert (getattr(self.scene, name) == getattr(fresh, name)).all(), name
 
 
+@pytest.mark.slow
 def test_any_edits_can_be_undone_and_redone_and_leave_a_level_that_can_be_saved():
     run_state_machine_as_test(
         EditingMachine,

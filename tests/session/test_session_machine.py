@@ -315,6 +315,7 @@ def short_intervals(monkeypatch):
     monkeypatch.setattr("sandbox.session.replay.writer.STATE_TICKS", 7)
 
 
+@pytest.mark.slow
 def test_a_session_does_what_its_model_does():
     run_state_machine_as_test(
         SessionMachine, settings=settings(max_examples=EXAMPLES, stateful_step_count=30, deadline=None)
