@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 
 from sandbox.app.draw.colours import MUTED, TEXT, WARNING, Colour
-from sandbox.app.edit.side.part_card import NAME_HEIGHT, PICTURE_RATIO, PartCard, fill_card
+from sandbox.app.edit.side.part_card import PartCard, card_places, fill_card
 from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.screen import Pixel
 from sandbox.app.sentences import sentence
@@ -82,16 +82,12 @@ class PartPage:
         if not parts:
             TextBlock(ui, ui.rect(3, y, self._width, LINE), NOTHING_OWN, content, 12.0)
             return y + LINE
-        columns = self._columns
-        width = (self._width - 6 - GAP * (columns - 1)) / columns
-        height = width * PICTURE_RATIO + NAME_HEIGHT
-        for index, part in enumerate(parts):
-            row, column = divmod(index, columns)
-            place = ui.rect(3 + column * (width + GAP), y + row * (height + GAP), width, height)
-            card = PartCard(ui, place, part, self, content, columns)
+        places, end = card_places(ui, len(parts), self._columns, self._width, y, GAP)
+        for place, part in zip(places, parts, strict=True):
+            card = PartCard(ui, place, part, self, content, self._columns)
             self.cards.append(card)
             self._unfilled.add(self._fill(card))
-        return y + -(-len(parts) // columns) * (height + GAP)
+        return end
 
     def _fill(self, card: PartCard) -> Iterator[bool]:
         yield True

@@ -9,7 +9,7 @@ import pygame
 from sandbox.app.draw.colours import DANGER, MUTED, TEXT
 from sandbox.app.edit.canvas.pointer import DrawTool
 from sandbox.app.edit.editing import Editing
-from sandbox.app.edit.side.part_card import NAME_HEIGHT, PICTURE_RATIO, PartCard, fill_card
+from sandbox.app.edit.side.part_card import PartCard, card_places, fill_card
 from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.screen import Pixel
 from sandbox.app.sentences import sentence
@@ -149,18 +149,15 @@ class CataloguePage:
         if y > 0.0 or not self._is_low:
             self._add_label(title, y, 13.0, HEADING, is_bold=True)
             y += HEADING
-        columns = self._columns
-        width = (self.area.view.rect.width / ui.scale - 6 - GAP * (columns - 1)) / columns
-        height = width * PICTURE_RATIO + NAME_HEIGHT
-        for index, part in enumerate(parts):
-            row, column = divmod(index, columns)
-            place = ui.rect(3 + column * (width + GAP), y + row * (height + GAP), width, height)
-            card = PartCard(ui, place, part, self, self.area.content, columns)
+        room = self.area.view.rect.width / ui.scale
+        places, end = card_places(ui, len(parts), self._columns, room, y, GAP)
+        for place, part in zip(places, parts, strict=True):
+            card = PartCard(ui, place, part, self, self.area.content, self._columns)
             if self._is_low and part.level is not None:
                 card.set_tooltip(escape(f"{part.name}. {part.level.description}".strip(), quote=False))
             self.cards.append(card)
             self._unfilled.add(fill_card(card, lambda: self._screen.ready))
-        return y + -(-len(parts) // columns) * (height + GAP)
+        return end
 
     def _describe(self) -> None:
         part = self._chosen

@@ -154,6 +154,15 @@ class PartCard(Lit, Pressable):
         return x, y
 
 
+def card_places(ui: Ui, count: int, columns: int, room: float, y: float, gap: float) -> tuple[list[pygame.Rect], float]:
+    """Where so many cards lie [pixels] in a room so wide, from y on, and where they end [layout units]."""
+    width = (room - 6 - gap * (columns - 1)) / columns
+    height = width * PICTURE_RATIO + NAME_HEIGHT
+    cells = (divmod(index, columns) for index in range(count))
+    places = [ui.rect(3 + across * (width + gap), y + row * (height + gap), width, height) for row, across in cells]
+    return places, y + -(-count // columns) * (height + gap)
+
+
 def fill_card(card: PartCard, is_ready: Callable[[], bool]) -> Iterator[bool]:
     """Read a card's part and draw its picture, a slice at each turn; False while kernels are not ready for that."""
     level, theme = card.part.level, shown_theme()
