@@ -129,6 +129,22 @@ def test_triangles_that_go_on_round_a_particle_of_the_outline_are_seen_from_ever
         assert not found.is_inverted.any()
 
 
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize("triangles", [[[0, 1, 2], [0, 2, 3]], [[0, 2, 3], [0, 1, 2]], [[0, 1, 2], [0, 1, 2]]])
+def test_triangles_that_lie_over_each_other_in_their_own_form_are_not_out_of_shape(triangles, way):
+    world = network([(0, 0), (1, 0), (0.6, 1), (0.9, 0.3)], [(0, 3)])
+    world.add_constraints(AREA, [each[::way] for each in triangles])
+    made = triangles_of(world)
+    found, marked = new_inversions(made), np.zeros(world.particle_count, np.bool_)
+    for turned in np.linspace(0.0, math.tau, 17):
+        x, y = world.origin.T
+        world.position[:4] = np.stack(
+            [math.cos(turned) * x - math.sin(turned) * y, math.sin(turned) * x + math.cos(turned) * y], axis=1
+        )[:4]
+        find_inverted(world.position, world.constraint_rest, made, found, marked)
+        assert not marked.any() and not found.is_inverted.any()
+
+
 def test_a_jelly_that_is_folded_over_at_its_outline_comes_back_and_turns_no_triangle_over():
     world = folding.wound()
     start, most = total_energy(world), 0.0

@@ -4,6 +4,8 @@ A jelly is a group of triangles that share sides. It is inverted while a triangl
 LARGEST times its area, or while the triangles about one of its inner particles do not wind round that just once. It is
 wound where those about a particle of its outline go on round that beyond where they began: then its outline crosses
 itself there though no triangle is turned over, and what is next to it, which may not touch it, does not hold it apart.
+Where a jelly lies folded over in its own form, some of its triangles counter-clockwise and others not, no turns are
+counted: there is no number of them that is right.
 """
 
 import functools
@@ -46,17 +48,18 @@ class Jellies(NamedTuple):
     fan_start: Slots
 
 
-def group_triangles(corners: Slots) -> Jellies:
+def group_triangles(corners: Slots, areas: Floats) -> Jellies:
     """The jellies that triangles of these particles (t, 3) make, in the order of their first triangles; to be read.
 
-    Those of the same triangles are the same, since pins, hands and cuts leave triangles as they are.
+    areas (t,) [m^2]: of their forms. Those of the same triangles are the same, since pins, hands and cuts leave
+    triangles as they are.
     """
-    return _grouped(corners.tobytes())
+    return _grouped(corners.tobytes(), (areas > 0.0).tobytes())
 
 
 @functools.lru_cache(maxsize=KEPT_GROUPINGS)
-def _grouped(content: bytes) -> Jellies:
-    corners = np.frombuffer(content, dtype=np.int64).reshape(-1, 3)
+def _grouped(content: bytes, signs: bytes) -> Jellies:
+    corners, is_left = np.frombuffer(content, dtype=np.int64).reshape(-1, 3), np.frombuffer(signs, dtype=np.bool_)
     sides = np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 2)
     keys = sides.min(axis=1) << 32 | sides.max(axis=1)
     order = np.argsort(keys, kind="stable")
@@ -71,16 +74,22 @@ def _grouped(content: bytes) -> Jellies:
     ends = np.unique(np.append(pairs[:, 0] << 32 | pairs[:, 1], pairs[:, 1] << 32 | pairs[:, 0])) >> 32
     neighbours, triangles = (np.bincount(each, minlength=len(particles)) for each in (ends, member.reshape(-1)))
     start = np.searchsorted(particles >> 32, np.arange(len(first) + 1))
-    fan, fan_start = _fans(corners, keys, group, len(first))
-    return Jellies(group, member, first, start, particles & 0xFFFFFFFF, corner, neighbours == triangles, fan, fan_start)
+    # The same triangle twice is round nothing.
+    lies_flat = np.bincount(group, is_left, len(first)) % np.bincount(group) == 0
+    inner = lies_flat[particles >> 32] & (neighbours == triangles) & (triangles > 2)
+    fan, fan_start = _fans(corners, keys, group, lies_flat)
+    return Jellies(group, member, first, start, particles & 0xFFFFFFFF, corner, inner, fan, fan_start)
 
 
-def _fans(corners: Slots, keys: Slots, group: Slots, groups: int) -> tuple[Slots, Slots]:
-    """The fans of triangles about particles of outlines, see Jellies. keys (3 t,): of sides, the same where shared."""
+def _fans(corners: Slots, keys: Slots, group: Slots, lies_flat: Flags) -> tuple[Slots, Slots]:
+    """The fans of triangles about particles of outlines, see Jellies, of jellies g that lie flat (g,).
+
+    keys (3 t,): of sides, the same where shared.
+    """
     _, side, count = np.unique(keys, return_inverse=True, return_counts=True)
     about = np.stack([np.roll(corners, -k, axis=1) for k in range(3)], axis=-1).reshape(-1, 3)
     owner = np.repeat(group, 3) << 32 | about[:, 0]
-    begins = np.flatnonzero(count[side] == 1)
+    begins = np.flatnonzero((count[side] == 1) & np.repeat(lies_flat[group], 3))
     # Where two fans meet in a particle, neither is told from the other.
     begun, at, fans = np.unique(owner[begins], return_index=True, return_counts=True)
     begun, following = begun[fans == 1], about[begins[at[fans == 1]], 1]
@@ -90,7 +99,7 @@ def _fans(corners: Slots, keys: Slots, group: Slots, groups: int) -> tuple[Slots
     beyond = following != about[chosen, 1]
     chosen, following = chosen[beyond], following[beyond]
     fan = np.stack([about[chosen, 0], following, about[chosen, 1], about[chosen, 2]], axis=1)
-    return fan, np.searchsorted(group[chosen // 3], np.arange(groups + 1))
+    return fan, np.searchsorted(group[chosen // 3], np.arange(len(lies_flat) + 1))
 
 
 @inlined_kernel
@@ -198,7 +207,7 @@ def triangles_of(world: World) -> Triangles:
     kept = (world.constraint_kind == AREA) & (world.constraint_corners == 3) & world.constraint_active
     constraint = np.flatnonzero(kept)
     corners = world.corner_particle[world.constraint_first[constraint, None] + np.arange(3)].astype(np.int64)
-    return Triangles(constraint, corners, group_triangles(corners))
+    return Triangles(constraint, corners, group_triangles(corners, world.constraint_rest[constraint, 1]))
 
 
 def new_inversions(triangles: Triangles) -> Inversions:

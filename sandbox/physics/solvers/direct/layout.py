@@ -113,7 +113,7 @@ def make_layout(world: World) -> SystemLayout:
     row_a, row_b, spring_body = row_a[grouped], row_b[grouped], spring_body[grouped]
     held = spring_body[np.maximum(row_a, row_b) >= len(nodes)], constraint_body[_anchored(constraints, len(nodes))]
     rows = _lay_out_rows(np.concatenate([nodes[order], anchors]))
-    goals = _lay_out_goals(constraints, constraint_body, len(first_rows), world.corner_form[constraints.corner])
+    goals = _lay_out_goals(constraints, constraint_body, len(first_rows), world)
     system = System(
         _lay_out_bodies(first_rows, nodes[body_of_row[first_rows]], spring_body, constraint_body, held, len(nodes)),
         rows,
@@ -302,12 +302,12 @@ def _scratch(kind: Any, given: dict[str, Slots], shape: Any, shapes: dict[str, A
     return given | {name: np.zeros(shapes.get(name, shape)) for name in kind._fields if name not in given}
 
 
-def _lay_out_goals(constraints: Constraints, body: Slots, bodies: int, form: Floats) -> Goals:
-    """The jellies among the constraints, whose corners stand at `form` [m] (q, 2) at rest; body (t,): of each."""
+def _lay_out_goals(constraints: Constraints, body: Slots, bodies: int, world: World) -> Goals:
+    """The jellies among a world's constraints; body (t,): of each."""
     count = len(constraints.slot)
     chosen = np.flatnonzero((constraints.kind == AREA) & (constraints.wide < 0))
     corners = constraints.first[:-1][chosen, None] + np.array([0, 1, 2])
-    jellies = group_triangles(constraints.row[corners])
+    jellies = group_triangles(constraints.row[corners], world.constraint_rest[constraints.slot[chosen], 1])
     group, member = np.full(count, -1, dtype=np.int64), np.full((count, 3), -1, dtype=np.int64)
     group[chosen], member[chosen] = jellies.group, jellies.member
     # Constraints lie by body, and so do their groups, in the order of the first of each.
@@ -316,7 +316,7 @@ def _lay_out_goals(constraints: Constraints, body: Slots, bodies: int, form: Flo
         of_body=np.searchsorted(body[sample], np.arange(bodies + 1)),
         start=jellies.start,
         row=jellies.particle,
-        form=form[corners.reshape(-1)[jellies.corner]],
+        form=world.corner_form[constraints.corner[corners.reshape(-1)[jellies.corner]]],
         sample=sample,
         group=group,
         member=member,
