@@ -16,7 +16,11 @@ def textbook_step(world, accumulated):
     position, velocity, inverse = world.position.copy(), world.velocity.copy(), world.inverse_mass
     velocity[inverse > 0.0] += np.array(settings.gravity) * h
     change, springs = np.zeros_like(velocity), []
-    for s in range(world.spring_count):
+    lightest = [
+        min((w for w in inverse[[a, b]] if w > 0.0), default=np.inf)
+        for a, b in zip(world.particle_a, world.particle_b, strict=True)
+    ]
+    for s in np.argsort(lightest, kind="stable"):
         a, b = world.particle_a[s], world.particle_b[s]
         if not world.spring_active[s] or inverse[a] + inverse[b] == 0.0:
             accumulated[s] = 0.0

@@ -171,6 +171,15 @@ def test_wheels_of_rigid_springs_do_not_hop_uphill_in_small_steps_of_the_iterati
         assert cart_speed(2.0, 0.5, 10.0, "iterative", 4, driven=1) >= 0.93
 
 
+def test_a_light_wheel_bears_a_heavy_load_in_one_step_a_tick_of_the_iterative_solver():
+    world = cart(rim=0.2, load=120.0, speed=0.0, torque=500.0, solver="iterative")
+    run(world, scaled(120, 10))
+    hub = world.particle_slot("w0.hub")
+    for _ in range(scaled(60, 2)):
+        step(world)
+        assert world.position[hub, 1] > 0.647 - 0.05
+
+
 def test_a_motor_that_is_switched_off_lets_its_wheel_run_on():
     world = floating_cart(solver="direct", **RIGID)
     run(world, 60)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sandbox.physics.collision.types import NO_CONTACTS, Contacts, Flags, LentContacts
+from sandbox.physics.collision.types import NO_CONTACTS, Contacts, LentContacts
 from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, constraint_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
@@ -73,8 +73,10 @@ class Pulling(NamedTuple):
 class Rounds(NamedTuple):
     """How a step is iterated: how often, with what share of the last step's pulls, and in what order.
 
-    alternates: every other iteration goes through the springs backwards. In small steps what one order has not carried
-    through a wheel throws it off the ground; in one step a tick light wheels would sink in under heavy loads.
+    alternates: every other iteration goes through the springs backwards, as they are listed. In small steps what one
+    order has not carried through a wheel throws it off the ground; in one step a tick light wheels would sink in under
+    heavy loads. There each goes from the springs of heavy particles to those of light ones: what a load asks for goes
+    on to what bears it within an iteration, and a wheel of 0.2 kg a particle sinks 3 cm under 60 kg in place of 9.
     """
 
     iterations: int
@@ -134,15 +136,14 @@ def _iterate_constraints(inverse_mass: Floats, constraints: ConstraintArrays, wa
 
 @inner_kernel
 def _prepare_springs(
-    particles: Particles, ends: Ends, active: Flags, warm_start: float, h: float, pulling: Pulling
+    particles: Particles, ends: Ends, order: Slots, warm_start: float, h: float, pulling: Pulling
 ) -> int:
     # r = -(Cs x / h + Cd u), the wanted change of relative velocity; how many springs want one.
     position, velocity, inverse_mass = particles.position, particles.velocity, particles.inverse_mass
     change, accumulated = pulling.change, pulling.accumulated
     count = 0
-    for s in range(active.shape[0]):
-        if not active[s] or ends.law[s] != LAW_NISSEN:
-            continue
+    for i in range(order.shape[0]):
+        s = order[i]
         a = ends.particle_a[s]
         b = ends.particle_b[s]
         m = reduced_mass(inverse_mass[a], inverse_mass[b])
@@ -200,12 +201,12 @@ def _iterate_springs(count: int, inverse_mass: Floats, ends: Ends, pulling: Pull
 
 @kernel
 def _iterate(
-    particles: Particles, ends: Ends, active: Flags, pulling: Pulling, constraints: ConstraintArrays, wanted: Wanted,
+    particles: Particles, ends: Ends, order: Slots, pulling: Pulling, constraints: ConstraintArrays, wanted: Wanted,
     contacts: Contacts, terms: ContactTerms, lent_masses: Any, rounds: Rounds, h: float,
 ) -> None:  # fmt: skip
     (delassus,) = contents(lent_masses)
     velocity, inverse_mass, change = particles.velocity, particles.inverse_mass, pulling.change
-    count = _prepare_springs(particles, ends, active, rounds.warm_start, h, pulling)
+    count = _prepare_springs(particles, ends, order, rounds.warm_start, h, pulling)
     _prepare_constraints(particles, constraints, h, wanted)
     load_biases(contacts, terms, h)
     load_responses(contacts, terms, inverse_mass, delassus)
@@ -217,6 +218,19 @@ def _iterate(
         iterate_joints(delassus.joints, velocity, change, inverse_mass)
         sweep(contacts, terms, velocity, change, inverse_mass, delassus)
     add_change(velocity, change, inverse_mass)
+
+
+def _as_listed(world: World) -> Slots:
+    # The springs that are iterated.
+    return np.flatnonzero(unlimited_active(world) & (world.law == LAW_NISSEN))
+
+
+def _heavy_first(world: World) -> Slots:
+    # The same, those of heavy particles first.
+    springs = _as_listed(world)
+    moved = np.where(world.inverse_mass > 0.0, world.inverse_mass, np.inf)
+    lightness = np.minimum(moved[world.particle_a[springs]], moved[world.particle_b[springs]])
+    return springs[np.argsort(lightness, kind="stable")]
 
 
 def _lent_masses(world: World) -> Any:
@@ -232,6 +246,8 @@ def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None
     hooke = world.spring_active & (world.law == LAW_HOOKE)
     if hooke.any():
         apply_explicit(world, hooke, substep.springs, substep.h)
+    alternates = substep.substeps > 1
+    order = _as_listed if alternates else _heavy_first
     touching = NO_CONTACTS if contacts is None else contacts.arrays
     count, settings = world.spring_count, world.settings
     change = np.zeros((world.particle_count, 2))
@@ -243,8 +259,8 @@ def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None
     )
     terms = terms_of(world, touching)
     _iterate(
-        particles_of(world), ends_of(world, substep.springs), unlimited_active(world), pulling, world.constraints,
+        particles_of(world), ends_of(world, substep.springs), world.derived(order), pulling, world.constraints,
         wanted, touching, terms, world.derived(_lent_masses),
-        Rounds(settings.iterations, settings.warm_start, substep.substeps > 1), substep.h,
+        Rounds(settings.iterations, settings.warm_start, alternates), substep.h,
     )  # fmt: skip
     store_spins(world, terms)
