@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from sandbox.physics.collision.filter import LINE
 from sandbox.physics.energy import kinetic_energy, total_energy
 from sandbox.physics.step import step
-from tests.support.contact_scenes import FLOOR, add_jelly, world
+from tests.support.contact_scenes import FLOOR, add_discs, add_jelly, world
 from tests.support.overlaps import overlaps
 from tests.support.physics_scenes import scaled
 
@@ -70,3 +71,22 @@ def test_what_is_only_pressed_together_keeps_its_contacts():
     if scaled(1, 0):
         assert w.position[:, 1].max() > 2.6
         assert kinetic_energy(w) < 1e-3
+
+
+def test_a_rope_that_is_drawn_out_of_a_box_goes_through_that_nowhere_else():
+    # Its end is in the box; the rest goes round that and lies in a loop on top, caught in itself.
+    w = world(FLOOR)
+    add_jelly(w, (0.0, 0.5))
+    left, top = [(-0.25, 0.5), (-0.45, 0.5), (-0.65, 0.5), (-0.65, 0.7), (-0.65, 0.9)], [-0.5, -0.3, -0.1, 0.1]
+    places = [*left, *((x, 1.05) for x in top), (0.15, 1.2), (0.0, 1.25), (0.0, 1.08), (0.0, 1.0)]
+    rope = w.particle_count + np.arange(len(places))
+    add_discs(w, [(2.0 + 0.2 * k, 3.0) for k in range(len(places))], radius=0.025, owner=rope[0])
+    w.add_springs(
+        [f"rope:{k}" for k in rope[1:]], rope[:-1], rope[1:], rest_length=0.2, stiffness=0.3, damping=0.6, edge=LINE
+    )
+    w.position[rope] = places
+    for _ in range(scaled(30, 6)):
+        step(w)
+        assert overlaps(w).lines <= 1
+        assert w.position[rope[5:], 1].min() > w.position[: rope[0], 1].max()
+    assert overlaps(w).lines <= scaled(0, 1)

@@ -30,7 +30,10 @@ def are_parting(p: int, v: int, colliders: Colliders) -> bool:
     t = max(colliders.shape[p], colliders.shape[v])
     for pair in range(colliders.parted_count[0]):
         if colliders.parted[pair, 0] == s and colliders.parted[pair, 1] == t:
-            return colliders.parting[p] + colliders.parting[v] >= colliders.parted[pair, 2]
+            # A line that is caught in another, or in itself, is let go whatever else of that would hold it.
+            if colliders.parted[pair, 2] == 1:
+                return colliders.caught[p] or colliders.caught[v]
+            return colliders.parting[p] and colliders.parting[v]
     return False
 
 
@@ -40,7 +43,7 @@ def may_collide(p: int, v: int, colliders: Colliders) -> bool:
     return (
         colliders.collides[p] & colliders.group[v] != 0
         and colliders.collides[v] & colliders.group[p] != 0
-        and not ((colliders.parting[p] or colliders.parting[v]) and are_parting(p, v, colliders))
+        and not (colliders.parted_count[0] > 0 and are_parting(p, v, colliders))
     )
 
 

@@ -152,12 +152,13 @@ def colliders_of(world: World, outline: Outline, pairs: int) -> Colliders:
     position, velocity, origin = np.zeros((3, total, 2))
     radius, friction, restitution, inverse_mass, turning, rolling = np.zeros((6, total))
     group, collides = np.full(total, TERRAIN_GROUP), np.full(total, ALL_GROUPS)
+    inverted, parting, caught = np.zeros((3, total), np.bool_)
     position[count:] = origin[count:] = terrain.vertex
     for ends in (terrain.edge_a, terrain.edge_b):
         friction[count + ends], restitution[count + ends] = terrain.friction, terrain.restitution
     return Colliders(
         position, velocity, origin, radius, friction, restitution, outline.owner, group, collides, inverse_mass,
         turning, rolling, outline.edge_a, outline.edge_b, outline.side, outline.number, outline.edge_start,
-        outline.edge_of, outline.near_start, outline.near_of, outline.shielded, np.zeros(total, np.bool_),
-        outline.shape, np.zeros(total, np.bool_), np.zeros((pairs, 3), np.int64), np.zeros(1, np.int64),
+        outline.edge_of, outline.near_start, outline.near_of, outline.shielded, inverted, outline.shape, parting,
+        caught, np.zeros((pairs, 3), np.int64), np.zeros(1, np.int64),
     )  # fmt: skip

@@ -318,6 +318,7 @@ def pair_overlaps(
         return 0
     for p in range(colliders.parting.shape[0]):
         colliders.parting[p] = False
+        colliders.caught[p] = False
     for s in range(found.first_pair.shape[0]):
         found.first_pair[s] = -1
     for c in range(found.counts[CROSSINGS]):
@@ -349,9 +350,9 @@ def pair_overlaps(
         if found.parts[at]:
             colliders.parted[colliders.parted_count[0], 0] = found.shape[at, 0]
             colliders.parted[colliders.parted_count[0], 1] = found.shape[at, 1]
-            # A line that is caught in another, or in itself, is let go whatever else of that would hold it.
             alone = outline.solid_of[found.shape[at, 0]] < 0 and outline.solid_of[found.shape[at, 1]] < 0
-            colliders.parted[colliders.parted_count[0], 2] = 1 if alone else 2
+            colliders.parted[colliders.parted_count[0], 2] = 1 if alone else 0
             colliders.parted_count[0] += 1
-            give_way(at, colliders, outline, bounds, found, colliders.parting)
+            # Apart: what is caught in itself, as crumpled cloth is all over, must not go through what holds it.
+            give_way(at, colliders, outline, bounds, found, colliders.caught if alone else colliders.parting)
     return pairs

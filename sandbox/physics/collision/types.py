@@ -24,8 +24,8 @@ class Colliders(NamedTuple):
     terrain. Edges of vertex v: edge_of[edge_start[v]:edge_start[v + 1]]; particles that a spring joins to p: near_of
     likewise. shielded (n,): see outline.py. inverted, by vertex: whether its body is now, or wound, and so does not
     touch itself. shape, by vertex: the number of the outline of its owner, -1: none. parting, by vertex: whether it
-    gives way to shapes that its own parts from; parted (k, 3): these pairs of shapes, the lower first, and how many of
-    two vertices must give way for them not to touch, parted_count (1,) of them.
+    gives way where its shape and another part, of which one is solid at least; caught: the same of two lines, or of one
+    with itself. parted (k, 3): these pairs of shapes, the lower first, and 1 where both are lines; parted_count (1,).
     """
 
     position: Floats
@@ -52,6 +52,7 @@ class Colliders(NamedTuple):
     inverted: Flags
     shape: Slots
     parting: Flags
+    caught: Flags
     parted: Slots
     parted_count: Slots
 
