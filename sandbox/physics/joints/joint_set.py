@@ -52,8 +52,7 @@ def _make_joints(world: World) -> JointSet | None:
         world.actuator_impulse,
     )  # fmt: skip
     of_hands = HandRows(
-        alone + 2 * np.arange(count), grips, np.zeros((count, 2)), world.position, world.velocity,
-        world.hand_strength, world.hand_force,
+        alone + 2 * np.arange(count), grips, world.position, world.velocity, world.hand_strength, world.hand_force,
     )  # fmt: skip
     of_springs = limited_rows(world, springs, len(groups))
     return JointSet(rows, bundle((rows, of_motors, of_hands, of_springs)))
