@@ -33,7 +33,7 @@ HELD: dict[str, tuple[Callable[..., World], tuple[float, float]]] = {
 }
 MORE = {
     f"jelly {size:g} m, {cells} cells, a corner": (partial(jelly, size, cells, SAG), (-9.0, 9.0))
-    for size, cells in ((0.5, 4), (0.5, 16), (2.0, 8), (2.0, 16))
+    for size, cells in ((0.5, 4), (0.5, 16), (2.0, 8), (2.0, 16), (3.0, 8), (5.0, 20))
 }
 
 
