@@ -294,7 +294,8 @@ class PlayScreen:
         if by_key:
             self._ui.blur()
             self.stage.move_cursor(0, 0, 0)
-        self._app.say(f"{part.name}: a click drops it, a drag throws it. U has other parts, Escape ends it.")
+        deeds = "a click drops it, a drag throws it, the wheel makes it larger"
+        self._app.say(f"{part.name}: {deeds}. U has other parts, Escape ends it.")
         self._say_what_touches()
 
     def _say_what_touches(self) -> None:

@@ -15,6 +15,7 @@ from sandbox.app.play.playback import Playback
 from sandbox.app.play.stability_paint import StabilityPaint
 from sandbox.app.profile import Profile
 from sandbox.editor.edits.joining import joining_commands
+from sandbox.editor.edits.sizing import sized
 from sandbox.level.format.model import Level
 from sandbox.physics.joints.pulls import Pull, pulls_of
 from sandbox.physics.query import nearest_particle, shown_particles
@@ -82,10 +83,10 @@ class Stage:
         left, bottom, right, top = box_of(Session(part).snapshot())
         size = right - left, top - bottom
 
-        def make(place: tuple[float, float], velocity: tuple[float, float]) -> tuple[Command, ...]:
+        def make(place: tuple[float, float], velocity: tuple[float, float], times: float) -> tuple[Command, ...]:
             # The pointer is in the middle of what it throws.
-            at = place[0] - (left + right) / 2, place[1] - (bottom + top) / 2
-            return joining_commands(part, self.playback.session.world, at, velocity)
+            at = place[0] - times * (left + right) / 2, place[1] - times * (bottom + top) / 2
+            return joining_commands(sized(part, times), self.playback.session.world, at, velocity)
 
         return CatalogueTool(self.playback.session.new_gesture, make, size)
 
@@ -120,10 +121,11 @@ class Stage:
     def resize(self, steps: float) -> bool:
         """Make larger what the tool drops or reaches; whether it has a size."""
         tool = self.tool
-        if not isinstance(tool, (DropTool, PushTool)):
+        if not isinstance(tool, (DropTool, PushTool, CatalogueTool)):
             return False
         tool.resize(steps)
-        self.size = tool.size
+        if not isinstance(tool, CatalogueTool):
+            self.size = tool.size
         return True
 
     def replace_playback(self, playback: Playback) -> None:
@@ -298,7 +300,9 @@ class Stage:
             picture = self._ghost.picture(part, size, colour, self.camera.zoom, self.renderer)
             overlay.ghost_picture = None if picture is None else (picture, self.tool.place)
         if isinstance(self.tool, CatalogueTool) and self.tool.place is not None and self.part is not None:
-            picture = self._ghost.picture_of_level(self.part, self.camera.zoom, self.renderer)
+            # From so much nearer, what is as large as it was kept looks so.
+            zoom = self.camera.zoom * self.tool.times
+            picture = self._ghost.picture_of_level(self.part, zoom, self.renderer)
             if picture is not None:
                 overlay.ghost, overlay.ghost_picture = [], (picture, self.tool.place)
         if "stability" in self.renderer.overlays.shown:
