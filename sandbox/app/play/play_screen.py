@@ -109,9 +109,21 @@ class PlayScreen:
 
     @property
     def moves(self) -> bool:
-        """Whether time passes in the run, which it does not while a page is open, or pictures of parts are to come."""
+        """Whether the run moves, which it does not while a page is open, or pictures of parts are to come."""
         is_filling = self.part_page is not None and self.part_page.moves
-        return is_filling or (self.playback.moves and not self._ui.has_sheet)
+        return is_filling or (self.playback.moves and not self._ui.has_sheet and not self.rests)
+
+    @property
+    def runs(self) -> bool:
+        """Whether time passes in the run."""
+        return not (self.playback.clock.paused or self._ui.has_sheet)
+
+    @property
+    def rests(self) -> bool:
+        """Whether time passes in the run, and yet nothing in it moves, nobody drives it, and no graph goes on."""
+        is_driven = any(is_held for _, is_held in self._keys.shown())
+        goes_on = is_driven or self.graphs.is_shown or self.playback.has_pending
+        return self.runs and self.stage.rests and self.playback.travel.target is None and not goes_on
 
     @property
     def has_contacts(self) -> bool:

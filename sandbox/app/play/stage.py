@@ -14,6 +14,7 @@ from sandbox.app.draw.renderer import Overlay, Renderer
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.stability_paint import StabilityPaint
 from sandbox.app.profile import Profile
+from sandbox.app.stillness import Stillness
 from sandbox.editor.edits.joining import joining_commands
 from sandbox.editor.edits.sizing import sized
 from sandbox.level.format.model import Level
@@ -39,6 +40,9 @@ CURSOR_STEP, CURSOR_LEAP = 4.0, 24.0
 # of that height.
 SIZE_SHARE, WIND_SPEED = 0.12, 40.0
 
+# A run in which nothing is seen to move for so long [s] is at rest.
+AT_REST_AFTER = 1.0
+
 Pixel = tuple[float, float]
 # The tool that has a part of the catalogue in hand.
 CATALOGUE = "part"
@@ -61,6 +65,7 @@ class Stage:
         self._paint = StabilityPaint()
         self._ghost = PartGhost()
         self.detail = Detail()
+        self.stillness = Stillness()
         # What is drawn however long frames take; None: as `detail` has it.
         self.fixed_detail: int | None = None
         self._make_tools("normal")
@@ -266,11 +271,17 @@ class Stage:
         world = self.playback.session.world
         return pulls_of(world) if world.any_held() else []
 
+    @property
+    def rests(self) -> bool:
+        """Whether nothing has been seen to move for a while, nothing flies about, and no hand holds anything."""
+        has_stood = self.stillness.lasted >= AT_REST_AFTER and self.renderer.effects.is_still
+        return has_stood and not self.playback.session.world.any_held()
+
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
         """Apply what is due and let time pass; pointer: where the mouse is over the world, if it is."""
         if frame_time > 0.0:
             # What stands is drawn rarely, which says nothing of how long drawing takes.
-            if not self.playback.clock.paused:
+            if not (self.playback.clock.paused or self.rests):
                 self.detail.note(frame_time)
             self.renderer.detail = self.detail.level if self.fixed_detail is None else self.fixed_detail
         with profile.part("commands"):
@@ -279,6 +290,7 @@ class Stage:
                 tool.reconcile(self.playback.current)
         with profile.part("ticks"):
             self.playback.advance(frame_time)
+        self.stillness.follow(self.playback.current, self.camera.zoom, frame_time)
         self._hovered = None
         tool = self.tool
         if isinstance(tool, (ThrowTool, PushTool)):

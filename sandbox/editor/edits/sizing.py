@@ -53,7 +53,8 @@ def _with_masses(body: AnyBody, factor: float) -> AnyBody:
 def _heavier(part: Any, factor: float) -> Any:
     """A description with its masses and forces, and those of what it holds, for lengths so many times as large."""
     changes: dict[str, Any] = {}
-    known = abouts(type(part))
+    model: type[Description] = type(part)
+    known = abouts(model)
     for name, value in part.__dict__.items():
         power = POWERS.get(known[name].unit, 0)
         if isinstance(part, HydraulicDef) and name == "rate":
