@@ -168,7 +168,8 @@ class PlayScreen:
         self.stage.place(self.viewport, ui.scale)
         self.palette = None
         if self.show_palette:
-            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, self.area[3] / ui.scale)
+            wide, tall = (side / ui.scale for side in self.area[2:])
+            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, wide, tall)
         left = FREE_PLACE[0] if self.palette is None else self.palette.right + FREE_PLACE[1]
         place = ui.rect(left, BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
         self.free = ui.button(place, "Free it", self._free, tip=tip_of("free", "play"))
