@@ -31,6 +31,9 @@ SOIL_DEPTH, BEVEL, LINE_HALF = 26.0, 9.0, 0.9
 # Turf lies on what faces up, as far as this cosine; half width, length of its pattern, how far it sinks.
 TURF_FROM, TURF_HALF, TURF_PERIOD, TURF_SINK = 0.8, 12.0, 46.0, 2.0
 EDGE_HALF = 2.4
+# Stages that are kept, for those who go to and fro between play, the editor and the gallery; each is made in bands of
+# so many rows, a multiple of 4, or what is computed on the way would not fit in a processor's cache.
+STAGES, BAND = 3, 32
 _GRAINS = {"soil": EARTH, "rock": EARTH, "wood": TIMBER}
 
 
@@ -191,11 +194,23 @@ def _grid_lines(camera: Camera, scale: float) -> tuple[list[int], list[int]]:
     return found[0], found[1]
 
 
-@functools.lru_cache(maxsize=1)
+@functools.lru_cache(maxsize=STAGES)
 def stage_pictures(size: tuple[int, int], theme: Theme) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
     """The stage (h, w) without and with its grid everywhere: the next run has mostly the same."""
     width, height = size
-    y, x = np.arange(height, dtype=np.float32)[:, None], np.arange(width, dtype=np.float32)
+    bare, gridded = (np.full((height, width), 0xFF, dtype=np.uint32) for _ in range(2))
+    for first in range(0, height, BAND):
+        rows = slice(first, min(first + BAND, height))
+        _fill_band(rows, size, theme, bare[rows], gridded[rows])
+    return bare, gridded
+
+
+def _fill_band(
+    rows: slice, size: tuple[int, int], theme: Theme, bare: NDArray[np.uint32], gridded: NDArray[np.uint32]
+) -> None:
+    """Draw these rows of the stage, of which the first is a multiple of 4, on both pictures."""
+    width, height = size
+    y, x = np.arange(rows.start, rows.stop, dtype=np.float32)[:, None], np.arange(width, dtype=np.float32)
     share = y / np.float32(max(height, 1))
     away = np.sqrt(((x - width / 2) / (0.62 * width)) ** 2 + ((y - 0.46 * height) / (0.72 * height)) ** 2)
     # A lamp behind the stage; the grid fades with the distance from the middle, and all of it towards the corners.
@@ -204,11 +219,9 @@ def stage_pictures(size: tuple[int, int], theme: Theme) -> tuple[NDArray[np.uint
     dark = 1 - np.float32(theme.vignette) * np.clip(away - 0.55, 0, 1.2) ** np.float32(1.6)
     # An ordered dither, or the gradient shows as bands.
     bayer = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]], dtype=np.float32) / 16 + 0.03
-    dither = np.tile(bayer, (height // 4 + 1, width // 4 + 1))[:height, :width]
-    bare, gridded = (np.full((height, width), 0xFF, dtype=np.uint32) for _ in range(2))
+    dither = np.tile(bayer, (len(y) // 4 + 1, width // 4 + 1))[: len(y), :width]
     for top, bottom, lamp, grid in zip(*theme.stage, theme.lamp, theme.grid, strict=True):
         colour = top * (1 - share) + bottom * share + lit * lamp
         for picture, shown in ((bare, colour), (gridded, colour + (grid - colour) * fade)):
             picture <<= 8
             picture |= np.clip(shown * dark + dither, 0, 255).astype(np.uint8)
-    return bare, gridded
