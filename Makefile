@@ -1,5 +1,4 @@
 # make play: install into .venv and run the app.    make test: install into .venv and run every test.
-# Kernels are compiled before, or each worker would compile all of them.
 # make goldens: run the kept recordings whole, bit for bit; minutes. make goldens-anew: record them anew, which only a
 # change of what a tick computes is a reason to.
 # make bounds: every test, with kernels that look whether an index lies in its array, which they leave to us else.
@@ -14,16 +13,25 @@ WORKERS ?= 3
 # Byte code is kept whatever the environment says, or each of many processes would compile the package anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: play install test lint bounds goldens goldens-anew pictures bench abuse soak clean
+.PHONY: play install test kernels byte-code lint bounds goldens goldens-anew pictures bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
 
 install: $(VENV)/installed-dev
 
-test: $(VENV)/installed-dev
-	-$(BIN)/sandbox prepare
+test: $(VENV)/installed-base
+	$(MAKE) --jobs=2 kernels byte-code
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
+
+# Kernels are compiled before tests, or each worker would compile all of them. As module: the other rule installs this
+# package once more meanwhile.
+kernels: $(VENV)/installed-base
+	-$(BIN)/python -m sandbox prepare
+
+# As is the byte code of tests. What is wrong with them is for the run itself to say.
+byte-code: $(VENV)/installed-dev
+	-$(BIN)/python -m pytest --collect-only --quiet > $(VENV)/collected
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check sandbox tests examples
@@ -35,12 +43,10 @@ bounds: export NUMBA_BOUNDSCHECK := 1
 bounds: export NUMBA_CACHE_DIR := $(CURDIR)/$(VENV)/bounds
 bounds: test
 
-goldens: $(VENV)/installed-dev
-	-$(BIN)/sandbox prepare
+goldens: $(VENV)/installed-dev kernels
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal tests/determinism/goldens
 
-goldens-anew: $(VENV)/installed-dev
-	-$(BIN)/sandbox prepare
+goldens-anew: $(VENV)/installed-dev kernels
 	$(BIN)/python -m tests.determinism.make_goldens --processes $(WORKERS)
 
 pictures: $(VENV)/installed-dev
@@ -69,7 +75,11 @@ $(VENV)/installed: $(BIN)/python pyproject.toml
 	touch $@
 
 # Byte code is made of what is imported, when it is; most of what is installed here never is.
-$(VENV)/installed-dev: $(BIN)/python pyproject.toml
+$(VENV)/installed-base: $(BIN)/python pyproject.toml
+	$(BIN)/python -m pip install --quiet --no-compile --editable .
+	touch $@
+
+$(VENV)/installed-dev: $(VENV)/installed-base
 	$(BIN)/python -m pip install --quiet --no-compile --editable ".[dev]"
 	touch $(VENV)/installed $@
 

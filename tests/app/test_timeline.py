@@ -18,11 +18,12 @@ def timeline(driver):
     """A run of 90 ticks with a pin at tick 30, with its bar."""
     driver.key(pygame.K_y)
     while driver.playback.session.tick < 30:
-        driver.frames()
+        driver.pass_unseen()
     driver.playback.submit(Pin(1))
     while driver.playback.session.tick < 90:
-        driver.frames()
+        driver.pass_unseen()
     driver.playback.clock.paused = True
+    driver.frames()
     return driver
 
 
