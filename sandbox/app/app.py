@@ -191,7 +191,8 @@ class App:
         """Choose a level or a recording; query: what is searched."""
         self.close_gallery()
         self._describe("")
-        self.status.take_back(LEFT_VIEW)
+        for said in (LEFT_VIEW, "" if self.play is None else self.play.told):
+            self.status.take_back(said)
         self.gallery = Gallery(self.ui, self, section, self.close_gallery, query)
 
     def close_gallery(self) -> None:

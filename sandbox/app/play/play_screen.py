@@ -93,7 +93,8 @@ class PlayScreen:
         self.stuck = StuckBodies()
         self.out_of_view = OutOfView()
         self._legend = Legend()
-        self._told = ""
+        # What was last said of what broke.
+        self.told = ""
         self.actions = self._actions()
         app.follow(playback)
 
@@ -464,9 +465,9 @@ class PlayScreen:
     def _tell_breaks(self) -> None:
         """Say what broke; a line that has grown takes the place of what it was."""
         text = self.playback.breaks.text
-        if text != self._told:
-            self._app.take_back(self._told)
-            self._told = text
+        if text != self.told:
+            self._app.take_back(self.told)
+            self.told = text
             if text:
                 self._app.say(text)
 
