@@ -285,6 +285,7 @@ def soak(seed: int, frames: int, folder: Path, seconds: float | None = None, str
             monkey.let_go()
             fault = monkey.verified(folder / f"soak-{number}.replay")
             found += [f"stretch {number}: its recording does not verify: {fault}"] if fault else []
+            end_toys(folder)
             if measures:
                 sizes.append(monkey.memory())
                 print(f"{number + 1} stretches, {sizes[-1] / 1e6:.1f} MB", flush=True)
