@@ -9,7 +9,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.calm import CALM_RATE, Calm, wait_for_event
+from sandbox.app.calm import CALM_RATE, RESTING_RATE, Calm, wait_for_event
 from sandbox.app.compare.compare_screen import CompareScreen
 from sandbox.app.compare.hooke_lesson import HookeLesson
 from sandbox.app.compare.twin import TwinPlayback
@@ -191,7 +191,8 @@ class App:
         """Choose a level or a recording; query: what is searched."""
         self.close_gallery()
         self._describe("")
-        self.status.take_back(LEFT_VIEW)
+        for said in (LEFT_VIEW, "" if self.play is None else self.play.told):
+            self.status.take_back(said)
         self.gallery = Gallery(self.ui, self, section, self.close_gallery, query)
 
     def close_gallery(self) -> None:
@@ -358,6 +359,11 @@ class App:
         parts = (self.screen, self.gallery, self.status, self.guide, self.sharing)
         return not self.ready or any(part is not None and part.moves for part in parts)
 
+    @property
+    def calm_rate(self) -> int:
+        """Frames [1/s] that are enough while nothing in the window moves."""
+        return RESTING_RATE if self.play is not None and self.play.runs else CALM_RATE
+
     def _sound(self) -> None:
         play, covered = self.play, self.ui.has_sheet or self.gallery is not None or self.display.hidden
         clock = None if play is None else play.playback.clock
@@ -477,7 +483,7 @@ def run_app(
             if not app.calm.has_come:
                 clock.tick(FRAME_RATE if app.ready or app.play is None else WAITING_RATE)
                 continue
-            if wait_for_event(1.0 / CALM_RATE):
+            if wait_for_event(1.0 / app.calm_rate):
                 # Time that passed asleep is not made up for by what the event sets going.
                 before = max(before, time.perf_counter() - 1.0 / FRAME_RATE)
             profile.rested()

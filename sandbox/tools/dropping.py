@@ -2,16 +2,19 @@
 
 from collections.abc import Callable
 
+from sandbox.level.format.quantities import significant
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command
 from sandbox.tools.parts import COLOURS, PARTS, Loop, Point, in_pace
-from sandbox.tools.sizing import resized
+from sandbox.tools.sizing import SMALLEST, resized
 from sandbox.tools.tool import CLICK_SHARE, NOTHING, PointerEvent, Response, Submission
 
 # What the pointer did in this last part of a drag decides how fast the part flies [s]; longer makes throws sluggish.
 THROW_SECONDS = 0.08
 # The fastest throw [m/s]: beyond it a part passes through walls of other parts.
 FASTEST_THROW = 25.0
+# Significant digits of how many times as large a part of the catalogue is: turned back, the wheel comes to 1 again.
+TIMES_DIGITS = 4
 
 
 class ThrowTool:
@@ -101,23 +104,34 @@ class DropTool(ThrowTool):
 
 
 class CatalogueTool(ThrowTool):
-    """Drop a part of the catalogue; make: see `made`; size: its width and height [m]."""
+    """Drop a part of the catalogue; make: see `made`, with how many times as large; box: width and height [m] as kept.
+
+    times: how many times as large as it was kept what is dropped is.
+    """
 
     def __init__(
-        self, new_gesture: Callable[[], int], make: Callable[[Point, Point], tuple[Command, ...]], size: Point
+        self, new_gesture: Callable[[], int], make: Callable[[Point, Point, float], tuple[Command, ...]], box: Point
     ) -> None:
         super().__init__(new_gesture)
-        self._make, self._size = make, size
+        self._make, self._box = make, box
+        self._size = max(*box, SMALLEST)
+        self.times = 1.0
 
     def made(self, place: Point, velocity: Point, snapshot: Snapshot) -> tuple[Command, ...]:
-        """The part as it was kept."""
-        return self._make(place, velocity)
+        """The part in its present size."""
+        return self._make(place, velocity, self.times)
+
+    def resize(self, steps: float) -> None:
+        """Make what is dropped larger, by so many steps of the wheel."""
+        kept = max(*self._box, SMALLEST)
+        self._size = resized(self._size, steps)
+        self.times = significant(self._size / kept, TIMES_DIGITS)
 
     @property
     def ghost(self) -> list[Loop]:
         """The box [m] around what would be dropped."""
         if self.place is None:
             return []
-        (x, y), (width, height) = self.place, self._size
+        (x, y), (width, height) = self.place, (self.times * side for side in self._box)
         corners = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5))
         return [[(x + dx * width, y + dy * height) for dx, dy in corners]]

@@ -8,11 +8,15 @@ import pytest
 
 from sandbox.app import calm
 from sandbox.app.app import App, run_app
-from sandbox.app.calm import CALM_AFTER, CALM_RATE, Calm
+from sandbox.app.calm import CALM_AFTER, CALM_RATE, RESTING_RATE, Calm
 from sandbox.app.display import Display
 from sandbox.app.loop import FRAME_RATE
+from sandbox.app.play.stage import AT_REST_AFTER
 from sandbox.app.profile import Profile
 from sandbox.app.start_request import StartRequest
+from sandbox.physics.snapshot import state_hash
+from sandbox.session.commands import Grab, Push
+from sandbox.session.session import Session
 from tests.app.conftest import FRAME, small_level
 
 
@@ -48,7 +52,7 @@ def key_event(kind, key):
 def let_calm_come(driver):
     """Do nothing for long enough; whether the loop may go slowly then."""
     driver.app.status.notices.clear()
-    driver.pass_unseen(round(1.6 * CALM_AFTER / FRAME))
+    driver.pass_unseen(round((AT_REST_AFTER + 1.6 * CALM_AFTER) / FRAME))
     return driver.app.calm.has_come
 
 
@@ -78,7 +82,75 @@ def test_waiting_ends_at_an_event_which_stays_in_the_queue_in_its_order(driver, 
     assert [event.key for event in pygame.event.get(pygame.KEYDOWN)] == [pygame.K_a, pygame.K_b]
 
 
-def test_a_run_moves_until_it_is_paused_and_a_page_over_it_stops_it(driver):
+@pytest.fixture
+def swinging(open_app):
+    """The app on the small level with gravity, in which the rope swings and the pair falls."""
+    return open_app(small_level(settings={"solver": "single_pass"}))
+
+
+def ball(**more):
+    """A level of a ball on a floor."""
+    floor = {"id": "floor", "polyline": [[-9, 0], [9, 0]]}
+    place = {"id": "ball", "position": [0, 0.5], "radius": 0.5, "restitution": 0.0}
+    return small_level(
+        settings={"solver": "direct"}, contacts={}, terrain=[floor], particles=[place | more], bodies=[], materials={}
+    )
+
+
+def pull_up(driver):
+    driver.playback.submit(Push((0.0, 0.5), 2.0, (0.0, 6.0)))
+
+
+def test_a_run_in_which_nothing_moves_is_calm_goes_on_tick_by_tick_and_wakes_at_once(open_app):
+    driver = open_app(ball())
+    assert let_calm_come(driver) and driver.app.calm_rate == RESTING_RATE
+    assert driver.app.play.rests and driver.app.play.runs
+    before = driver.playback.session.tick
+    for _ in range(10):
+        driver.app.frame(1.0 / RESTING_RATE)
+    assert driver.playback.session.tick == before + 10 * 60 // RESTING_RATE
+    assert driver.app.calm.has_come and driver.stage.detail.level == 0
+    pull_up(driver)
+    driver.app.frame(1.0 / RESTING_RATE)
+    driver.app.frame(1.0 / RESTING_RATE)
+    assert not driver.app.calm.has_come and not driver.app.play.rests
+    driver.app.act("pause")
+    assert let_calm_come(driver) and driver.app.calm_rate == CALM_RATE
+
+
+def test_what_comes_to_rest_at_a_low_rate_of_frames_has_the_bits_of_every_other_run(open_app):
+    driver = open_app(ball(position=[0, 0.8], spin=3.0))
+    for frame_time in (*[FRAME] * 200, *[1.0 / RESTING_RATE] * 20):
+        driver.app.frame(frame_time)
+    session = Session(driver.playback.level)
+    while session.tick < driver.playback.session.tick:
+        session.advance()
+    assert state_hash(session.world) == state_hash(driver.world)
+
+
+@pytest.mark.parametrize("what", ["spins", "slides", "is held", "is graphed"])
+def test_a_run_that_spins_slides_or_is_held_is_not_at_rest(open_app, what):
+    more = {"spins": {"position": [0, 5], "spin": 2.0, "gravity_scale": 0.0},
+            "slides": {"position": [0, 5], "velocity": [0.2, 0.0], "gravity_scale": 0.0}}  # fmt: skip
+    driver = open_app(ball(**more.get(what, {})))
+    if what == "is held":
+        driver.playback.submit(Grab(0, 0, (0.0, 0.5)))
+    if what == "is graphed":
+        driver.app.act("graphs")
+    assert not let_calm_come(driver)
+
+
+def test_both_halves_of_a_comparison_come_to_rest(open_app):
+    driver = open_app(ball())
+    driver.app.act("compare")
+    assert let_calm_come(driver)
+    driver.app.play.other.submit(Push((0.0, 0.5), 2.0, (0.0, 6.0)))
+    driver.pass_unseen(4)
+    assert not driver.app.calm.has_come
+
+
+def test_a_run_moves_until_it_is_paused_and_a_page_over_it_stops_it(swinging):
+    driver = swinging
     assert not let_calm_come(driver)
     driver.app.act("pause")
     assert let_calm_come(driver)

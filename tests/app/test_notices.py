@@ -9,6 +9,7 @@ from sandbox.app.play.palette import PartsPalette
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.status import STATUS_HEIGHT
 from sandbox.level.format.files import load_level
+from tests.app.conftest import small_level
 
 LONG = "A line of many words " * 12
 
@@ -97,3 +98,14 @@ def test_the_last_part_of_the_status_line_that_has_any_room_is_shortened(driver)
     status.draw(surface, [("a part of the line " * 20, TEXT)])
     row = pygame.surfarray.array3d(surface)[:, -20]
     assert (row[-200:] != row[-1]).any() and (row[-8:] == row[-1]).all()
+
+
+def test_what_broke_in_the_run_is_not_said_over_the_gallery(open_app):
+    brittle = {"stiffness": 0.3, "damping": 0.3, "tension_limit": 1e-4}
+    materials = {"steel": brittle, "rubber": {"stiffness": 0.02, "damping": 0.1}}
+    driver = open_app(small_level(settings={"solver": "single_pass"}, materials=materials))
+    driver.frames(30)
+    driver.app.say("Saved as a file.")
+    assert driver.app.play.told in driver.notices
+    driver.app.open_gallery()
+    assert "Saved as a file." in driver.notices and driver.app.play.told not in driver.notices

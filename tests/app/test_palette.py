@@ -5,8 +5,9 @@ import pytest
 
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.draw.part_pictures import PartGhost
-from sandbox.app.play.palette import NAMES
+from sandbox.app.play.palette import MORE, NAMES
 from sandbox.app.play.stage import CATALOGUE
+from sandbox.app.shortcuts import tip_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.session.commands import AddBody, AddParticle, Push, Remove, SetAir
@@ -207,3 +208,21 @@ def test_a_drop_and_its_undo_may_come_within_one_frame(player):
         player.post(pygame.KEYDOWN, key=key, mod=pygame.KMOD_CTRL, unicode="", scancode=0)
     player.frames(2)
     assert len(player.world.joined) == 1 and "There is nothing to redo." not in player.notices
+
+
+def test_what_has_no_room_beside_panel_and_graphs_is_in_a_menu(player):
+    player.app.chosen.choose("scale", 2.0)
+    player.app.display.window.size = (1280, 720)
+    player.frames(2)
+    if not player.app.play.show_panel:
+        player.app.act("panel")
+    for name in ("graphs", "timeline"):
+        player.app.act(name)
+    player.frames(2)
+    palette = player.app.play.palette
+    assert pygame.Rect(player.app.play.area).contains(palette.back.rect)
+    assert list(palette.buttons) == [*(name for name in NAMES if name not in palette.left_out), MORE]
+    assert set(palette.left_out) | set(palette.buttons) == {*NAMES, CATALOGUE, MORE}
+    player.click_widget(palette.buttons[MORE])
+    player.choose(tip_of("tool_delete", "play"))
+    assert player.stage.tool_name == "delete" and palette.buttons[MORE].is_selected

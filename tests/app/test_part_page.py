@@ -69,6 +69,35 @@ def test_what_a_click_drops_is_one_gesture_and_its_recording_verifies(player, tm
     assert again.world.joined and len(again.gestures) == len(session.gestures)
 
 
+def test_the_wheel_sizes_it_as_it_does_ready_parts_and_the_recording_verifies(player, tmp_path):
+    take(player, "Pair")
+    tool, zoom, before = player.stage.tool, player.stage.camera.zoom, player.world.particle_count
+    path = player.playback.record_to(tmp_path / "large.replay.jsonl")
+    player.move(at(player, 0.0, 3.0))
+    kept = player.stage.tool.ghost[0]
+    for _ in range(6):
+        player.post(pygame.MOUSEWHEEL, x=0, y=1, precise_x=0.0, precise_y=1.0, flipped=False)
+    player.frames(2)
+    assert tool.times == pytest.approx(1.1**6, rel=1e-3) and player.stage.camera.zoom == zoom
+    wide = [max(x for x, _ in loop) - min(x for x, _ in loop) for loop in (kept, tool.ghost[0])]
+    assert wide[1] == pytest.approx(tool.times * wide[0])
+    drop(player, (0.0, 3.0))
+    ball = commands(player)[-1]
+    assert ball.radius == pytest.approx(0.2 * tool.times) and ball.mass == pytest.approx(tool.times**2)
+    new = player.world.position[before : before + 3]
+    assert (new.min(axis=0) + new.max(axis=0)) / 2 == pytest.approx((0.0, 3.0), abs=0.2)
+    player.key(pygame.K_z, pygame.KMOD_CTRL)
+    assert not player.world.joined
+    player.key(pygame.K_y, pygame.KMOD_CTRL)
+    player.frames(10)
+    player.playback.stop_recording()
+    assert player.world.joined and verify(read_replay(path)) is None
+    player.stage.resize(-6)
+    assert tool.times == 1.0
+    drop(player, (1.0, 3.0))
+    assert commands(player)[-1].radius == 0.2
+
+
 def test_a_part_is_thrown_stays_in_hand_and_escape_ends_it(player, monkeypatch):
     take(player, "Pair")
     now = pygame.time.get_ticks()

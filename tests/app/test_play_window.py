@@ -49,11 +49,33 @@ def test_the_level_s_name_has_room_to_be_read_or_is_left_out(driver, width):
     assert width < 1600 or title is not None
 
 
-def test_a_level_s_name_that_is_longer_than_its_room_ends_in_an_ellipsis(open_app):
-    driver = open_app(small_level(name="A name of many words " * 6))
-    driver.app.display.window.size = (1600, 720)
+def title_of(driver, name, width):
+    """The title of the bar in a window of that width [pixels]."""
+    driver.app.display.window.size = (width, 720)
     driver.frames(2)
-    assert driver.app.play.toolbar.title.text.startswith("A name of many") and "…" in driver.app.play.toolbar.title.text
+    title = driver.app.play.toolbar.title
+    assert title.text == name
+    return title
+
+
+def test_a_name_has_a_line_or_two_smaller_ones_and_what_does_not_fit_is_its_tooltip(open_app):
+    name = "Truss bridge with a heavy load"
+    driver = open_app(small_level(name=name))
+    title = title_of(driver, name, 1600)
+    assert title.lines == [name] and title.tool_tip_text is None
+    title = title_of(driver, name, 1280)
+    assert len(title.lines) == 2 and " ".join(title.lines) == name and title.tool_tip_text is None
+    long = ("A name of many words <& more> " * 6).strip()
+    driver = open_app(small_level(name=long))
+    title = title_of(driver, long, 1280)
+    assert title.lines[-1].endswith("…") and title.tool_tip_text == long.replace("&", "&amp;").replace(
+        "<", "&lt;"
+    ).replace(">", "&gt;")
+    driver.move(title.rect.center)
+    driver.pass_unseen(90)
+    assert title.tool_tip is not None
+    unbroken = "Llanfairpwllgwyngyllgogerychwyrndrobwll"
+    assert title_of(open_app(small_level(name=unbroken)), unbroken, 1280).tool_tip_text == unbroken
 
 
 def test_what_has_no_room_is_done_from_the_menu(driver):

@@ -12,7 +12,7 @@ from sandbox.session.session import Session
 from tests.pictures.photographer import DOCS, write_small
 
 PAGE, FOLDER = DOCS / "gallery.md", DOCS / "gallery"
-SIZE, COLOURS = (480, 270), 128
+SIZE = (480, 270)
 # Drawn so much larger, with lines of this thickness.
 LARGER, LINE_SCALE = 2, 1.2
 # When a level is at its best [s], and which are drawn in the light theme; the others after a usual time, dark.
@@ -78,4 +78,4 @@ def draw() -> None:
         if path.stem not in wanted:
             path.unlink()
     for name in wanted:
-        write_small(drawn(name), picture_of(name), SIZE, COLOURS)
+        write_small(drawn(name), picture_of(name), SIZE)

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
 import platformdirs
 import pygame
 from PIL import Image
@@ -18,15 +19,34 @@ from tests.app.conftest import Driver
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
-COLOURS = 255
+# Colours of a picture, and of its own so many are looked at in one go.
+COLOURS, PART = 255, 4096
 
 
-def write_small(surface: pygame.Surface, path: Path, size: tuple[int, int], colours: int = COLOURS) -> None:
-    """Write a picture in a size [pixels] and so many colours, in few bytes."""
+def write_small(surface: pygame.Surface, path: Path, size: tuple[int, int]) -> None:
+    """Write a picture in a size [pixels] and few colours, in few bytes."""
     picture = Image.frombytes("RGB", surface.get_size(), pygame.image.tobytes(surface, "RGB"))
     small = picture.resize(size, Image.Resampling.LANCZOS)
     path.parent.mkdir(exist_ok=True)
-    small.quantize(colours, kmeans=1, dither=Image.Dither.NONE).save(path, optimize=True)
+    _in_few_colours(small).save(path, optimize=True)
+
+
+def _in_few_colours(picture: Image.Image) -> Image.Image:
+    """A picture in COLOURS colours, chosen by the square root of how often they are there.
+
+    By their number alone the calm stage takes all of them, and what is small and bright gets one of it.
+    """
+    pixels = np.asarray(picture).reshape(-1, 3)
+    found, place, count = np.unique(pixels, axis=0, return_inverse=True, return_counts=True)
+    weighted = np.repeat(found, np.round(np.sqrt(count)).astype(int), axis=0)
+    chosen = Image.fromarray(weighted[None]).quantize(COLOURS, kmeans=3, dither=Image.Dither.NONE).getpalette()
+    palette = np.array(chosen).reshape(-1, 3)
+    # Pillow's own way to the nearest of a palette leaves out the lowest bits, and a gradient shows rings.
+    parts = np.array_split(found.astype(int), max(1, len(found) // PART))
+    nearest = np.concatenate([((part[:, None] - palette) ** 2).sum(axis=2).argmin(axis=1) for part in parts])
+    result = Image.fromarray(nearest[place].reshape(picture.size[::-1]).astype(np.uint8), "P")
+    result.putpalette(palette.astype(np.uint8).tobytes())
+    return result
 
 
 class Photographer(Driver):

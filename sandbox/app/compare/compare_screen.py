@@ -178,11 +178,18 @@ class CompareScreen(PlayScreen):
 
     # A frame.
 
+    @property
+    def rests(self) -> bool:
+        """Whether time passes, and yet nothing moves in either."""
+        return super().rests and self.beside is not None and self.beside.rests
+
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
         """Let the same time pass in both."""
+        assert self.beside is not None
         super().update(frame_time, None if pointer is None else self._in_first(pointer), profile, ready)
         with profile.part("ticks"):
             self.other.follow(self.playback.session.tick)
+        self.beside.stillness.follow(self.other.current, self.camera.zoom, frame_time)
         super()._measure(self._ticks_made, profile)
         self.difference.update(self.playback.current, self.other.current)
         self._show_ghost()

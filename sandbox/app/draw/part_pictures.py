@@ -18,7 +18,7 @@ from sandbox.session.session import Session
 from sandbox.tools.parts import COLOURS, PARTS
 
 # Half of what a part's picture shows [m], of a part of 1 m.
-SHOWN = {"rope": 1.1}
+SHOWN = {"rope": 1.1, "cart": 0.8}
 USUALLY_SHOWN = 0.62
 # How much of a part shows where it would be dropped, of 1; and the widest picture of that [pixels]: of larger parts
 # the outline is enough.

@@ -10,6 +10,7 @@ from sandbox.app.edit.edit_icons import EDIT_ICONS
 from sandbox.app.edit.editing import Editing
 from sandbox.app.play.toolbar import BAR_HEIGHT, BUTTON, GAP, ICON, ROOM_FOR_NAME
 from sandbox.app.shortcuts import tip_of
+from sandbox.app.widgets.bar_title import BarTitle
 from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.tools.icons import Icon
@@ -108,10 +109,9 @@ class Bar:
             x += gaps / len(LEFT)
         at_right = [entry for entry in RIGHT if entry[0] not in self.left_out]
         right = width - MARGIN - (len(at_right) + 1) * pitch
-        self.title = None
+        self.title: BarTitle | None = None
         if width >= ROOM_FOR_NAME:
-            self.title = ui.label(ui.rect(x + 8, 0, right - x - 16, BAR_HEIGHT), "", self.back, "@title")
-        self._name = ""
+            self.title = BarTitle(ui, ui.rect(x + 8, 0, right - x - 16, BAR_HEIGHT), self.back)
         for action, picture in at_right:
             self.buttons.add(action, EDIT_ICONS[picture], right, y)
             right += pitch
@@ -134,9 +134,8 @@ class Bar:
         show("forecast", on=screen.shows_forecast)
         show("panel", on=screen.show_side)
         name = screen.document.level.name + ("" if history.is_saved else " *")
-        if self.title is not None and name != self._name:
-            self._name = name
-            self.title.set_text(name)
+        if self.title is not None:
+            self.title.show_text(name)
 
 
 def palette_columns(height: float) -> int:

@@ -13,7 +13,7 @@ from sandbox.app.draw.themes import Theme
 from sandbox.app.draw.views.overlays import ARROW, BAR, DOT, POINT, Overlays, stability_tones
 from sandbox.app.play.hand_labels import newtons
 from sandbox.app.widgets.fonts import plain_font
-from sandbox.app.widgets.painted import wrapped
+from sandbox.app.widgets.painted import line_height, wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.solvers import SOLVERS
 
@@ -23,6 +23,8 @@ RAMP = 7.0
 OPACITY = 225
 # How much of a world's width and height it takes, where it can be made as small as this for that.
 SHARE, SMALLEST = (0.5, 0.6), 0.8
+# Lines that words wrap to.
+MOST_LINES = 4
 
 Draw = Callable[["_Sample"], None]
 
@@ -81,34 +83,40 @@ class Legend:
 def _fitted(scale: float, rows: list[tuple[str, Draw]], theme: Theme, room: tuple[int, int]) -> pygame.Surface:
     """The card, smaller where it would take much of a room [pixels].
 
-    Words that have no room there end in an ellipsis; rows that have none are left out, and counted.
+    Words that have no room on a line there wrap; rows that have none are left out, and counted.
     """
     card = _painted(scale, rows, theme)
     share = min(part * most / is_ for part, most, is_ in zip(SHARE, room, card.get_size(), strict=True))
     if share < 1.0:
         scale *= max(share, SMALLEST)
         card = _painted(scale, rows, theme, room[0])
-    fitting = int((room[1] - (2 * PADDING - 4.0) * scale) // round(ROW * scale))
-    if fitting < len(rows):
-        shown = rows[: max(fitting - 1, 0)]
-        card = _painted(scale, [*shown, (f"and {len(rows) - len(shown)} more", _nothing)], theme, room[0])
+    left = len(rows)
+    while card.get_height() > room[1] and left > 0:
+        left -= 1
+        card = _painted(scale, [*rows[:left], (f"and {len(rows) - left} more", _nothing)], theme, room[0])
     return card
 
 
 def _painted(scale: float, rows: list[tuple[str, Draw]], theme: Theme, most: int = 10_000) -> pygame.Surface:
     """The card with all rows, at most so wide [pixels]."""
     font, line, gap = plain_font(round(TEXT_SIZE * scale), False), round(ROW * scale), round(4.0 * scale)
-    inset, sample = round(PADDING * scale), round(SAMPLE * scale)
+    inset, sample, step = round(PADDING * scale), round(SAMPLE * scale), line_height(font)
     room = max(most - sample - 3 * inset, 1)
-    texts = [font.render(wrapped(text, font, room, 1)[0], True, theme.text) for text, _ in rows]
-    size = (min(max(text.get_width() for text in texts), room) + sample + 3 * inset, len(rows) * line + 2 * inset - gap)
+    texts = [
+        [font.render(each, True, theme.text) for each in wrapped(text, font, room, MOST_LINES)] for text, _ in rows
+    ]
+    highs = [line + (len(lines) - 1) * step for lines in texts]
+    wide = min(max(text.get_width() for lines in texts for text in lines), room) + sample + 3 * inset
+    size = wide, sum(highs) + 2 * inset - gap
     card = pygame.Surface(size, 0, 32)
     card.fill(theme.card)
-    canvas = Canvas(card)
-    for row, (text, (_, draw)) in enumerate(zip(texts, rows, strict=True)):
-        middle = inset + row * line + (line - gap) / 2
-        draw(_Sample(canvas, inset, middle, sample, scale, theme))
-        card.blit(text, (sample + 2 * inset, round(middle - text.get_height() / 2)))
+    canvas, y = Canvas(card), inset
+    for lines, high, (_, draw) in zip(texts, highs, rows, strict=True):
+        draw(_Sample(canvas, inset, y + (high - gap) / 2, sample, scale, theme))
+        for number, text in enumerate(lines):
+            middle = y + (line - gap) / 2 + number * step
+            card.blit(text, (sample + 2 * inset, round(middle - text.get_height() / 2)))
+        y += high
     result = pygame.Surface(size, pygame.SRCALPHA)
     corner = round(CORNER * scale)
     pygame.draw.rect(result, (255, 255, 255, OPACITY), result.get_rect(), border_radius=corner)

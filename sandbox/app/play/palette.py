@@ -11,7 +11,8 @@ from sandbox.app.draw.colours import ACCENT, TEXT, Colour
 from sandbox.app.draw.part_pictures import picture_of
 from sandbox.app.play.stage import CATALOGUE
 from sandbox.app.shortcuts import tip_of
-from sandbox.app.widgets.icons import painted_icon
+from sandbox.app.widgets.dialogs import choose
+from sandbox.app.widgets.icons import ICONS, painted_icon
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.tools.icons import Icon, IconPen
 from sandbox.tools.parts import PARTS
@@ -64,7 +65,12 @@ def _catalogue(pen: IconPen) -> None:
 DEEDS: dict[str, Icon] = {"push": _push, "wind": _wind, "delete": _delete, "freeze": _freeze}
 NAMES = (*PARTS, *DEEDS)
 # The button of the catalogue goes by the name of the tool that has a part of it in hand.
-ICONS = {**DEEDS, CATALOGUE: _catalogue}
+MORE = "more"
+DRAWN = {**DEEDS, CATALOGUE: _catalogue, MORE: ICONS[MORE]}
+
+
+def _action_of(name: str) -> str:
+    return "catalogue" if name == CATALOGUE else f"tool_{name}"
 
 
 @dataclass(frozen=True)
@@ -76,28 +82,39 @@ class PaletteState:
 
 
 class PartsPalette:
-    """Buttons that take up what they show; `press` starts an action by its name."""
+    """Buttons that take up what they show; `press` starts an action by its name.
 
-    def __init__(self, ui: Ui, press: Callable[[str], None], top: float, height: float) -> None:
-        self._ui = ui
+    left_out: names that have no room in a world of that width and height [layout units]; they are in a menu.
+    """
+
+    def __init__(self, ui: Ui, press: Callable[[str], None], top: float, width: float, height: float) -> None:
+        self._ui, self._press = ui, press
         self._state: PaletteState | None = None
         self._pictures: dict[str, pygame.Surface] = {}
-        count = len(NAMES) + 1
-        rows = max(1, min(count, int((height - 2 * TOP - 2 * EDGE) // LEAST_STEP)))
-        columns = -(-count // rows)
+        names = [*NAMES, CATALOGUE]
+        rows, most = (max(1, int((room - 2 * TOP - 2 * EDGE + GAP) // LEAST_STEP)) for room in (height, width))
+        shown = names if len(names) <= rows * most else [*names[: max(rows * most - 1, 0)], MORE]
+        self.left_out = [name for name in names if name not in shown]
+        count = len(shown)
+        columns = -(-count // min(rows, count))
         rows = -(-count // columns)
         width, tall = columns * (BUTTON + GAP) - GAP + 2 * EDGE, rows * LEAST_STEP - GAP + 2 * EDGE
         # Its right edge [layout units].
         self.right = LEFT + width
         self.back = ui.panel(ui.rect(LEFT, top + TOP, width, tall), style="@card")
         self.buttons: dict[str, Any] = {}
-        for number, name in enumerate((*NAMES, CATALOGUE)):
+        for number, name in enumerate(shown):
             column, row = divmod(number, rows)
             place = ui.rect(EDGE + column * (BUTTON + GAP), EDGE + row * LEAST_STEP, BUTTON, BUTTON)
-            action = "catalogue" if name == CATALOGUE else f"tool_{name}"
-            self.buttons[name] = ui.button(
-                place, "", functools.partial(press, action), self.back, tip=tip_of(action, "play"), style="@quiet"
-            )
+            tip = "More: what has no room here" if name == MORE else tip_of(_action_of(name), "play")
+            do = self._show_menu if name == MORE else functools.partial(press, _action_of(name))
+            self.buttons[name] = ui.button(place, "", do, self.back, tip=tip, style="@quiet")
+
+    def _show_menu(self) -> None:
+        """Offer what has no room on the strip."""
+        actions = [_action_of(name) for name in self.left_out]
+        choices = [(tip_of(action, "play"), functools.partial(self._press, action)) for action in actions]
+        choose(self._ui, "More", "", choices)
 
     def show(self, state: PaletteState) -> None:
         """Show a state, changing what differs."""
@@ -107,11 +124,11 @@ class PartsPalette:
         if before is None or before.compiled != state.compiled:
             self._pictures = {part: picture_of(part, self._ui.px(PICTURE)) for part in PARTS}
         for name, button in self.buttons.items():
-            is_chosen = name == state.tool
+            is_chosen = name == state.tool or (name == MORE and state.tool in self.left_out)
             button.show_icon(self._icon(name, ACCENT if is_chosen else TEXT))
             (button.select if is_chosen else button.unselect)()
 
     def _icon(self, name: str, colour: Colour) -> pygame.Surface:
-        if name in ICONS:
-            return painted_icon(ICONS[name], self._ui.px(ICON), colour)
+        if name in DRAWN:
+            return painted_icon(DRAWN[name], self._ui.px(ICON), colour)
         return self._pictures[name]

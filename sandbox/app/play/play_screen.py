@@ -93,7 +93,8 @@ class PlayScreen:
         self.stuck = StuckBodies()
         self.out_of_view = OutOfView()
         self._legend = Legend()
-        self._told = ""
+        # What was last said of what broke.
+        self.told = ""
         self.actions = self._actions()
         app.follow(playback)
 
@@ -109,9 +110,21 @@ class PlayScreen:
 
     @property
     def moves(self) -> bool:
-        """Whether time passes in the run, which it does not while a page is open, or pictures of parts are to come."""
+        """Whether the run moves, which it does not while a page is open, or pictures of parts are to come."""
         is_filling = self.part_page is not None and self.part_page.moves
-        return is_filling or (self.playback.moves and not self._ui.has_sheet)
+        return is_filling or (self.playback.moves and not self._ui.has_sheet and not self.rests)
+
+    @property
+    def runs(self) -> bool:
+        """Whether time passes in the run."""
+        return not (self.playback.clock.paused or self._ui.has_sheet)
+
+    @property
+    def rests(self) -> bool:
+        """Whether time passes in the run, and yet nothing in it moves, nobody drives it, and no graph goes on."""
+        is_driven = any(is_held for _, is_held in self._keys.shown())
+        goes_on = is_driven or self.graphs.is_shown or self.playback.has_pending
+        return self.runs and self.stage.rests and self.playback.travel.target is None and not goes_on
 
     @property
     def has_contacts(self) -> bool:
@@ -156,7 +169,8 @@ class PlayScreen:
         self.stage.place(self.viewport, ui.scale)
         self.palette = None
         if self.show_palette:
-            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, self.area[3] / ui.scale)
+            wide, tall = (side / ui.scale for side in self.area[2:])
+            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, wide, tall)
         left = FREE_PLACE[0] if self.palette is None else self.palette.right + FREE_PLACE[1]
         place = ui.rect(left, BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
         self.free = ui.button(place, "Free it", self._free, tip=tip_of("free", "play"))
@@ -294,7 +308,8 @@ class PlayScreen:
         if by_key:
             self._ui.blur()
             self.stage.move_cursor(0, 0, 0)
-        self._app.say(f"{part.name}: a click drops it, a drag throws it. U has other parts, Escape ends it.")
+        deeds = "a click drops it, a drag throws it, the wheel makes it larger"
+        self._app.say(f"{part.name}: {deeds}. U has other parts, Escape ends it.")
         self._say_what_touches()
 
     def _say_what_touches(self) -> None:
@@ -450,9 +465,9 @@ class PlayScreen:
     def _tell_breaks(self) -> None:
         """Say what broke; a line that has grown takes the place of what it was."""
         text = self.playback.breaks.text
-        if text != self._told:
-            self._app.take_back(self._told)
-            self._told = text
+        if text != self.told:
+            self._app.take_back(self.told)
+            self.told = text
             if text:
                 self._app.say(text)
 

@@ -14,7 +14,9 @@ from sandbox.app.draw.renderer import Overlay, Renderer
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.stability_paint import StabilityPaint
 from sandbox.app.profile import Profile
+from sandbox.app.stillness import Stillness
 from sandbox.editor.edits.joining import joining_commands
+from sandbox.editor.edits.sizing import sized
 from sandbox.level.format.model import Level
 from sandbox.physics.joints.pulls import Pull, pulls_of
 from sandbox.physics.query import nearest_particle, shown_particles
@@ -38,6 +40,9 @@ CURSOR_STEP, CURSOR_LEAP = 4.0, 24.0
 # of that height.
 SIZE_SHARE, WIND_SPEED = 0.12, 40.0
 
+# A run in which nothing is seen to move for so long [s] is at rest.
+AT_REST_AFTER = 1.0
+
 Pixel = tuple[float, float]
 # The tool that has a part of the catalogue in hand.
 CATALOGUE = "part"
@@ -60,6 +65,7 @@ class Stage:
         self._paint = StabilityPaint()
         self._ghost = PartGhost()
         self.detail = Detail()
+        self.stillness = Stillness()
         # What is drawn however long frames take; None: as `detail` has it.
         self.fixed_detail: int | None = None
         self._make_tools("normal")
@@ -82,10 +88,10 @@ class Stage:
         left, bottom, right, top = box_of(Session(part).snapshot())
         size = right - left, top - bottom
 
-        def make(place: tuple[float, float], velocity: tuple[float, float]) -> tuple[Command, ...]:
+        def make(place: tuple[float, float], velocity: tuple[float, float], times: float) -> tuple[Command, ...]:
             # The pointer is in the middle of what it throws.
-            at = place[0] - (left + right) / 2, place[1] - (bottom + top) / 2
-            return joining_commands(part, self.playback.session.world, at, velocity)
+            at = place[0] - times * (left + right) / 2, place[1] - times * (bottom + top) / 2
+            return joining_commands(sized(part, times), self.playback.session.world, at, velocity)
 
         return CatalogueTool(self.playback.session.new_gesture, make, size)
 
@@ -120,10 +126,11 @@ class Stage:
     def resize(self, steps: float) -> bool:
         """Make larger what the tool drops or reaches; whether it has a size."""
         tool = self.tool
-        if not isinstance(tool, (DropTool, PushTool)):
+        if not isinstance(tool, (DropTool, PushTool, CatalogueTool)):
             return False
         tool.resize(steps)
-        self.size = tool.size
+        if not isinstance(tool, CatalogueTool):
+            self.size = tool.size
         return True
 
     def replace_playback(self, playback: Playback) -> None:
@@ -264,11 +271,17 @@ class Stage:
         world = self.playback.session.world
         return pulls_of(world) if world.any_held() else []
 
+    @property
+    def rests(self) -> bool:
+        """Whether nothing has been seen to move for a while, nothing flies about, and no hand holds anything."""
+        has_stood = self.stillness.lasted >= AT_REST_AFTER and self.renderer.effects.is_still
+        return has_stood and not self.playback.session.world.any_held()
+
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
         """Apply what is due and let time pass; pointer: where the mouse is over the world, if it is."""
         if frame_time > 0.0:
             # What stands is drawn rarely, which says nothing of how long drawing takes.
-            if not self.playback.clock.paused:
+            if not (self.playback.clock.paused or self.rests):
                 self.detail.note(frame_time)
             self.renderer.detail = self.detail.level if self.fixed_detail is None else self.fixed_detail
         with profile.part("commands"):
@@ -277,6 +290,7 @@ class Stage:
                 tool.reconcile(self.playback.current)
         with profile.part("ticks"):
             self.playback.advance(frame_time)
+        self.stillness.follow(self.playback.current, self.camera.zoom, frame_time)
         self._hovered = None
         tool = self.tool
         if isinstance(tool, (ThrowTool, PushTool)):
@@ -298,7 +312,9 @@ class Stage:
             picture = self._ghost.picture(part, size, colour, self.camera.zoom, self.renderer)
             overlay.ghost_picture = None if picture is None else (picture, self.tool.place)
         if isinstance(self.tool, CatalogueTool) and self.tool.place is not None and self.part is not None:
-            picture = self._ghost.picture_of_level(self.part, self.camera.zoom, self.renderer)
+            # From so much nearer, what is as large as it was kept looks so.
+            zoom = self.camera.zoom * self.tool.times
+            picture = self._ghost.picture_of_level(self.part, zoom, self.renderer)
             if picture is not None:
                 overlay.ghost, overlay.ghost_picture = [], (picture, self.tool.place)
         if "stability" in self.renderer.overlays.shown:

@@ -10,9 +10,9 @@ import pygame
 from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED, TEXT, Colour
 from sandbox.app.play.speeds import words_of
 from sandbox.app.shortcuts import tip_of
+from sandbox.app.widgets.bar_title import BarTitle
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.icons import ICONS, painted_icon
-from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
@@ -23,7 +23,6 @@ ICON = 18.0
 SLOW_WIDTH = 46.0
 MARGIN = 14.0
 SHARE_WIDTH = 68.0
-TITLE_SIZE = 15.0
 # Narrower windows leave the level's name out, and the wider gaps between the groups; and so does less room for it.
 ROOM_FOR_NAME = 1000.0
 LEAST_NAME = 90.0
@@ -134,11 +133,10 @@ class Toolbar:
         at_right = [action for action, _ in RIGHT if action in shown]
         at_end = [*at_right, *(["more"] if self.left_out else [])]
         self._x = width - MARGIN + GAP - sum(_width(action, is_wide) + GAP for action in at_end)
-        self.title = None
+        self.title: BarTitle | None = None
         room = self._x - title_left - 14
         if is_wide and room >= LEAST_NAME:
-            place = ui.rect(title_left, 0, room, BAR_HEIGHT)
-            self.title = ui.label(place, "", self.back, "@title")
+            self.title = BarTitle(ui, ui.rect(title_left, 0, room, BAR_HEIGHT), self.back)
         for action in at_right:
             self._add(action)
         if self.left_out:
@@ -175,9 +173,7 @@ class Toolbar:
             slow.set_text(words_of(state.speed))
             (slow.unselect if state.speed == 1.0 else slow.select)()
         if self.title is not None:
-            font = self._ui.font(TITLE_SIZE, True)
-            (name,) = wrapped(state.name, font, self.title.rect.width - self._ui.px(GAP), 1)
-            self.title.set_text(name)
+            self.title.show_text(state.name)
 
     def _mark(self, action: str, colour: Colour, on: bool, picture: str | None = None) -> None:
         """Show an action's button in a colour, on or off, where it is on the bar."""

@@ -110,7 +110,8 @@ class ShareForm:
         wide = room * PREVIEW_PART
         tall = min(wide * SHAPE, self._height - TOP - SLIDER - CAPTION - BUTTON - MARGIN - 14)
         self._right, self._side = MARGIN + wide + GAP, room - wide
-        self.preview = FilmPreview(ui, ui.rect(MARGIN, TOP, wide, tall), self._box)
+        # Of the shape of what is kept, also where a low window leaves it less height.
+        self.preview = FilmPreview(ui, ui.rect(MARGIN, TOP, tall / SHAPE, tall), self._box)
         self._below = TOP + tall
         self.slider: RangeSlider | None = None
 

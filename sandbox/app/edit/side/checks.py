@@ -7,8 +7,9 @@ import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED
 from sandbox.app.edit.editing import Editing
-from sandbox.app.edit.side.form import GAP, ROW, Form
-from sandbox.app.edit.side.rows import Row, RowList
+from sandbox.app.edit.side.form import Form
+from sandbox.app.edit.side.list_head import HeadButton, ListHead
+from sandbox.app.edit.side.rows import Row
 from sandbox.editor.document import Document
 from sandbox.editor.panel.level_properties import add_check, check_properties, delete_check
 from sandbox.level.checks import METRICS, CheckDef, CheckResult, promise_text, time_text
@@ -64,24 +65,19 @@ class ChecksPage:
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen, self._ui = screen, screen.ui
-        ui = self._ui
         self.trial: Trial | None = None
         self.chosen = 0
         self._shown: tuple[object, ...] = ()
-        tall = round(place.height * LIST_PART)
-        top = pygame.Rect(place.left, place.top, place.width - ui.px(6), tall)
-        self.list = RowList(ui, top, self._choose, container, empty=NOTHING, most_lines=2)
-        third = (top.width - 2 * ui.px(GAP)) // 3
-        self.buttons = []
-        for number, (text, do, tip) in enumerate((
-            ("Add", self._add, "Add a check"),
-            ("Delete", self._delete, "Delete the chosen check"),
-            ("Run now", self._run, "Run the level from its beginning and measure"),
-        )):  # fmt: skip
-            at = pygame.Rect(place.left + number * (third + ui.px(GAP)), top.bottom + ui.px(8), third, ui.px(ROW))
-            self.buttons.append(ui.button(at, text, do, container, style="@segment", tip=tip))
-        below = self.buttons[0].relative_rect.bottom + ui.px(12)
-        self.form = Form(screen, pygame.Rect(place.left, below, place.width, place.bottom - below), container)
+        buttons = (
+            HeadButton("Add", "Add", self._add, "Add a check"),
+            HeadButton("Delete", "Delete", self._delete, "Delete the chosen check"),
+            HeadButton("Run now", "Run now", self._run, "Run the level from its beginning and measure"),
+        )
+        self._head = ListHead(
+            self._ui, place, LIST_PART, len(buttons), buttons, self._choose, container, empty=NOTHING, most_lines=2
+        )
+        self.list, self.buttons = self._head.list, list(self._head.buttons.values())
+        self.form = Form(screen, self._head.area, self._head.top)
 
     def refresh(self) -> None:
         """Show the checks and their results as they are now."""
@@ -129,8 +125,7 @@ class ChecksPage:
         if self.trial is not None:
             self.trial.is_stopped = True
         self.form.close()
-        for widget in (self.list, *self.buttons):
-            self._ui.remove(widget)
+        self._head.close()
 
 
 def _row(check: CheckDef, result: CheckResult | None, is_running: bool) -> Row:

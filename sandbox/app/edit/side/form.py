@@ -62,12 +62,16 @@ def _listed(collides: Any) -> Sequence[str]:
 
 
 class Form:
-    """Properties in a place [pixels]; the widgets are made anew only when other fields are shown."""
+    """Properties in a scrolled area, which is its owner's; the widgets are made anew only when other fields are shown.
 
-    def __init__(self, screen: Editing, place: pygame.Rect, container: Any, empty: str = "") -> None:
+    above, below: what is left free there [layout units]. empty: what it says without properties.
+    """
+
+    def __init__(
+        self, screen: Editing, area: ScrollArea, above: float = 0.0, below: float = 0.0, empty: str = ""
+    ) -> None:
         self._screen, self._ui = screen, screen.ui
-        self._place, self._container, self._empty = place, container, empty
-        self.area: ScrollArea | None = None
+        self.area, self._above, self._below, self._empty = area, above, below, empty
         self.properties: dict[str, Property] = {}
         self.fields: dict[str, tuple[Field, ...]] = {}
         self.pickers: dict[str, Picker] = {}
@@ -101,6 +105,11 @@ class Form:
             for each in list(self.properties.values()):
                 self._show_value(each)
 
+    @property
+    def end(self) -> float:
+        """Where it ends [layout units]."""
+        return self._y + 8.0
+
     def close(self) -> None:
         """Take what is being typed, and take the widgets away."""
         if any(field.entry.is_focused for fields in self.fields.values() for field in fields):
@@ -108,9 +117,6 @@ class Form:
         for widget in self._widgets:
             self._ui.remove(widget)
         self._widgets, self._named = [], {}
-        if self.area is not None:
-            self.area.kill()
-            self.area = None
 
     # Making rows.
 
@@ -129,19 +135,17 @@ class Form:
 
     @property
     def _inside(self) -> float:
-        return self._place.width / self._ui.scale - 12.0
+        return self.area.view.rect.width / self._ui.scale - 2.0
 
     def _remake(self, sections: Sequence[Section]) -> None:
         ui = self._ui
-        offset = self.area.offset if self.area is not None else 0.0
         focused = next((name for name, widget in self._named.items() if widget is ui.focus), "")
         self.close()
         self.fields, self.pickers, self.boxes, self.choices, self._notes = {}, {}, {}, {}, {}
         self.buttons, self.keys, self.scrubs = {}, {}, {}
-        self.area = ScrollArea(ui, self._place, self._container)
-        self._y = 0.0
+        self._y = self._above
         if not sections and self._empty:
-            place = ui.rect(0, 4, self._inside, 120)
+            place = ui.rect(0, self._y + 4, self._inside, 120)
             self._keep(TextBlock(ui, place, self._empty, self.area.content, 12.5))
         for number, section in enumerate(sections):
             style = "@title" if number == 0 else "@heading"
@@ -154,8 +158,7 @@ class Form:
                 self._y += HEADING
             for each in section.properties:
                 self._add(each)
-        self.area.set_height(ui.px(self._y + 8))
-        self.area.scroll_to(offset)
+        self.area.set_height(ui.px(self.end + self._below))
         if focused in self._named:
             ui.focus_on(self._named[focused])
 
@@ -170,7 +173,6 @@ class Form:
 
     def _add(self, each: Property) -> None:
         about, ui = each.about, self._ui
-        assert self.area is not None
         content = self.area.content
         self._add_label(each)
         width = self._inside - LABEL_WIDTH
@@ -205,7 +207,6 @@ class Form:
         self._y += ROW + GAP
 
     def _add_label(self, each: Property) -> None:
-        assert self.area is not None
         about, place = each.about, self._rect(0, LABEL_WIDTH - 4)
         text = about.title + (f" [{SQUARED.get(about.unit, about.unit)}]" if about.unit else "")
         tip = escape(about.tooltip, quote=False)
@@ -217,13 +218,11 @@ class Form:
         self._keep(self._ui.label(place, text, self.area.content, "@muted")).set_tooltip(tip)
 
     def _add_key(self, each: Property, width: float) -> None:
-        assert self.area is not None
         box = KeyBox(self._ui, self._rect(LABEL_WIDTH, width), partial(self._press_key, each.field), self.area.content)
         box.set_tooltip(escape(f"{each.about.tooltip} Click here, then press it; Delete takes it away.", quote=False))
         self.keys[each.field] = self._keep(box, each.field)
 
     def _entry(self, each: Property, x: float, width: float, axis: int) -> Field:
-        assert self.area is not None
         commit = partial(self._type, each.field, axis)
         field = self._ui.field(self._rect(x, width), "", commit, self.area.content, TEXT_LENGTH)
         if each.about.empty:
@@ -235,7 +234,6 @@ class Form:
         return field
 
     def _add_boxes(self, each: Property, width: float) -> None:
-        assert self.area is not None
         labels = each.about.choices or ("yes",)
         wide = width / max(len(labels), 2)
         self.boxes[each.field] = {}
@@ -245,7 +243,6 @@ class Form:
             self.boxes[each.field][label] = self._keep(box, f"{each.field} {label}")
 
     def _add_choice(self, each: Property, width: float) -> None:
-        assert self.area is not None
         about, content = each.about, self.area.content
         few = len(about.choices) in range(1, MOST_SIDE_BY_SIDE + 1) and not about.optional
         if few and sum(map(len, about.choices)) <= SIDE_BY_SIDE:

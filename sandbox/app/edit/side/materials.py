@@ -12,8 +12,8 @@ from sandbox.app.draw.colours import material_colours
 from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.boxes import Scrub
 from sandbox.app.edit.side.form import GAP, ROW
-from sandbox.app.edit.side.rows import Row, RowList
-from sandbox.app.edit.side.scroll import ScrollArea
+from sandbox.app.edit.side.list_head import HeadButton, ListHead
+from sandbox.app.edit.side.rows import Row
 from sandbox.app.sentences import sentence
 from sandbox.app.widgets.fields import Field
 from sandbox.app.widgets.sliders import LogSlider
@@ -44,7 +44,6 @@ class MaterialsPage:
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen, self._ui = screen, screen.ui
-        ui = self._ui
         self.chosen = _of_selection(screen.document)
         self.fields: dict[str, Field] = {}
         self.sliders: dict[str, LogSlider] = {}
@@ -54,30 +53,21 @@ class MaterialsPage:
         self._uses: tuple[object, object, Counter[str], Counter[str]] | None = None
         self._widgets: list[Any] = []
         self._y = 0.0
-        tall = round(place.height * LIST_PART)
-        top = pygame.Rect(place.left, place.top, place.width - ui.px(6), tall)
-        self.list = RowList(ui, top, self._choose, container)
-        half = (top.width - ui.px(GAP)) // 2
-        self.buttons = {}
-        for number, (text, do, tip) in enumerate((
-            ("Assign to selection", self._assign, "Make the selection of this material"),
-            ("Select users", self._select, "Select everything of this material"),
-            ("Add", self._add, "Add a material like this one"),
-            ("Delete", self._delete, "Delete this material, where nothing uses it"),
-        )):  # fmt: skip
-            left, down = number % 2 * (half + ui.px(GAP)), number // 2 * ui.px(ROW + GAP)
-            at = pygame.Rect(place.left + left, top.bottom + ui.px(8) + down, half, ui.px(ROW))
-            self.buttons[text] = ui.button(at, text, do, container, style="@segment", tip=tip)
-        below = self.buttons["Add"].relative_rect.bottom + ui.px(12)
-        rest = pygame.Rect(place.left, below, place.width, place.bottom - below)
-        self._inside = place.width / ui.scale - 12.0
-        self.area = ScrollArea(ui, rest, container)
+        buttons = (
+            HeadButton("Assign to selection", "Assign", self._assign, "Make the selection of this material"),
+            HeadButton("Select users", "Select", self._select, "Select everything of this material"),
+            HeadButton("Add", "Add", self._add, "Add a material like this one"),
+            HeadButton("Delete", "Delete", self._delete, "Delete this material, where nothing uses it"),
+        )
+        self._head = ListHead(self._ui, place, LIST_PART, 2, buttons, self._choose, container)
+        self.list, self.buttons, self.area = self._head.list, self._head.buttons, self._head.area
+        self._inside = place.width / self._ui.scale - 12.0
 
     # Making the editor of a material.
 
     def _remake(self, material: Material) -> None:
         self._drop()
-        ui, content, self._y = self._ui, self.area.content, 0.0
+        ui, content, self._y = self._ui, self.area.content, self._head.top
         if self.chosen != DEFAULT_MATERIAL:
             self._add_field("name", "Name", self._rename, "What levels and files call it.", width=self._inside - 108.0)
         self._label("Law")
@@ -333,9 +323,7 @@ class MaterialsPage:
     def close(self) -> None:
         """Take the page away."""
         self._drop()
-        for widget in (self.list, *self.buttons.values()):
-            self._ui.remove(widget)
-        self.area.kill()
+        self._head.close()
 
 
 def _materials(level: Level) -> dict[str, Material]:

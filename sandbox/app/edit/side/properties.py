@@ -6,6 +6,7 @@ import pygame
 
 from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.form import Form
+from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.editor.document import Document
 from sandbox.editor.panel.properties import properties
 
@@ -17,7 +18,8 @@ class PropertiesPage:
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen = screen
-        self.form = Form(screen, place, container, NOTHING)
+        self._area = ScrollArea(screen.ui, place, container)
+        self.form = Form(screen, self._area, empty=NOTHING)
         self._shown: Document | None = None
 
     def refresh(self) -> None:
@@ -30,3 +32,4 @@ class PropertiesPage:
     def close(self) -> None:
         """Take the page away."""
         self.form.close()
+        self._area.kill()

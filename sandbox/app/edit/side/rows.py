@@ -236,10 +236,15 @@ class Picker(Lit, Pressable):
         text = wrapped(self.shown.text, ui.font(TEXT_SIZE), size[0] - left - ui.px(24), 1)[0]
         picture = ui.font(TEXT_SIZE).render(text, True, self.shown.colour)
         surface.blit(picture, (left, (size[1] - picture.get_height()) // 2))
-        x, y, half = size[0] - ui.px(14), size[1] // 2, ui.px(4)
+        self.paint_chevron(surface)
+        return surface
+
+    def paint_chevron(self, surface: pygame.Surface) -> None:
+        """Show at the right that there is a menu."""
+        (wide, tall), half = surface.get_size(), self.ui.px(4)
+        x, y = wide - self.ui.px(14), tall // 2
         chevron = [(x - half, y - half // 2), (x, y + half // 2), (x + half, y - half // 2)]
         pygame.draw.lines(surface, MUTED, False, chevron, 2)
-        return surface
 
     def press(self) -> None:
         """Offer the rows."""

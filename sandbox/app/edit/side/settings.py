@@ -6,6 +6,8 @@ import pygame
 
 from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.form import GAP, ROW, Form
+from sandbox.app.edit.side.list_head import ROOM_FOR_LIST
+from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.sentences import sentence
 from sandbox.app.widgets.dialogs import ask
 from sandbox.editor.document import Document, EditError
@@ -16,6 +18,8 @@ from sandbox.level.format.model import Level
 
 # Digits after the point of a view [m] that is taken from the camera.
 VIEW_DECIMALS = 3
+# Height that the buttons take [layout units].
+BUTTONS = 2 * ROW + 3 * GAP
 
 
 class SettingsPage:
@@ -23,21 +27,33 @@ class SettingsPage:
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen, self._ui = screen, screen.ui
-        below = self._ui.px(2 * ROW + 3 * GAP)
-        self.form = Form(screen, pygame.Rect(place.topleft, (place.width, place.height - below)), container)
-        half = (place.width - self._ui.px(12 + GAP)) // 2
-        row = pygame.Rect(place.left, place.bottom - self._ui.px(ROW + 4), half, self._ui.px(ROW))
-        tip = "Let the level open with what the canvas shows now"
-        self.from_camera = self._ui.button(row, "View from here", self._take_view, container, style="@segment", tip=tip)
-        row = row.move(half + self._ui.px(GAP), 0)
-        tip = "Let the level open with everything in sight"
-        self.no_view = self._ui.button(row, "View: everything", self._drop_view, container, style="@segment", tip=tip)
-        row = pygame.Rect(place.left, row.top - self._ui.px(ROW + GAP), 2 * half + self._ui.px(GAP), row.height)
+        # On a low page the buttons are below the last row, and scroll with it.
+        is_low = place.height < self._ui.px(ROOM_FOR_LIST)
+        height = self._ui.px(BUTTONS)
+        upper = pygame.Rect(place.topleft, (place.width, place.height - (0 if is_low else height)))
+        self._area = ScrollArea(self._ui, upper, container)
+        self.form = Form(screen, self._area, below=BUTTONS if is_low else 0.0)
+        corner, holder = ((0, 0), self._area.content) if is_low else (upper.bottomleft, container)
+        self._foot = self._ui.area(pygame.Rect(corner, (place.width - self._ui.px(12), height)), holder)
+        self._moves_foot = is_low
+        self._add_buttons()
+        self._shown: Level | None = None
+
+    def _add_buttons(self) -> None:
+        gap, tall, wide = self._ui.px(GAP), self._ui.px(ROW), self._foot.rect.width
+        row = pygame.Rect(0, gap, wide, tall)
         tip = "Another tick rate, with Cs and Cd worked out so that springs move per second as they do now"
         self.pace = self._ui.button(
-            row, "Tick rate, at the same pace…", self._ask_rate, container, style="@segment", tip=tip
+            row, "Tick rate, at the same pace…", self._ask_rate, self._foot, style="@segment", tip=tip
         )
-        self._shown: Level | None = None
+        row = pygame.Rect(0, row.bottom + gap, (wide - gap) // 2, tall)
+        tip = "Let the level open with what the canvas shows now"
+        self.from_camera = self._ui.button(
+            row, "View from here", self._take_view, self._foot, style="@segment", tip=tip
+        )
+        row = row.move(row.width + gap, 0)
+        tip = "Let the level open with everything in sight"
+        self.no_view = self._ui.button(row, "View: everything", self._drop_view, self._foot, style="@segment", tip=tip)
 
     def refresh(self) -> None:
         """Show the level as it is now."""
@@ -45,6 +61,8 @@ class SettingsPage:
         if document.level is not self._shown:
             self._shown = document.level
             self.form.show(level_properties(document))
+            if self._moves_foot:
+                self._foot.set_relative_position((0, self._ui.px(self.form.end)))
         self.form.refresh()
 
     def _take_view(self) -> None:
@@ -87,3 +105,5 @@ class SettingsPage:
         self._ui.remove(self.from_camera)
         self._ui.remove(self.no_view)
         self._ui.remove(self.pace)
+        self._foot.kill()
+        self._area.kill()

@@ -19,9 +19,11 @@ from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
 MARGIN = 14.0
-TAB = 26.0
-TOP = 10.0
 GAP = 4.0
+# Height of a tab and room above and below them; a panel that is lower than this has less.
+LOW = 400.0
+TAB, TOP, BELOW = 26.0, 10.0, 8.0
+LOW_TAB, LOW_TOP, LOW_BELOW = 22.0, 4.0, 4.0
 
 
 class SidePage(Protocol):
@@ -61,12 +63,14 @@ class Side:
             before.close()
         names = list(PAGES)
         width = place.width / ui.scale - 2 * MARGIN
+        is_low = place.height < ui.px(LOW)
+        tab, top, below = (LOW_TAB, LOW_TOP, LOW_BELOW) if is_low else (TAB, TOP, BELOW)
         self._rows = []
         for first in range(0, len(names), COLUMNS):
             options = [(name, PAGES[name][0], PAGES[name][1]) for name in names[first : first + COLUMNS]]
-            y = TOP + first // COLUMNS * (TAB + GAP)
-            self._rows.append(ui.choice(ui.rect(MARGIN, y, width, TAB), options, self.choose, self.back))
-        top = TOP + len(self._rows) * (TAB + GAP) + 8
+            self._rows.append(ui.choice(ui.rect(MARGIN, top, width, tab), options, self.choose, self.back))
+            top += tab + GAP
+        top += below
         self._place = ui.rect(MARGIN, top, width + 6, place.height / ui.scale - top - 6)
         self.page: SidePage = self._made()
 
