@@ -31,9 +31,9 @@ SOIL_DEPTH, BEVEL, LINE_HALF = 26.0, 9.0, 0.9
 # Turf lies on what faces up, as far as this cosine; half width, length of its pattern, how far it sinks.
 TURF_FROM, TURF_HALF, TURF_PERIOD, TURF_SINK = 0.8, 12.0, 46.0, 2.0
 EDGE_HALF = 2.4
-# Stages that are kept, for those who go to and fro between play, the editor and the gallery; each is made in bands of
-# so many rows, a multiple of 4, or what is computed on the way would not fit in a processor's cache.
-STAGES, BAND = 3, 32
+# The stage is made in bands of so many rows, a multiple of 4: what is computed on the way has to fit in a processor's
+# cache.
+BAND = 32
 _GRAINS = {"soil": EARTH, "rock": EARTH, "wood": TIMBER}
 
 
@@ -194,7 +194,7 @@ def _grid_lines(camera: Camera, scale: float) -> tuple[list[int], list[int]]:
     return found[0], found[1]
 
 
-@functools.lru_cache(maxsize=STAGES)
+@functools.lru_cache(maxsize=1)
 def stage_pictures(size: tuple[int, int], theme: Theme) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
     """The stage (h, w) without and with its grid everywhere: the next run has mostly the same."""
     width, height = size
