@@ -4,11 +4,14 @@ No proven limit. Only springs are warm-started. Hooke springs are no constraints
 iterations. Source: Nissen's demo programs after the article.
 """
 
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sandbox.physics.collision.types import NO_CONTACTS, Contacts, LentContacts
+from sandbox.physics.collision.turning import spin_of
+from sandbox.physics.collision.types import NO_CONTACTS, LentContacts
 from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, constraint_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
@@ -17,16 +20,17 @@ from sandbox.physics.joints.joint_sweep import iterate_joints, joints_by_mass, n
 from sandbox.physics.joints.limited_springs import unlimited_active
 from sandbox.physics.solvers.contact.gauss_seidel import (
     ContactTerms,
+    Delassus,
     add_change,
     load_biases,
     load_responses,
+    new_terms,
     no_blocks,
     start_impulses,
-    store_spins,
     sweep,
-    terms_of,
 )
-from sandbox.physics.solvers.single_pass import Ends, Particles, apply_explicit, ends_of, particles_of
+from sandbox.physics.solvers.lent_substep import LentSubstep, SubstepArrays
+from sandbox.physics.solvers.single_pass import Particles, apply_explicit, particles_of
 from sandbox.physics.substeps import Substep
 from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, Floats, Slots, World
 
@@ -34,6 +38,8 @@ from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, Floats, Slots, World
 # which have more constraints than ways to move, gain energy several times over; with 0.3 or less a crushed jelly stays
 # crushed.
 AREA_SHARE = 0.5
+# Room for contacts is made for so many times as many as are wanted.
+MORE_ROOM = 2
 
 
 class Wanted(NamedTuple):
@@ -42,11 +48,8 @@ class Wanted(NamedTuple):
 
     wanted = -(Cs C / h + Cd dC/dt) m; impulse = the sum of its j. Of a bend, damped = Cd m, kept = 1 - Cd and whole =
     kept + Cd m / present mass. Of an area, as of a spring, damped = m, kept = 0 and whole = 1, then 1 / AREA_SHARE.
-    stiffness, damping: Cs and Cd of the substep.
     """
 
-    stiffness: Floats
-    damping: Floats
     place: Floats
     slope: Floats
     wanted: Floats
@@ -70,22 +73,42 @@ class Pulling(NamedTuple):
     accumulated: Floats
 
 
-class Rounds(NamedTuple):
-    """How a step is iterated: how often, with what share of the last step's pulls, and in what order.
+class IteratedSprings(NamedTuple):
+    """Springs (m,) as steps read them, see StateArrays; slots of those that are iterated, in two orders.
 
-    alternates: every other iteration goes through the springs backwards, as they are listed. In small steps what one
-    order has not carried through a wheel throws it off the ground; in one step a tick light wheels would sink in under
-    heavy loads. There each goes from the springs of heavy particles to those of light ones: what a load asks for goes
-    on to what bears it within an iteration, and a wheel of 0.2 kg a particle sinks 3 cm under 60 kg in place of 9.
+    listed: as they are. heavy_first: those of heavy particles first.
     """
 
-    iterations: int
-    warm_start: float
-    alternates: bool
+    particle_a: NDArray[np.int32]
+    particle_b: NDArray[np.int32]
+    rest_length: Floats
+    listed: Slots
+    heavy_first: Slots
+
+
+class Turning(NamedTuple):
+    """How particles (n,) turn: spin [rad/s], radius [m]."""
+
+    spin: Floats
+    radius: Floats
+
+
+class Iteration(NamedTuple):
+    """What steps read of a world and fill in: arrays that stay while its topology does."""
+
+    particles: Particles
+    turning: Turning
+    springs: IteratedSprings
+    pulling: Pulling
+    constraints: ConstraintArrays
+    wanted: Wanted
+    delassus: Delassus
 
 
 @inner_kernel
-def _prepare_constraints(particles: Particles, constraints: ConstraintArrays, h: float, wanted: Wanted) -> None:
+def _prepare_constraints(
+    particles: Particles, constraints: ConstraintArrays, given: SubstepArrays, h: float, wanted: Wanted
+) -> None:
     # wanted = -(Cs C / h + Cd dC/dt) m
     for k in range(constraints.kind.shape[0]):
         wanted.whole[k] = 0.0
@@ -101,8 +124,8 @@ def _prepare_constraints(particles: Particles, constraints: ConstraintArrays, h:
             first, last, particles.inverse_mass, constraints.particle, constraints.weight, wanted.slope
         )  # fmt: skip
         rate = constraint_rate(first, last, particles.velocity, constraints.particle, wanted.slope)
-        damping = wanted.damping[k]
-        wanted.wanted[k] = spring_impulse(wanted.stiffness[k], damping, error, rate, mass, h)
+        damping = given.constraint_damping[k]
+        wanted.wanted[k] = spring_impulse(given.constraint_stiffness[k], damping, error, rate, mass, h)
         if constraints.kind[k] == BEND:
             wanted.damped[k] = damping * mass
             wanted.kept[k] = 1.0 - damping
@@ -136,16 +159,17 @@ def _iterate_constraints(inverse_mass: Floats, constraints: ConstraintArrays, wa
 
 @inner_kernel
 def _prepare_springs(
-    particles: Particles, ends: Ends, order: Slots, warm_start: float, h: float, pulling: Pulling
-) -> int:
+    particles: Particles, springs: IteratedSprings, order: Slots, given: SubstepArrays, warm_start: float, h: float,
+    pulling: Pulling,
+) -> int:  # fmt: skip
     # r = -(Cs x / h + Cd u), the wanted change of relative velocity; how many springs want one.
     position, velocity, inverse_mass = particles.position, particles.velocity, particles.inverse_mass
     change, accumulated = pulling.change, pulling.accumulated
     count = 0
     for i in range(order.shape[0]):
         s = order[i]
-        a = ends.particle_a[s]
-        b = ends.particle_b[s]
+        a = springs.particle_a[s]
+        b = springs.particle_b[s]
         m = reduced_mass(inverse_mass[a], inverse_mass[b])
         # Warm start: p = n . acc; only a pull (p < 0) is used again, j = Cw p.
         warm_x = accumulated[s, 0]
@@ -162,7 +186,7 @@ def _prepare_springs(
         pulling.normal[count, 1] = ny
         pulling.mass[count] = m
         pulling.wanted[count] = spring_impulse(
-            ends.stiffness[s], ends.damping[s], length - ends.rest_length[s], nx * du + ny * dv, 1.0, h
+            given.stiffness[s], given.damping[s], length - springs.rest_length[s], nx * du + ny * dv, 1.0, h
         )  # fmt: skip
         count += 1
         p = nx * warm_x + ny * warm_y
@@ -176,14 +200,16 @@ def _prepare_springs(
 
 
 @inner_kernel
-def _iterate_springs(count: int, inverse_mass: Floats, ends: Ends, pulling: Pulling, backwards: bool) -> None:
+def _iterate_springs(
+    count: int, inverse_mass: Floats, springs: IteratedSprings, pulling: Pulling, backwards: bool
+) -> None:
     # j = -(n . (dv_b - dv_a) - r) m_r, applied at once to the velocity change dv.
     change, accumulated = pulling.change, pulling.accumulated
     for i in range(count):
         c = count - 1 - i if backwards else i
         s = pulling.slot[c]
-        a = ends.particle_a[s]
-        b = ends.particle_b[s]
+        a = springs.particle_a[s]
+        b = springs.particle_b[s]
         nx = pulling.normal[c, 0]
         ny = pulling.normal[c, 1]
         du = change[b, 0] - change[a, 0]
@@ -201,41 +227,84 @@ def _iterate_springs(count: int, inverse_mass: Floats, ends: Ends, pulling: Pull
 
 @kernel
 def _iterate(
-    particles: Particles, ends: Ends, order: Slots, pulling: Pulling, constraints: ConstraintArrays, wanted: Wanted,
-    contacts: Contacts, terms: ContactTerms, lent_masses: Any, rounds: Rounds, h: float,
+    lent: Any, lent_substep: Any, lent_contacts: Any, lent_terms: Any, iterations: int, warm_start: float,
+    alternates: bool, h: float,
 ) -> None:  # fmt: skip
-    (delassus,) = contents(lent_masses)
-    velocity, inverse_mass, change = particles.velocity, particles.inverse_mass, pulling.change
-    count = _prepare_springs(particles, ends, order, rounds.warm_start, h, pulling)
-    _prepare_constraints(particles, constraints, h, wanted)
+    # alternates: every other iteration goes through the springs backwards, as they are listed. In small steps what one
+    # order has not carried through a wheel throws it off the ground; in one step a tick light wheels would sink in
+    # under heavy loads. There each goes from the springs of heavy particles to those of light ones: what a load asks
+    # for goes on to what bears it within an iteration, and a wheel of 0.2 kg a particle sinks 3 cm under 60 kg in place
+    # of 9.
+    (step,) = contents(lent)
+    (given,) = contents(lent_substep)
+    (contacts,) = contents(lent_contacts)
+    (terms,) = contents(lent_terms)
+    velocity, inverse_mass, change = step.particles.velocity, step.particles.inverse_mass, step.pulling.change
+    spin, radius = step.turning.spin, step.turning.radius
+    for p in range(change.shape[0]):
+        change[p, 0] = 0.0
+        change[p, 1] = 0.0
+        terms.surface[p] = spin[p] * radius[p]
+    order = step.springs.listed if alternates else step.springs.heavy_first
+    count = _prepare_springs(step.particles, step.springs, order, given, warm_start, h, step.pulling)
+    _prepare_constraints(step.particles, step.constraints, given, h, step.wanted)
     load_biases(contacts, terms, h)
-    load_responses(contacts, terms, inverse_mass, delassus)
-    start_impulses(contacts, terms, change, inverse_mass, delassus)
-    start_masses(delassus.joints, change, inverse_mass)
-    for k in range(rounds.iterations):
-        _iterate_springs(count, inverse_mass, ends, pulling, rounds.alternates and k % 2 == 1)
-        _iterate_constraints(inverse_mass, constraints, wanted, change)
-        iterate_joints(delassus.joints, velocity, change, inverse_mass)
-        sweep(contacts, terms, velocity, change, inverse_mass, delassus)
+    load_responses(contacts, terms, inverse_mass, step.delassus)
+    start_impulses(contacts, terms, change, inverse_mass, step.delassus)
+    start_masses(step.delassus.joints, change, inverse_mass)
+    for k in range(iterations):
+        _iterate_springs(count, inverse_mass, step.springs, step.pulling, alternates and k % 2 == 1)
+        _iterate_constraints(inverse_mass, step.constraints, step.wanted, change)
+        iterate_joints(step.delassus.joints, velocity, change, inverse_mass)
+        sweep(contacts, terms, velocity, change, inverse_mass, step.delassus)
     add_change(velocity, change, inverse_mass)
+    for p in range(spin.shape[0]):
+        spin[p] = spin_of(terms.surface[p], spin[p], radius[p])
 
 
-def _as_listed(world: World) -> Slots:
-    # The springs that are iterated.
-    return np.flatnonzero(unlimited_active(world) & (world.law == LAW_NISSEN))
+@dataclass(eq=False)
+class IterationRoom:
+    """The scratch of a world's steps, each part as one argument for kernels; hooke: springs by that law, None: none.
+
+    no_contacts: in place of those of a step that finds none.
+    """
+
+    lent: Any
+    terms: ContactTerms
+    lent_terms: Any
+    no_contacts: Any
+    hooke: NDArray[np.bool_] | None
+    substep: LentSubstep = field(default_factory=LentSubstep)
+
+    def grow(self, contacts: int) -> None:
+        """Make room for so many contacts."""
+        if contacts > len(self.terms.bias):
+            self.terms = new_terms(MORE_ROOM * contacts, self.terms.surface)
+            self.lent_terms = bundle((self.terms,))
 
 
-def _heavy_first(world: World) -> Slots:
-    # The same, those of heavy particles first.
-    springs = _as_listed(world)
+def _make_room(world: World) -> IterationRoom:
+    listed, joints = np.flatnonzero(unlimited_active(world) & (world.law == LAW_NISSEN)), joints_of(world)
     moved = np.where(world.inverse_mass > 0.0, world.inverse_mass, np.inf)
-    lightness = np.minimum(moved[world.particle_a[springs]], moved[world.particle_b[springs]])
-    return springs[np.argsort(lightness, kind="stable")]
-
-
-def _lent_masses(world: World) -> Any:
-    joints = joints_of(world)
-    return bundle((no_blocks(world.particle_count, no_joints() if joints is None else joints_by_mass(joints.rows)),))
+    lightness = np.minimum(moved[world.particle_a[listed]], moved[world.particle_b[listed]])
+    count, particles = len(listed), world.particle_count
+    step = Iteration(
+        particles_of(world),
+        Turning(world.spin, world.radius),
+        IteratedSprings(
+            world.particle_a, world.particle_b, world.rest_length, listed, listed[np.argsort(lightness, kind="stable")]
+        ),
+        Pulling(
+            np.zeros(count, np.int64), np.zeros((count, 2)), np.zeros(count), np.zeros(count), np.zeros((particles, 2)),
+            world.impulse,
+        ),
+        world.constraints,
+        Wanted(*np.zeros((2, len(world.corner_particle), 2)), *np.zeros((5, world.constraint_count))),
+        no_blocks(particles, no_joints() if joints is None else joints_by_mass(joints.rows)),
+    )  # fmt: skip
+    terms, hooke = new_terms(0, np.zeros(particles)), world.spring_active & (world.law == LAW_HOOKE)
+    lent_terms, nothing = bundle((terms,)), bundle((NO_CONTACTS,))
+    return IterationRoom(bundle((step,)), terms, lent_terms, nothing, hooke if hooke.any() else None)
 
 
 spring_constant = explicit_spring_constant
@@ -243,24 +312,12 @@ spring_constant = explicit_spring_constant
 
 def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None:
     """Bring the velocities to the end of a substep; world.impulse keeps the sums for the next warm start."""
-    hooke = world.spring_active & (world.law == LAW_HOOKE)
-    if hooke.any():
-        apply_explicit(world, hooke, substep.springs, substep.h)
-    alternates = substep.substeps > 1
-    order = _as_listed if alternates else _heavy_first
-    touching = NO_CONTACTS if contacts is None else contacts.arrays
-    count, settings = world.spring_count, world.settings
-    change = np.zeros((world.particle_count, 2))
-    pulling = Pulling(
-        np.zeros(count, np.int64), np.zeros((count, 2)), np.zeros(count), np.zeros(count), change, world.impulse
-    )
-    wanted = Wanted(
-        *substep.constraints, *np.zeros((2, len(world.corner_particle), 2)), *np.zeros((5, world.constraint_count))
-    )
-    terms = terms_of(world, touching)
+    room, settings = world.derived(_make_room), world.settings
+    if room.hooke is not None:
+        apply_explicit(world, room.hooke, substep.springs, substep.h)
+    if contacts is not None:
+        room.grow(len(contacts.arrays.particle))
     _iterate(
-        particles_of(world), ends_of(world, substep.springs), world.derived(order), pulling, world.constraints,
-        wanted, touching, terms, world.derived(_lent_masses),
-        Rounds(settings.iterations, settings.warm_start, alternates), substep.h,
+        room.lent, room.substep.lend(substep), room.no_contacts if contacts is None else contacts.lent,
+        room.lent_terms, settings.iterations, settings.warm_start, substep.substeps > 1, substep.h,
     )  # fmt: skip
-    store_spins(world, terms)

@@ -4,7 +4,7 @@ spring_terms.py states what is solved. What contacts touch or joints act on is s
 (island_solve.py), all else body by body (step_body.py): such a body is an island without contacts.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import Any
 
@@ -16,7 +16,8 @@ from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.direct.families import load_rows
 from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.physics.solvers.direct.step_body import step_bodies
-from sandbox.physics.solvers.direct.system import Inputs, State, SubstepArrays
+from sandbox.physics.solvers.direct.system import Inputs, State
+from sandbox.physics.solvers.lent_substep import LentSubstep
 from sandbox.physics.solvers.single_pass import apply_explicit
 from sandbox.physics.substeps import Substep
 from sandbox.physics.world import Floats, World
@@ -44,24 +45,7 @@ class LentArrays:
     """The arrays of a world, and those of its substeps, each as one argument for kernels."""
 
     state: Any
-    arrays: SubstepArrays | None = None
-    inputs: Any = None
-
-    def lend(self, substep: Substep) -> Any:
-        """The arrays of a substep, lent anew where they are others than those of the last."""
-        (stiffness, damping), (more_stiffness, more_damping) = substep.springs, substep.constraints
-        arrays = self.arrays
-        if (
-            arrays is None
-            or arrays.stiffness is not stiffness
-            or arrays.damping is not damping
-            or arrays.constraint_stiffness is not more_stiffness
-            or arrays.constraint_damping is not more_damping
-            or arrays.start is not substep.before.velocity
-        ):
-            self.arrays = SubstepArrays(stiffness, damping, more_stiffness, more_damping, substep.before.velocity)
-            self.inputs = bundle((self.arrays,))
-        return self.inputs
+    substep: LentSubstep = field(default_factory=LentSubstep)
 
 
 def _lent(world: World) -> LentArrays:
@@ -85,7 +69,7 @@ def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None
     layout, lent, joints = layout_of(world), world.derived(_lent), joints_of(world)
     if layout.has_hooke:
         apply_explicit(world, layout.hooke, substep.springs, substep.h)
-    inputs, start_length = lent.lend(substep), substep.before.rest_length
+    inputs, start_length = lent.substep.lend(substep), substep.before.rest_length
     parts = substep.substeps if world.settings.substeps == AUTO else 0
     if contacts is not None or (joints is not None and joints.on):
         from sandbox.physics.solvers.direct.island_solve import solve_touched

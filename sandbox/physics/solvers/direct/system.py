@@ -49,16 +49,6 @@ class State(NamedTuple):
     terrain: Terrain
 
 
-class SubstepArrays(NamedTuple):
-    """What is the same array in every substep of a tick, often of many ticks: see Inputs."""
-
-    stiffness: Floats
-    damping: Floats
-    constraint_stiffness: Floats
-    constraint_damping: Floats
-    start: Floats
-
-
 class Inputs(NamedTuple):
     """What a substep is given: Cs and Cd of springs (m,) and constraints (t,) in it, and its start.
 
