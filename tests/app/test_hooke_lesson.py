@@ -82,6 +82,17 @@ def test_stiffer_again_and_again_ends_in_words_and_a_button_and_harms_nothing(le
     assert screen.exploded_at is None and not screen.again.visible
 
 
+def test_a_button_that_can_do_no_more_is_not_offered(lesson):
+    panel = lesson.app.play.panel
+    assert panel.stiffer.is_enabled and not panel.softer.is_enabled
+    lesson.click_widget(panel.stiffer)
+    assert panel.softer.is_enabled
+    lesson.click_widget(panel.softer)
+    assert not panel.softer.is_enabled and lesson.app.play.trial.doublings == 0
+    lesson.app.play.try_out(SpringTrial(MOST_DOUBLINGS))
+    assert not panel.stiffer.is_enabled and panel.softer.is_enabled
+
+
 def test_another_weight_or_rate_begins_anew_with_another_limit(lesson):
     panel = lesson.app.play.panel
     limit = lesson.app.play.trial.highest_k

@@ -90,6 +90,17 @@ def test_a_scale_is_a_round_number_that_stays_until_what_it_shows_is_much_larger
     assert scale.follow(np.full(9, 0.003)) == 0.005
 
 
+def test_what_rests_has_no_arrows_of_rounding():
+    resting = Session(box_level())
+    resting.world.velocity[:] = np.random.default_rng(3).normal(0.0, 1e-14, resting.world.velocity.shape)
+    bare, _ = picture(resting, ())
+    shown, renderer = picture(resting, ["velocities"])
+    assert (shown == bare).all() and renderer.overlays.velocity.value == 0.01
+    slow = Session(box_level())
+    slow.world.velocity[:] = (0.01, 0.0)
+    assert (picture(slow, ["velocities"])[0] != bare).any()
+
+
 def test_arrows_are_as_long_as_the_legend_says_and_never_cross_the_screen(fallen):
     _, renderer = picture(fallen, ["velocities"])
     snapshot = fallen.snapshot()

@@ -76,6 +76,16 @@ def wheel(driver, widget, notches):
     driver.frames(2)
 
 
+def test_the_tab_of_the_page_stays_lit_when_it_is_clicked_again(driver):
+    open_tab(driver, "checks")
+    button = driver.editor.side._tab_button("checks")
+    driver.move((5, 5))
+    lit = pygame.image.tobytes(button.image, "RGB")
+    open_tab(driver, "checks")
+    driver.move((5, 5))
+    assert pygame.image.tobytes(button.image, "RGB") == lit
+
+
 def test_the_panel_says_what_to_do_while_nothing_is_selected(driver):
     assert form(driver).fields == {}
 

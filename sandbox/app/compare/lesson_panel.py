@@ -98,6 +98,11 @@ class LessonPanel:
         self.masses.show(f"{trial.mass:g}")
         self.rates.show(str(trial.rate))
         self.springs.show(str(trial.springs))
+        for button, goes_on in (
+            (self.stiffer, trial.doublings < MOST_DOUBLINGS), (self.softer, trial.doublings > 0)
+        ):  # fmt: skip
+            if goes_on != button.is_enabled:
+                (button.enable if goes_on else button.disable)()
 
     def show_choices(self, strength: str, views: Set[str]) -> None:
         """The lesson shows neither the strength of the hand nor overlays."""

@@ -28,3 +28,8 @@ class Button(UIButton):
         self.normal_image_positions = self.hovered_image_positions = positions
         self.selected_image_positions = self.disabled_image_positions = positions
         return True
+
+    def _set_inactive(self) -> None:
+        # The library shows what was let go of as if it were never selected.
+        if self.drawable_shape is not None:
+            self.drawable_shape.set_active_state(self._get_appropriate_state_name())

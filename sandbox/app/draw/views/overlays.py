@@ -35,21 +35,24 @@ CELL = 11.0
 MOST = 6_000
 # A scale stays until what it shows is this many times as large, or as small: arrows that grow must grow on the screen.
 TOO_LARGE, TOO_SMALL = 2.0, 0.25
+# No scale is finer: what is left of a speed [m/s] or force [N] at rest, mere rounding, would fill the screen with arrows.
+LEAST_SPEED, LEAST_FORCE = 0.01, 1e-6
 # The dashes of springs past the limit of stability.
 DASHES = 5
 
 
 @dataclass
 class Scale:
-    """What the arrow or bar of the legend stands for: 1, 2 or 5 times a power of ten, 0 = not known yet."""
+    """What the arrow or bar of the legend stands for: 1, 2 or 5 times a power of ten and `least` at least, 0 = not known."""
 
     value: float = 0.0
+    least: float = 0.0
 
     def follow(self, sizes: Floats) -> float:
         """Keep up with what is to be shown, and give the value."""
         known = sizes[np.isfinite(sizes) & (sizes > 0.0)]
         if len(known):
-            typical = float(np.quantile(known, 0.9))
+            typical = max(float(np.quantile(known, 0.9)), self.least)
             if not TOO_SMALL <= typical / max(self.value, 1e-300) <= TOO_LARGE:
                 power = 10.0 ** math.floor(math.log10(typical))
                 self.value = next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= typical * 0.999)
@@ -61,9 +64,9 @@ class Overlays:
     """What is shown of them, and the scales of their arrows."""
 
     shown: set[str] = field(default_factory=set)
-    velocity: Scale = field(default_factory=Scale)
-    contact: Scale = field(default_factory=Scale)
-    spring: Scale = field(default_factory=Scale)
+    velocity: Scale = field(default_factory=lambda: Scale(least=LEAST_SPEED))
+    contact: Scale = field(default_factory=lambda: Scale(least=LEAST_FORCE))
+    spring: Scale = field(default_factory=lambda: Scale(least=LEAST_FORCE))
 
     def mark(
         self, marks: MarkList, frame: Frame, state: Snapshot, camera: Camera, particles: Mask, springs: Mask,
