@@ -31,6 +31,21 @@ def test_what_stays_in_something_is_said_and_a_button_frees_it(caged):
     assert overlapping(caged.world)
 
 
+@pytest.mark.parametrize("paused", [False, True])
+def test_the_drop_of_what_is_stuck_can_be_undone(caged, paused):
+    before = caged.world.particle_count
+    caged.key(pygame.K_6)
+    caged.click(caged.stage.camera.to_pixels((0.0, 0.0)))
+    caged.frames(30)
+    assert any(particle >= before for pair in overlapping(caged.world) for particle in pair)
+    if paused:
+        caged.key(pygame.K_SPACE)
+    caged.key(pygame.K_z, pygame.KMOD_CTRL)
+    caged.frames(2)
+    assert caged.world.particle_count == before
+    assert all(particle < before for particle in caged.app.screen.stuck.particles)
+
+
 def test_its_key_says_where_nothing_is_stuck(caged):
     caged.key(pygame.K_j)
     caged.frames(2)

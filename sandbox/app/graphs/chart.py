@@ -55,7 +55,7 @@ def nice_step(span: float, most: float) -> float:
 
 def number_text(value: float, step: float) -> str:
     """A number of a scale with the digits that its step has."""
-    if value != 0.0 and (abs(value) >= 1e6 or step < 1e-4):
+    if abs(value) >= 1e6 or step < 1e-4:
         return f"{value:.3g}"
     digits = max(0, int(-np.floor(np.log10(step) + 1e-9)))
     return f"{value + 0.0:,.{digits}f}"

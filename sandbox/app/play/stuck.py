@@ -23,13 +23,15 @@ class StuckBodies:
 
     def __init__(self) -> None:
         self._since: dict[tuple[int, int], tuple[int, int]] = {}
-        self._tick = -1
+        self._tick, self._count = -1, 0
         self.particles: list[int] = []
 
     def update(self, world: World) -> None:
-        """Look at a world after its ticks; one that went back in time, or is another, is looked at anew."""
-        if world.tick < self._tick:
+        """Look at a world after its ticks; one that went back in time, or has lost particles, is looked at anew."""
+        if world.tick < self._tick or world.particle_count < self._count:
             self._since.clear()
+            self.particles = []
+        self._count = world.particle_count
         if world.tick == self._tick:
             return
         self._tick, rate = world.tick, world.settings.tick_rate

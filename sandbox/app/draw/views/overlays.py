@@ -35,7 +35,7 @@ CELL = 11.0
 MOST = 6_000
 # A scale stays until what it shows is this many times as large, or as small: arrows that grow must grow on the screen.
 TOO_LARGE, TOO_SMALL = 2.0, 0.25
-# No scale is finer: what is left of a speed [m/s] or force [N] at rest, mere rounding, would fill the screen with arrows.
+# No scale is finer [m/s, N]: mere rounding, which is left of what rests, would fill the screen with arrows.
 LEAST_SPEED, LEAST_FORCE = 0.01, 1e-6
 # The dashes of springs past the limit of stability.
 DASHES = 5
@@ -43,7 +43,7 @@ DASHES = 5
 
 @dataclass
 class Scale:
-    """What the arrow or bar of the legend stands for: 1, 2 or 5 times a power of ten and `least` at least, 0 = not known."""
+    """What the arrow or bar of the legend stands for: 1, 2 or 5 times a power of ten, `least` at least; 0 = unknown."""
 
     value: float = 0.0
     least: float = 0.0
