@@ -246,6 +246,7 @@ class App:
             back = play.single or Playback(level)
             # Kernels may have come about meanwhile.
             back.session.world.drop_caches()
+            self.take_back(play.welcome)
             self.start(back, source)
         elif play.of_document:
             self.say("Save the level and open it from its file to play it twice: this run belongs to the editor.")

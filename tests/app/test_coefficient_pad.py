@@ -27,6 +27,17 @@ def pair(driver, name="rope:0"):
     return float(driver.world.stiffness[slot]), float(driver.world.damping[slot])
 
 
+def test_the_curve_tells_springs_that_differ_from_none_at_all(padded, open_app):
+    assert padded.panel.curve.words == ""
+    padded.panel.choose_material(None)
+    padded.frames(2)
+    assert "differ" in padded.panel.curve.words
+    bare = open_app(small_level(bodies=[], particles=[{"id": "ball", "position": [0, 0]}]))
+    bare.click_widget(bare.panel.ways.buttons["pad"])
+    bare.frames(2)
+    assert "none" in bare.panel.curve.words and bare.panel.note.text == "There are no springs."
+
+
 def test_a_drag_over_the_pad_sets_both_in_one_gesture_that_is_undone_at_once(padded):
     pad = padded.panel.pad
     padded.press(pad.pixel_of(0.01, 0.01))

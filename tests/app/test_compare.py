@@ -4,7 +4,7 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.compare.compare_screen import PILL_TOP, CompareScreen
+from sandbox.app.compare.compare_screen import PILL_TOP, WELCOME, CompareScreen
 from sandbox.app.play.legend import MARGIN
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import Grab, Pin, SetCoefficients
@@ -33,6 +33,13 @@ def beside(driver, pixel):
     """The same place in B."""
     (left, top, *_), (other_left, other_top, *_) = driver.app.play.viewport, driver.app.play.other_viewport
     return pixel[0] - left + other_left, pixel[1] - top + other_top
+
+
+def test_what_is_said_of_two_runs_is_not_said_of_one(pair):
+    assert WELCOME in pair.notices
+    pair.key(pygame.K_F9)
+    pair.frames(2)
+    assert WELCOME not in pair.notices
 
 
 @pytest.mark.parametrize("in_second", [False, True])

@@ -171,3 +171,4 @@ def test_scales_have_round_steps_and_as_many_digits_as_these():
     assert nice_step(0.0, 5) == nice_step(np.nan, 5) == 1.0
     assert number_text(0.30000000000000004, 0.1) == "0.3"
     assert number_text(1500.0, 500.0) == "1,500" and number_text(-0.0, 1.0) == "0"
+    assert number_text(0.0, 5e-10) == "0"

@@ -97,6 +97,13 @@ def test_the_last_bytes_of_a_compressed_recording_are_missed(good, tmp_path, cut
     assert verify(read_replay(path, partial=True)) is None
 
 
+def test_a_level_is_said_to_be_no_replay(tmp_path):
+    path = tmp_path / "rope.json"
+    path.write_text('{\n  "format": "spring-sandbox/level"\n}\n')
+    with pytest.raises(ReplayError, match="line 1: not a replay: not a line of JSON"):
+        read_replay(path)
+
+
 @pytest.mark.parametrize("tail", [b"x", bytes(8), compressed(b"more\n")])
 def test_bytes_behind_a_compressed_recording_are_refused(good, tmp_path, tail):
     path = tmp_path / "long.gz"

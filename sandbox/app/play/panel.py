@@ -361,12 +361,15 @@ class Panel:
         assert self.pad is not None and self.curve is not None
         if not len(stiffness):
             self.pad.show_state(self.pad.state._replace(enabled=False), self._zones)
-            self.curve.show_spring(None, 1)
+            self.curve.show_none("One spring: there is none")
             return
         is_mixed = bool(stiffness.min() != stiffness.max() or damping.min() != damping.max())
         pair = float(np.median(stiffness)), float(np.median(damping))
         self.pad.show_state(PadState(*pair, is_mixed, True), self._zones)
-        self.curve.show_spring(None if is_mixed else pair, self.playback.session.world.settings.tick_rate)
+        if is_mixed:
+            self.curve.show_none("One spring: the chosen ones differ")
+        else:
+            self.curve.show_spring(pair, self.playback.session.world.settings.tick_rate)
 
     def _show_reading(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
         if stiffness.min() != stiffness.max() or damping.min() != damping.max():
@@ -381,7 +384,7 @@ class Panel:
         world = self.playback.session.world
         hooke = (world.law == LAW_HOOKE) & ((world.material == self.material) | (self.material is None))
         if not hooke.any():
-            return "No spring is of this material."
+            return "There are no springs." if self.material is None else "No spring is of this material."
         first = int(np.flatnonzero(hooke)[0])
         k, c = world.hooke_stiffness[first], world.hooke_damping[first]
         return f"Classic Hooke springs, k = {k:g} N/m, c = {c:g} N s/m: Cs and Cd do not apply."

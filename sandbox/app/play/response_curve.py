@@ -45,16 +45,21 @@ class ResponseCurve(Painted):
     def __init__(self, ui: Ui, rect: pygame.Rect, container: Any = None) -> None:
         super().__init__(ui, rect, container)
         self._of: tuple[float, float, int] | None = None
+        self.words = ""
         self.errors = response(0.0, 0.0, 1)
         self.repaint()
 
-    def show_spring(self, pair: tuple[float, float] | None, tick_rate: int) -> None:
-        """Show the spring of Cs and Cd; None: there is no such one."""
-        of = None if pair is None else (*pair, tick_rate)
+    def show_spring(self, pair: tuple[float, float], tick_rate: int) -> None:
+        """Show the spring of Cs and Cd."""
+        of = (*pair, tick_rate)
         if of != self._of:
-            self._of = of
-            if pair is not None:
-                self.errors = response(*pair)
+            self._of, self.words, self.errors = of, "", response(*pair)
+            self.repaint()
+
+    def show_none(self, words: str) -> None:
+        """Say in its place why there is no one spring to be shown."""
+        if words != self.words:
+            self._of, self.words = None, words
             self.repaint()
 
     def _verdict(self, rest: int | None, rate: int) -> str:
@@ -70,7 +75,7 @@ class ResponseCurve(Painted):
         inside = pygame.Rect(px(SIDE), px(TOP), size[0] - 2 * px(SIDE), size[1] - px(TOP + BOTTOM))
         pygame.draw.rect(surface, FIELD, inside, border_radius=px(4))
         if self._of is None:
-            text = font.render("One spring: the chosen ones differ", True, MUTED)
+            text = font.render(self.words, True, MUTED)
             surface.blit(text, text.get_rect(center=inside.center))
             return surface
         rate, rest = self._of[2], rest_tick(self.errors)

@@ -215,7 +215,7 @@ def _read_header(source: str, line: bytes, retold: bool) -> tuple[_Header, str]:
         raise ReplayError(f"{where}: holds more than a level may; it is no recording")
     if fault := scan(line):
         raise ReplayError(f"{where}: {fault[1]}")
-    values = json_object(where, line)
+    values = json_object(f"{where}: not a replay", line)
     if values.get("format") != FORMAT:
         raise ReplayError(f"{where}: not a replay: its format is not {FORMAT!r}")
     version = values.get("version")
