@@ -97,6 +97,22 @@ def test_a_replay_has_a_picture_its_level_and_its_length_and_a_broken_one_its_fa
     assert "not a replay" in cards["broken.replay.jsonl"].text
 
 
+def test_the_picture_of_a_replay_has_the_ground_of_its_level(open_app, documents):
+    ground = [{"id": "ground", "polygon": [[-9, -9], [9, -9], [9, -3], [-9, -3]]}]
+    pictures = []
+    for name, terrain in (("bare", []), ("on ground", ground)):
+        driver = open_app(small_level(view=[-4, -4, 4, 4], name=name, terrain=terrain))
+        driver.frames(5)
+        driver.key(pygame.K_s, pygame.KMOD_CTRL)
+        driver.key(pygame.K_RETURN)
+        driver.app.open_gallery("recordings")
+        card = next(card for card in driver.app.gallery.cards if card.name.startswith(name.split()[0]))
+        while not card.picture:
+            driver.frames()
+        pictures.append(pygame.surfarray.array3d(card.picture).astype(int))
+    assert (np.abs(pictures[0] - pictures[1]).max(axis=2) > 15)[:, -10:].mean() > 0.5
+
+
 def test_opening_by_name_takes_a_shipped_level_and_says_what_is_wrong_with_others(driver: Driver):
     driver.key(pygame.K_o, pygame.KMOD_CTRL)
     driver.type("no such level")

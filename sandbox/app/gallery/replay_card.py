@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pygame
@@ -10,6 +11,7 @@ from sandbox.app.draw.colours import shown_theme
 from sandbox.app.draw.picture import crop_of, draw_picture
 from sandbox.app.gallery.card import Card
 from sandbox.app.picture_cache import LINE_SCALE, SIZE, find_picture, keep_for_later, kept_picture, picture_key
+from sandbox.level.build.surfaces import terrain_of
 from sandbox.session.replay.reader import read_in_slices
 from sandbox.session.replay.recording import Replay, ReplayError
 
@@ -36,7 +38,8 @@ def fill_replay(card: Card, path: Path, has_kernels: Callable[[bool], bool]) -> 
     while not has_kernels(replay.level.has_contacts):
         yield False
     try:
-        state = replay.state(max(replay.states))
+        # What does not move is in no recorded state.
+        state = replace(replay.state(max(replay.states)), terrain=terrain_of(replay.level))
     except (ReplayError, ValueError):
         return
     yield True
