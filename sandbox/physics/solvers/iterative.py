@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.collision.turning import spin_of
 from sandbox.physics.collision.types import NO_CONTACTS, LentContacts
 from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, constraint_rate, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
@@ -24,9 +23,11 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     add_change,
     load_biases,
     load_responses,
+    load_surfaces,
     new_terms,
     no_blocks,
     start_impulses,
+    store_spins,
     sweep,
 )
 from sandbox.physics.solvers.lent_substep import LentSubstep, SubstepArrays
@@ -244,7 +245,7 @@ def _iterate(
     for p in range(change.shape[0]):
         change[p, 0] = 0.0
         change[p, 1] = 0.0
-        terms.surface[p] = spin[p] * radius[p]
+    load_surfaces(terms, spin, radius)
     order = step.springs.listed if alternates else step.springs.heavy_first
     count = _prepare_springs(step.particles, step.springs, order, given, warm_start, h, step.pulling)
     _prepare_constraints(step.particles, step.constraints, given, h, step.wanted)
@@ -258,8 +259,7 @@ def _iterate(
         iterate_joints(step.delassus.joints, velocity, change, inverse_mass)
         sweep(contacts, terms, velocity, change, inverse_mass, step.delassus)
     add_change(velocity, change, inverse_mass)
-    for p in range(spin.shape[0]):
-        spin[p] = spin_of(terms.surface[p], spin[p], radius[p])
+    store_spins(terms, spin, radius)
 
 
 @dataclass(eq=False)

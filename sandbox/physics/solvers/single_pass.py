@@ -208,13 +208,13 @@ def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None
     if joints is not None:
         _give_joint_impulses(joints, world.velocity, world.inverse_mass, still)
     if contacts is not None:
-        from sandbox.physics.solvers.contact.gauss_seidel import lent_masses, store_spins, sweep_masses, terms_of
+        from sandbox.physics.solvers.contact.gauss_seidel import lent_masses, new_terms, sweep_masses
 
-        terms = terms_of(world, contacts.arrays)
+        count = world.particle_count
         sweep_masses(
-            contacts.arrays, terms, world.velocity, np.zeros((world.particle_count, 2)),
-            world.inverse_mass, world.derived(lent_masses), world.settings.iterations, substep.h,
+            contacts.arrays, new_terms(len(contacts.arrays.particle), np.zeros(count)), world.velocity,
+            np.zeros((count, 2)), world.inverse_mass, world.spin, world.radius, world.derived(lent_masses),
+            world.settings.iterations, substep.h,
         )  # fmt: skip
-        store_spins(world, terms)
     if joints is not None:
         _let_joints_follow(joints, world.velocity, still)

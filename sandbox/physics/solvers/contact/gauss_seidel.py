@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sandbox.physics.collision.turning import spin_of
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.equation import implicit_update
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
@@ -77,15 +78,18 @@ def new_terms(count: int, surface: Floats) -> ContactTerms:
     return ContactTerms._make([*numbers[:4], *pairs, numbers[4], surface])
 
 
-def terms_of(world: World, contacts: Contacts) -> ContactTerms:
-    """Terms of a step's contacts, whose particles turn as the world's do now."""
-    return new_terms(len(contacts.particle), world.spin * world.radius)
+@inner_kernel
+def load_surfaces(terms: ContactTerms, spin: Floats, radius: Floats) -> None:
+    """Let surfaces move as their particles turn now."""
+    for p in range(terms.surface.shape[0]):
+        terms.surface[p] = spin[p] * radius[p]
 
 
-def store_spins(world: World, terms: ContactTerms) -> None:
-    """Let the world's particles turn as sweeps have left them."""
-    turned = np.flatnonzero(terms.surface != world.spin * world.radius)
-    world.spin[turned] = terms.surface[turned] / world.radius[turned]
+@inner_kernel
+def store_spins(terms: ContactTerms, spin: Floats, radius: Floats) -> None:
+    """Let particles turn as sweeps have left their surfaces."""
+    for p in range(terms.surface.shape[0]):
+        spin[p] = spin_of(terms.surface[p], spin[p], radius[p])
 
 
 def no_blocks(particle_count: int, joints: Joints) -> Delassus:
@@ -424,12 +428,14 @@ def add_change(velocity: Floats, change: Floats, inverse_mass: Floats) -> None:
 
 @kernel
 def sweep_masses(
-    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, lent_masses: Any,
-    sweeps: int, h: float,
+    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, spin: Floats,
+    radius: Floats, lent_masses: Any, sweeps: int, h: float,
 ) -> None:  # fmt: skip
-    """Solve contacts of particles that answer by their own mass, and bring the velocities to the end of the step."""
+    """Solve contacts of particles that answer by their own mass; bring velocities and spins to the end of the step."""
     (delassus,) = contents(lent_masses)
+    load_surfaces(terms, spin, radius)
     load_biases(contacts, terms, h)
     load_responses(contacts, terms, inverse_mass, delassus)
     solve_contacts(contacts, terms, velocity, change, inverse_mass, delassus, sweeps, True)
     add_change(velocity, change, inverse_mass)
+    store_spins(terms, spin, radius)

@@ -21,6 +21,7 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     couple_of,
     load_biases,
     load_responses,
+    load_surfaces,
     solve_contacts,
 )
 from sandbox.physics.solvers.contact.islands import (
@@ -163,8 +164,7 @@ def _push_all(
     inverse_mass = state.inverse_mass
     load_responses(contacts, terms, inverse_mass, delassus)
     _clear(islands.change)
-    for p in range(terms.surface.shape[0]):
-        terms.surface[p] = state.spin[p] * state.radius[p]
+    load_surfaces(terms, state.spin, state.radius)
     solve_contacts(contacts, terms, islands.given, islands.change, inverse_mass, delassus, sweeps, hasten)
     _clear(islands.pushed)
     push = delassus.joints.push
