@@ -55,7 +55,8 @@ from sandbox.physics.forces import Forces, add_gravity_and_air, forces_of
 from sandbox.physics.integrate import advance, follow, turn
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
 from sandbox.physics.sanitise import LOST, UNSOUND, CheckedArrays, are_sound, checked_arrays, keep_if_sound
-from sandbox.physics.solvers.contact.free_contacts import Work, new_work, solve_free_contacts
+from sandbox.physics.solvers.contact.free_constraints import Work, new_work
+from sandbox.physics.solvers.contact.free_contacts import solve_free_contacts
 from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, new_islands, sort_free_contacts
 from sandbox.physics.solvers.contact.small_steps import small_steps
 from sandbox.physics.state import Floats, Slots

@@ -10,234 +10,62 @@ in small steps: where their number changed with what is near, a disc's energy wo
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from sandbox.physics.collision.restitution import SLOWEST_BOUNCE
-from sandbox.physics.collision.turning import SURFACE_WEIGHT, rolling_ratios, spin_of
+from sandbox.physics.collision.turning import SURFACE_WEIGHT, spin_of
 from sandbox.physics.collision.types import Colliders, Contacts
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inlined_kernel, inner_kernel, unsigned
+from sandbox.physics.solvers.contact.free_constraints import (
+    ACROSS,
+    ALONG,
+    ALONG_CENTRES,
+    APART_X,
+    APART_Y,
+    ARM,
+    BOUNCE,
+    COMING,
+    FOLLOWS,
+    FRICTION,
+    GAP,
+    HARDNESS,
+    MASS,
+    MASS_ACROSS,
+    NX,
+    NY,
+    OVERLAP_SHARE,
+    PER_REACH,
+    PUSHED_SURFACE,
+    PUSHED_X,
+    PUSHED_Y,
+    RATIO_P,
+    RATIO_Q,
+    REACH,
+    RESTITUTION,
+    ROLL_P,
+    ROLL_Q,
+    ROLLING,
+    ROLLING_MASS,
+    SURFACE,
+    TURN_P,
+    TURN_Q,
+    VX,
+    VY,
+    WAY,
+    WEIGHT_P,
+    WEIGHT_Q,
+    WX,
+    WY,
+    Work,
+    fill_constraints,
+    plan_islands,
+)
 from sandbox.physics.solvers.contact.free_islands import Islands
 from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH
-from sandbox.physics.solvers.contact.small_steps import MOST_SMALL_STEPS, small_steps
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.solvers.contact.small_steps import small_steps
+from sandbox.physics.state import Floats
 
-# Part of an overlap that a small step removes, and 1 - Cd of a contact while it does. More of the first, or less of the
-# second, shakes heaps; less of the first, or more of the second, lets them sink into each other.
-OVERLAP_SHARE = 0.05
-SOFTNESS = 0.013
-# Share of the smaller radius to which contacts sink in under the load of the last step; less costs small steps.
-DEEPEST = 0.04
-# The normal of discs is that of their centres where these lie off it by more than this share of the radii. More costs
-# angular momentum, less time.
-ALONG_CENTRES = 1e-12
-
-# Columns of a contact constraint, a row that lies together. What every iteration reads of it: normal; gap [m] by now;
-# impulse [N s] of a small step along, bounce [m/s], and the way of its normal: FOLLOWS the centres of discs, is COMING
-# where they are followed along their way and have not met yet, STANDS where one of those is pinned, or is no disc.
-NX, NY, GAP, ALONG, BOUNCE, WAY = range(6)
-FOLLOWS, COMING, STANDS = 0.0, 1.0, 2.0
-# And where it pushes: impulse across, friction, effective mass [kg] along and across, weight [1/kg] of its particles
-# and of their surfaces (0: it does not turn), the arm of friction as a share of the radii; rolling resistance, its
-# effective mass [kg], the smaller radius over each one's, and that times its TURN.
-ACROSS, FRICTION, MASS, MASS_ACROSS, WEIGHT_P, WEIGHT_Q, TURN_P, TURN_Q, ARM = range(6, 15)
-ROLLING, ROLLING_MASS, RATIO_P, RATIO_Q, ROLL_P, ROLL_Q = range(15, 21)
-# What the gap comes from: without what its particles are apart [m], of two discs minus their radii; how far two discs
-# are apart at the start [m], else 0; 1 over the radii [1/m]. Restitution; the depth [m] as deep as it should sink.
-REACH, APART_X, APART_Y, PER_REACH, RESTITUTION, DEPTH = range(21, 27)
-COLUMNS = 27
-# Columns of a place: velocity [m/s], way [m] so far, speed of its surface [m/s] = spin times radius; and what the
-# impulses of a small step add to the first and the last.
-VX, VY, WX, WY, SURFACE, PUSHED_X, PUSHED_Y, PUSHED_SURFACE = range(8)
-
-
-class Work(NamedTuple):
-    """Free contacts island by island, in the order in which they are solved; and their particles.
-
-    Contacts that share no particle that can move are solved in any order with the same result. So those of an island
-    are sorted by level, one above the highest before it at the same particles: what lies side by side in a level does
-    not wait for each other's velocities, which makes an iteration twice as fast.
-
-    By contact: constraint (k, COLUMNS); end (k, 2) = places of its particle and of what it pushes; contact. place
-    (k, 2), level: the ends and the level before they are sorted; at (k + 1,): where each level begins. By place:
-    particle, weight [1/kg], turning [1/kg] = the weight of its surface, motion (m, 8), see the columns, gain [m/s]
-    (m, 2) = what forces add to the velocity in the step, highest = level so far; what cannot move has a place for each
-    contact. local (n,): the place of a particle, -1: none. ahead [m] (n, 2): how much further than h v' each particle
-    has gone in the step. There is room for more.
-    """
-
-    constraint: Floats
-    end: Slots
-    contact: Slots
-    place: Slots
-    level: Slots
-    at: Slots
-    particle: Slots
-    weight: Floats
-    turning: Floats
-    motion: Floats
-    gain: Floats
-    highest: Slots
-    local: Slots
-    ahead: Floats
-
-
-@inner_kernel
-def _place_of(p: int, colliders: Colliders, start: Floats, spin: Floats, work: Work, count: int) -> tuple[int, int]:
-    # The place of a particle, and the number of places then.
-    if colliders.inverse_mass[p] > 0.0 and work.local[p] >= 0:
-        return work.local[p], count
-    work.local[p] = count
-    work.particle[count] = p
-    work.weight[count] = colliders.inverse_mass[p]
-    work.turning[count] = colliders.turning[p]
-    work.highest[count] = 0
-    for axis in range(2):
-        work.motion[count, VX + axis] = start[p, axis]
-        work.motion[count, WX + axis] = 0.0
-        work.motion[count, PUSHED_X + axis] = 0.0
-        work.gain[count, axis] = colliders.velocity[p, axis] - start[p, axis]
-    work.motion[count, SURFACE] = spin[p] * colliders.radius[p]
-    work.motion[count, PUSHED_SURFACE] = 0.0
-    return count, count + 1
-
-
-@inner_kernel
-def _place_of_edge(contacts: Contacts, c: int, start: Floats, work: Work, count: int) -> tuple[int, int]:
-    # The place of an edge that cannot move, be it of terrain or of a body, and the number of places then.
-    a = contacts.end_a[c]
-    b = contacts.end_b[c]
-    share = contacts.share[c]
-    work.particle[count] = contacts.particle[c]
-    work.weight[count] = 0.0
-    work.turning[count] = 0.0
-    work.highest[count] = 0
-    for column in range(8):
-        work.motion[count, column] = 0.0
-    for axis in range(2):
-        if b >= 0:
-            work.motion[count, VX + axis] = (1.0 - share) * start[a, axis] + share * start[b, axis]
-        work.gain[count, axis] = 0.0
-    return count, count + 1
-
-
-@inner_kernel
-def _place_contacts(
-    contacts: Contacts, islands: Islands, first: int, last: int, colliders: Colliders, start: Floats, spin: Floats,
-    work: Work, count: int,
-) -> int:  # fmt: skip
-    # The places and levels of an island's contacts, and where each level begins; the number of places then.
-    for level in range(last - first + 1):
-        work.at[level] = 0
-    for i in range(first, last):
-        c = islands.contact[i]
-        if contacts.end_b[c] < 0 and contacts.end_a[c] >= 0:
-            q, count = _place_of(contacts.end_a[c], colliders, start, spin, work, count)
-        else:
-            q, count = _place_of_edge(contacts, c, start, work, count)
-        level = work.highest[q]
-        p, count = _place_of(contacts.particle[c], colliders, start, spin, work, count)
-        level = max(level, work.highest[p])
-        if work.weight[p] > 0.0:
-            work.highest[p] = level + 1
-        if work.weight[q] > 0.0:
-            work.highest[q] = level + 1
-        work.place[i, 0] = p
-        work.place[i, 1] = q
-        work.level[i] = level
-        work.at[level + 1] += 1
-    total = 0
-    for level in range(last - first):
-        total += work.at[level + 1]
-        work.at[level + 1] = total
-    return count
-
-
-@inner_kernel
-def _fill_constraints(
-    contacts: Contacts, islands: Islands, first: int, last: int, colliders: Colliders, work: Work
-) -> None:
-    # The constraints of an island's contacts, level by level.
-    radius = colliders.radius
-    row = work.constraint
-    for i in range(first, last):
-        level = work.level[i]
-        k = first + work.at[level]
-        work.at[level] += 1
-        c = islands.contact[i]
-        p = work.place[i, 0]
-        q = work.place[i, 1]
-        work.contact[k] = c
-        work.end[k, 0] = p
-        work.end[k, 1] = q
-        mass = work.weight[p] + work.weight[q]
-        smaller = radius[contacts.particle[c]]
-        row[k, WEIGHT_P], row[k, WEIGHT_Q] = work.weight[p], work.weight[q]
-        row[k, APART_X], row[k, APART_Y] = 0.0, 0.0
-        row[k, TURN_P], row[k, TURN_Q] = work.turning[p], work.turning[q]
-        row[k, ARM], row[k, PER_REACH], row[k, WAY] = 1.0, 0.0, STANDS
-        row[k, REACH] = contacts.gap[c]
-        row[k, NX], row[k, NY] = contacts.normal[c, 0], contacts.normal[c, 1]
-        row[k, ALONG], row[k, ACROSS] = contacts.impulse[c, 0], contacts.impulse[c, 1]
-        disc = contacts.end_a[c] if contacts.end_b[c] < 0 else -1
-        if disc >= 0:
-            smaller = min(smaller, radius[disc])
-        row[k, MASS] = 1.0 / mass
-        row[k, MASS_ACROSS] = 1.0 / (mass + work.turning[p] + work.turning[q])
-        row[k, DEPTH] = DEEPEST * smaller
-        row[k, FRICTION], row[k, BOUNCE] = contacts.friction[c], contacts.bounce[c]
-        row[k, RESTITUTION] = contacts.restitution[c]
-        if disc >= 0:
-            _fill_pair(contacts, c, k, colliders, work)
-        ratio_p, ratio_q = rolling_ratios(contacts.particle[c], disc, colliders)
-        row[k, RATIO_P], row[k, RATIO_Q] = ratio_p, ratio_q
-        row[k, ROLL_P], row[k, ROLL_Q] = ratio_p * row[k, TURN_P], ratio_q * row[k, TURN_Q]
-        answer = ratio_p * row[k, ROLL_P] + ratio_q * row[k, ROLL_Q]
-        row[k, ROLLING] = contacts.rolling[c] if answer > 0.0 else 0.0
-        row[k, ROLLING_MASS] = 1.0 / answer if answer > 0.0 else 0.0
-
-
-@inner_kernel
-def _fill_pair(contacts: Contacts, c: int, k: int, colliders: Colliders, work: Work) -> None:
-    # What the constraint of two discs has of their places.
-    row = work.constraint
-    p = contacts.particle[c]
-    q = contacts.end_a[c]
-    nx = contacts.normal[c, 0]
-    ny = contacts.normal[c, 1]
-    dx = colliders.position[p, 0] - colliders.position[q, 0]
-    dy = colliders.position[p, 1] - colliders.position[q, 1]
-    reach = colliders.radius[p] + colliders.radius[q]
-    row[k, APART_X], row[k, APART_Y] = dx, dy
-    row[k, WAY] = FOLLOWS
-    row[k, REACH] = -reach
-    row[k, PER_REACH] = 1.0 / reach if reach > 0.0 else 0.0
-    row[k, ARM] = (nx * dx + ny * dy) * row[k, PER_REACH]
-    if abs(nx * dy - ny * dx) > ALONG_CENTRES * reach:
-        # Discs that are followed along their way will meet with their centres along the normal, but do not lie so yet.
-        row[k, ARM], row[k, WAY] = 1.0, STANDS
-        if row[k, WEIGHT_P] > 0.0 and row[k, WEIGHT_Q] > 0.0:
-            row[k, WAY] = COMING
-            row[k, BOUNCE] = -1.0
-            row[k, ALONG], row[k, ACROSS] = 0.0, 0.0
-
-
-@inner_kernel
-def _plan(work: Work, first: int, last: int, h: float) -> tuple[int, float]:
-    # Small steps of one island, and its softness: so deep sinks a contact that carries J in each step,
-    # SOFTNESS J h / (m OVERLAP_SHARE count^2).
-    row = work.constraint
-    count = small_steps(h)
-    deep = SOFTNESS * h / (OVERLAP_SHARE * count * count)
-    most = 1.0
-    for i in range(first, last):
-        if row[i, DEPTH] > 0.0:
-            most = max(most, row[i, ALONG] * deep / (row[i, MASS] * row[i, DEPTH]))
-    stiffer = 1.0
-    while count < MOST_SMALL_STEPS and stiffer < most:
-        count *= 2
-        stiffer *= 4.0
-    return count, SOFTNESS * (stiffer / most if stiffer > most else 1.0)
+# In place of a number of small steps.
+SOLVED = 0
 
 
 @inner_kernel
@@ -272,10 +100,10 @@ def _push(work: Work, i: int, nx: float, ny: float, jn: float, jt: float, arm: f
 
 
 @inner_kernel
-def _begin(work: Work, first: int, last: int, scale: float) -> None:
+def _begin(work: Work, count: int, scale: float) -> None:
     # The impulses that contacts bring along, as those of a small step.
     row = work.constraint
-    for c in range(first, last):
+    for c in range(count):
         i = unsigned(c)
         row[i, ALONG] *= scale
         row[i, ACROSS] *= scale
@@ -381,16 +209,15 @@ def _apply(
 
 
 @inlined_kernel
-def _iterate(work: Work, first: int, last: int, small: float, softness: float, pushes: bool, is_last: bool) -> None:
-    # One Gauss-Seidel iteration over contacts as they were looked at. pushes: what overlaps is pushed apart, with that
-    # softness; with the impulses of the other iteration of a small step the next one starts. is_last: whether the step
-    # ends with it; what would meet in the first small step of the next one, and bounce there, is not slowed before.
+def _iterate(work: Work, count: int, small: float, pushes: bool, is_last: bool) -> None:
+    # One Gauss-Seidel iteration over contacts as they were looked at. pushes: what overlaps is pushed apart, softly;
+    # with the impulses of the other iteration of a small step the next one starts. is_last: whether the step ends with
+    # it; what would meet in the first small step of the next one, and bounce there, is not slowed before.
     # J = max(0, (J - (u + b) m) / (1 + soft));  |J_t| <= friction J, against the slip of the surfaces
     row, end, motion = work.constraint, work.end, work.motion
     rate = 1.0 / small
-    hardness = 1.0 / (1.0 + softness)
     displaced = False
-    for c in range(first, last):
+    for c in range(count):
         if displaced:
             _look(work, c, c + 1)
         i = unsigned(c)
@@ -407,7 +234,7 @@ def _iterate(work: Work, first: int, last: int, small: float, softness: float, p
         along = nx * ux + ny * uy
         old = row[i, ALONG]
         bounce = row[i, BOUNCE]
-        bias, hard = _bias(bounce, gap, rate, hardness, pushes)
+        bias, hard = _bias(bounce, gap, rate, row[i, HARDNESS], pushes)
         if old == 0.0 and along + bias >= 0.0:
             continue
         if is_last and not bounce >= 0.0 and gap > 0.0 and row[i, RESTITUTION] > 0.0 and along < -SLOWEST_BOUNCE:
@@ -521,30 +348,76 @@ def _rigid_motion(work: Work, begin: int, end: int, colliders: Colliders) -> Rig
 
 
 @inner_kernel
-def _take_small_steps(work: Work, first: int, last: int, begin: int, end: int, h: float) -> int:
-    # All small steps of one island; their number.
+def _begin_small_step(work: Work, begin: int, end: int, scale: float) -> None:
+    # What forces add in a small step, and what the impulses of the last one do.
     motion = work.motion
-    count, softness = _plan(work, first, last, h)
+    for k in range(begin, end):
+        if work.weight[k] > 0.0:
+            for axis in range(2):
+                motion[k, VX + axis] += work.gain[k, axis] * scale + motion[k, PUSHED_X + axis]
+                motion[k, PUSHED_X + axis] = 0.0
+            motion[k, SURFACE] += motion[k, PUSHED_SURFACE]
+            motion[k, PUSHED_SURFACE] = 0.0
+
+
+@inner_kernel
+def _move(work: Work, begin: int, end: int, small: float) -> None:
+    for k in range(begin, end):
+        work.motion[k, WX] += small * work.motion[k, VX]
+        work.motion[k, WY] += small * work.motion[k, VY]
+
+
+@inner_kernel
+def _take_small_steps(work: Work, rows: int, besides: int, count: int, h: float) -> None:
+    # All small steps, so many, of islands side by side, whose contacts are the first rows.
     small = h / count
     scale = 1.0 / count
-    _begin(work, first, last, scale)
-    _look(work, first, last)
+    _begin(work, rows, scale)
+    _look(work, 0, rows)
     for step in range(count):
-        # The impulses of the last small step start this one.
-        for k in range(begin, end):
-            if work.weight[k] > 0.0:
-                for axis in range(2):
-                    motion[k, VX + axis] += work.gain[k, axis] * scale + motion[k, PUSHED_X + axis]
-                    motion[k, PUSHED_X + axis] = 0.0
-                motion[k, SURFACE] += motion[k, PUSHED_SURFACE]
-                motion[k, PUSHED_SURFACE] = 0.0
-        _iterate(work, first, last, small, softness, True, False)
-        for k in range(begin, end):
-            motion[k, WX] += small * motion[k, VX]
-            motion[k, WY] += small * motion[k, VY]
-        _look(work, first, last)
-        _iterate(work, first, last, small, 0.0, False, step == count - 1)
-    return count
+        for b in range(besides):
+            _begin_small_step(work, work.begin[work.beside[b]], work.begin[work.beside[b] + 1], scale)
+        _iterate(work, rows, small, True, False)
+        for b in range(besides):
+            _move(work, work.begin[work.beside[b]], work.begin[work.beside[b] + 1], small)
+        _look(work, 0, rows)
+        _iterate(work, rows, small, False, step == count - 1)
+
+
+@inner_kernel
+def _put_beside(work: Work, first: int, island_count: int) -> int:
+    # The islands from the first one on that are solved side by side with it, marked as solved; how many.
+    count = work.steps[first]
+    work.beside[0] = first
+    work.steps[first] = SOLVED
+    if work.alone[first]:
+        return 1
+    besides = 1
+    for g in range(first + 1, island_count):
+        if work.steps[g] == count and not work.alone[g]:
+            work.beside[besides] = g
+            work.steps[g] = SOLVED
+            besides += 1
+    return besides
+
+
+@inner_kernel
+def _solve_beside(
+    contacts: Contacts, islands: Islands, colliders: Colliders, besides: int, count: int, h: float, work: Work
+) -> None:
+    # Solve islands side by side, in so many small steps.
+    rows = fill_constraints(contacts, islands, colliders, besides, work)
+    for b in range(besides):
+        g = work.beside[b]
+        work.allowed[g] = _energy(work, work.begin[g], work.begin[g + 1], 1.0)
+    _take_small_steps(work, rows, besides, count, h)
+    for b in range(besides):
+        g = work.beside[b]
+        _restrain(work, work.begin[g], work.begin[g + 1], colliders, work.allowed[g])
+    for i in range(rows):
+        c = work.contact[i]
+        contacts.impulse[c, 0] = work.constraint[i, ALONG] * count
+        contacts.impulse[c, 1] = work.constraint[i, ACROSS] * count
 
 
 @inner_kernel
@@ -565,35 +438,15 @@ def solve_free_contacts(
         if colliders.inverse_mass[p] > 0.0 and not islands.is_bound[islands.label[p]]:
             work.ahead[p, 0] = early * (start[p, 0] - velocity[p, 0])
             work.ahead[p, 1] = early * (start[p, 1] - velocity[p, 1])
-    end = 0
+    plan_islands(contacts, islands, island_count, colliders, start, spin, h, work)
     for g in range(island_count):
-        first = islands.first[g]
-        last = islands.first[g + 1]
-        begin = end
-        end = _place_contacts(contacts, islands, first, last, colliders, start, spin, work, end)
-        _fill_constraints(contacts, islands, first, last, colliders, work)
-        allowed = _energy(work, begin, end, 1.0)
-        count = _take_small_steps(work, first, last, begin, end, h)
-        _restrain(work, begin, end, colliders, allowed)
-        for i in range(first, last):
-            c = work.contact[i]
-            contacts.impulse[c, 0] = work.constraint[i, ALONG] * count
-            contacts.impulse[c, 1] = work.constraint[i, ACROSS] * count
-    for k in range(end):
+        count = work.steps[g]
+        if count != SOLVED:
+            _solve_beside(contacts, islands, colliders, _put_beside(work, g, island_count), count, h, work)
+    for k in range(work.begin[island_count]):
         if work.weight[k] > 0.0:
             p = work.particle[k]
             for axis in range(2):
                 velocity[p, axis] = work.motion[k, VX + axis]
                 work.ahead[p, axis] = work.motion[k, WX + axis] - h * work.motion[k, VX + axis]
             spin[p] = spin_of(work.motion[k, SURFACE], spin[p], colliders.radius[p])
-
-
-def new_work(particles: int, contacts: int) -> Work:
-    """Work to be filled in, with room for so many contacts."""
-    places = 2 * contacts
-    return Work(
-        np.zeros((contacts, COLUMNS)), np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64),
-        np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64), np.zeros(contacts + 1, np.int64),
-        np.zeros(places, np.int64), np.zeros(places), np.zeros(places), np.zeros((places, 8)), np.zeros((places, 2)),
-        np.zeros(places, np.int64), np.zeros(particles, np.int64), np.zeros((particles, 2)),
-    )  # fmt: skip

@@ -1,0 +1,305 @@
+"""Free contacts as constraints: where each acts, in which order they are solved, and in how many small steps.
+
+Islands that take as many small steps are solved side by side: what does not touch does not wait for each other.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sandbox.physics.collision.turning import rolling_ratios
+from sandbox.physics.collision.types import Colliders, Contacts, Flags
+from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.solvers.contact.free_islands import Islands
+from sandbox.physics.solvers.contact.small_steps import MOST_SMALL_STEPS, small_steps
+from sandbox.physics.state import Floats, Slots
+
+# Part of an overlap that a small step removes, and 1 - Cd of a contact while it does. More of the first, or less of the
+# second, shakes heaps; less of the first, or more of the second, lets them sink into each other.
+OVERLAP_SHARE = 0.05
+SOFTNESS = 0.013
+# Share of the smaller radius to which contacts sink in under the load of the last step; less costs small steps.
+DEEPEST = 0.04
+# The normal of discs is that of their centres where these lie off it by more than this share of the radii. More costs
+# angular momentum, less time.
+ALONG_CENTRES = 1e-12
+
+# Columns of a contact constraint, a row that lies together. What every iteration reads of it: normal; gap [m] by now;
+# impulse [N s] of a small step along, bounce [m/s], and the way of its normal: FOLLOWS the centres of discs, is COMING
+# where they are followed along their way and have not met yet, STANDS where one of those is pinned, or is no disc.
+NX, NY, GAP, ALONG, BOUNCE, WAY = range(6)
+FOLLOWS, COMING, STANDS = 0.0, 1.0, 2.0
+# And where it pushes: impulse across, friction, effective mass [kg] along and across, weight [1/kg] of its particles
+# and of their surfaces (0: it does not turn), the arm of friction as a share of the radii; rolling resistance, its
+# effective mass [kg], the smaller radius over each one's, and that times its TURN.
+ACROSS, FRICTION, MASS, MASS_ACROSS, WEIGHT_P, WEIGHT_Q, TURN_P, TURN_Q, ARM = range(6, 15)
+ROLLING, ROLLING_MASS, RATIO_P, RATIO_Q, ROLL_P, ROLL_Q = range(15, 21)
+# What the gap comes from: without what its particles are apart [m], of two discs minus their radii; how far two discs
+# are apart at the start [m], else 0; 1 over the radii [1/m]. Restitution; how hard it is, 1 / (1 + softness).
+REACH, APART_X, APART_Y, PER_REACH, RESTITUTION, HARDNESS = range(21, 27)
+COLUMNS = 27
+# Columns of a place: velocity [m/s], way [m] so far, speed of its surface [m/s] = spin times radius; and what the
+# impulses of a small step add to the first and the last.
+VX, VY, WX, WY, SURFACE, PUSHED_X, PUSHED_Y, PUSHED_SURFACE = range(8)
+
+
+class Work(NamedTuple):
+    """Free contacts island by island, and as constraints in the order in which they are solved; and their particles.
+
+    Contacts that share no particle that can move are solved in any order with the same result. So those of islands that
+    are solved side by side are sorted by level, one above the highest before it at the same particles: what lies in a
+    level does not wait for each other's velocities, which makes an iteration twice as fast.
+
+    By contact as islands have them: place (k, 2) of its particle and of what it pushes; level, way (k,). As
+    constraints: constraint (k, COLUMNS); end (k, 2) = their places; contact (k,); at (k + 1,): scratch, where each
+    level goes on. By island: begin (g + 1,) = its first place; steps, hardness (g,); alone (g,) = whether nothing is
+    solved beside it; allowed [J] (g,) = the energy that it may end with; beside (g,) = the islands that are solved side
+    by side. By place: particle, weight [1/kg], turning [1/kg] = the weight of its surface, motion (m, 8), see the
+    columns, gain [m/s] (m, 2) = what forces add to the velocity in the step, highest = level so far; what cannot move
+    has a place for each contact. local (n,): the place of a particle, -1: none. ahead [m] (n, 2): how much further than
+    h v' each particle has gone in the step. There is room for more.
+    """
+
+    place: Slots
+    level: Slots
+    way: Floats
+    constraint: Floats
+    end: Slots
+    contact: Slots
+    at: Slots
+    begin: Slots
+    steps: Slots
+    hardness: Floats
+    alone: Flags
+    allowed: Floats
+    beside: Slots
+    particle: Slots
+    weight: Floats
+    turning: Floats
+    motion: Floats
+    gain: Floats
+    highest: Slots
+    local: Slots
+    ahead: Floats
+
+
+@inner_kernel
+def _place_of(p: int, colliders: Colliders, start: Floats, spin: Floats, work: Work, count: int) -> tuple[int, int]:
+    # The place of a particle, and the number of places then.
+    if colliders.inverse_mass[p] > 0.0 and work.local[p] >= 0:
+        return work.local[p], count
+    work.local[p] = count
+    work.particle[count] = p
+    work.weight[count] = colliders.inverse_mass[p]
+    work.turning[count] = colliders.turning[p]
+    work.highest[count] = 0
+    for axis in range(2):
+        work.motion[count, VX + axis] = start[p, axis]
+        work.motion[count, WX + axis] = 0.0
+        work.motion[count, PUSHED_X + axis] = 0.0
+        work.gain[count, axis] = colliders.velocity[p, axis] - start[p, axis]
+    work.motion[count, SURFACE] = spin[p] * colliders.radius[p]
+    work.motion[count, PUSHED_SURFACE] = 0.0
+    return count, count + 1
+
+
+@inner_kernel
+def _place_of_edge(contacts: Contacts, c: int, start: Floats, work: Work, count: int) -> tuple[int, int]:
+    # The place of an edge that cannot move, be it of terrain or of a body, and the number of places then.
+    a = contacts.end_a[c]
+    b = contacts.end_b[c]
+    share = contacts.share[c]
+    work.particle[count] = contacts.particle[c]
+    work.weight[count] = 0.0
+    work.turning[count] = 0.0
+    work.highest[count] = 0
+    for column in range(8):
+        work.motion[count, column] = 0.0
+    for axis in range(2):
+        if b >= 0:
+            work.motion[count, VX + axis] = (1.0 - share) * start[a, axis] + share * start[b, axis]
+        work.gain[count, axis] = 0.0
+    return count, count + 1
+
+
+@inlined_kernel
+def _disc_of(contacts: Contacts, c: int) -> int:
+    # The disc that a contact pushes, -1: it is an edge.
+    return contacts.end_a[c] if contacts.end_b[c] < 0 else -1
+
+
+@inner_kernel
+def _way_of(contacts: Contacts, c: int, colliders: Colliders) -> float:
+    # Discs that are followed along their way will meet with their centres along the normal, but do not lie so yet.
+    p, q = contacts.particle[c], _disc_of(contacts, c)
+    if q < 0:
+        return STANDS
+    dx = colliders.position[p, 0] - colliders.position[q, 0]
+    dy = colliders.position[p, 1] - colliders.position[q, 1]
+    reach = colliders.radius[p] + colliders.radius[q]
+    if not abs(contacts.normal[c, 0] * dy - contacts.normal[c, 1] * dx) > ALONG_CENTRES * reach:
+        return FOLLOWS
+    return COMING if colliders.inverse_mass[p] > 0.0 and colliders.inverse_mass[q] > 0.0 else STANDS
+
+
+@inner_kernel
+def _place_contact(
+    contacts: Contacts, islands: Islands, i: int, colliders: Colliders, start: Floats, spin: Floats, work: Work,
+    count: int,
+) -> int:  # fmt: skip
+    # The places, level and way of an island's contact; the number of places then.
+    c = islands.contact[i]
+    disc = _disc_of(contacts, c)
+    if disc >= 0:
+        q, count = _place_of(disc, colliders, start, spin, work, count)
+    else:
+        q, count = _place_of_edge(contacts, c, start, work, count)
+    level = work.highest[q]
+    p, count = _place_of(contacts.particle[c], colliders, start, spin, work, count)
+    level = max(level, work.highest[p])
+    if work.weight[p] > 0.0:
+        work.highest[p] = level + 1
+    if work.weight[q] > 0.0:
+        work.highest[q] = level + 1
+    work.place[i, 0] = p
+    work.place[i, 1] = q
+    work.level[i] = level
+    work.way[i] = _way_of(contacts, c, colliders)
+    return count
+
+
+@inlined_kernel
+def _smaller_radius(contacts: Contacts, c: int, colliders: Colliders) -> float:
+    smaller = colliders.radius[contacts.particle[c]]
+    disc = _disc_of(contacts, c)
+    return min(smaller, colliders.radius[disc]) if disc >= 0 else smaller
+
+
+@inner_kernel
+def _plan(contacts: Contacts, islands: Islands, g: int, colliders: Colliders, h: float, work: Work) -> None:
+    # Small steps of an island, and its softness: so deep sinks a contact that carries J in each step,
+    # SOFTNESS J h / (m OVERLAP_SHARE count^2).
+    count = small_steps(h)
+    deep = SOFTNESS * h / (OVERLAP_SHARE * count * count)
+    most = 1.0
+    work.alone[g] = False
+    for i in range(islands.first[g], islands.first[g + 1]):
+        if work.way[i] == COMING:
+            work.alone[g] = True
+            continue
+        c = islands.contact[i]
+        deepest = DEEPEST * _smaller_radius(contacts, c, colliders)
+        if deepest > 0.0:
+            mass = 1.0 / (work.weight[work.place[i, 0]] + work.weight[work.place[i, 1]])
+            most = max(most, contacts.impulse[c, 0] * deep / (mass * deepest))
+    stiffer = 1.0
+    while count < MOST_SMALL_STEPS and stiffer < most:
+        count *= 2
+        stiffer *= 4.0
+    work.steps[g] = count
+    work.hardness[g] = 1.0 / (1.0 + SOFTNESS * (stiffer / most if stiffer > most else 1.0))
+
+
+@inner_kernel
+def plan_islands(
+    contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: Floats, spin: Floats,
+    h: float, work: Work,
+) -> None:  # fmt: skip
+    """The places of all islands, and in how many small steps of h [s] each is solved; places are not known yet.
+
+    start [m/s] (n, 2): the velocities before anything acted in this step.
+    """
+    count = 0
+    for g in range(island_count):
+        work.begin[g] = count
+        for i in range(islands.first[g], islands.first[g + 1]):
+            count = _place_contact(contacts, islands, i, colliders, start, spin, work, count)
+        _plan(contacts, islands, g, colliders, h, work)
+    work.begin[island_count] = count
+
+
+@inner_kernel
+def fill_constraints(contacts: Contacts, islands: Islands, colliders: Colliders, besides: int, work: Work) -> int:
+    """The constraints of the islands that are solved side by side, so many of work.beside, by level; their number."""
+    at = work.at
+    total = 0
+    for b in range(besides):
+        total += islands.first[work.beside[b] + 1] - islands.first[work.beside[b]]
+    for level in range(total + 1):
+        at[level] = 0
+    for b in range(besides):
+        for i in range(islands.first[work.beside[b]], islands.first[work.beside[b] + 1]):
+            at[work.level[i] + 1] += 1
+    for level in range(total):
+        at[level + 1] += at[level]
+    for b in range(besides):
+        g = work.beside[b]
+        for i in range(islands.first[g], islands.first[g + 1]):
+            k = at[work.level[i]]
+            at[work.level[i]] += 1
+            work.constraint[k, HARDNESS] = work.hardness[g]
+            _fill_constraint(contacts, islands.contact[i], i, k, colliders, work)
+    return total
+
+
+@inner_kernel
+def _fill_constraint(contacts: Contacts, c: int, i: int, k: int, colliders: Colliders, work: Work) -> None:
+    row = work.constraint
+    p = work.place[i, 0]
+    q = work.place[i, 1]
+    work.contact[k] = c
+    work.end[k, 0] = p
+    work.end[k, 1] = q
+    mass = work.weight[p] + work.weight[q]
+    row[k, WEIGHT_P], row[k, WEIGHT_Q] = work.weight[p], work.weight[q]
+    row[k, APART_X], row[k, APART_Y] = 0.0, 0.0
+    row[k, TURN_P], row[k, TURN_Q] = work.turning[p], work.turning[q]
+    row[k, ARM], row[k, PER_REACH], row[k, WAY] = 1.0, 0.0, work.way[i]
+    row[k, REACH] = contacts.gap[c]
+    row[k, NX], row[k, NY] = contacts.normal[c, 0], contacts.normal[c, 1]
+    row[k, ALONG], row[k, ACROSS] = contacts.impulse[c, 0], contacts.impulse[c, 1]
+    row[k, MASS] = 1.0 / mass
+    row[k, MASS_ACROSS] = 1.0 / (mass + work.turning[p] + work.turning[q])
+    row[k, FRICTION], row[k, BOUNCE] = contacts.friction[c], contacts.bounce[c]
+    row[k, RESTITUTION] = contacts.restitution[c]
+    disc = _disc_of(contacts, c)
+    if disc >= 0:
+        _fill_pair(contacts, c, k, colliders, work)
+    ratio_p, ratio_q = rolling_ratios(contacts.particle[c], disc, colliders)
+    row[k, RATIO_P], row[k, RATIO_Q] = ratio_p, ratio_q
+    row[k, ROLL_P], row[k, ROLL_Q] = ratio_p * row[k, TURN_P], ratio_q * row[k, TURN_Q]
+    answer = ratio_p * row[k, ROLL_P] + ratio_q * row[k, ROLL_Q]
+    row[k, ROLLING] = contacts.rolling[c] if answer > 0.0 else 0.0
+    row[k, ROLLING_MASS] = 1.0 / answer if answer > 0.0 else 0.0
+
+
+@inner_kernel
+def _fill_pair(contacts: Contacts, c: int, k: int, colliders: Colliders, work: Work) -> None:
+    # What the constraint of two discs has of their places.
+    row = work.constraint
+    p = contacts.particle[c]
+    q = contacts.end_a[c]
+    dx = colliders.position[p, 0] - colliders.position[q, 0]
+    dy = colliders.position[p, 1] - colliders.position[q, 1]
+    reach = colliders.radius[p] + colliders.radius[q]
+    row[k, APART_X], row[k, APART_Y] = dx, dy
+    row[k, REACH] = -reach
+    row[k, PER_REACH] = 1.0 / reach if reach > 0.0 else 0.0
+    if row[k, WAY] == FOLLOWS:
+        row[k, ARM] = (contacts.normal[c, 0] * dx + contacts.normal[c, 1] * dy) * row[k, PER_REACH]
+    elif row[k, WAY] == COMING:
+        row[k, BOUNCE] = -1.0
+        row[k, ALONG], row[k, ACROSS] = 0.0, 0.0
+
+
+def new_work(particles: int, contacts: int) -> Work:
+    """Work to be filled in, with room for so many contacts."""
+    places = 2 * contacts
+    return Work(
+        np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64), np.zeros(contacts),
+        np.zeros((contacts, COLUMNS)), np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64),
+        np.zeros(contacts + 1, np.int64), np.zeros(contacts + 1, np.int64), np.zeros(contacts, np.int64),
+        np.zeros(contacts), np.zeros(contacts, np.bool_), np.zeros(contacts), np.zeros(contacts, np.int64),
+        np.zeros(places, np.int64), np.zeros(places), np.zeros(places), np.zeros((places, 8)), np.zeros((places, 2)),
+        np.zeros(places, np.int64), np.zeros(particles, np.int64), np.zeros((particles, 2)),
+    )  # fmt: skip
