@@ -5,7 +5,7 @@ from sandbox.physics.state import Slots
 
 
 @kernel
-def label_bodies(link_a, link_b, label):  # type: ignore[no-untyped-def]
+def label_bodies(link_a: Slots, link_b: Slots, label: Slots) -> None:
     """Label every node (n,) with the lowest node of its connected component; label holds 0..n-1 at the start."""
     for k in range(link_a.shape[0]):
         a = link_a[k]

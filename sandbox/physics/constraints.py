@@ -53,7 +53,7 @@ class ConstraintArrays(NamedTuple):
 
 
 @inner_kernel
-def area_of(place, first, last):  # type: ignore[no-untyped-def]
+def area_of(place: Floats, first: int, last: int) -> float:
     """Signed area of the polygon of the corners first..last at place (q, 2)."""
     total = 0.0
     x = place[first, 0]
@@ -66,7 +66,7 @@ def area_of(place, first, last):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _area_slope(place, first, last, slope):  # type: ignore[no-untyped-def]
+def _area_slope(place: Floats, first: int, last: int, slope: Floats) -> None:
     # dA / dx_i = the vector between its two neighbours, turned, over 2
     for c in range(first, last):
         before = c - 1 if c > first else last - 1
@@ -76,7 +76,7 @@ def _area_slope(place, first, last, slope):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _bend(place, first, cosine, sine, weight, slope):  # type: ignore[no-untyped-def]
+def _bend(place: Floats, first: int, cosine: float, sine: float, weight: Floats, slope: Floats) -> float:
     # e = the first link, turned by the rest angle; phi from e to the second link: cos(phi / 2) = |e + n| / 2,
     # sin(phi / 2) = |n - e| / 2, and the halves of those; no trigonometry.
     ax = place[first + 1, 0] - place[first, 0]
@@ -114,7 +114,9 @@ def _bend(place, first, cosine, sine, weight, slope):  # type: ignore[no-untyped
 
 
 @inner_kernel
-def evaluate(kind, place, first, last, rest, at, weight, slope):  # type: ignore[no-untyped-def]
+def evaluate(
+    kind: int, place: Floats, first: int, last: int, rest: Floats, at: int, weight: Floats, slope: Floats
+) -> float:
     """C of the constraint of rest[at] whose corners first..last are at place (q, 2); its gradient into slope (q, 2)."""
     if kind == AREA:
         _area_slope(place, first, last, slope)
@@ -123,7 +125,7 @@ def evaluate(kind, place, first, last, rest, at, weight, slope):  # type: ignore
 
 
 @inner_kernel
-def rest_mass(first, last, inverse_mass, particle, weight):  # type: ignore[no-untyped-def]
+def rest_mass(first: int, last: int, inverse_mass: Floats, particle: NDArray[np.int32], weight: Floats) -> float:
     """Effective mass of the corners first..last at rest; 0 where nothing of them can move."""
     # m = 1 / (sum of w |g|^2)
     total = 0.0
@@ -133,7 +135,7 @@ def rest_mass(first, last, inverse_mass, particle, weight):  # type: ignore[no-u
 
 
 @inner_kernel
-def look(first, last, position, particle, place):  # type: ignore[no-untyped-def]
+def look(first: int, last: int, position: Floats, particle: NDArray[np.int32], place: Floats) -> None:
     """Bring the corners first..last to where their particles are."""
     for c in range(first, last):
         place[c, 0] = position[particle[c], 0]
@@ -141,7 +143,7 @@ def look(first, last, position, particle, place):  # type: ignore[no-untyped-def
 
 
 @inner_kernel
-def constraint_rate(first, last, velocity, particle, slope):  # type: ignore[no-untyped-def]
+def constraint_rate(first: int, last: int, velocity: Floats, particle: NDArray[np.int32], slope: Floats) -> float:
     """dC/dt of the constraint of the corners first..last whose gradient is slope (q, 2)."""
     rate = 0.0
     for c in range(first, last):
@@ -150,7 +152,10 @@ def constraint_rate(first, last, velocity, particle, slope):  # type: ignore[no-
 
 
 @kernel
-def constraint_values(position, inverse_mass, constraints, place, value, mass, slope):  # type: ignore[no-untyped-def]
+def constraint_values(
+    position: Floats, inverse_mass: Floats, constraints: ConstraintArrays, place: Floats, value: Floats, mass: Floats,
+    slope: Floats,
+) -> None:  # fmt: skip
     """C (t,) and effective mass (t,) of all active constraints, 0 of others, with their gradients (q, 2)."""
     for k in range(constraints.kind.shape[0]):
         first = constraints.first[k]
@@ -164,7 +169,9 @@ def constraint_values(position, inverse_mass, constraints, place, value, mass, s
 
 
 @inner_kernel
-def explicit_mass(first, last, inverse_mass, particle, weight, slope):  # type: ignore[no-untyped-def]
+def explicit_mass(
+    first: int, last: int, inverse_mass: Floats, particle: NDArray[np.int32], weight: Floats, slope: Floats
+) -> tuple[float, float]:
     """Effective mass for a step on the old velocities: the less of the rest shape's and the present one's.
 
     Second: its share of the present one's.

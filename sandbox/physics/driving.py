@@ -12,7 +12,7 @@ from sandbox.physics.world import LAW_HOOKE, Floats, Slots, World
 
 
 @scalar_kernel
-def wave(tick, period, phase):  # type: ignore[no-untyped-def]
+def wave(tick: int, period: int, phase: float) -> float:
     """A wave of -1..1 at a tick: two parabolas, as smooth as a sine to the eye, that repeat exactly after a period."""
     # u = the part of the period that is over;  16 u (1/2 - u) in its first half, -16 (u - 1/2) (1 - u) in its second
     u = (tick % period) / period + phase
@@ -24,14 +24,19 @@ def wave(tick, period, phase):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _contract(tick, spring, amplitude, period, phase, natural_length, lengths):  # type: ignore[no-untyped-def]
+def _contract(
+    tick: int, spring: Slots, amplitude: Floats, period: Slots, phase: Floats, natural_length: Floats, lengths: Floats
+) -> None:
     # L = L0 (1 + amplitude wave)
     for k in range(spring.shape[0]):
         lengths[k] = natural_length[spring[k]] * (1.0 + amplitude[k] * wave(tick, period[k], phase[k]))
 
 
 @kernel
-def _extend(spring, shortest, longest, rate, part, actuator_value, rest_length, h, lengths):  # type: ignore[no-untyped-def]
+def _extend(
+    spring: Slots, shortest: Floats, longest: Floats, rate: Floats, part: Slots, actuator_value: Floats,
+    rest_length: Floats, h: float, lengths: Floats,
+) -> None:  # fmt: skip
     # L += value rate h, within shortest..longest
     for k in range(spring.shape[0]):
         wanted = rest_length[spring[k]] + actuator_value[part[k]] * rate[k] * h

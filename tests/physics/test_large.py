@@ -19,7 +19,7 @@ from tests.support.physics_scenes import run
 
 
 def by_fronts(world: World) -> bool:
-    return len(layout_of(world).system.matrix.fronts.first) > 0
+    return len(layout_of(world).system.fronts.first) > 0
 
 
 def mesh(seed: int, count: int = 500) -> World:
@@ -63,7 +63,7 @@ def play(world: World, ticks: int) -> World:
 def test_every_front_holds_all_that_its_rows_are_joined_to(seed):
     world = mesh(seed)
     system = layout_of(world).system
-    fronts, springs = system.matrix.fronts, system.springs
+    fronts, springs = system.fronts, system.springs
     borders = np.split(fronts.border, fronts.border_start[1:-1])
     own = [list(range(first, last)) for first, last in zip(fronts.first, fronts.last, strict=True)]
     rows = [[*eliminated, *border.tolist()] for eliminated, border in zip(own, borders, strict=True)]

@@ -53,7 +53,7 @@ def hash_after_play(seed):
 
 @pytest.mark.parametrize("build", [lambda: mesh(1), lambda: mesh(2), lambda: scenes.lattice(24).world()])
 def test_neither_half_of_a_body_is_joined_to_the_other(build):
-    fronts = layout_of(build()).system.matrix.fronts
+    fronts = layout_of(build()).system.fronts
     begin, end = fronts.fork[-1]
     assert 0 < begin < end < len(fronts.first)
     half = np.select([np.arange(len(fronts.first)) < begin, np.arange(len(fronts.first)) < end], [0, 1], 2)
@@ -66,7 +66,7 @@ def test_neither_half_of_a_body_is_joined_to_the_other(build):
 
 @pytest.mark.parametrize("build", [lambda: mesh(1), lambda: scenes.lattice(24).world()])
 def test_halves_wait_for_what_is_above_them_in_places_of_their_own(build):
-    fronts = layout_of(build()).system.matrix.fronts
+    fronts = layout_of(build()).system.fronts
     begin, end = fronts.fork[-1]
     border = 2 * np.diff(fronts.border_start)
     ends = fronts.remains + border * border
@@ -84,8 +84,8 @@ def test_the_second_half_is_the_one_that_leaves_the_least_to_do_in_turn():
 
 def test_a_body_that_gains_too_little_has_one_half_only(monkeypatch):
     monkeypatch.undo()
-    assert not layout_of(scenes.lattice(24).world()).system.matrix.fronts.fork.any()
-    assert layout_of(scenes.lattice(64).world()).system.matrix.fronts.fork.any()
+    assert not layout_of(scenes.lattice(24).world()).system.fronts.fork.any()
+    assert layout_of(scenes.lattice(64).world()).system.fronts.fork.any()
 
 
 @pytest.mark.parametrize("seed", [11, 12])
@@ -97,7 +97,7 @@ def test_one_thread_and_two_give_the_same_bits(seed, monkeypatch):
 
 def test_halves_and_the_sparse_factorisation_agree(monkeypatch):
     world = play(mesh(4), 8)
-    assert layout_of(world).system.matrix.fronts.fork.any()
+    assert layout_of(world).system.fronts.fork.any()
     monkeypatch.setattr(dissection, "SMALLEST_BODY", 10**9)
     assert np.abs(play(mesh(4), 8).position - world.position).max() < 1e-9
 
@@ -127,7 +127,7 @@ def test_the_second_thread_ends_with_the_pattern_that_it_serves(hired):
 @pytest.mark.skipif(not has_locks(), reason="there is one thread only")
 def test_the_second_thread_takes_the_half_that_is_offered_and_touches_no_other_row():
     world, alone = mesh(14), mesh(14)
-    fronts = layout_of(world).system.matrix.fronts
+    fronts = layout_of(world).system.fronts
     change = layout_of(world).system.rows.change
     run(world, 1)
     run(alone, 1)

@@ -258,7 +258,7 @@ def _find_room(system: System, touch: Touch) -> None:
         first_row = bodies.row_start[islands.body[k]]
         delassus.base[k] = base
         base += 4 * points * points
-        if system.matrix.fronts.of_row[first_row] < 0:
+        if system.fronts.of_row[first_row] < 0:
             columns = max(columns, 4 * points * (bodies.row_start[islands.body[k] + 1] - first_row))
     delassus.base[islands.counts[BODIES]] = base
     islands.counts[NUMBERS] = base

@@ -12,7 +12,7 @@ where it is foreseen to push, and has the same strength whatever Cs and Cd are: 
 from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, area_of, evaluate
 from sandbox.physics.equation import capped, implicit_impulse, implicit_masses
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.solvers.direct.system import Constraints, Inputs, Matrix, Span, State, System
+from sandbox.physics.solvers.direct.system import Constraints, Inputs, Span, State, System
 from sandbox.physics.world import HIGHEST_OF_RING, TRIANGLE, Floats
 
 # beta of the floor: the part of what is missing to it that a step wants back.
@@ -177,13 +177,14 @@ def _floor_energy(k: int, constraints: Constraints, error: float, h: float) -> f
 
 @inner_kernel
 def _add_block(
-    matrix: Matrix, fronted: bool, r: int, s: int, at: int, xx: float, xy: float, yx: float, yy: float
+    system: System, fronted: bool, r: int, s: int, at: int, xx: float, xy: float, yx: float, yy: float
 ) -> None:
     # Row r >= s, column s of the matrix, whose block lies at `at`.
+    matrix = system.matrix
     if fronted:
         # The upper triangle by rows: turned over.
-        numbers = matrix.fronts.numbers
-        width = matrix.fronts.row_width[s]
+        numbers = system.fronts.numbers
+        width = system.fronts.row_width[s]
         numbers[at] += xx
         numbers[at + 1] += yx
         numbers[at + width] += xy
@@ -202,8 +203,8 @@ def _add_block(
 @inner_kernel
 def assemble_constraints(span: Span, system: System, fronted: bool) -> None:
     """Add K g g^T of a body's narrow constraints to its matrix."""
-    constraints, matrix = system.constraints, system.matrix
-    free_count = matrix.diagonal.shape[0]
+    constraints = system.constraints
+    free_count = system.matrix.diagonal.shape[0]
     for k in range(span.first_constraint, span.last_constraint):
         if constraints.wide[k] >= 0:
             continue
@@ -216,8 +217,8 @@ def assemble_constraints(span: Span, system: System, fronted: bool) -> None:
             kx = constraints.along[k] * gx
             ky = constraints.along[k] * gy
             if r < free_count:
-                at = matrix.fronts.diagonal[r] if fronted else r
-                _add_block(matrix, fronted, r, r, at, kx * gx, kx * gy, kx * gy, ky * gy)
+                at = system.fronts.diagonal[r] if fronted else r
+                _add_block(system, fronted, r, r, at, kx * gx, kx * gy, kx * gy, ky * gy)
             at = constraints.block[k, corner]
             if at >= 0:
                 d = first + (corner + 1) % 3
@@ -225,9 +226,9 @@ def assemble_constraints(span: Span, system: System, fronted: bool) -> None:
                 ex = constraints.gradient[d, 0]
                 ey = constraints.gradient[d, 1]
                 if r > s:
-                    _add_block(matrix, fronted, r, s, at, kx * ex, kx * ey, ky * ex, ky * ey)
+                    _add_block(system, fronted, r, s, at, kx * ex, kx * ey, ky * ex, ky * ey)
                 else:
-                    _add_block(matrix, fronted, s, r, at, ex * kx, ex * ky, ey * kx, ey * ky)
+                    _add_block(system, fronted, s, r, at, ex * kx, ex * ky, ey * kx, ey * ky)
 
 
 @inner_kernel

@@ -17,19 +17,14 @@ from sandbox.physics.world import Floats
 @inner_kernel
 def solve_linear(span: Span, system: System) -> None:
     """Solve A D = right side for one body as it is linearised; D is left in `change`, the factor in the matrix."""
-    rows, matrix = system.rows, system.matrix
+    rows, fronts = system.rows, system.fronts
     load_residual(span, system)
     assemble(span, system)
-    if matrix.fronts.of_row[span.first_row] >= 0:
-        solve_fronts(False, span.first_row, span.last_row, matrix.fronts, rows.change)
+    if fronts.of_row[span.first_row] >= 0:
+        solve_fronts(False, span.first_row, span.last_row, fronts, rows.change)
     else:
-        factorise(
-            span.first_row, span.last_row, matrix.column_start, matrix.row, matrix.target_start, matrix.target,
-            matrix.where, matrix.diagonal, matrix.lower, matrix.scaled,
-        )  # fmt: skip
-        back_substitute(
-            span.first_row, span.last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
-        )  # fmt: skip
+        factorise(span.first_row, span.last_row, system.matrix)
+        back_substitute(span.first_row, span.last_row, system.matrix, rows.change)
     if span.last_constraint > span.first_constraint:
         _take_in_wide(span, system)
 
@@ -60,13 +55,11 @@ def respond(span: Span, system: System, vector: Floats) -> None:
 @inner_kernel
 def _substitute(span: Span, system: System) -> None:
     # Without wide constraints.
-    rows, matrix = system.rows, system.matrix
-    if matrix.fronts.of_row[span.first_row] >= 0:
-        solve_fronts(True, span.first_row, span.last_row, matrix.fronts, rows.change)
-        return
-    back_substitute(
-        span.first_row, span.last_row, matrix.column_start, matrix.row, matrix.diagonal, matrix.lower, rows.change
-    )  # fmt: skip
+    rows, fronts = system.rows, system.fronts
+    if fronts.of_row[span.first_row] >= 0:
+        solve_fronts(True, span.first_row, span.last_row, fronts, rows.change)
+    else:
+        back_substitute(span.first_row, span.last_row, system.matrix, rows.change)
 
 
 @inner_kernel

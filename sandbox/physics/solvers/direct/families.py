@@ -109,8 +109,8 @@ def assemble(span: Span, system: System) -> None:
     """A = M + sum [K n n^T + g (I - n n^T)] + sum K g g^T, of springs and narrow constraints."""
     rows, matrix = system.rows, system.matrix
     constrained = span.last_constraint > span.first_constraint
-    if matrix.fronts.of_row[span.first_row] >= 0:
-        clear_fronts(span.first_row, span.last_row, rows.inertia, matrix.fronts)
+    if system.fronts.of_row[span.first_row] >= 0:
+        clear_fronts(span.first_row, span.last_row, rows.inertia, system.fronts)
         assemble_springs_in_fronts(span, system)
         if constrained:
             assemble_constraints(span, system, True)

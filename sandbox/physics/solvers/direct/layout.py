@@ -16,7 +16,7 @@ from sandbox.physics.components import label_bodies
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import bundle
 from sandbox.physics.joints.limited_springs import unlimited_active
-from sandbox.physics.solvers.direct.system import Bodies, Constraints, Goals, Matrix, Rows, Springs, System
+from sandbox.physics.solvers.direct.system import Bodies, Constraints, Goals, Rows, Springs, System
 from sandbox.physics.solvers.linear.dissection import Dissection, dissect_bodies, make_fronts, spring_places
 from sandbox.physics.solvers.linear.fronts import Fronts
 from sandbox.physics.solvers.linear.minimum_degree import (
@@ -28,6 +28,7 @@ from sandbox.physics.solvers.linear.minimum_degree import (
     update_targets,
 )
 from sandbox.physics.solvers.linear.parallel import hire
+from sandbox.physics.solvers.linear.sparse_ldl import Matrix
 from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, Floats, Slots, World
 
 # First guess of blocks in the factor per particle; too low costs one more pass, too high memory.
@@ -59,7 +60,7 @@ def layout_of(world: World) -> SystemLayout:
 
 def _hired_layout(world: World) -> SystemLayout:
     layout = make_layout(world)
-    hire(layout, layout.system.matrix.fronts, layout.system.rows.change)
+    hire(layout, layout.system.fronts, layout.system.rows.change)
     return layout
 
 
@@ -120,6 +121,7 @@ def make_layout(world: World) -> SystemLayout:
         _lay_out_springs(chosen[grouped], row_a, row_b, place(row_a, row_b)),
         constraints,
         matrix,
+        fronts,
         goals,
         _lay_out_triangles(rows, constraints, goals, world),
     )
@@ -189,7 +191,7 @@ def lay_out_matrix(
 
     longest = int(lengths.max()) if count else 0
     numbers = np.zeros((count, 3)), np.zeros((len(row), 4)), np.zeros((longest, 4))
-    return Matrix(column_start, row, pairs, target, where, *numbers, fronts), place
+    return Matrix(column_start, row, pairs, target, where, *numbers), place
 
 
 def _choose_constraints(world: World, free: NDArray[np.bool_]) -> _Chosen:

@@ -8,10 +8,10 @@ no unit: neither size, nor mass, nor Cs, Cd and h are in it.
 
 import hashlib
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.energy import measure_constraints, reduced_masses
@@ -19,7 +19,7 @@ from sandbox.physics.forms import StiffForm
 from sandbox.physics.jit import kernel
 from sandbox.physics.solvers.direct.layout import lay_out_matrix, order_small
 from sandbox.physics.solvers.linear.dissection import make_fronts
-from sandbox.physics.solvers.linear.sparse_ldl import back_substitute, factorise
+from sandbox.physics.solvers.linear.sparse_ldl import Matrix, back_substitute, factorise
 from sandbox.physics.world import Floats, Slots, World
 
 # S + SHIFT M is factored, as S itself has no inverse. A higher one slows the iteration down in slender forms, whose
@@ -37,19 +37,6 @@ KEPT = 256
 _kept: dict[bytes, float] = {}
 
 
-class Blocks(NamedTuple):
-    """The matrix S + SHIFT M by columns, see `Matrix`."""
-
-    column_start: Slots
-    row: Slots
-    target_start: Slots
-    target: NDArray[np.int32]
-    where: Slots
-    diagonal: Floats
-    lower: Floats
-    scaled: Floats
-
-
 class HeldCorners(NamedTuple):
     """Springs, areas and bends alike: first (k+1,) = where corners begin, mass (k,); node (q,), gradient (q, 2)."""
 
@@ -60,15 +47,13 @@ class HeldCorners(NamedTuple):
 
 
 @kernel
-def _iterate_inversely(  # type: ignore[no-untyped-def]
-    blocks, rows, mass, rigid, vector, change, rounds, converged
-):
+def _iterate_inversely(
+    matrix: Matrix, rows: HeldCorners, mass: Floats, rigid: Floats, vector: Floats, change: Floats, rounds: int,
+    converged: float,
+) -> float:  # fmt: skip
     # x -> (S + SHIFT M)^-1 M x without its motions as a whole; the Rayleigh quotient x S x / x M x of the last x.
     count = mass.shape[0]
-    factorise(
-        0, count, blocks.column_start, blocks.row, blocks.target_start, blocks.target, blocks.where, blocks.diagonal,
-        blocks.lower, blocks.scaled,
-    )  # fmt: skip
+    factorise(0, count, matrix)
     quotient = 0.0
     for _ in range(rounds):
         for k in range(rigid.shape[0]):
@@ -102,9 +87,7 @@ def _iterate_inversely(  # type: ignore[no-untyped-def]
             quotient += rows.mass[k] * rate * rate
         if abs(quotient - before) <= converged * quotient:
             break
-        back_substitute(
-            0, count, blocks.column_start, blocks.row, blocks.diagonal, blocks.lower, change
-        )  # fmt: skip
+        back_substitute(0, count, matrix, change)
         for i in range(count):
             vector[i, 0] = change[i, 0]
             vector[i, 1] = change[i, 1]
@@ -154,12 +137,11 @@ def _find(form: StiffForm) -> float:
     rank = np.empty(count, dtype=np.int64)
     rank[order] = np.arange(count)
     matrix, place = lay_out_matrix(count, columns, rank, make_fronts(count, []))
-    blocks = Blocks(*(getattr(matrix, name) for name in Blocks._fields))
-    _assemble(blocks, rows, joined, mass, rank, place)
+    _assemble(matrix, rows, joined, mass, rank, place)
     vector, rigid = _start(points[order], mass[order])
     rows = rows._replace(node=rank[rows.node])
     found = _iterate_inversely(
-        blocks, rows, mass[order], rigid, vector, np.zeros((count, 2)), ROUNDS, CONVERGED
+        matrix, rows, mass[order], rigid, vector, np.zeros((count, 2)), ROUNDS, CONVERGED
     )  # fmt: skip
     return found if found >= NOT_STIFF else 0.0
 
@@ -192,8 +174,11 @@ def _rows(world: World, pairs: Slots, areas: Slots, bends: Slots) -> HeldCorners
     )
 
 
-def _assemble(blocks: Blocks, rows: HeldCorners, joined: _CornerPairs, mass: Floats, rank: Slots, place) -> None:  # type: ignore[no-untyped-def]
-    """Write S + SHIFT M into the blocks; place: the block that two rows share."""
+def _assemble(
+    matrix: Matrix, rows: HeldCorners, joined: _CornerPairs, mass: Floats, rank: Slots,
+    place: Callable[[Slots, Slots], Slots],
+) -> None:  # fmt: skip
+    """Write S + SHIFT M into the matrix; place: the block that two rows share."""
     a, b = rank[rows.node[joined.one]], rank[rows.node[joined.other]]
     # The row of the block is the later of the two.
     later, earlier = np.where(a >= b, joined.one, joined.other), np.where(a >= b, joined.other, joined.one)
@@ -205,10 +190,10 @@ def _assemble(blocks: Blocks, rows: HeldCorners, joined: _CornerPairs, mass: Flo
         g[:, 1] * weighted[:, 1],
     )
     own = np.flatnonzero(a == b)
-    blocks.diagonal[rank] = SHIFT * mass[:, None] * np.array([1.0, 0.0, 1.0])
-    np.add.at(blocks.diagonal, a[own], np.stack([xx, xy, yy], axis=1)[own])
+    matrix.diagonal[rank] = SHIFT * mass[:, None] * np.array([1.0, 0.0, 1.0])
+    np.add.at(matrix.diagonal, a[own], np.stack([xx, xy, yy], axis=1)[own])
     shared = np.flatnonzero(a != b)
-    np.add.at(blocks.lower, place(a[shared], b[shared]), np.stack([xx, xy, yx, yy], axis=1)[shared])
+    np.add.at(matrix.lower, place(a[shared], b[shared]), np.stack([xx, xy, yx, yy], axis=1)[shared])
 
 
 def _start(points: Floats, mass: Floats) -> tuple[Floats, Floats]:

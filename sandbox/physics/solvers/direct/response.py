@@ -6,8 +6,9 @@ It says how particles P that contacts touch answer to impulses.
 from sandbox.physics.jit import inner_kernel, unsigned
 from sandbox.physics.solvers.contact.gauss_seidel import Delassus
 from sandbox.physics.solvers.direct.factor import respond
-from sandbox.physics.solvers.direct.system import Constraints, Matrix, Span, System
+from sandbox.physics.solvers.direct.system import Constraints, Span, System
 from sandbox.physics.solvers.linear.fronts import ONE, TWO, ZERO, subtract_pair
+from sandbox.physics.solvers.linear.sparse_ldl import Matrix
 from sandbox.physics.world import Floats, Slots
 
 
@@ -18,7 +19,7 @@ def load_block(k: int, span: Span, system: System, delassus: Delassus, row: Slot
     columns = delassus.columns
     first = delassus.start[k]
     points = delassus.start[k + 1] - first
-    if matrix.fronts.of_row[span.first_row] >= 0:
+    if system.fronts.of_row[span.first_row] >= 0:
         _load_column_wise(k, span, system, delassus, row, vector)
         return
     width = 2 * points

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from sandbox.physics.collision.triangle_clamp import ClampedTriangles
 from sandbox.physics.jit import inlined_kernel
 from sandbox.physics.solvers.linear.fronts import Fronts
+from sandbox.physics.solvers.linear.sparse_ldl import Matrix
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.world import Floats, Slots
 
@@ -171,23 +172,6 @@ class Constraints(NamedTuple):
     scale: Floats
 
 
-class Matrix(NamedTuple):
-    """The matrix by columns: blocks below the diagonal, where their updates land, and the numbers.
-
-    Columns of large bodies are empty: those are in the fronts.
-    """
-
-    column_start: Slots
-    row: Slots
-    target_start: Slots
-    target: NDArray[np.int32]
-    where: Slots
-    diagonal: Floats
-    lower: Floats
-    scaled: Floats
-    fronts: Fronts
-
-
 class Goals(NamedTuple):
     """The jellies of the matrix by body: g groups of triangles that share sides, of k particles in all.
 
@@ -212,13 +196,17 @@ class Goals(NamedTuple):
 
 
 class System(NamedTuple):
-    """All of it. triangles: the narrow areas among the constraints, by their numbers, over the rows and `trial`."""
+    """All of it. matrix: the columns of large bodies are empty, those are in the fronts.
+
+    triangles: the narrow areas among the constraints, by their numbers, over the rows and `trial`.
+    """
 
     bodies: Bodies
     rows: Rows
     springs: Springs
     constraints: Constraints
     matrix: Matrix
+    fronts: Fronts
     goals: Goals
     triangles: ClampedTriangles
 

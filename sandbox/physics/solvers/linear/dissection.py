@@ -65,7 +65,9 @@ class FoundFronts(NamedTuple):
 
 
 @inner_kernel
-def _partition(first, last, split, apart, left, part, nodes, spare):  # type: ignore[no-untyped-def]
+def _partition(
+    first: int, last: int, split: int, apart: int, left: int, part: Slots, nodes: Slots, spare: Slots
+) -> None:
     # The left half, the right one and what separates them, each in the order that it has.
     at_left = first
     at_right = split
@@ -148,7 +150,7 @@ def _dissect(nodes: Halving, stack: Slots, waiting: Slots, fronts: FoundFronts, 
 
 
 @inner_kernel
-def _push(stack, top, begin, end, level, side):  # type: ignore[no-untyped-def]
+def _push(stack: Slots, top: int, begin: int, end: int, level: int, side: int) -> None:
     stack[top, 0] = begin
     stack[top, 1] = end
     stack[top, 2] = level
@@ -157,7 +159,7 @@ def _push(stack, top, begin, end, level, side):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _find_neighbours(link_a, link_b, start, near):  # type: ignore[no-untyped-def]
+def _find_neighbours(link_a: Slots, link_b: Slots, start: Slots, near: Slots) -> None:
     # start (n+1) begins as 0. A pair that two springs join is there twice.
     for k in range(link_a.shape[0]):
         start[link_a[k]] += 1
@@ -176,7 +178,10 @@ def _find_neighbours(link_a, link_b, start, near):  # type: ignore[no-untyped-de
 
 
 @kernel
-def _find_borders(start, near, order, rank, first, last, child, border_start, border, mark):  # type: ignore[no-untyped-def]
+def _find_borders(
+    start: Slots, near: Slots, order: Slots, rank: Slots, first: Slots, last: Slots, child: Slots, border_start: Slots,
+    border: Slots, mark: Slots,
+) -> bool:  # fmt: skip
     # False where `border` is too short.
     for front in range(first.shape[0]):
         top = border_start[front]
@@ -206,7 +211,9 @@ def _find_borders(start, near, order, rank, first, last, child, border_start, bo
 
 
 @kernel
-def _find_places(first, last, child, border_start, border, where, to_parent):  # type: ignore[no-untyped-def]
+def _find_places(
+    first: Slots, last: Slots, child: Slots, border_start: Slots, border: Slots, where: Slots, to_parent: Slots
+) -> None:
     for front in range(first.shape[0]):
         for row in range(first[front], last[front]):
             where[row] = row - first[front]

@@ -59,14 +59,18 @@ class Fronts(NamedTuple):
 
 
 @inner_kernel
-def subtract_pair(target, row, source, upper, lower, a, b, begin, end):  # type: ignore[no-untyped-def]
+def subtract_pair(
+    target: Floats, row: int, source: Floats, upper: int, lower: int, a: float, b: float, begin: int, end: int
+) -> None:
     """target[row + j] -= a source[upper + j] + b source[lower + j] for begin <= j < end, all unsigned."""
     for j in range(begin, end):
         target[row + j] -= a * source[upper + j] + b * source[lower + j]
 
 
 @inner_kernel
-def _subtract_panel(target, row, next_row, panel, stride, inverse, i, width):  # type: ignore[no-untyped-def]
+def _subtract_panel(
+    target: Floats, row: int, next_row: int, panel: Floats, stride: int, inverse: Floats, i: int, width: int
+) -> None:
     # Rows i and i + 1 of a front, which lie at row and next_row of target, less what eight pivots make of them.
     p1 = stride
     p2 = p1 + stride
@@ -106,7 +110,9 @@ def _subtract_panel(target, row, next_row, panel, stride, inverse, i, width):  #
 
 
 @inner_kernel
-def _eliminate_panel(numbers, base, width, begin, end, panel, stride, inverse):  # type: ignore[no-untyped-def]
+def _eliminate_panel(
+    numbers: Floats, base: int, width: int, begin: int, end: int, panel: Floats, stride: int, inverse: Floats
+) -> None:
     # Rows begin..end of a front become those of its factor, times their pivot; the panel is a copy of them, filled up
     # with rows that do nothing.
     for p in range(begin, end, TWO):
@@ -138,7 +144,10 @@ def _eliminate_panel(numbers, base, width, begin, end, panel, stride, inverse): 
 
 
 @inner_kernel
-def _eliminate_front(numbers, base, remainder, place, pivots, width, panel, stride, inverse, inverses, first_inverse):  # type: ignore[no-untyped-def]
+def _eliminate_front(
+    numbers: Floats, base: int, remainder: Floats, place: int, pivots: int, width: int, panel: Floats, stride: int,
+    inverse: Floats, inverses: Floats, first_inverse: int,
+) -> None:  # fmt: skip
     border = width - pivots
     for begin in range(ZERO, pivots, PANEL):
         end = min(begin + PANEL, pivots)
@@ -155,7 +164,10 @@ def _eliminate_front(numbers, base, remainder, place, pivots, width, panel, stri
 
 
 @inner_kernel
-def _add_child(numbers, base, remainder, place, pivots, width, child_place, places, begin, end):  # type: ignore[no-untyped-def]
+def _add_child(
+    numbers: Floats, base: int, remainder: Floats, place: int, pivots: int, width: int, child_place: int, places: Slots,
+    begin: int, end: int,
+) -> None:  # fmt: skip
     # What waits of a child, into the rows of its parent.
     border = width - pivots
     child_border = TWO * (end - begin)
@@ -181,7 +193,7 @@ def _add_child(numbers, base, remainder, place, pivots, width, child_place, plac
 
 
 @inner_kernel
-def add_block(numbers, at, width, sign, xx, xy, yy):  # type: ignore[no-untyped-def]
+def add_block(numbers: Floats, at: int, width: int, sign: float, xx: float, xy: float, yy: float) -> None:
     """Add a symmetric block, times a sign, to the one that begins at `at` in rows of `width`."""
     numbers[at] += sign * xx
     numbers[at + 1] += sign * xy
@@ -190,7 +202,7 @@ def add_block(numbers, at, width, sign, xx, xy, yy):  # type: ignore[no-untyped-
 
 
 @inner_kernel
-def clear_fronts(first_row, last_row, mass, fronts):  # type: ignore[no-untyped-def]
+def clear_fronts(first_row: int, last_row: int, mass: Floats, fronts: Fronts) -> None:
     """Begin the matrix of one body: its masses [kg], all else 0."""
     first_front = fronts.of_row[first_row]
     last = fronts.of_row[last_row - 1]
@@ -204,7 +216,7 @@ def clear_fronts(first_row, last_row, mass, fronts):  # type: ignore[no-untyped-
 
 
 @inner_kernel
-def factorise_fronts(first_front, last_front, fronts, scratch, change):  # type: ignore[no-untyped-def]
+def factorise_fronts(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: Floats) -> None:
     """Factor the fronts first_front..last_front in place, and begin to solve for their rows of change (n, 2)."""
     stride = unsigned(scratch.vector.shape[0])
     for front in range(first_front, last_front):
@@ -230,7 +242,7 @@ def factorise_fronts(first_front, last_front, fronts, scratch, change):  # type:
 
 
 @inner_kernel
-def _gather(front, fronts, vector, change):  # type: ignore[no-untyped-def]
+def _gather(front: int, fronts: Fronts, vector: Floats, change: Floats) -> None:
     k = 0
     for row in range(fronts.first[front], fronts.last[front]):
         vector[k] = change[row, 0]
@@ -244,7 +256,7 @@ def _gather(front, fronts, vector, change):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _scatter(front, fronts, vector, change):  # type: ignore[no-untyped-def]
+def _scatter(front: int, fronts: Fronts, vector: Floats, change: Floats) -> None:
     k = 0
     for row in range(fronts.first[front], fronts.last[front]):
         change[row, 0] = vector[k]
@@ -258,7 +270,9 @@ def _scatter(front, fronts, vector, change):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _substitute_forward(numbers, base, pivots, width, inverses, first_inverse, vector):  # type: ignore[no-untyped-def]
+def _substitute_forward(
+    numbers: Floats, base: int, pivots: int, width: int, inverses: Floats, first_inverse: int, vector: Floats
+) -> None:
     for p in range(ZERO, pivots, TWO):
         row = base + p * width
         x = vector[p] * inverses[first_inverse + p]
@@ -268,7 +282,9 @@ def _substitute_forward(numbers, base, pivots, width, inverses, first_inverse, v
 
 
 @inner_kernel
-def _substitute_back(numbers, base, pivots, width, inverses, first_inverse, vector):  # type: ignore[no-untyped-def]
+def _substitute_back(
+    numbers: Floats, base: int, pivots: int, width: int, inverses: Floats, first_inverse: int, vector: Floats
+) -> None:
     # Two rows at once, in four sums each: the order of a sum is part of the result.
     for back in range(ZERO, pivots, TWO):
         p = pivots - TWO - back
@@ -300,7 +316,7 @@ def _substitute_back(numbers, base, pivots, width, inverses, first_inverse, vect
 
 
 @inner_kernel
-def _eliminate_rows(front, fronts, vector, change):  # type: ignore[no-untyped-def]
+def _eliminate_rows(front: int, fronts: Fronts, vector: Floats, change: Floats) -> None:
     _gather(front, fronts, vector, change)
     _substitute_forward(
         fronts.numbers, unsigned(fronts.base[front]), TWO * unsigned(fronts.last[front] - fronts.first[front]),
@@ -310,14 +326,14 @@ def _eliminate_rows(front, fronts, vector, change):  # type: ignore[no-untyped-d
 
 
 @inner_kernel
-def eliminate_rows(first_front, last_front, fronts, scratch, change):  # type: ignore[no-untyped-def]
+def eliminate_rows(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: Floats) -> None:
     """Begin to solve for the rows of the factored fronts first_front..last_front of change (n, 2)."""
     for front in range(first_front, last_front):
         _eliminate_rows(front, fronts, scratch.vector, change)
 
 
 @inner_kernel
-def substitute_fronts(first_front, last_front, fronts, scratch, change):  # type: ignore[no-untyped-def]
+def substitute_fronts(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: Floats) -> None:
     """Finish solving for the rows of the fronts first_front..last_front of change (n, 2), in place."""
     for back in range(last_front - first_front):
         front = last_front - 1 - back

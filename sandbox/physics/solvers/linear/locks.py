@@ -16,13 +16,13 @@ def has_locks() -> bool:
 
 
 @inner_kernel
-def take(lock, wait):  # type: ignore[no-untyped-def]
+def take(lock: int, wait: int) -> bool:
     """Take a lock, waiting for it where `wait` is 1; whether it was had."""
     return _acquire(lock, wait) == 1
 
 
 @inner_kernel
-def give(lock):  # type: ignore[no-untyped-def]
+def give(lock: int) -> None:
     """Give a lock that is taken to whoever takes it next, in whatever thread."""
     _release(lock)
 

@@ -194,7 +194,7 @@ def minimum_degree(graph: QuotientGraph, order: Slots, columns: Columns, marks: 
 
 
 @kernel
-def update_targets(column_start, row, target, where):  # type: ignore[no-untyped-def]
+def update_targets(column_start: Slots, row: Slots, target: NDArray[np.int32], where: Slots) -> None:
     """For each column and each pair of its blocks, upper then lower: the block of the factor that the pair updates.
 
     The order is that in which the factorisation meets them; where (n,) is scratch.

@@ -12,7 +12,7 @@ from threading import Thread
 import numpy as np
 
 from sandbox.physics.jit import expect, inner_kernel, waiting_kernel
-from sandbox.physics.solvers.linear.fronts import Fronts, eliminate_rows, factorise_fronts, substitute_fronts
+from sandbox.physics.solvers.linear.fronts import Fronts, Scratch, eliminate_rows, factorise_fronts, substitute_fronts
 from sandbox.physics.solvers.linear.locks import Lock, give, has_locks, take
 from sandbox.physics.world import Floats, Slots
 
@@ -42,7 +42,7 @@ def find_fork(first: Slots, last: Slots, child: Slots, border_start: Slots) -> t
 
 
 @inner_kernel
-def _work(wanted, first_front, last_front, fronts, scratch, change):  # type: ignore[no-untyped-def]
+def _work(wanted: int, first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: Floats) -> None:
     if wanted == SUBSTITUTE:
         substitute_fronts(first_front, last_front, fronts, scratch, change)
     elif wanted == FACTOR:
@@ -52,7 +52,7 @@ def _work(wanted, first_front, last_front, fronts, scratch, change):  # type: ig
 
 
 @inner_kernel
-def _work_aside(wanted, body, fronts, change):  # type: ignore[no-untyped-def]
+def _work_aside(wanted: int, body: int, fronts: Fronts, change: Floats) -> None:
     # The second half of a body, given by its last front. What it makes of rows above both halves is kept apart.
     first_front = fronts.fork[body, 0]
     last_front = fronts.fork[body, 1]
@@ -70,7 +70,7 @@ def _work_aside(wanted, body, fronts, change):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _work_both(wanted, first_front, body, fronts, change):  # type: ignore[no-untyped-def]
+def _work_both(wanted: int, first_front: int, body: int, fronts: Fronts, change: Floats) -> None:
     call = fronts.call
     helped = call[DONE] != 0
     if helped:
@@ -85,7 +85,7 @@ def _work_both(wanted, first_front, body, fronts, change):  # type: ignore[no-un
 
 
 @inner_kernel
-def solve_fronts(factored, first_row, last_row, fronts, change):  # type: ignore[no-untyped-def]
+def solve_fronts(factored: bool, first_row: int, last_row: int, fronts: Fronts, change: Floats) -> None:
     """Solve for the rows of one body of change (n, 2), in place; its fronts are factored first, unless they are."""
     first_front = fronts.of_row[first_row]
     body = fronts.of_row[last_row - 1]
@@ -104,7 +104,7 @@ def solve_fronts(factored, first_row, last_row, fronts, change):  # type: ignore
 
 
 @waiting_kernel
-def _help(fronts, change):  # type: ignore[no-untyped-def]
+def _help(fronts: Fronts, change: Floats) -> None:
     call = fronts.call
     while True:
         take(call[OFFERED], 1)

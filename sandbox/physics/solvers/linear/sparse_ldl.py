@@ -1,29 +1,53 @@
 """Sparse factorisation of the direct solver: L D L^T of a symmetric positive definite matrix of 2x2 blocks."""
 
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.state import Floats, Slots
 
 # A pivot that is not above this share of the diagonal it came from is left out (its row does not move): only rounding,
 # overflow or NaN bring one there.
 SMALLEST_PIVOT = 1e-15
 
 
+class Matrix(NamedTuple):
+    """A symmetric matrix of n rows of 2x2 blocks by columns, then its factor: b blocks below the diagonal.
+
+    column_start (n+1,), row (b,) = where each column begins and the rows of its blocks. target_start (n+1,), target:
+    the block that each pair of blocks of a column updates, or empty: found anew then, by way of where (n,). diagonal
+    (n, 3) = the symmetric blocks (xx, xy, yy), lower (b, 4) = those below (xx, xy, yx, yy). scaled (longest column, 4)
+    is scratch.
+    """
+
+    column_start: Slots
+    row: Slots
+    target_start: Slots
+    target: NDArray[np.int32]
+    where: Slots
+    diagonal: Floats
+    lower: Floats
+    scaled: Floats
+
+
 @inner_kernel
-def inverse_pivot(pivot, original):  # type: ignore[no-untyped-def]
+def inverse_pivot(pivot: float, original: float) -> float:
     """1 / pivot; 0 where that is not a positive number of the original's order."""
     # Written so that NaN and infinities give 0.
     return 1.0 / pivot if pivot > SMALLEST_PIVOT * original else 0.0
 
 
 @inner_kernel
-def factorise(first, last, column_start, row, target_start, target, where, diagonal, lower, scaled):  # type: ignore[no-untyped-def]
-    """Factor the rows first..last in place.
+def factorise(first: int, last: int, matrix: Matrix) -> None:
+    """Factor the rows first..last in place: diagonal = 1 / d_x, l, 1 / d_y of each row's own two scalars, lower = L.
 
-    In: diagonal (n, 3) = the symmetric blocks (xx, xy, yy), lower (k, 4) = the blocks below them (xx, xy, yx, yy) by
-    column. Out: diagonal = 1 / d_x, l, 1 / d_y of each row's own two scalars, lower = the blocks of L. Scalars are
-    eliminated one by one: with inverted 2x2 blocks the error would grow with the square of stiffness over mass.
-    target: the block that each pair of blocks of a column updates, or empty: found anew then, by way of where (n,).
-    scaled (longest column, 4) is scratch.
+    Scalars are eliminated one by one: with inverted 2x2 blocks the error would grow with the square of stiffness over
+    mass.
     """
+    column_start, row, target, where = matrix.column_start, matrix.row, matrix.target, matrix.where
+    diagonal, lower, scaled = matrix.diagonal, matrix.lower, matrix.scaled
     for j in range(first, last):
         xx = diagonal[j, 0]
         yy = diagonal[j, 2]
@@ -44,7 +68,7 @@ def factorise(first, last, column_start, row, target_start, target, where, diago
             scaled[k, 2] = lower[at, 2] * inverse_x
             scaled[k, 3] = lower[at, 3] * inverse_y
         # A_ik -= L_ij D_j L_kj^T for every pair of rows i >= k of the column
-        found = target_start[j]
+        found = matrix.target_start[j]
         known = target.shape[0] > 0
         for at in range(begin, end):
             k = at - begin
@@ -75,8 +99,9 @@ def factorise(first, last, column_start, row, target_start, target, where, diago
 
 
 @inner_kernel
-def back_substitute(first, last, column_start, row, diagonal, lower, vector):  # type: ignore[no-untyped-def]
+def back_substitute(first: int, last: int, matrix: Matrix, vector: Floats) -> None:
     """Solve for the rows first..last of vector (n, 2) in place, with the factor that `factorise` left."""
+    column_start, row, diagonal, lower = matrix.column_start, matrix.row, matrix.diagonal, matrix.lower
     for j in range(first, last):
         x = vector[j, 0]
         y = vector[j, 1] - diagonal[j, 1] * x
