@@ -426,7 +426,8 @@ class Session:
         after = self._timeline[at:]
         self._timeline[at:] = sorted([*after, *entries], key=_order)
         if not after and entries[0].tick == self.tick:
-            # All else is as it was when it was made first.
+            # All else is as it was when it was made first; states that were kept since are without it.
+            self._keyframes.drop_after(first)
             self._follow(at, self.tick)
         else:
             self._step_again_from(first)

@@ -90,6 +90,19 @@ def test_redo_brings_back_the_run_with_the_gesture(session):
     assert session.can_undo and not session.can_redo
 
 
+def test_what_is_redone_where_it_was_done_is_there_after_going_back_and_forth(session):
+    _drag(session, 6, ticks=1)
+    session.submit(AddParticle((0.0, 1.0)))
+    session.apply_pending()
+    added = state_hash(session.world)
+    session.undo()
+    session.redo()
+    session.apply_pending()
+    session.seek(0)
+    session.seek(1)
+    assert state_hash(session.world) == added
+
+
 def test_a_new_gesture_ends_the_chance_to_redo(session):
     session.submit(Pin(3))
     session.advance()
