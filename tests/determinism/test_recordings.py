@@ -30,7 +30,7 @@ INTERPRETED_TICKS = 120
 INTERPRETED_WORK = 24_000
 INTERPRETED_TOUCHES = 2_000
 # Levels that share a fresh process, which takes seconds to start.
-SHARING = 6
+SHARING = 3
 SHARES = [shipped_levels()[first::SHARING] for first in range(SHARING)]
 
 
