@@ -4,6 +4,7 @@ import gc
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -183,9 +184,9 @@ class App:
         if self.play is not None:
             self._describe(self.play.playback.level.description or "This level says nothing of itself.")
 
-    def follow(self, playback: Playback) -> None:
+    def follow(self, playback: Playback, can_cancel: bool = True) -> None:
         """Show how far a run is that has to be played again, for an undo or a recording, where that takes long."""
-        playback.session.progress = self._progress.show
+        playback.session.progress = partial(self._progress.show, can_cancel=can_cancel)
 
     def open_gallery(self, section: str = "levels", query: str = "") -> None:
         """Choose a level or a recording; query: what is searched."""

@@ -224,7 +224,7 @@ class Application(Protocol):
         """Begin the lesson on Hooke's spring and the article's."""
         ...
 
-    def follow(self, playback: Playback) -> None:
+    def follow(self, playback: Playback, can_cancel: bool = True) -> None:
         """Show how far a run is that has to be played again."""
         ...
 

@@ -412,7 +412,7 @@ def test_a_window_made_smaller_and_larger_again_shows_what_it_showed(driver):
 def test_a_long_run_played_again_shows_how_far_it_is(driver, monkeypatch):
     now, shown = [0.0], []
     monkeypatch.setattr("sandbox.app.progress.time.perf_counter", lambda: now[0])
-    monkeypatch.setattr("sandbox.app.progress.draw_bar", lambda surface, ui, share, text: shown.append(share))
+    monkeypatch.setattr("sandbox.app.progress.draw_work", lambda surface, ui, share, *_: shown.append(share))
     for done in range(0, 1000, 100):
         now[0] += 0.06
         driver.playback.session.progress(done, 1000)

@@ -40,6 +40,8 @@ class CompareScreen(PlayScreen):
     # Below what stands over the halves.
     again_top = 104.0
     room_for_notices = ROOM_FOR_NOTICES
+    # One of them would be undone, and the other not.
+    can_cancel = False
 
     def __init__(self, app: Application, playback: TwinPlayback, other: TwinPlayback, source: Path | None) -> None:
         playback.pair(other)
@@ -53,7 +55,7 @@ class CompareScreen(PlayScreen):
         self._join_stages()
         # The beginning is the same in both: they show the same part of it.
         self.stage.place(self.viewport, app.ui.scale)
-        app.follow(other)
+        app.follow(other, self.can_cancel)
         if self.welcome:
             app.say(self.welcome)
 
@@ -143,7 +145,7 @@ class CompareScreen(PlayScreen):
         self.beside.replace_playback(other)
         self._join_stages()
         self.difference = Difference()
-        self._app.follow(other)
+        self._app.follow(other, self.can_cancel)
 
     def _reset(self) -> None:
         super()._reset()

@@ -66,6 +66,8 @@ class PlayScreen:
     again_top = 16.0
     # A world that is lower or narrower has notices over the status line [layout units].
     room_for_notices = ROOM_FOR_NOTICES
+    # Whether playing the run again can be cancelled.
+    can_cancel = True
 
     def __init__(
         self, app: Application, playback: Playback, source: Path | None = None, of_document: bool = False
@@ -96,7 +98,7 @@ class PlayScreen:
         # What was last said of what broke.
         self.told = ""
         self.actions = self._actions()
-        app.follow(playback)
+        app.follow(playback, self.can_cancel)
 
     @property
     def camera(self) -> Camera:
@@ -353,7 +355,7 @@ class PlayScreen:
         self._begin_again()
         self.stuck = StuckBodies()
         self.out_of_view = OutOfView()
-        self._app.follow(self.playback)
+        self._app.follow(self.playback, self.can_cancel)
         if self.panel is not None:
             self.panel.follow(self.playback)
 
