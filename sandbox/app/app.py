@@ -269,8 +269,8 @@ class App:
             do()
 
     def quit(self) -> None:
-        """Leave after this frame, once it is clear what becomes of changes that are not saved."""
-        self.documents.if_saved(self._stop)
+        """Leave after this frame, once it is clear what becomes of what is not saved, or not written yet."""
+        self.documents.if_saved(lambda: self.sharing.if_written(self._stop))
 
     def _stop(self) -> None:
         self.documents.give_up()

@@ -12,6 +12,7 @@ from sandbox.app.play.playback import Playback
 from sandbox.app.screen import Screen
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.share.film import Film
+from sandbox.app.share.film_pair import FilmPair
 from sandbox.app.shortcuts import Mode
 from sandbox.app.sound.sounds import Sounds
 from sandbox.app.widgets.ui import Ui
@@ -28,7 +29,7 @@ class Run(Screen, Protocol):
         """The run."""
         ...
 
-    def film(self, seconds: float) -> Film:
+    def film(self, seconds: float) -> Film | FilmPair:
         """Its last seconds [s], as it is seen now."""
         ...
 

@@ -19,6 +19,7 @@ from sandbox.app.play.stage import Stage
 from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Pixel, Pointer
+from sandbox.app.share.film_pair import FilmPair
 from sandbox.app.widgets.ui import Ui
 
 SIDES = ("A", "B")
@@ -156,6 +157,13 @@ class CompareScreen(PlayScreen):
         """Use kernels that have come about."""
         super().drop_caches()
         self.other.session.world.drop_caches()
+
+    def film(self, seconds: float) -> FilmPair:
+        """Both, each with what it is set to."""
+        assert self.beside is not None
+        words = [f"{side}   {lines[0]}" for side, lines in zip(SIDES, self.captions(), strict=True)]
+        films = [self._film_of(stage, seconds) for stage in (self.stage, self.beside)]
+        return FilmPair(films, words, self._is_wide)
 
     # Pointer: a press picks from the half that it is in, and what it does is done to both.
 

@@ -35,6 +35,7 @@ from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.profile import Profile
 from sandbox.app.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
 from sandbox.app.share.film import Film, last_ticks
+from sandbox.app.share.film_pair import FilmPair
 from sandbox.app.shortcuts import Mode, tip_of
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
@@ -373,11 +374,13 @@ class PlayScreen:
         if path is not None:
             self._app.say(f"Saved as {path}")
 
-    def film(self, seconds: float) -> Film:
+    def film(self, seconds: float) -> Film | FilmPair:
         """The chosen range of the run, or its last seconds [s], as it is seen now."""
-        stage, session = self.stage, self.playback.session
-        span = self.playback.travel.span or last_ticks(session, seconds)
-        return Film(session, stage.camera, stage.renderer, span, stage.fitted_box)
+        return self._film_of(self.stage, seconds)
+
+    def _film_of(self, stage: Stage, seconds: float) -> Film:
+        span = self.playback.travel.span or last_ticks(self.playback.session, seconds)
+        return Film(stage.playback.session, stage.camera, stage.renderer, span, self.stage.fitted_box)
 
     def drop_caches(self) -> None:
         """Use kernels that have come about."""
