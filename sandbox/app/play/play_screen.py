@@ -302,7 +302,7 @@ class PlayScreen:
         """Choose a part of the catalogue to drop."""
         world = self.playback.session.world
         self.part_page = PartPage(
-            self._ui, world, lambda: self._app.ready, self._take_part, self._open_catalogue, offset
+            self._ui, world, lambda: self._app.ready, self._take_part, self._open_catalogue, offset, self.stage.part
         )
 
     def _take_part(self, part: Level, by_key: bool) -> None:
