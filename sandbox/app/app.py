@@ -226,6 +226,10 @@ class App:
             "toy": self._start_toy,
         }
 
+    def _first_actions(self) -> dict[str, Callable[[], object]]:
+        """What can be done before there is a screen."""
+        return {"open": self.files.ask_to_open, "recordings": lambda: self.open_gallery("recordings")}
+
     def start_lesson(self) -> None:
         """Begin the lesson on Hooke's spring and the article's."""
         self.show_screen(HookeLesson(self))
@@ -260,7 +264,7 @@ class App:
     def actions(self) -> dict[str, Callable[[], object]]:
         """What can be done now, by the names of the table of shortcuts."""
         of_play = self._play_actions() if self.mode == "play" else {}
-        return self._own_actions | of_play | (self.screen.actions if self.screen is not None else {})
+        return self._own_actions | of_play | (self._first_actions() if self.screen is None else self.screen.actions)
 
     def act(self, action: str) -> None:
         """Do what a key or button asks for, where the screen knows it."""

@@ -122,6 +122,11 @@ class Files(Protocol):
 class Page(Protocol):
     """A page over the screen that takes keys and the wheel."""
 
+    @property
+    def is_on_top(self) -> bool:
+        """Whether no other page lies over it."""
+        ...
+
     def press_key(self, event: pygame.event.Event) -> bool:
         """React to a key; whether it has a meaning here."""
         ...
