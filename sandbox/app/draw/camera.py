@@ -105,21 +105,29 @@ class Camera:
         times = min(wide / max(right - left, 1e-9), tall / max(top - bottom, 1e-9), 1.0)
         self.zoom = max(self.zoom * times, ZOOM_RANGE[0])
 
+    def shows(self, box: Box) -> bool:
+        """Whether all of a box [m] is seen."""
+        left, top, width, height = self.viewport
+        x0, y1 = self.to_world((left, top))
+        x1, y0 = self.to_world((left + width, top + height))
+        return x0 <= box[0] and y0 <= box[1] and box[2] <= x1 and box[3] <= y1
+
     def reveal(self, box: Box) -> None:
         """Show a box [m] whole: move no farther than that takes, and zoom out where it is too large."""
-        left, bottom, right, top = box
-        (x0, y0), (x1, y1) = (
-            self.to_world((self.viewport[0], self.viewport[1] + self.viewport[3])),
-            self.to_world((self.viewport[0] + self.viewport[2], self.viewport[1])),
-        )
-        if x0 <= left and y0 <= bottom and right <= x1 and top <= y1:
+        if self.shows(box):
             return
         self.make_room(box)
+        left, bottom, right, top = box
         (wide, tall), (x, y) = self._room(), self.centre
-        self.centre = (
-            min(max(x, right - wide / 2), left + wide / 2),
-            min(max(y, top - tall / 2), bottom + tall / 2),
-        )
+        x = min(max(x, right - wide / 2), left + wide / 2)
+        y = min(max(y, top - tall / 2), bottom + tall / 2)
+        self.centre = (x, y)
+
+
+def union(*boxes: Box) -> Box:
+    """The box [m] around boxes."""
+    left, bottom, right, top = zip(*boxes, strict=True)
+    return min(left), min(bottom), max(right), max(top)
 
 
 def bounds(points: NDArray[np.float64]) -> Box:
