@@ -152,6 +152,7 @@ class App:
     def show_screen(self, screen: Screen) -> None:
         """Fill the window with another screen."""
         self.close_gallery()
+        self._describe("")
         if self.screen is not None and self.screen is not screen:
             self.screen.leave()
         self.screen = screen

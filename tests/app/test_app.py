@@ -338,6 +338,16 @@ def test_the_description_of_a_level_gives_way_to_that_of_the_next(driver):
     assert not driver.notices
 
 
+def test_the_description_of_a_level_does_not_stay_over_the_editor(driver):
+    driver.app.files.open_level(shipped_levels()[0], shipped=True)
+    driver.frames(2)
+    assert driver.playback.level.description in driver.notices
+    told = driver.playback.level.description
+    driver.app.documents.new()
+    driver.frames(2)
+    assert driver.app.mode == "edit" and told not in driver.notices
+
+
 def test_every_action_of_the_shortcut_table_exists_and_every_action_is_in_the_table(driver):
     named = {entry.action for entry in shortcuts("play") if entry.action}
     assert named == set(driver.app.actions)
