@@ -193,7 +193,7 @@ class App:
         """Choose a level or a recording; query: what is searched."""
         self.close_gallery()
         self._describe("")
-        for said in (LEFT_VIEW, "" if self.play is None else self.play.told):
+        for said in (LEFT_VIEW, *(() if self.play is None else (self.play.told, self.play.welcome))):
             self.status.take_back(said)
         self.gallery = Gallery(self.ui, self, section, self.close_gallery, query)
 

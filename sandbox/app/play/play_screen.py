@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import ClassVar
 
 import pygame
 
@@ -67,6 +68,8 @@ class PlayScreen:
     again_top = 16.0
     # A world that is lower or narrower has notices over the status line [layout units].
     room_for_notices = ROOM_FOR_NOTICES
+    # What is said as it opens.
+    welcome: ClassVar[str] = ""
     # Whether playing the run again can be cancelled.
     can_cancel = True
 
