@@ -541,6 +541,22 @@ def test_levels_are_checked_in_processes_with_the_same_lines_in_the_same_order(t
     assert alone.err.startswith(three_levels[1])
 
 
+def test_checks_are_told_to_programs_as_an_object_a_level(three_levels, capfd):
+    assert main(["check", "--json", *three_levels]) == 2
+    told = capfd.readouterr()
+    failed, refused, passed = (json.loads(line) for line in told.out.splitlines())
+    assert told.err == ""
+    assert [each["result"] for each in (failed, refused, passed)] == ["failed", "refused", "passed"]
+    assert [each["file"] for each in (failed, refused, passed)] == three_levels
+    assert refused["faults"][0].startswith(f"{three_levels[1]}: settings.tick_rate")
+    (check,), (held,) = failed["checks"], passed["checks"]
+    assert (check["name"], check["metric"], check["passed"], held["passed"]) == ("stays up", "y", False, True)
+    assert check["value"] == held["value"] and check["value"] < 5.0 and check["at"] == pytest.approx(1.0)
+    assert passed["level"] == ROPE["name"] and passed["stability"]["within_limit"] in (True, False, None)
+    assert main(["check", "--json", "--processes", "2", *three_levels]) == 2
+    assert capfd.readouterr() == told
+
+
 @pytest.mark.skipif(os.name != "posix", reason="sends an interrupt to a group of processes, as a terminal does")
 def test_an_interrupt_of_checks_in_processes_ends_all_of_them_without_a_word(rope, tmp_path):
     endless = tmp_path / "endless.json"

@@ -4,6 +4,7 @@ import gc
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -151,6 +152,7 @@ class App:
     def show_screen(self, screen: Screen) -> None:
         """Fill the window with another screen."""
         self.close_gallery()
+        self._describe("")
         if self.screen is not None and self.screen is not screen:
             self.screen.leave()
         self.screen = screen
@@ -183,15 +185,15 @@ class App:
         if self.play is not None:
             self._describe(self.play.playback.level.description or "This level says nothing of itself.")
 
-    def follow(self, playback: Playback) -> None:
+    def follow(self, playback: Playback, can_cancel: bool = True) -> None:
         """Show how far a run is that has to be played again, for an undo or a recording, where that takes long."""
-        playback.session.progress = self._progress.show
+        playback.session.progress = partial(self._progress.show, can_cancel=can_cancel)
 
     def open_gallery(self, section: str = "levels", query: str = "") -> None:
         """Choose a level or a recording; query: what is searched."""
         self.close_gallery()
         self._describe("")
-        for said in (LEFT_VIEW, "" if self.play is None else self.play.told):
+        for said in (LEFT_VIEW, *(() if self.play is None else (self.play.told, self.play.welcome))):
             self.status.take_back(said)
         self.gallery = Gallery(self.ui, self, section, self.close_gallery, query)
 
@@ -224,6 +226,10 @@ class App:
             "sound": self._toggle_sound,
             "toy": self._start_toy,
         }
+
+    def _first_actions(self) -> dict[str, Callable[[], object]]:
+        """What can be done before there is a screen."""
+        return {"open": self.files.ask_to_open, "recordings": lambda: self.open_gallery("recordings")}
 
     def start_lesson(self) -> None:
         """Begin the lesson on Hooke's spring and the article's."""
@@ -259,7 +265,7 @@ class App:
     def actions(self) -> dict[str, Callable[[], object]]:
         """What can be done now, by the names of the table of shortcuts."""
         of_play = self._play_actions() if self.mode == "play" else {}
-        return self._own_actions | of_play | (self.screen.actions if self.screen is not None else {})
+        return self._own_actions | of_play | (self._first_actions() if self.screen is None else self.screen.actions)
 
     def act(self, action: str) -> None:
         """Do what a key or button asks for, where the screen knows it."""
@@ -268,8 +274,8 @@ class App:
             do()
 
     def quit(self) -> None:
-        """Leave after this frame, once it is clear what becomes of changes that are not saved."""
-        self.documents.if_saved(self._stop)
+        """Leave after this frame, once it is clear what becomes of what is not saved, or not written yet."""
+        self.documents.if_saved(lambda: self.sharing.if_written(self._stop))
 
     def _stop(self) -> None:
         self.documents.give_up()

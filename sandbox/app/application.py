@@ -12,6 +12,7 @@ from sandbox.app.play.playback import Playback
 from sandbox.app.screen import Screen
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.share.film import Film
+from sandbox.app.share.film_pair import FilmPair
 from sandbox.app.shortcuts import Mode
 from sandbox.app.sound.sounds import Sounds
 from sandbox.app.widgets.ui import Ui
@@ -28,7 +29,7 @@ class Run(Screen, Protocol):
         """The run."""
         ...
 
-    def film(self, seconds: float) -> Film:
+    def film(self, seconds: float) -> Film | FilmPair:
         """Its last seconds [s], as it is seen now."""
         ...
 
@@ -120,6 +121,11 @@ class Files(Protocol):
 
 class Page(Protocol):
     """A page over the screen that takes keys and the wheel."""
+
+    @property
+    def is_on_top(self) -> bool:
+        """Whether no other page lies over it."""
+        ...
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """React to a key; whether it has a meaning here."""
@@ -224,7 +230,7 @@ class Application(Protocol):
         """Begin the lesson on Hooke's spring and the article's."""
         ...
 
-    def follow(self, playback: Playback) -> None:
+    def follow(self, playback: Playback, can_cancel: bool = True) -> None:
         """Show how far a run is that has to be played again."""
         ...
 

@@ -15,6 +15,7 @@ from sandbox.level.format.writing import refusal_of
 from sandbox.session.replay.reader import begins_as_replay, read_replay
 from sandbox.session.replay.recording import ReplayError
 from sandbox.session.sweep.grid import SweepError
+from sandbox.session.whole import Interrupted
 
 # How the name of a sweep's table ends.
 TABLE = ".csv"
@@ -148,6 +149,8 @@ class FileActions:
             self.app.say(f"The recording cannot be written{where}: {error.strerror or error}.")
         except ValueError as error:
             self.app.say(f"The recording cannot be made: {error}.")
+        except Interrupted:
+            self.app.say("Cancelled: no recording was made.")
         return None
 
     def _stop_and_name(self) -> None:

@@ -20,6 +20,8 @@ REPEATED = (
 )  # fmt: skip
 # Actions that lay the widgets out anew, which keeps what is being typed; they work over a page, too.
 LAYOUT = ("fullscreen", "larger", "smaller")
+# Actions that open something else to play, or a page over it, which a gallery that nothing lies over has too.
+OF_GALLERY = ("open", "open_file", "recent", "recordings", "new", "settings", "help", "tour")
 HIDING = (pygame.WINDOWMINIMIZED, pygame.WINDOWHIDDEN)
 SHOWING = (pygame.WINDOWRESTORED, pygame.WINDOWSHOWN, pygame.WINDOWEXPOSED, pygame.WINDOWMAXIMIZED)
 ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, 1), pygame.K_DOWN: (0, -1)}
@@ -123,12 +125,17 @@ class Input:
         self._held_keys.add(event.key)
         if is_repeated and action not in REPEATED:
             return
-        if action is None or (app.ui.has_sheet and action not in ("quit", *LAYOUT)):
+        if action is None or (app.ui.has_sheet and not self._works_over_pages(action)):
             return
         if app.ui.typing and action not in LAYOUT:
             # What is being typed counts: it is not saved without it.
             app.ui.blur()
         app.act(action)
+
+    def _works_over_pages(self, action: str) -> bool:
+        gallery = self.app.gallery
+        in_gallery = gallery is not None and gallery.is_on_top
+        return action in ("quit", *LAYOUT) or (in_gallery and action in OF_GALLERY)
 
     def _space_up(self) -> None:
         pressed, self._space_down = self._space_down, None

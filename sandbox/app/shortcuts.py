@@ -53,7 +53,7 @@ SHORTCUTS = (
     Shortcut("tool_wind", ("V",), "Wind: it blows along a drag", "Parts", "play"),
     Shortcut("tool_delete", ("X",), "Delete: click takes a thing out", "Parts", "play"),
     Shortcut("tool_freeze", ("I",), "Freeze or thaw a body", "Parts", "play"),
-    Shortcut("", ("Wheel", "+", "-"), "With a part or push: larger, smaller", "Parts", "play"),
+    Shortcut("", ("Wheel", "+/-"), "With a part or push: larger, smaller", "Parts", "play"),
     Shortcut("", ("Shift+click",), "Keep hold of a particle; a click lets go", "Tools", "play"),
     Shortcut("lattice", ("L",), "Lattice: springs, coloured by their strain", "View", "play"),
     Shortcut("particles", ("F3",), "Particles", "View", "play"),

@@ -1,6 +1,7 @@
 """`sandbox check`."""
 
 import argparse
+import json
 import sys
 from contextlib import closing
 
@@ -16,6 +17,7 @@ def add(commands: Commands) -> None:
     """The command."""
     parser = add_command(commands, "check", check, "validate levels, report their stability, run the checks they carry")
     parser.add_argument("levels", nargs="+", metavar="LEVEL")
+    parser.add_argument("--json", action="store_true", help="print one JSON object a level")
     parser.add_argument(
         "--processes", type=processes, metavar="N", help="check so many at a time; default: by cores and levels"
     )
@@ -31,10 +33,11 @@ def check(options: argparse.Namespace) -> int:
     with Progress(len(names), "level") as bar, closing(check_levels(names, at_once)) as reports:
         for found in reports:
             with bar.aside():
-                for line in found.lines:
+                for line in [json.dumps(found.data)] if options.json else found.lines:
                     print(line)
                 sys.stdout.flush()
-                tell(found.faults)
+                if not options.json:
+                    tell(found.faults)
             worst = max(worst, EXIT_REFUSED if found.faults else EXIT_OK if found.passed else EXIT_FAILED)
             bar.update()
     return worst

@@ -1,19 +1,26 @@
 """Checking: what is to be said of level files, one after another or in processes."""
 
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 from sandbox.level.build.build_world import build_world
+from sandbox.level.checks import CheckResult
 from sandbox.level.format.files import LevelError, load_level
 from sandbox.physics.stability import report
 from sandbox.session.check_run import run_checks
+from sandbox.session.probe import finite
 from sandbox.session.worker_pool import interrupts_ignored, worker_pool
 
 
 @dataclass(frozen=True)
 class LevelReport:
-    """What came of a level: lines about it, or the faults for which it was refused; passed: whether its checks held."""
+    """What came of a level: lines about it, or the faults for which it was refused; passed: whether its checks held.
 
+    data: all of that for programs, ready for JSON.
+    """
+
+    data: dict[str, Any]
     lines: tuple[str, ...] = ()
     faults: tuple[str, ...] = ()
     passed: bool = False
@@ -24,7 +31,7 @@ def check_level(name: str) -> LevelReport:
     try:
         level = load_level(name)
     except LevelError as error:
-        return LevelReport(faults=tuple(error.faults))
+        return LevelReport({"file": name, "result": "refused", "faults": error.faults}, faults=tuple(error.faults))
     stability = report(build_world(level))
     results = run_checks(level)
     lines = (
@@ -34,7 +41,21 @@ def check_level(name: str) -> LevelReport:
         f"{stability.estimated_limit:.3g} estimated, {stability.article_limit:.3g} by the article's 1/(n+1)",
         *(f"  check      {result.text}" for result in results),
     )
-    return LevelReport(lines, passed=all(result.passed for result in results))
+    passed = all(result.passed for result in results)
+    data: dict[str, Any] = {
+        "file": name, "result": "passed" if passed else "failed", "level": level.name, "stability": asdict(stability),
+        "checks": [_told(result) for result in results],
+    }  # fmt: skip
+    return LevelReport(finite(data), lines, passed=passed)
+
+
+def _told(result: CheckResult) -> dict[str, Any]:
+    """A check that was run, for programs."""
+    check = result.check
+    return {
+        "name": check.name, "metric": check.metric, "passed": result.passed, "value": result.value, "at": result.at,
+        "text": result.text,
+    }  # fmt: skip
 
 
 def check_levels(names: Sequence[str], processes: int) -> Generator[LevelReport, None, None]:

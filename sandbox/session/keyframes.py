@@ -3,6 +3,7 @@
 import bisect
 from collections import deque
 from collections.abc import Iterator
+from copy import copy
 from dataclasses import dataclass, replace
 
 from sandbox.physics.snapshot import Snapshot, take
@@ -53,6 +54,12 @@ class Keyframes:
     def first(self) -> Keyframe:
         """Where the run began."""
         return self._kept[0]
+
+    def copy(self) -> "Keyframes":
+        """The same ones."""
+        result = copy(self)
+        result._kept, result._passed = self._kept.copy(), self._passed.copy()
+        return result
 
     def before(self, tick: int) -> Keyframe:
         """The last one at or before a tick."""

@@ -28,6 +28,19 @@ class LogEntry:
 
 
 @dataclass(frozen=True, eq=False)
+class Branch:
+    """How a run went on from a tick (0..) before something else was done there; see Session.return_to.
+
+    history: its commands from the beginning; last_tick: how far it went; breaks: ticks in which springs broke.
+    """
+
+    tick: int
+    history: tuple[LogEntry, ...]
+    last_tick: int
+    breaks: frozenset[int]
+
+
+@dataclass(frozen=True, eq=False)
 class Reached:
     """A state that a run was in once its history was this, whose tick is the last; idle: what of it had no effect.
 
@@ -59,6 +72,12 @@ class ReachedStates:
 
     def __init__(self) -> None:
         self._kept: deque[Reached] = deque(maxlen=REACHED_KEPT)
+
+    def copy(self) -> "ReachedStates":
+        """The same ones."""
+        result = ReachedStates()
+        result._kept = self._kept.copy()
+        return result
 
     def has(self, tick: int) -> bool:
         """Whether the last one is of a tick."""

@@ -4,7 +4,9 @@ import bisect
 import itertools
 from collections import deque
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from contextlib import AbstractContextManager, suppress
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,34 +14,25 @@ from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import Level
 from sandbox.physics.snapshot import Snapshot, restore, take
 from sandbox.physics.step import step
-from sandbox.physics.world import World
+from sandbox.session.breaks import break_lines
 from sandbox.session.commands import Command, CommandError, Redo, Undo, apply
 from sandbox.session.commands.adding import name_added
 from sandbox.session.commands.records import ScriptLine, from_record, to_record
 from sandbox.session.keyframes import Keyframe, Keyframes
-from sandbox.session.log import LogEntry, Reached, ReachedStates
+from sandbox.session.log import Branch, LogEntry, Reached, ReachedStates
 from sandbox.session.replay.format import STATE_TICKS
 from sandbox.session.replay.writer import Recorder
+from sandbox.session.whole import Interrupted, whole
 
 # Ends of the run that are kept when another one begins in the past, newest last.
 BRANCH_LIMIT = 9
 # Ticks between two calls of `progress` while re-stepping: few, as a tick of a full world takes a tenth of a second.
 PROGRESS_TICKS = 4
-# Of more springs that break in one tick the message says how many they are, not their names.
-MOST_NAMED = 3
-
-
-@dataclass(frozen=True, eq=False)
-class Branch:
-    """How a run went on from a tick (0..) before something else was done there; see Session.return_to.
-
-    history: its commands from the beginning; last_tick: how far it went; breaks: ticks in which springs broke.
-    """
-
-    tick: int
-    history: tuple[LogEntry, ...]
-    last_tick: int
-    breaks: frozenset[int]
+# What undoing and the like change of a session.
+HISTORY = (
+    "_log", "_entries", "_timeline", "_done", "_undone", "_redoable", "_last_gesture", "_last_tick", "_next_order",
+    "_hindered", "_keyframes", "_reached", "_breaks", "_branches", "_scripted",
+)  # fmt: skip
 
 
 class Session:
@@ -49,6 +42,8 @@ class Session:
     command belongs to a gesture (a drag from grab to release, one slider drag), the unit of undo. A script feeds
     recorded commands at their ticks; a scripted command that cannot be applied raises CommandError, a submitted one
     leaves a line in `messages`. `start` continues from a snapshot of this level's world instead of its beginning.
+    progress: called with ticks done and ticks in all while ticks are stepped again. Where it raises Interrupted, what
+    they were stepped for passes that on and changes nothing; a script ends that asked for it.
     """
 
     def __init__(self, level: Level, script: Iterable[ScriptLine] = (), start: Snapshot | None = None) -> None:
@@ -144,6 +139,9 @@ class Session:
             line, self._scripted = self._scripted, next(self._script, None)
             try:
                 self._apply(from_record(line.record, self.world), line.gesture)
+            except Interrupted:
+                self._scripted = None
+                raise
             except CommandError as error:
                 raise CommandError("\n".join(f"line {line.line}: {fault}" for fault in error.faults)) from None
         while self._pending:
@@ -178,7 +176,8 @@ class Session:
             raise ValueError(f"tick {tick} is outside {self._keyframes.first.tick}..{self._last_tick}")
         if self._recorder is not None:
             raise ValueError("stop the recording before going back in time")
-        self._rewind(tick, sought=True)
+        with whole(self, (), partial(self._put_back, take(self.world))):
+            self._rewind(tick, sought=True)
 
     def kept_before(self, tick: int) -> int:
         """The last tick up to a tick whose state is kept: from there `seek` steps again."""
@@ -192,14 +191,12 @@ class Session:
         command names what is not there.
         """
         before = take(self.world)
-        restore(self.world, state)
-        name_added(self.world)
+        self._put_back(state)
         if self.tick > self._last_tick:
             try:
                 self._pass_script()
             except CommandError:
-                restore(self.world, before)
-                name_added(self.world)
+                self._put_back(before)
                 raise
         self._keyframes.insert(Keyframe(self._order_at(self._first_of(self.tick)), take(self.world)))
 
@@ -297,13 +294,19 @@ class Session:
             raise ValueError("only a run from the level's start can be recorded")
         twin = Session(self.level)
         twin._recorder = Recorder(path, self.level, twin.world, state_ticks)
+        if self.progress is not None:
+            tell = self.progress
+            twin.progress = lambda *_: tell(twin.last_tick, self.tick)
         try:
             for entry in self._until_now():
                 self._catch_up(twin, entry.tick)
                 twin._apply(entry.command, entry.gesture)
             self._catch_up(twin, self.tick)
-        except BaseException:
+        except BaseException as error:
             twin.abandon_recording()
+            if isinstance(error, Interrupted):
+                with suppress(OSError):
+                    path.unlink()
             raise
         self.messages.extend(twin.messages)
         twin.messages.clear()
@@ -351,9 +354,11 @@ class Session:
             return
         tick = self.tick
         if isinstance(command, Undo):
-            self._undo()
+            with self._whole():
+                self._undo()
         elif isinstance(command, Redo):
-            self._redo()
+            with self._whole():
+                self._redo()
         else:
             if gesture not in self._entries and not self._reached.has(tick):
                 self._keep_reached()
@@ -379,6 +384,14 @@ class Session:
         if not isinstance(entry.command, (Undo, Redo)):
             self._entries.setdefault(entry.gesture, []).append(entry)
             self._timeline.append(entry)
+
+    def _whole(self) -> AbstractContextManager[None]:
+        """Do something to history whole, or where `progress` gives it up not at all."""
+        return whole(self, HISTORY, partial(self._put_back, take(self.world)), self._log)
+
+    def _put_back(self, state: Snapshot) -> None:
+        restore(self.world, state)
+        name_added(self.world)
 
     # Undo and time travel: restore the nearest earlier keyframe and step again with the commands that still count.
 
@@ -469,9 +482,8 @@ class Session:
     def _rewind(self, tick: int, sought: bool = False) -> None:
         """Restore the last keyframe at or before a tick and follow history; sought: others near may be next."""
         keyframe = self._keyframes.before(tick)
-        restore(self.world, keyframe.snapshot)
+        self._put_back(keyframe.snapshot)
         self._keyframes.note_return()
-        name_added(self.world)
         self._follow(self._place(keyframe), tick, sought)
 
     def _first_of(self, tick: int) -> int:
@@ -527,6 +539,10 @@ class Session:
             raise ValueError("stop the recording before going back in time")
         if branch not in self._branches:
             raise ValueError("that branch is gone: only the last ones are kept")
+        with self._whole():
+            self._return_to(branch)
+
+    def _return_to(self, branch: Branch) -> None:
         common = 0
         for ours, theirs in zip(self._timeline, branch.history, strict=False):
             if ours is not theirs:
@@ -578,15 +594,3 @@ class Session:
 
 def _order(entry: LogEntry) -> int:
     return entry.order
-
-
-def break_lines(world: World) -> list[str]:
-    """One line about the springs that broke in the last tick, or none."""
-    broken = world.broken.tolist()
-    if not broken:
-        return []
-    if len(broken) > MOST_NAMED:
-        return [f"tick {world.tick}: {len(broken)} springs broke"]
-    names = [world.spring_names[slot] for slot in broken]
-    listed = names[0] if len(names) == 1 else ", ".join(names[:-1]) + " and " + names[-1]
-    return [f"tick {world.tick}: {listed} broke"]

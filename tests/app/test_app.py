@@ -338,6 +338,16 @@ def test_the_description_of_a_level_gives_way_to_that_of_the_next(driver):
     assert not driver.notices
 
 
+def test_the_description_of_a_level_does_not_stay_over_the_editor(driver):
+    driver.app.files.open_level(shipped_levels()[0], shipped=True)
+    driver.frames(2)
+    assert driver.playback.level.description in driver.notices
+    told = driver.playback.level.description
+    driver.app.documents.new()
+    driver.frames(2)
+    assert driver.app.mode == "edit" and told not in driver.notices
+
+
 def test_every_action_of_the_shortcut_table_exists_and_every_action_is_in_the_table(driver):
     named = {entry.action for entry in shortcuts("play") if entry.action}
     assert named == set(driver.app.actions)
@@ -412,7 +422,7 @@ def test_a_window_made_smaller_and_larger_again_shows_what_it_showed(driver):
 def test_a_long_run_played_again_shows_how_far_it_is(driver, monkeypatch):
     now, shown = [0.0], []
     monkeypatch.setattr("sandbox.app.progress.time.perf_counter", lambda: now[0])
-    monkeypatch.setattr("sandbox.app.progress.draw_bar", lambda surface, ui, share, text: shown.append(share))
+    monkeypatch.setattr("sandbox.app.progress.draw_work", lambda surface, ui, share, *_: shown.append(share))
     for done in range(0, 1000, 100):
         now[0] += 0.06
         driver.playback.session.progress(done, 1000)

@@ -3,6 +3,7 @@
 import pygame
 import pytest
 
+from sandbox.editor.scene import make_scene
 from sandbox.editor.storage.part_files import catalogue
 from tests.app.conftest import small_level
 
@@ -41,6 +42,63 @@ def keep(driver, name):
     driver.app.ui.focus.set_text(name)
     driver.key(pygame.K_RETURN)
     driver.frames(2)
+
+
+def _is_seen(driver, box):
+    """Whether all of a box [m] is on the sheet."""
+    camera = driver.editor.camera
+    left, bottom = camera.to_pixels(box[:2])
+    right, top = camera.to_pixels(box[2:])
+    return pygame.Rect(camera.viewport).contains(pygame.Rect(round(left), round(top), right - left, bottom - top))
+
+
+@pytest.mark.parametrize("way", ["key", "click", "drag"])
+def test_a_part_that_was_put_on_the_sheet_is_seen_whole(driver, way):
+    driver.app.display.window.size = (800, 600)
+    driver.editor.camera.zoom *= 3.0
+    driver.frames(2)
+    crane = card(driver, "Crane")
+    camera = driver.editor.camera
+    corner = camera.viewport[0] + camera.viewport[2] - 20, camera.viewport[1] + 20
+    if way == "key":
+        driver.app.ui.focus_on(crane)
+        driver.key(pygame.K_RETURN)
+        ghost = make_scene(driver.editor.pointer_tool.ghost().level)
+        assert _is_seen(driver, ghost.bounds(driver.editor.pointer_tool.ghost().selection))
+        driver.key(pygame.K_RETURN)
+    elif way == "click":
+        driver.click_widget(crane)
+        driver.click(corner)
+    else:
+        driver.press(crane.rect.center)
+        driver.move(corner)
+        driver.release(corner)
+    assert driver.editor.history.labels[-1] == "Add Crane"
+    assert _is_seen(driver, driver.editor.selection_box)
+
+
+def test_the_sheet_stays_where_it_is_when_a_part_has_room(driver):
+    camera = driver.editor.camera
+    before = camera.centre, camera.zoom
+    driver.click_widget(card(driver, "See-saw"))
+    driver.click_at(2, -2)
+    assert (camera.centre, camera.zoom) == before
+
+
+def test_the_page_has_a_part_ready_for_enter_however_it_is_opened(driver):
+    side = driver.editor.side
+    driver.key(pygame.K_ESCAPE)
+    side.choose("level")
+    driver.frames(2)
+    driver.click_widget(side._tab_button("parts"))
+    assert driver.app.ui.focus is card(driver, "Car")
+    driver.key(pygame.K_RETURN)
+    assert driver.editor.pointer_tool.drawing.options.part.name == "Car"
+    driver.click_widget(card(driver, "Tower"))
+    side.choose("level")
+    driver.frames(2)
+    driver.key(pygame.K_p, SHIFT)
+    assert driver.app.ui.focus is card(driver, "Tower"), "it was used last"
 
 
 def test_a_click_takes_a_part_up_and_clicks_put_it_on_the_sheet_as_one_step_each(driver):

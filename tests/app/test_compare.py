@@ -42,6 +42,11 @@ def test_what_is_said_of_two_runs_is_not_said_of_one(pair):
     assert WELCOME not in pair.notices
 
 
+def test_what_is_said_of_two_runs_does_not_lie_over_the_gallery(pair):
+    pair.key(pygame.K_g)
+    assert WELCOME not in pair.notices
+
+
 @pytest.mark.parametrize("in_second", [False, True])
 def test_a_drag_in_either_half_pulls_the_same_particle_in_both(pair, in_second):
     start = pair.pixel_of("rope.end")

@@ -48,6 +48,7 @@ def test_every_body_is_drawn_by_its_key_and_a_drag(edit, key, kind):
     (body,) = driver.editor.document.level.bodies
     assert isinstance(body, kind)
     before = driver.editor.history
+    assert before.labels[-1] == f"Draw {body.type}"
     driver.key(pygame.K_z, CTRL)
     assert driver.editor.document.level.bodies == () and before.can_redo
     driver.key(pygame.K_y, CTRL)

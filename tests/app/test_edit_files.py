@@ -127,6 +127,7 @@ def test_revert_reads_the_file_again_and_can_be_undone(driver):
     edited = driver.editor.document.level
     driver.key(pygame.K_r, CTRL | SHIFT)
     assert driver.editor.document.level == small_level() and driver.editor.history.is_saved
+    assert any(text.endswith("was read again. Undo (Ctrl+Z) has what was changed.") for text in driver.notices)
     driver.key(pygame.K_z, CTRL)
     assert driver.editor.document.level is edited
 

@@ -1,11 +1,15 @@
 """Between editing and playing: one key there and back, and what is kept of a run."""
 
+from dataclasses import replace
+
 import numpy as np
 import pygame
 import pytest
 
 from sandbox.editor.edits.placing import set_pinned
 from sandbox.level.format.files import write_level
+from sandbox.level.format.model import WallsDef
+from sandbox.level.format.quantities import replaced
 from sandbox.session.commands import CutSprings, SetCoefficients
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
@@ -38,6 +42,20 @@ def test_the_picture_stays_where_it_is_when_playing_begins(driver):
     driver.key(pygame.K_e)
     assert driver.stage.camera.to_pixels((1, 1)) == pytest.approx(before, abs=1)
     assert driver.stage.camera.zoom == camera.zoom
+
+
+def test_what_was_seen_whole_on_the_sheet_is_so_in_the_run(driver):
+    editor, room = driver.editor, (-3.0, -3.0, 6.0, 4.0)
+    editor.apply("Walls", replace(editor.document, level=replaced(editor.document.level, walls=WallsDef(box=room))))
+    camera = editor.camera
+    camera.fit(room)
+    camera.zoom *= 1.18
+    assert camera.shows(room)
+    driver.key(pygame.K_e)
+    driver.key(pygame.K_y)
+    driver.key(pygame.K_e)
+    driver.key(pygame.K_e)
+    assert driver.app.play.time.is_shown and driver.stage.camera.shows(room)
 
 
 def test_e_edits_a_level_that_is_played_and_a_replays_level(open_app):

@@ -145,6 +145,17 @@ def test_every_action_of_the_editor_is_in_the_table_and_the_other_way_round(driv
     assert {entry.action for entry in shortcuts("edit") if entry.action} == set(driver.app.actions)
 
 
+@pytest.mark.parametrize(("key", "mod", "said"), [
+    (pygame.K_g, pygame.KMOD_CTRL | pygame.KMOD_SHIFT, "Nothing that is selected is in a group."),
+    (pygame.K_u, pygame.KMOD_CTRL, "Nothing that is selected is joined to anything."),
+    (pygame.K_PAGEDOWN, 0, "It is at the back already."),
+])  # fmt: skip
+def test_what_changes_nothing_says_why(driver, key, mod, said):
+    driver.editor.select(frozenset([driver.editor.scene.items[0]]))
+    driver.key(key, mod)
+    assert said in driver.notices and driver.editor.history.index == 0
+
+
 def test_no_action_fails_with_nothing_or_something_selected(driver):
     for chosen in (False, True):
         for name in sorted(driver.app.actions):

@@ -151,3 +151,36 @@ def test_a_large_window_has_larger_cards_five_side_by_side(page):
     assert toys.columns == 5 and toys.width > 340
     page.app.display.window.size = before
     page.frames(2)
+
+
+CTRL = pygame.KMOD_CTRL
+
+
+@pytest.mark.parametrize("section", ["levels", "mine", "recordings"])
+@pytest.mark.parametrize(("key", "mod", "opened"), [
+    (pygame.K_l, CTRL, "Replays"), (pygame.K_o, CTRL, "Open"), (pygame.K_F1, 0, "Take the tour"),
+    (pygame.K_COMMA, CTRL, "General"),
+])  # fmt: skip
+def test_keys_that_open_something_else_do_so_from_the_gallery_too(page, section, key, mod, opened):
+    page.app.open_gallery(section)
+    page.frames(2)
+    gallery = page.app.gallery
+    page.key(key, mod)
+    assert page.app.gallery is not gallery or not gallery.is_on_top
+    assert opened in [button.text for button in page.app.ui.buttons()]
+    # What lies over the gallery has the keyboard to itself.
+    if page.app.gallery is gallery:
+        page.key(pygame.K_l, CTRL)
+        assert page.app.gallery is gallery
+        page.key(pygame.K_ESCAPE)
+        assert gallery.is_on_top
+
+
+def test_the_keys_of_the_editor_work_in_its_gallery(edit):
+    driver = edit()
+    driver.key(pygame.K_o, CTRL)
+    assert driver.app.gallery.section == "levels"
+    driver.key(pygame.K_l, CTRL)
+    assert driver.app.gallery.section == "mine"
+    driver.key(pygame.K_n, CTRL)
+    assert driver.app.gallery is None and driver.app.mode == "edit"

@@ -146,13 +146,22 @@ def test_the_keyboard_chooses_a_part_and_drops_it_and_a_new_layout_keeps_the_pag
     player.frames(2)
     assert page(player) is not first and player.app.ui.has_sheet
     player.pass_unseen(40)
-    for key in (pygame.K_RIGHT, pygame.K_RETURN):
+    assert player.app.ui.focus is card(player, "Pair"), "the hill before it cannot be had"
+    for key in (pygame.K_RIGHT, pygame.K_LEFT, pygame.K_RETURN):
         player.key(key)
     assert not player.app.ui.has_sheet and player.stage.tool.place is not None
     player.key(pygame.K_RETURN)
     player.key(pygame.K_RETURN)
     player.frames(1)
     assert [joined.names for joined in player.world.joined] == [("+1",)]
+
+
+def test_the_page_has_the_part_ready_for_enter_that_was_had_last(player):
+    take(player, "Tower")
+    player.key(pygame.K_u)
+    player.pass_unseen(2)
+    assert player.app.ui.focus is card(player, "Tower")
+    assert page(player).area.view.rect.contains(card(player, "Tower").rect)
 
 
 def test_a_ghost_is_the_part_itself_and_its_outline_where_that_is_huge(player):

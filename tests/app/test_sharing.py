@@ -25,6 +25,7 @@ from sandbox.app.share.gif import GifWriter
 from sandbox.app.share.movie import MovieWriter
 from sandbox.app.share.sharing import Sharing
 from sandbox.physics.snapshot import state_hash
+from sandbox.session.commands import SetCoefficients
 from sandbox.session.player.reel import STEPS
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
@@ -186,6 +187,95 @@ def test_closing_the_app_leaves_no_file_that_is_not_whole(sharing, folder):
     assert len(files(folder)) == 1
     sharing.close()
     assert files(folder) == []
+
+
+def _close_while_it_is_written(driver):
+    driver.choose("Save")
+    driver.app.quit()
+    driver.app.quit()
+    driver.frames(2)
+    assert driver.app.running and [button.text for button in driver.app.ui.buttons()].count("Drop it and close") == 1
+
+
+def test_a_window_that_is_closed_while_a_file_is_written_finishes_it_first_if_asked_to(driver, folder):
+    _close_while_it_is_written(driver)
+    driver.choose("Finish it, then close")
+    assert driver.app.running
+    finish(driver)
+    assert files(folder) == ["small.gif"] and not driver.app.running
+
+
+def test_a_window_that_is_closed_while_a_file_is_written_drops_it_if_asked_to(driver, folder):
+    _close_while_it_is_written(driver)
+    driver.choose("Drop it and close")
+    assert not driver.app.running
+    driver.app.sharing.close()
+    assert files(folder) == []
+
+
+def test_a_window_that_is_closed_while_a_file_is_written_stays_if_asked_to(driver, folder):
+    _close_while_it_is_written(driver)
+    driver.choose("Finish it, then close")
+    # Closed once more, and thought better of.
+    driver.app.quit()
+    driver.frames(2)
+    driver.key(pygame.K_ESCAPE)
+    finish(driver)
+    assert driver.app.running and files(folder) == ["small.gif"]
+    driver.app.quit()
+    assert not driver.app.running
+
+
+def test_a_window_stays_open_where_the_file_cannot_be_finished(driver, folder, monkeypatch):
+    _close_while_it_is_written(driver)
+    driver.choose("Finish it, then close")
+    (folder / "small.gif").write_bytes(b"another's")
+    finish(driver)
+    assert driver.app.running and "small.gif cannot be written" in driver.app.sharing.note
+
+
+def _pair(driver):
+    """The two runs of a comparison, B much softer, with the page open again."""
+    driver.app.share_page.leave()
+    driver.key(pygame.K_F9)
+    driver.app.play.other.session.submit(SetCoefficients(0.001, 0.001, None))
+    play_on(driver)
+    driver.frames(2)
+    driver.app.act("share")
+    driver.frames()
+
+
+@pytest.mark.parametrize("kind", ["PNG", "GIF"])
+def test_two_runs_side_by_side_are_both_in_the_picture(driver, folder, kind):
+    _pair(driver)
+    driver.choose(kind)
+    driver.choose("Hidden")
+    driver.choose("Save")
+    finish(driver)
+    (name,) = files(folder)
+    if kind == "GIF":
+        frames = gif_frames(folder / name)[1]
+        picture = frames[-1][0].astype(int)
+        assert len(frames) == round(20 * driver.app.sharing.film.seconds)
+    else:
+        picture = pygame.surfarray.array3d(pygame.image.load(folder / name)).swapaxes(0, 1).astype(int)
+    assert picture.shape[:2] == (90, 160)
+    # Where each run has a caption, and where its rope hangs in the other half.
+    one, other = picture[:, :79], picture[:, 81:]
+    assert all(np.abs(half - np.median(half, axis=(0, 1))).max() > 60 for half in (one, other))
+    assert (np.abs(one[20:] - other[20:]).max(axis=2) > 40).sum() > 20
+
+
+def test_a_page_of_two_runs_plays_both(driver, folder):
+    _pair(driver)
+    driver.choose("Page")
+    driver.choose("Save")
+    finish(driver)
+    (path,) = folder.iterdir()
+    text = path.read_text(encoding="utf-8")
+    data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)[1])
+    assert [side["name"][0] for side in data["sides"]] == ["A", "B"] and len(data["ticks"]) > 5
+    assert data["sides"][0]["frames"] != data["sides"][1]["frames"]
 
 
 def test_nothing_is_written_over(sharing, folder):

@@ -242,6 +242,17 @@ def test_the_first_spoke_points_at_the_pointer_so_that_rim_and_centre_can_join(t
     assert scene.position[scene.slot(second[1])] == pytest.approx((3.0, 6.0), abs=1e-5)
 
 
+@pytest.mark.parametrize("degrees", [-15, 45, 90, 165])
+def test_a_direction_that_snapped_to_whole_degrees_has_no_dust(empty, degrees):
+    rim = tuple(
+        round(1.035276 * part, 6) for part in (math.cos(math.radians(degrees)), math.sin(math.radians(degrees)))
+    )
+    body = last_body(drawn("wheel", empty, (0.0, 0.0), rim))
+    assert math.degrees(body.angle) == pytest.approx(degrees, abs=1e-7)
+    free = last_body(drawn("wheel", empty, (0.0, 0.0), (1.0, 0.001)))
+    assert free.angle == pytest.approx(0.001, abs=1e-6)
+
+
 def test_the_corner_of_a_box_joins_and_the_rim_of_a_circle_does_not(with_deck):
     document = drawn("box", with_deck, (4.0, 0.0), (6.0, 1.0))
     assert document.level.welds == (("bridge.end", "jelly.0"),)

@@ -9,13 +9,18 @@ from sandbox.session.commands import (
     Grab,
     MoveGrab,
     Pin,
+    Redo,
     Release,
     SetCoefficients,
     SetGravity,
     SetSolver,
+    Undo,
     Unpin,
 )
+from sandbox.session.log import ReachedStates
+from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
+from sandbox.session.whole import Interrupted
 from tests.support.rope_level import rope_level
 
 
@@ -318,6 +323,77 @@ def test_long_re_stepping_reports_its_progress(session):
     session.apply_pending()
     # A few ticks may take seconds: they are reported too.
     assert len(seen) >= 5 and all(0 < done <= total == 30 for done, total in seen)
+
+
+def _all_of(session):
+    """All of a run that somebody can come across."""
+    log = [(entry.tick, entry.gesture, entry.command, entry.in_effect, entry.implied) for entry in session._log]
+    kept = [(kept.order, kept.tick) for kept in session._keyframes]
+    ends = session.tick, session.last_tick, session.can_undo, session.can_redo, session.branches, session.breaks
+    return state_hash(session.world), log, session.gestures, kept, ends
+
+
+def _interrupt(done, total):
+    raise Interrupted
+
+
+def _played_to_and_fro():
+    """A run with something cut that something later needed, an undone gesture, and a branch."""
+    session = Session(rope_level())
+    session.submit(Pin(3))
+    _advance(session, 70)
+    _drag(session, 6)
+    session.submit(CutSprings((2,)))
+    _advance(session, 70)
+    session.seek(100)
+    session.submit(Pin(5))
+    _advance(session, 70)
+    session.undo()
+    _advance(session, 1)
+    return session
+
+
+@pytest.mark.parametrize("deed", ["undo", "redo", "seek", "return", "save"])
+def test_what_is_given_up_while_ticks_are_stepped_again_changes_nothing(deed, tmp_path):
+    session = _played_to_and_fro()
+    session._reached = ReachedStates()
+
+    def do():
+        if deed in ("undo", "redo"):
+            session.submit(Undo() if deed == "undo" else Redo())
+            session.apply_pending()
+        elif deed == "seek":
+            session.seek(30)
+        elif deed == "return":
+            session.return_to(session.branches[0])
+        else:
+            session.save_to(tmp_path / "run.replay.jsonl")
+
+    before = _all_of(session)
+    session.progress = _interrupt
+    with pytest.raises(Interrupted):
+        do()
+    assert _all_of(session) == before and not list(tmp_path.iterdir())
+    session.progress = None
+    do()
+    assert (_all_of(session) != before) is (deed != "save")
+
+
+def test_a_script_ends_with_an_undoing_that_is_given_up(tmp_path):
+    recorded = Session(rope_level())
+    recorded.record_to(tmp_path / "run.replay.jsonl")
+    recorded.submit(Pin(3))
+    _advance(recorded, 30)
+    recorded.undo()
+    _advance(recorded, 30)
+    recorded.stop_recording()
+    session = Session(rope_level(), script=read_replay(tmp_path / "run.replay.jsonl").script)
+    session.progress = _interrupt
+    with pytest.raises(Interrupted):
+        _advance(session, 60)
+    assert session.tick == 30 and session.can_undo and not session.scripted
+    _advance(session, 5)
+    assert session.tick == 35
 
 
 def test_undo_steps_from_where_the_gesture_began_and_undoing_to_and_fro_steps_nothing(session, monkeypatch):

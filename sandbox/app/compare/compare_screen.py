@@ -19,6 +19,7 @@ from sandbox.app.play.stage import Stage
 from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Pixel, Pointer
+from sandbox.app.share.film_pair import FilmPair
 from sandbox.app.widgets.ui import Ui
 
 SIDES = ("A", "B")
@@ -40,6 +41,8 @@ class CompareScreen(PlayScreen):
     # Below what stands over the halves.
     again_top = 104.0
     room_for_notices = ROOM_FOR_NOTICES
+    # One of them would be undone, and the other not.
+    can_cancel = False
 
     def __init__(self, app: Application, playback: TwinPlayback, other: TwinPlayback, source: Path | None) -> None:
         playback.pair(other)
@@ -53,7 +56,7 @@ class CompareScreen(PlayScreen):
         self._join_stages()
         # The beginning is the same in both: they show the same part of it.
         self.stage.place(self.viewport, app.ui.scale)
-        app.follow(other)
+        app.follow(other, self.can_cancel)
         if self.welcome:
             app.say(self.welcome)
 
@@ -143,7 +146,7 @@ class CompareScreen(PlayScreen):
         self.beside.replace_playback(other)
         self._join_stages()
         self.difference = Difference()
-        self._app.follow(other)
+        self._app.follow(other, self.can_cancel)
 
     def _reset(self) -> None:
         super()._reset()
@@ -154,6 +157,13 @@ class CompareScreen(PlayScreen):
         """Use kernels that have come about."""
         super().drop_caches()
         self.other.session.world.drop_caches()
+
+    def film(self, seconds: float) -> FilmPair:
+        """Both, each with what it is set to."""
+        assert self.beside is not None
+        words = [f"{side}   {lines[0]}" for side, lines in zip(SIDES, self.captions(), strict=True)]
+        films = [self._film_of(stage, seconds) for stage in (self.stage, self.beside)]
+        return FilmPair(films, words, self._is_wide)
 
     # Pointer: a press picks from the half that it is in, and what it does is done to both.
 

@@ -7,7 +7,7 @@ import numpy as np
 from sandbox.app.play.playback import Playback
 from sandbox.physics.world import LAW_HOOKE, World
 from sandbox.session.commands import Command, SetCoefficients, SetFirmness, SetSolver
-from sandbox.session.session import Branch
+from sandbox.session.log import Branch
 
 # What is set on one side alone.
 OWN = (SetCoefficients, SetFirmness, SetSolver)
@@ -41,8 +41,9 @@ class TwinPlayback(Playback):
     def follow(self, tick: int) -> None:
         """Come to the tick that the twin is at, after it has got there."""
         self.apply_pending()
-        if tick < self.session.tick:
-            Playback.seek(self, tick)
+        session = self.session
+        if tick < session.tick or session.kept_before(min(tick, session.last_tick)) > session.tick:
+            Playback.seek(self, min(tick, session.last_tick))
         while self.session.tick < tick:
             if self.session.tick == tick - 1:
                 self.previous = self.session.snapshot()

@@ -93,6 +93,42 @@ class Camera:
         self.zoom = min(max(zoom, ZOOM_RANGE[0]), ZOOM_RANGE[1])
         self.centre = ((left + right) / 2, (bottom + top) / 2)
 
+    def _room(self) -> Point:
+        """How large a box [m] can be that is shown with a margin."""
+        free = 1.0 - 2.0 * FIT_MARGIN
+        return self.viewport[2] * free / self.zoom, self.viewport[3] * free / self.zoom
+
+    def make_room(self, box: Box) -> None:
+        """Zoom out about the middle where something as large as a box [m] would not be seen whole."""
+        left, bottom, right, top = box
+        wide, tall = self._room()
+        times = min(wide / max(right - left, 1e-9), tall / max(top - bottom, 1e-9), 1.0)
+        self.zoom = max(self.zoom * times, ZOOM_RANGE[0])
+
+    def shows(self, box: Box) -> bool:
+        """Whether all of a box [m] is seen."""
+        left, top, width, height = self.viewport
+        x0, y1 = self.to_world((left, top))
+        x1, y0 = self.to_world((left + width, top + height))
+        return x0 <= box[0] and y0 <= box[1] and box[2] <= x1 and box[3] <= y1
+
+    def reveal(self, box: Box) -> None:
+        """Show a box [m] whole: move no farther than that takes, and zoom out where it is too large."""
+        if self.shows(box):
+            return
+        self.make_room(box)
+        left, bottom, right, top = box
+        (wide, tall), (x, y) = self._room(), self.centre
+        x = min(max(x, right - wide / 2), left + wide / 2)
+        y = min(max(y, top - tall / 2), bottom + tall / 2)
+        self.centre = (x, y)
+
+
+def union(*boxes: Box) -> Box:
+    """The box [m] around boxes."""
+    left, bottom, right, top = zip(*boxes, strict=True)
+    return min(left), min(bottom), max(right), max(top)
+
 
 def bounds(points: NDArray[np.float64]) -> Box:
     """The box around the finite ones of the points [m] (n, 2); a small box around the origin where there are none."""

@@ -36,6 +36,8 @@ MENU = (
     "backward", "recent", "open_file", "save_as", "revert", "settings",
 )  # fmt: skip
 
+NO_JOINTS = "Nothing that is selected is joined to anything."
+
 Edge = Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]
 Place = Literal["front", "forward", "backward", "back"]
 
@@ -72,9 +74,9 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
         "parts": lambda: _ask_parts(screen),
         "menu": lambda: _show_menu(screen, app),
         "group": lambda: _edit_selection(screen, "Group", group),
-        "ungroup": lambda: _edit_selection(screen, "Ungroup", ungroup),
+        "ungroup": lambda: _edit_selection(screen, "Ungroup", ungroup, "Nothing that is selected is in a group."),
         "break_apart": lambda: _edit_selection(screen, "Break apart", break_apart),
-        "unjoin": lambda: _edit_selection(screen, "Take joints apart", _unjoined),
+        "unjoin": lambda: _edit_selection(screen, "Take joints apart", _unjoined, NO_JOINTS),
         "align": lambda: _ask_align(screen),
         "order": lambda: _ask_order(screen),
         "forward": lambda: _reorder(screen, "forward"),
@@ -117,9 +119,12 @@ def _has_selection(screen: Editing) -> bool:
     return bool(screen.document.selection)
 
 
-def _edit_selection(screen: Editing, label: str, function: Callable[[Document], Document]) -> None:
-    if _has_selection(screen):
-        screen.edit(label, function)
+def _edit_selection(screen: Editing, label: str, function: Callable[[Document], Document], otherwise: str = "") -> None:
+    """Edit what is selected; otherwise: what is said where that changes nothing."""
+    before = screen.document.level
+    is_made = _has_selection(screen) and screen.edit(label, function)
+    if is_made and otherwise and screen.document.level is before:
+        screen.say(otherwise)
 
 
 def _step(screen: Editing, by: int) -> None:
@@ -136,7 +141,8 @@ def _duplicate(screen: Editing) -> None:
 
 
 def _reorder(screen: Editing, to: Place) -> None:
-    _edit_selection(screen, f"Order: {to}", lambda document: reorder(document, to))
+    where = "front" if to in ("front", "forward") else "back"
+    _edit_selection(screen, f"Order: {to}", lambda document: reorder(document, to), f"It is at the {where} already.")
 
 
 def _box(screen: Editing) -> Box | None:

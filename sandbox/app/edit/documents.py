@@ -233,10 +233,13 @@ class DocumentActions:
             show_lines(self.app.ui, "Not read again", error.faults)
             return
         editor.cancel()
+        before = editor.document.level
         editor.apply("Revert to the file", Document(level))
         editor.history.mark_saved()
         self.give_up()
         self._told_of_change = False
+        again = "" if level == before else " Undo (Ctrl+Z) has what was changed."
+        self.app.say(f"{_called(editor.level_file.path)} was read again.{again}")
 
     def if_saved(self, then: Callable[[], object]) -> None:
         """Go on, once the person has said what becomes of changes that are not saved."""
@@ -357,6 +360,10 @@ class DocumentActions:
         editor.leave()
         screen = self.app.start_document(Playback(editor.document.level))
         screen.camera.show_as(editor.camera)
+        box = editor.whole_box
+        if box is not None and editor.camera.shows(box):
+            # A run has a bar or two more than the sheet.
+            screen.camera.reveal(box)
 
     def back(self) -> None:
         """Back from playing to the document as it was."""

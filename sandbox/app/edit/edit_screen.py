@@ -10,7 +10,7 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.application import Application
-from sandbox.app.draw.camera import Box, Camera, Point, grid_spacing
+from sandbox.app.draw.camera import Box, Camera, Point, grid_spacing, union
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, SURFACE, TEXT, WARNING, Colour
 from sandbox.app.edit.actions import edit_actions
 from sandbox.app.edit.bar import Bar, Palette, palette_width
@@ -272,18 +272,23 @@ class EditScreen:
     def fit(self) -> None:
         """Show the level's view and the particles about it; again, or without a view: all, terrain and walls too."""
         level, scene, before = self.document.level, self.scene, (self.camera.centre, self.camera.zoom)
-        walls = None if level.walls is None else level.walls.box
         if level.view is not None:
             about = scene.bounds(frozenset(item for item in scene.items if item.kind != "terrain"))
             self._fit_to(level.view, about if about is not None and _is_about(about, level.view) else None)
         if level.view is None or before == (self.camera.centre, self.camera.zoom):
-            self._fit_to(level.view, walls, scene.bounds())
+            self._fit_to(level.view, self.whole_box)
+
+    @property
+    def whole_box(self) -> Box | None:
+        """The box [m] around all that there is, walls too; None where there is nothing."""
+        walls = self.document.level.walls
+        boxes = [box for box in (self.scene.bounds(), None if walls is None else walls.box) if box is not None]
+        return union(*boxes) if boxes else None
 
     def _fit_to(self, *boxes: Box | None) -> None:
         """Show boxes [m], or a first view where there are none."""
         given = [box for box in boxes if box is not None] or [FIRST_VIEW]
-        left, bottom, right, top = zip(*given, strict=True)
-        self.camera.fit((min(left), min(bottom), max(right), max(top)))
+        self.camera.fit(union(*given))
 
     @property
     def scales_apart(self) -> bool:

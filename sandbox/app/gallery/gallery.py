@@ -106,6 +106,11 @@ class Gallery:
         """All cards but those of rows that repeat others, in their order."""
         return [card for group in self.groups if not group.is_shortcut for card in group.cards]
 
+    @property
+    def is_on_top(self) -> bool:
+        """Whether no other page lies over it."""
+        return self._ui.top_sheet is self.sheet
+
     def close(self) -> None:
         """Take the page away."""
         self._ui.close_sheet(self.sheet)
@@ -330,7 +335,7 @@ class Gallery:
 
     def draw(self, surface: pygame.Surface) -> None:
         """Draw the whole card that is pointed at, over its neighbours."""
-        if self._ui.top_sheet is not self.sheet:
+        if not self.is_on_top:
             return
         for card in self._shown():
             if card.is_pointed_at and not card.is_small:
@@ -353,7 +358,7 @@ class Gallery:
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """Go from card to card with the arrow keys; a letter begins a search."""
-        if self._ui.top_sheet is not self.sheet:
+        if not self.is_on_top:
             return False
         search = self.header.search.entry
         if event.key in STEPS and not (self._ui.typing and event.key != pygame.K_DOWN):

@@ -21,7 +21,7 @@ PAGES_WIDTH, SEARCH_WIDTH = 260.0, 240.0
 # Narrower windows have two rows and no line of sections.
 ROOM_FOR_ONE_ROW = 980.0
 NEW_TIP = "Draw a level of your own, from an empty sheet"
-PAGES = (("levels", "Levels", ""), ("mine", "My levels", ""), ("recordings", "Replays", ""))
+PAGES = (("levels", "Levels"), ("mine", "My levels"), ("recordings", "Replays"))
 SEARCH = "Type to search"
 
 
@@ -50,7 +50,11 @@ class Header:
             left = MARGIN + PAGES_WIDTH + GAP
             search = ui.rect(left, second, width - MARGIN - left, BUTTON)
             self.height = second + BUTTON + 10
-        ui.choice(pages, PAGES, app.open_gallery, sheet).show(section)
+        # Ctrl+L opens another page in each mode.
+        page, action = ("mine", "recent") if app.mode == "edit" else ("recordings", "recordings")
+        tips = {page: tip_of(action, app.mode)}
+        choices = [(name, text, tips.get(name, "")) for name, text in PAGES]
+        ui.choice(pages, choices, app.open_gallery, sheet).show(section)
         self.search: Field = ui.field(search, query, lambda _: True, sheet, 80, hint=SEARCH)
 
     def _buttons(self, app: Application, right: float) -> float:
@@ -61,7 +65,7 @@ class Header:
         left = right - BUTTON - sum(width + GAP for width, _, _ in buttons)
         x = left
         for width, text, action in buttons:
-            tip = NEW_TIP if text == "New" else ""
+            tip = NEW_TIP if text == "New" else tip_of("open_file" if app.mode == "edit" else "open", app.mode)
             ui.button(ui.rect(x, 24, width, BUTTON), text, action, sheet, tip=tip)
             x += width + GAP
         place = ui.rect(x, 24, BUTTON, BUTTON)

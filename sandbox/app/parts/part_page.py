@@ -37,12 +37,13 @@ class PartPage:
     """A modal page; what cannot join the world is pale, and says why where it is pointed at.
 
     is_ready: whether pictures can be drawn. take: called with the part that is chosen, and whether by a key. again:
-    opens the page anew, scrolled to an offset [pixels].
+    opens the page anew, scrolled to an offset [pixels]. last_taken: the part that Enter takes; else the first one that
+    can be had.
     """
 
     def __init__(
         self, ui: Ui, world: World, is_ready: Callable[[], bool], take: Take, again: Callable[[float], object],
-        offset: float = 0.0,
+        offset: float = 0.0, last_taken: Level | None = None,
     ) -> None:  # fmt: skip
         self._ui, self._world, self._is_ready, self._take = ui, world, is_ready, take
         width, height = (min(most, room - 16) for most, room in zip((WIDTH, HEIGHT), ui.units, strict=True))
@@ -68,7 +69,11 @@ class PartPage:
         self._note = TextBlock(ui, ui.rect(MARGIN, height - BOTTOM + 12, self._width - 110, BOTTOM - 18), "", box, 12.0)
         place = ui.rect(width - MARGIN - 100, height - MARGIN - 26, 100, BUTTON)
         ui.button(place, "Close", self.close, box, style="@primary")
-        ui.focus_on(self.cards[0])
+        possible = (card for card in self.cards if not refusal(card.part, world))
+        last = (card for card in self.cards if last_taken is not None and card.part.level is last_taken)
+        ui.focus_on(next(last, None) or next(possible, self.cards[0]))
+        if not offset:
+            self.area.follow_focus()
 
     def close(self) -> None:
         """Take the page away."""

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import ClassVar
 
 import pygame
 
@@ -35,6 +36,7 @@ from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.profile import Profile
 from sandbox.app.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
 from sandbox.app.share.film import Film, last_ticks
+from sandbox.app.share.film_pair import FilmPair
 from sandbox.app.shortcuts import Mode, tip_of
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
@@ -66,6 +68,10 @@ class PlayScreen:
     again_top = 16.0
     # A world that is lower or narrower has notices over the status line [layout units].
     room_for_notices = ROOM_FOR_NOTICES
+    # What is said as it opens.
+    welcome: ClassVar[str] = ""
+    # Whether playing the run again can be cancelled.
+    can_cancel = True
 
     def __init__(
         self, app: Application, playback: Playback, source: Path | None = None, of_document: bool = False
@@ -96,7 +102,7 @@ class PlayScreen:
         # What was last said of what broke.
         self.told = ""
         self.actions = self._actions()
-        app.follow(playback)
+        app.follow(playback, self.can_cancel)
 
     @property
     def camera(self) -> Camera:
@@ -299,7 +305,7 @@ class PlayScreen:
         """Choose a part of the catalogue to drop."""
         world = self.playback.session.world
         self.part_page = PartPage(
-            self._ui, world, lambda: self._app.ready, self._take_part, self._open_catalogue, offset
+            self._ui, world, lambda: self._app.ready, self._take_part, self._open_catalogue, offset, self.stage.part
         )
 
     def _take_part(self, part: Level, by_key: bool) -> None:
@@ -353,7 +359,7 @@ class PlayScreen:
         self._begin_again()
         self.stuck = StuckBodies()
         self.out_of_view = OutOfView()
-        self._app.follow(self.playback)
+        self._app.follow(self.playback, self.can_cancel)
         if self.panel is not None:
             self.panel.follow(self.playback)
 
@@ -371,11 +377,13 @@ class PlayScreen:
         if path is not None:
             self._app.say(f"Saved as {path}")
 
-    def film(self, seconds: float) -> Film:
+    def film(self, seconds: float) -> Film | FilmPair:
         """The chosen range of the run, or its last seconds [s], as it is seen now."""
-        stage, session = self.stage, self.playback.session
-        span = self.playback.travel.span or last_ticks(session, seconds)
-        return Film(session, stage.camera, stage.renderer, span, stage.fitted_box)
+        return self._film_of(self.stage, seconds)
+
+    def _film_of(self, stage: Stage, seconds: float) -> Film:
+        span = self.playback.travel.span or last_ticks(self.playback.session, seconds)
+        return Film(stage.playback.session, stage.camera, stage.renderer, span, self.stage.fitted_box)
 
     def drop_caches(self) -> None:
         """Use kernels that have come about."""

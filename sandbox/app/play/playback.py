@@ -16,9 +16,12 @@ from sandbox.physics.energy import Dissipation
 from sandbox.physics.snapshot import Snapshot, state_hash
 from sandbox.physics.step import expect
 from sandbox.physics.world import World
+from sandbox.session.breaks import break_lines
 from sandbox.session.commands import Command, CommandError, Redo, Undo
+from sandbox.session.log import Branch
 from sandbox.session.replay.recording import Replay, ReplayError
-from sandbox.session.session import Branch, Session, break_lines
+from sandbox.session.session import Session
+from sandbox.session.whole import Interrupted
 from sandbox.tools.tool import Response
 
 # Wall time [s] that the ticks of one frame may take; the ticks beyond it are lost and the run falls behind real time,
@@ -26,6 +29,8 @@ from sandbox.tools.tool import Response
 TICK_BUDGET = 0.05
 # Frames without a tick after something has joined the run: the one that adds it, and the one that lays out its ticks.
 FRAMES_TO_JOIN = 2
+# What is said where playing a run again was given up.
+GIVEN_UP = "Cancelled: the run is as it was."
 
 
 class Listener(Protocol):
@@ -171,10 +176,17 @@ class Playback:
             self.clock.speed = abs(self.clock.speed)
             return
         self.apply_pending()
+        here = session.snapshot()
         self._jump(tick)
         self.travel.target = tick if tick > session.last_tick else None
-        with np.errstate(over="ignore", invalid="ignore"):
-            session.seek(min(tick, session.last_tick))
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                session.seek(min(tick, session.last_tick))
+        except Interrupted:
+            if session.tick != here.tick:
+                session.adopt(here)
+            self.travel.target, self.clock.paused = None, True
+            self.messages.append(GIVEN_UP)
         self.clock.accumulator = 0.0
         self.revision += 1
         if self.listener is not None:
@@ -198,9 +210,13 @@ class Playback:
         if self.session.recording is not None:
             self.messages.append("Stop the recording before you go back in time.")
             return
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                self.session.return_to(branch)
+        except Interrupted:
+            self.messages.append(GIVEN_UP)
+            return
         self._taken_over = True
-        with np.errstate(over="ignore", invalid="ignore"):
-            self.session.return_to(branch)
         self.seek(branch.tick)
 
     def apply_pending(self) -> None:
@@ -211,6 +227,8 @@ class Playback:
             self.session.apply_pending()
         except CommandError as error:
             self._give_up(error)
+        except Interrupted:
+            self._stop_short()
         if len(self.session.world.joined) > len(joined):
             self._making_room = FRAMES_TO_JOIN
         if submitted:
@@ -317,6 +335,9 @@ class Playback:
         except CommandError as error:
             self._give_up(error)
             return False
+        except Interrupted:
+            self._stop_short()
+            return False
         if self.watching and is_new:
             self._compare()
         return True
@@ -359,6 +380,15 @@ class Playback:
     def _give_up(self, error: CommandError) -> None:
         self._end_watching(f"the recording holds a command that cannot be carried out: {error}")
         self._taken_over = True
+
+    def _stop_short(self) -> None:
+        """Something is not undone, or made again: what a replay holds is not followed any further then."""
+        # What was submitted after it still waits.
+        self._submitted = True
+        if self.watching:
+            self.take_over()
+        else:
+            self.messages.append(GIVEN_UP)
 
     def _drain(self) -> None:
         self.messages.extend(self.session.messages)

@@ -277,8 +277,11 @@ class Stage:
         has_stood = self.stillness.lasted >= AT_REST_AFTER and self.renderer.effects.is_still
         return has_stood and not self.playback.session.world.any_held()
 
-    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
-        """Apply what is due and let time pass; pointer: where the mouse is over the world, if it is."""
+    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, passed: float = 0.0) -> None:
+        """Apply what is due and let time pass; pointer: where the mouse is over the world, if it is.
+
+        passed [s]: what of the same frame the run has gone on already.
+        """
         if frame_time > 0.0:
             # What stands is drawn rarely, which says nothing of how long drawing takes.
             if not (self.playback.clock.paused or self.rests):
@@ -290,7 +293,7 @@ class Stage:
                 tool.reconcile(self.playback.current)
         with profile.part("ticks"):
             self.playback.advance(frame_time)
-        self.stillness.follow(self.playback.current, self.camera.zoom, frame_time)
+        self.stillness.follow(self.playback.current, self.camera.zoom, frame_time + passed)
         self._hovered = None
         tool = self.tool
         if isinstance(tool, (ThrowTool, PushTool)):

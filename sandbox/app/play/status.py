@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import pygame
 
-from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, NOTICE, SURFACE, TEXT, WARNING, Colour
-from sandbox.app.screen import Figures, NoticesPlace
+from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, NOTICE, SURFACE, TEXT, WARNING, Colour, mixed
+from sandbox.app.screen import Figures, NoticesPlace, Pixel
 from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.joints.readings import MotorReading
@@ -147,8 +147,8 @@ class StatusLine:
         return self._texts[key]
 
 
-def _card(surface: pygame.Surface, ui: Ui, text: str, inset: float) -> pygame.Rect:
-    card = pygame.Rect(0, 0, ui.px(380), ui.px(96))
+def _card(surface: pygame.Surface, ui: Ui, text: str, inset: float, height: float = 96) -> pygame.Rect:
+    card = pygame.Rect(0, 0, ui.px(380), ui.px(height))
     card.center = (surface.get_width() // 2, surface.get_height() // 2)
     pygame.draw.rect(surface, NOTICE, card, border_radius=ui.px(12))
     pygame.draw.rect(surface, LINE, card, 1, border_radius=ui.px(12))
@@ -169,13 +169,29 @@ def draw_spinner(surface: pygame.Surface, ui: Ui, seconds: float, text: str, det
     surface.blit(ui.font(12).render(detail, True, MUTED), (card.left + ui.px(84), card.top + ui.px(50)))
 
 
-def draw_bar(surface: pygame.Surface, ui: Ui, share: float, text: str) -> None:
-    """A card in the middle of the window with a bar that is filled to a share (0..1)."""
-    card = _card(surface, ui, text, 28)
+def draw_bar(surface: pygame.Surface, ui: Ui, share: float, text: str, height: float = 96) -> pygame.Rect:
+    """A card in the middle of the window with a bar that is filled to a share (0..1); where the card is."""
+    card = _card(surface, ui, text, 28, height)
     bar = pygame.Rect(card.left + ui.px(28), card.top + ui.px(58), card.width - ui.px(56), ui.px(6))
     pygame.draw.rect(surface, LINE, bar, border_radius=ui.px(3))
     bar.width = round(bar.width * min(max(share, 0.0), 1.0))
     pygame.draw.rect(surface, ACCENT, bar, border_radius=ui.px(3))
+    return card
+
+
+def draw_work(surface: pygame.Surface, ui: Ui, share: float, text: str, pointer: Pixel) -> pygame.Rect:
+    """A bar that a button cancels; where that is. pointer: where the mouse is [pixels]."""
+    card = draw_bar(surface, ui, share, text, 142)
+    middle = card.bottom - ui.px(40)
+    hint = ui.font(12).render("Escape leaves all as it was.", True, MUTED)
+    surface.blit(hint, hint.get_rect(midleft=(card.left + ui.px(28), middle)))
+    button = pygame.Rect(0, 0, ui.px(96), ui.px(32))
+    button.midright = (card.right - ui.px(28), middle)
+    pygame.draw.rect(surface, mixed(NOTICE, TEXT, 0.18 if button.collidepoint(pointer) else 0.07), button, 0, ui.px(6))
+    pygame.draw.rect(surface, LINE, button, 1, ui.px(6))
+    word = ui.font(13).render("Cancel", True, TEXT)
+    surface.blit(word, word.get_rect(center=button.center))
+    return button
 
 
 def counted_parts(particles: int, springs: int) -> list[tuple[str, Colour]]:

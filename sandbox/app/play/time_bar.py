@@ -16,7 +16,7 @@ from sandbox.app.widgets.icons import ICONS, painted_icon
 from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
-from sandbox.session.session import Branch
+from sandbox.session.log import Branch
 
 # Layout units.
 HEIGHT, BUTTON, GAP, ICON, EDGE = 44.0, 30.0, 4.0, 16.0, 10.0

@@ -11,6 +11,7 @@ import pygame
 
 from sandbox.app.draw.picture import write_png
 from sandbox.app.share.film import Film, picture_count
+from sandbox.app.share.film_pair import FilmPair
 from sandbox.app.share.kinds import Size
 
 # The work, in slices: each gives the part of it that is done, 0..1, the last nothing.
@@ -39,7 +40,7 @@ class Export:
     """
 
     def __init__(
-        self, film: Film, excerpt: Excerpt, path: Path, keep: Callable[[Path, Path], object] = os.replace
+        self, film: Film | FilmPair, excerpt: Excerpt, path: Path, keep: Callable[[Path, Path], object] = os.replace
     ) -> None:
         self.film, self.excerpt, self.path = film, excerpt, path
         self.picture: pygame.Surface | None = None
@@ -98,14 +99,17 @@ class Export:
 
         film, excerpt, box = self.film, self.excerpt, np.array(self.film.box)
         ticks = max(1, round((excerpt.end - excerpt.start) * film.rate))
-        reel, passed = Reel(excerpt.name, film.level, box), 0
-        for world in film.states(excerpt.start, excerpt.end):
-            if world is not None:
-                if passed % steps_between(ticks, world.particle_count, 1) == 0:
-                    reel.add(world)
-                passed += 1
-            yield passed / (ticks + 1)
-        PlayerPage(excerpt.name or self.path.stem, box, film.rate, [reel]).write(path)
+        reels, count = [], len(film.parts)
+        for number, (words, part) in enumerate(film.parts):
+            reel, passed = Reel(words or excerpt.name, film.level, box), 0
+            for world in part.states(excerpt.start, excerpt.end):
+                if world is not None:
+                    if passed % steps_between(ticks, world.particle_count, count) == 0:
+                        reel.add(world)
+                    passed += 1
+                yield (number + passed / (ticks + 1)) / count
+            reels.append(reel)
+        PlayerPage(excerpt.name or self.path.stem, box, film.rate, reels).write(path)
         # For the clipboard.
         for picture in film.pictures(excerpt.end, excerpt.end, excerpt.fps, excerpt.size, excerpt.name):
             self.picture = picture or self.picture

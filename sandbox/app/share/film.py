@@ -55,6 +55,11 @@ class Film:
         return (self.last - self.first) / self.rate
 
     @property
+    def parts(self) -> "tuple[tuple[str, Film], ...]":
+        """As a pair of films has them: what stands over it, and itself."""
+        return (("", self),)
+
+    @property
     def box(self) -> Box:
         """What its pictures show [m]: left, bottom, right, top."""
         if self._box is not None:
@@ -129,8 +134,7 @@ class _FilmStage:
         self._renderer = film._renderer.alike(max(SMALLEST_SCALE, scale))
         self._paint = StabilityPaint()
         self._surface = pygame.Surface(size, 0, 32)
-        self._tag = _name_tag(name, size[1] / 360.0) if name else None
-        self._edge = round(EDGE * size[1] / 360.0)
+        self._tag = corner_tag(name, size) if name else None
 
     def draw(self, session: Session, before: Snapshot, now: Snapshot, alpha: float) -> pygame.Surface:
         """Draw what lies between two ticks of a session."""
@@ -139,7 +143,7 @@ class _FilmStage:
             overlay.stability = self._paint.shares(session.world)
         self._renderer.draw(surface, self._camera, before, now, alpha, overlay)
         if self._tag is not None:
-            surface.blit(self._tag, (self._edge, surface.get_height() - self._edge - self._tag.get_height()))
+            surface.blit(*self._tag)
         return surface
 
 
@@ -153,7 +157,15 @@ def picture_count(start: float, end: float, fps: float) -> int:
     return max(1, round((end - start) * fps))
 
 
-def _name_tag(name: str, scale: float) -> pygame.Surface:
+def corner_tag(name: str, size: Size) -> tuple[pygame.Surface, tuple[int, int]]:
+    """A name for the lower left corner of a picture, and where it is there."""
+    scale = size[1] / 360.0
+    tag, edge = name_tag(name, scale), round(EDGE * scale)
+    return tag, (edge, size[1] - edge - tag.get_height())
+
+
+def name_tag(name: str, scale: float) -> pygame.Surface:
+    """A name on a shade, in letters as they are at a height of 360 pixels times scale."""
     pygame.font.init()
     text = plain_font(max(9, round(TEXT_HEIGHT * scale)), True).render(name, True, (255, 255, 255))
     side, above = round(9 * scale), round(3 * scale)

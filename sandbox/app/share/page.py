@@ -8,6 +8,7 @@ import pygame
 from sandbox.app.application import Application
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, TEXT
 from sandbox.app.share.film import Film
+from sandbox.app.share.film_pair import FilmPair
 from sandbox.app.share.range_slider import RangeSlider
 from sandbox.app.share.sharing import SHORTEST_FILM, SIZES, Sharing
 from sandbox.app.widgets.painted import Painted, TextBlock
@@ -68,7 +69,7 @@ class SharePage:
             self.page = None
             self._sharing.leave()
             return
-        if self.page.step != self._sharing.step:
+        if self.page.step != self._sharing.step and not self._app.ui.has_question:
             self._close()
             self._build(self._app.ui)
         self.page.update()
@@ -239,7 +240,7 @@ class ShareForm:
             self.caption.set_text(text)
 
 
-def _title(film: Film | None) -> str:
+def _title(film: Film | FilmPair | None) -> str:
     """How much there is to share, and whether it is the latest."""
     if film is None or film.seconds < 2.0:
         return "Share"

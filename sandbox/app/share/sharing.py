@@ -3,8 +3,9 @@
 import contextlib
 import tempfile
 import time
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
@@ -17,7 +18,9 @@ from sandbox.app.recordings import chosen_path, free_path, move_new, pictures_fo
 from sandbox.app.share.desktop import copy_text, copying_picture, open_folder
 from sandbox.app.share.export import Excerpt, Export, Slices
 from sandbox.app.share.film import Film
+from sandbox.app.share.film_pair import FilmPair
 from sandbox.app.share.kinds import KINDS, Missing, Size, require
+from sandbox.app.widgets.dialogs import Choice, choose
 from sandbox.editor.document import empty_level
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.level.faults.level_error import one_line
@@ -65,7 +68,7 @@ class Sharing:
     def __init__(self, app: Application) -> None:
         self._app = app
         self.is_open = False
-        self.film: Film | None = None
+        self.film: Film | FilmPair | None = None
         self.wanted = Choices("gif", 0.0, 0.0, SIZES[0], True, "")
         self.pictures: list[pygame.Surface] = []
         self.note = ""
@@ -76,6 +79,8 @@ class Sharing:
         self._filming: Iterator[pygame.Surface | None] | None = None
         self._copying: Generator[None, None, bool] | None = None
         self._shown_at = 0.0
+        # What waits for the file to be whole.
+        self._then: Callable[[], object] | None = None
 
     @property
     def step(self) -> Step:
@@ -98,7 +103,7 @@ class Sharing:
         self.is_open = True
         return True
 
-    def _take(self, film: Film) -> None:
+    def _take(self, film: Film | FilmPair) -> None:
         self.film = film
         kind, size = preference(KIND), preference(SIZE)
         self.wanted = Choices(
@@ -179,6 +184,26 @@ class Sharing:
             return
         self._slices.close()
         self._slices, self._export, self.note = None, None, "Cancelled: no file was kept."
+        self._then = None
+
+    def if_written(self, then: Callable[[], object]) -> None:
+        """Go on, once the person has said what becomes of a file that is being written."""
+        if self._export is None or self._slices is None:
+            then()
+            return
+        if self._app.ui.has_question:
+            return
+        self._then = None
+        choices: list[Choice] = [("Finish it, then close", partial(self._finish, then)), ("Drop it and close", then)]
+        title = f"{self._export.path.name} is still being written"
+        choose(self._app.ui, title, f"{100.0 * self.done:.0f} % of it is done.", choices, is_question=True)
+
+    def _finish(self, then: Callable[[], object]) -> None:
+        if self._export is None or self._slices is None:
+            then()
+            return
+        self._then = then
+        self._tell(f"The window closes once {self._export.path.name} is written.")
 
     def another(self) -> None:
         """Choose again, of the same seconds."""
@@ -214,9 +239,12 @@ class Sharing:
     def update(self, frame_time: float) -> None:
         """Let frame_time [s] pass, and go on with the work for a part of it."""
         if self._slices is not None:
-            self._work(OPEN_BUDGET if self.is_open else PLAY_BUDGET)
+            self._work(OPEN_BUDGET if self.is_open or self._then is not None else PLAY_BUDGET)
         elif self._copying is not None:
             self._go_on_copying()
+        elif self._then is not None:
+            then, self._then = self._then, None
+            then()
         elif self.is_open and self._filming is not None:
             self._go_on_filming()
         self._shown_at += frame_time
@@ -258,7 +286,7 @@ class Sharing:
                 if time.perf_counter() > end:
                     return
         except OSError as error:
-            self._slices = None
+            self._slices = self._then = None
             self._tell(f"{self._export.path.name} cannot be written: {error.strerror or error}.")
             self._let_go()
             return

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from sandbox.app.stillness import Stillness
 from sandbox.physics.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 
@@ -17,24 +16,22 @@ class Rest:
 
     def __init__(self) -> None:
         self.moves_fast = True
-        self._stillness = Stillness()
-        self._calm = 0.0
+        self._stood = self._calm = 0.0
         self._hovered = False
 
     @property
     def is_over(self) -> bool:
         """Whether nothing moves, and nobody has done anything for a while."""
-        return self._stillness.lasted >= DROWSY and self._calm >= (WATCHED if self._hovered else DROWSY)
+        return self._stood >= DROWSY and self._calm >= (WATCHED if self._hovered else DROWSY)
 
     def disturb(self) -> None:
         """Somebody does something."""
         self._calm = 0.0
 
-    def follow(self, now: Snapshot, zoom: float, seconds: float, hovered: bool) -> None:
-        """Take in the state after a frame of `seconds`, a metre being `zoom` pixels."""
-        self._hovered = hovered
+    def follow(self, now: Snapshot, zoom: float, seconds: float, hovered: bool, stood: float) -> None:
+        """Take in the state after a frame of `seconds`, a metre being `zoom` pixels; all has stood for `stood` [s]."""
+        self._hovered, self._stood = hovered, stood
         self._calm += seconds
-        self._stillness.follow(now, zoom, seconds)
         free = shown_particles(now) & (now.inverse_mass > 0.0)
         with np.errstate(over="ignore", invalid="ignore"):
             fastest = np.abs(now.velocity[free]).max(initial=0.0)

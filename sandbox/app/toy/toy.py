@@ -144,7 +144,8 @@ class Toy:
         self.stage.renderer.compiled = ready
         if ready:
             self._tick(seconds)
-            self.rest.follow(self.playback.current, self.camera.zoom, seconds, self.hovered)
+            stood = self.stage.stillness.lasted
+            self.rest.follow(self.playback.current, self.camera.zoom, seconds, self.hovered, stood)
         self.preparation.note(self.playback.session.tick - tick, time.thread_time() - began)
         # A toy has no line of words: what broke can be seen.
         self.playback.messages.clear()
@@ -160,7 +161,8 @@ class Toy:
             self.playback.advance(1.0 / rate)
         if due:
             self._shake(rate)
-        self.stage.update(min(seconds, LONGEST_FRAME) - max(due - 1, 0) / rate, None, self.profile)
+        passed = max(due - 1, 0) / rate
+        self.stage.update(min(seconds, LONGEST_FRAME) - passed, None, self.profile, passed)
 
     def _shake(self, tick_rate: float) -> None:
         if self.motion.rests:

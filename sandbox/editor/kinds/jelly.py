@@ -69,6 +69,11 @@ class JellyDrawing(BodyDrawing[JellyOptions]):
     kind = "jelly"
     counted = "cells"
 
+    @property
+    def step(self) -> str:
+        """What it is called in the history, whatever its shape."""
+        return "Draw jelly"
+
     def fitting(self, points: list[Snap]) -> int:
         """8 cells across."""
         return CELLS_ACROSS

@@ -39,6 +39,13 @@ def rounded(value: float) -> float:
     return round(value, PLACE_DECIMALS)
 
 
+def _angle_of(x: float, y: float) -> float:
+    """A direction [rad] as files hold it: of whole degrees where no more than the rounding of places parts it from."""
+    degrees = math.degrees(math.atan2(y, x))
+    off = math.radians(abs(degrees - round(degrees))) * math.hypot(x, y)
+    return round(math.radians(round(degrees) if off < 2.0 * 10.0**-PLACE_DECIMALS else degrees), ANGLE_DECIMALS)
+
+
 class BodyDrawing(Drawing[AnyBodyOptions], Generic[AnyBodyOptions]):
     """A drawing that adds a body and welds it to the particles that its points are on."""
 
@@ -155,6 +162,6 @@ class RoundDrawing(BodyDrawing[AnyBodyOptions], Generic[AnyBodyOptions]):
         (x, y), (rim_x, rim_y) = points[0].point, points[1].point
         return {
             "position": (x, y),
-            "angle": round(math.atan2(rim_y - y, rim_x - x), ANGLE_DECIMALS),
+            "angle": _angle_of(rim_x - x, rim_y - y),
             "radius": rounded(length(points)),
         }

@@ -25,6 +25,7 @@ class PartDrawing(Drawing[PartOptions]):
 
     defaults = PartOptions()
     needs = 1
+    is_ready_made = True
 
     @property
     def hint(self) -> str:

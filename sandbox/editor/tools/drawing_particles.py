@@ -103,6 +103,11 @@ class PinDrawing(Drawing[PinOptions]):
         self._offer = PIN_HINT
 
     @property
+    def step(self) -> str:
+        """What it is called in the history."""
+        return "Pin or unpin"
+
+    @property
     def hint(self) -> str:
         """What a click would do."""
         return self._offer

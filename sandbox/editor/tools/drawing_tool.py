@@ -26,6 +26,8 @@ class Drawing(Generic[AnyOptions]):
     needs: ClassVar[int] = 2  # points of a whole gesture
     start_hint: ClassVar[str] = ""
     end_hint: ClassVar[str] = ""
+    # Whether what is drawn has a size of its own, not that of the gesture.
+    is_ready_made: ClassVar[bool] = False
     # The option that `adjust` counts up and down.
     counted: ClassVar[str | None] = None
 

@@ -33,6 +33,7 @@ def draw_snap(surface: pygame.Surface, ui: Ui, at: Point, snapped: Snap) -> None
 def _tag(surface: pygame.Surface, ui: Ui, at: Point, text: str) -> None:
     picture = ui.font(11).render(text, True, BACKGROUND, None)
     box = picture.get_rect(topleft=(round(at[0]), round(at[1]))).inflate(ui.px(8), ui.px(2))
+    box.clamp_ip(surface.get_clip())
     pygame.draw.rect(surface, WELD if text.startswith(("on ", "joins ")) else ACCENT, box, border_radius=ui.px(4))
     surface.blit(picture, picture.get_rect(center=box.center))
 

@@ -264,6 +264,10 @@ class DrawTool:
             touched = self._screen.document.level.has_contacts
             step = self.drawing.step or self._name
             self._screen.apply(step, document)
+            box = self._screen.selection_box
+            if self.drawing.is_ready_made and box is not None:
+                # It may be larger than what is seen.
+                self._screen.camera.reveal(box)
             if document.level.has_contacts and not touched:
                 self._screen.say("Things touch each other now; Contacts on the page Level says how.")
 

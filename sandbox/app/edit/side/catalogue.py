@@ -17,6 +17,7 @@ from sandbox.app.shortcuts import tip_of
 from sandbox.app.slice_queue import SliceQueue
 from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.painted import TextBlock
+from sandbox.editor.scene import make_scene
 from sandbox.editor.storage.level_file import StorageError
 from sandbox.editor.storage.part_files import PartFile, catalogue, delete_part, rename_part
 from sandbox.editor.tools.drawing_part import PartDrawing
@@ -184,8 +185,12 @@ class CataloguePage:
         assert drawing is not None
         drawing.take(level)
         screen.cursor = None
+        box = make_scene(level).bounds() or (0.0, 0.0, 0.0, 0.0)
+        screen.camera.make_room(box)
         if by_key:
-            screen.cursor = screen.snapped(screen.camera.to_world(screen.camera.middle), 0).point
+            # All of it is seen, wherever in it its origin is.
+            (x, y), (left, bottom, right, top) = screen.camera.centre, box
+            screen.cursor = screen.snapped((x - (left + right) / 2, y - (bottom + top) / 2), 0).point
             self._ui.blur()
 
     def carry(self, pixel: Pixel) -> None:

@@ -68,11 +68,16 @@ class Side:
         self._rows = []
         for first in range(0, len(names), COLUMNS):
             options = [(name, PAGES[name][0], PAGES[name][1]) for name in names[first : first + COLUMNS]]
-            self._rows.append(ui.choice(ui.rect(MARGIN, top, width, tab), options, self.choose, self.back))
+            self._rows.append(ui.choice(ui.rect(MARGIN, top, width, tab), options, self._choose_tab, self.back))
             top += tab + GAP
         top += below
         self._place = ui.rect(MARGIN, top, width + 6, place.height / ui.scale - top - 6)
         self.page: SidePage = self._made()
+
+    def _choose_tab(self, tab: str) -> None:
+        """Show a page that was clicked; Enter takes the part that is marked on that of parts."""
+        self.choose(tab)
+        self.focus()
 
     def choose(self, tab: str) -> None:
         """Show another page."""
