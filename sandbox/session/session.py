@@ -4,7 +4,7 @@ import bisect
 import itertools
 from collections import deque
 from collections.abc import Callable, Iterable
-from contextlib import AbstractContextManager, suppress
+from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -176,7 +176,7 @@ class Session:
             raise ValueError(f"tick {tick} is outside {self._keyframes.first.tick}..{self._last_tick}")
         if self._recorder is not None:
             raise ValueError("stop the recording before going back in time")
-        with whole(self, (), partial(self._put_back, take(self.world))):
+        with self._whole(()):
             self._rewind(tick, sought=True)
 
     def kept_before(self, tick: int) -> int:
@@ -385,9 +385,12 @@ class Session:
             self._entries.setdefault(entry.gesture, []).append(entry)
             self._timeline.append(entry)
 
-    def _whole(self) -> AbstractContextManager[None]:
-        """Do something to history whole, or where `progress` gives it up not at all."""
-        return whole(self, HISTORY, partial(self._put_back, take(self.world)), self._log)
+    def _whole(self, names: tuple[str, ...] = HISTORY) -> AbstractContextManager[None]:
+        """Do something to these attributes whole, or where `progress` gives it up not at all."""
+        if self.progress is None:
+            # Nothing gives it up; a copy of a long history takes milliseconds.
+            return nullcontext()
+        return whole(self, names, partial(self._put_back, take(self.world)), self._log if names else ())
 
     def _put_back(self, state: Snapshot) -> None:
         restore(self.world, state)
