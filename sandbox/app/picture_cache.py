@@ -4,9 +4,9 @@
 """
 
 import contextlib
-import functools
 import hashlib
 import os
+from collections import OrderedDict
 from collections.abc import Generator
 from pathlib import Path
 from typing import cast
@@ -31,8 +31,8 @@ PARTICLES = 3000
 VERSION = 4
 # Pictures that are kept, those used last.
 KEPT = 300
-# Pictures in the size of cards that are held in memory: all of a page, and its neighbours'.
-HELD = 64
+# What pictures in the size of cards may take in memory [bytes]: 170 at scale 1, and a page of them at scale 4.
+HELD = 32_000_000
 # How pictures are written: a fifth of the bytes of a PNG file.
 SUFFIX = ".jpg"
 
@@ -59,15 +59,43 @@ def find_picture(level: Path, key: str, size: tuple[int, int], theme: ThemeName)
     """The picture of a level file in a size [pixels] and a theme, where there is one."""
     for path in (shipped_picture(level, key, theme), kept_picture(key, theme)):
         with contextlib.suppress(OSError, pygame.error):
-            return _read(path, size)
+            return _held.read(path, size)
     return None
 
 
-@functools.lru_cache(HELD)
-def _read(path: Path, size: tuple[int, int]) -> pygame.Surface:
-    # A name says what the picture shows, so what was read once holds.
-    with path.open("rb") as file:
-        return pygame.transform.smoothscale(pygame.image.load(file, path.name).convert(32), size)
+class HeldPictures:
+    """Pictures that were read, those used last, in so many bytes; a name says what one shows, so it holds."""
+
+    def __init__(self, most: int) -> None:
+        self._most = most
+        self._pictures: OrderedDict[tuple[Path, tuple[int, int]], pygame.Surface] = OrderedDict()
+        self.bytes = 0
+
+    def read(self, path: Path, size: tuple[int, int]) -> pygame.Surface:
+        """The picture of a file in a size. Raises OSError and pygame.error."""
+        key = path, size
+        if key not in self._pictures:
+            with path.open("rb") as file:
+                picture = pygame.transform.smoothscale(pygame.image.load(file, path.name).convert(32), size)
+            self._pictures[key] = picture
+            self.bytes += _bytes_of(picture)
+        self._pictures.move_to_end(key)
+        # What is asked for now is held however large it is.
+        while self.bytes > self._most and len(self._pictures) > 1:
+            self.bytes -= _bytes_of(self._pictures.popitem(last=False)[1])
+        return self._pictures[key]
+
+    def clear(self) -> None:
+        """Forget all: files are about to be others."""
+        self._pictures.clear()
+        self.bytes = 0
+
+
+_held = HeldPictures(HELD)
+
+
+def _bytes_of(picture: pygame.Surface) -> int:
+    return picture.get_pitch() * picture.get_height()
 
 
 def draw_in_slices(level: Level, theme: ThemeName, seconds: float = SECONDS) -> Generator[bool, None, pygame.Surface]:
@@ -102,7 +130,7 @@ def keep_picture(picture: pygame.Surface, path: Path) -> None:
         raise OSError(0, str(error), str(path)) from None
     finally:
         unfinished.unlink(missing_ok=True)
-    _read.cache_clear()
+    _held.clear()
 
 
 def keep_for_later(picture: pygame.Surface, path: Path) -> None:

@@ -68,7 +68,7 @@ def test_a_level_of_ones_own_is_drawn_once_and_again_after_a_change(open_app, dr
     for times, act in ((1, "open"), (1, "again"), (2, "change"), (2, "again")):
         if act == "change":
             path.write_text(level_text(small_level(name="Mine, changed")))
-        picture_cache._read.cache_clear()
+        picture_cache._held.clear()
         driver.app.open_gallery("mine")
         while driver.app.gallery._unfilled:
             driver.frames()
@@ -125,3 +125,18 @@ def test_old_pictures_are_removed_and_those_used_last_stay(tmp_path, monkeypatch
         os.utime(tmp_path / f"{name}.jpg", (10_000 - age, 10_000 - age))
     picture_cache.forget_old_pictures(tmp_path)
     assert sorted(path.stem for path in tmp_path.iterdir()) == ["old", "older"]
+
+
+def test_pictures_are_held_in_so_many_bytes_and_those_used_last_stay(open_app):
+    open_app()
+    held = picture_cache.HeldPictures(3 * 4 * 80 * 45)
+    paths = [shipped_picture(path, picture_key(path.read_bytes()), "dark") for path in shipped_levels()[:4]]
+    first = held.read(paths[0], (80, 45))
+    for path in paths[1:3]:
+        held.read(path, (80, 45))
+    assert held.read(paths[0], (80, 45)) is first
+    second = held.read(paths[3], (80, 45))
+    assert held.bytes == 3 * 4 * 80 * 45
+    assert held.read(paths[0], (80, 45)) is first and held.read(paths[3], (80, 45)) is second
+    held.read(paths[1], (800, 450))
+    assert held.bytes == 4 * 800 * 450, "one larger than all that may be held"

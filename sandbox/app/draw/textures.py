@@ -1,7 +1,7 @@
 """Tables and tiles that drawing reads in place of arithmetic: skins, strips, sheets and grains; made once a theme."""
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,9 @@ Floats = NDArray[np.float64]
 Packed = NDArray[np.uint32]
 WHITE: Colour = (255, 255, 255)
 BLACK: Colour = (0, 0, 0)
+# Tables of skins and sheets in colours that are kept, those used last; levels choose colours freely. A table has 64 kB,
+# a sheet 32.
+MOST_TABLES, MOST_SHEETS = 128, 64
 
 
 def _packed(channels: Floats, alpha: Floats) -> Packed:
@@ -45,7 +48,7 @@ def _deep_table(near: Colour, deep: Colour, light: float, dark: float, alpha: fl
     return _packed(colour, np.full(colour.shape[:2], 255.0 * alpha))
 
 
-@cache
+@lru_cache(MOST_TABLES)
 def skin_table(skin: str, colour: int, theme: Theme) -> Packed:
     """The table of a skin, or of a kind of ground, in a colour 0xRRGGBB (ground has its own)."""
     base = rgb_of(colour)
@@ -183,7 +186,7 @@ def _sheet(colour: Floats) -> NDArray[np.int64]:
     return np.ascontiguousarray(_packed(colour, np.zeros(colour.shape[:2])).astype(np.int64))
 
 
-@cache
+@lru_cache(MOST_SHEETS)
 def woven(colour: int, stripe: int) -> NDArray[np.int64]:
     """A woven sheet (SHEET, SHEET), stripes of a second colour."""
     own = np.where((_X % SHEET < 20)[..., None], rgb_of(stripe), rgb_of(colour)).astype(np.float64)
@@ -191,7 +194,7 @@ def woven(colour: int, stripe: int) -> NDArray[np.int64]:
     return _sheet(own * over[..., None])
 
 
-@cache
+@lru_cache(MOST_SHEETS)
 def laid(skin: str, colour: int) -> NDArray[np.int64]:
     """A sheet of planks, bricks or stones."""
     rng = np.random.default_rng(1)

@@ -100,9 +100,17 @@ class Manager(pygame_gui.UIManager):
         return theme
 
 
+class _Ids(list[Any]):
+    """The ids of a widget and of what it lies in, as the library takes them."""
+
+    def __str__(self) -> str:
+        return ""
+
+
 class _Theme(UIAppearanceTheme):
-    # The library keeps these lists under keys that take it 1 ms to join, of widgets that lie five deep: most of the
-    # time that a page of the panel takes.
+    # The library keeps these lists under keys of its own, in which it puts the text of one list between any two
+    # letters of another: 4 MB for a widget that lies five deep, and 20 MB for all of a window. Here texts of lists are
+    # empty, and so are its keys, under which nothing may be found.
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
         self._combined: dict[tuple[tuple[str | None, ...] | None, ...], list[str]] = {}
@@ -111,5 +119,7 @@ class _Theme(UIAppearanceTheme):
     def build_all_combined_ids(self, *ids: Any) -> list[str]:
         key = tuple(None if each is None else tuple(each) for each in ids)
         if key not in self._combined:
-            self._combined[key] = super().build_all_combined_ids(*ids)
+            given = (None if each is None else _Ids(each) for each in ids)
+            self._combined[key] = super().build_all_combined_ids(*given)
+            self.unique_theming_ids.clear()
         return self._combined[key]
