@@ -231,6 +231,9 @@ class Monkey:
         """Bytes that this process holds, on a small page that is always the same."""
         self.let_go()
         self.app.documents.give_up()
+        # A window that fills the screen takes no other size.
+        if self.app.display.fullscreen:
+            self.app.display.toggle_fullscreen()
         self.app.display.window.size = SIZES[0]
         # Larger widgets take more: what was chosen is put back afterwards.
         chosen = {setting.name: self.app.chosen[setting.name] for setting in SETTINGS}
