@@ -10,6 +10,7 @@ from sandbox.app.compare.compare_screen import CompareScreen
 from sandbox.app.compare.hooke_lesson import HookeLesson, has_exploded
 from sandbox.app.compare.hooke_level import MOST_DOUBLINGS, SpringTrial, lesson_level, words
 from sandbox.app.compare.lesson_panel import MASSES, RATES, SPRINGS
+from sandbox.app.draw.colours import LINE
 from sandbox.session.session import Session
 
 TRIALS = [
@@ -132,3 +133,15 @@ def test_every_trial_has_words_that_fit():
             each = replace(trial, doublings=doublings)
             assert 20 < len(words(each, None)) < 330
             assert len(words(each, 12)) < 480
+
+
+def test_what_is_shared_of_it_has_both_formulas_with_their_numbers(lesson):
+    lesson.frames(20)
+    film = lesson.app.play.film(10.0)
+    (hooke, _), (article, _) = film.parts
+    assert hooke.startswith("A   Hooke: F = -k x - c v   k = 225 N/m")
+    assert article.startswith("B   The article") and "Cs = 0.0625" in article
+    # Neither reaches into the other half.
+    for size in ((640, 360), (380, 214)):
+        picture = next(filter(None, film.pictures(0.0, 0.0, 20.0, size)))
+        assert {tuple(picture.get_at((size[0] // 2, y))[:3]) for y in range(0, size[1], 3)} == {tuple(LINE)}

@@ -45,6 +45,7 @@ from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
 from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
+from sandbox.session.whole import Interrupted
 from tests.support.rope_level import rope_level
 
 EMPTY = parse_level(
@@ -170,6 +171,10 @@ class Model:
             self.last_tick = self.world.tick
 
 
+def _interrupt(done: int, total: int) -> None:
+    raise Interrupted
+
+
 class SessionMachine(RuleBasedStateMachine):
     """Commands good and bad, gestures that overlap, undo, redo, time travel and recordings, in any order."""
 
@@ -218,6 +223,43 @@ class SessionMachine(RuleBasedStateMachine):
     def undo_or_redo(self, command: Command) -> None:
         self._give(command, self.session.new_gesture())
         self._flush()
+
+    @rule(command=st.sampled_from([Undo(), Undo(), Redo()]), after=st.integers(1, 6))
+    def give_up(self, command: Command, after: int) -> None:
+        """Begin to undo or redo, and give it up after so many ticks, where it takes that many."""
+        self._flush()
+        session, gesture = self.session, self.session.new_gesture()
+
+        def progress(done: int, total: int) -> None:
+            if done == after:
+                raise Interrupted
+
+        session.progress = progress
+        session.submit(command, gesture)
+        try:
+            session.apply_pending()
+        except Interrupted:
+            return
+        finally:
+            session.progress = None
+        self.acts.append((command, gesture))
+        self.model.obey(command, gesture)
+
+    @precondition(lambda self: self.session.recording is None)
+    @rule(share=st.floats(0.0, 1.0))
+    def give_up_seeking(self, share: float) -> None:
+        self._flush()
+        tick, here = round(share * self.session.last_tick), self.session.tick
+        self.session.progress = _interrupt
+        try:
+            self.session.seek(tick)
+        except Interrupted:
+            assert self.session.tick == here
+        else:
+            self.model.go(tick)
+            self.travelled = True
+        finally:
+            self.session.progress = None
 
     @precondition(lambda self: self.session.recording is None)
     @rule(share=st.floats(0.0, 1.0))
@@ -313,6 +355,7 @@ def short_intervals(monkeypatch):
     monkeypatch.setattr("sandbox.session.keyframes.KEYFRAME_TICKS", 5)
     monkeypatch.setattr("sandbox.session.keyframes.KEYFRAME_BUDGET", 25_000)
     monkeypatch.setattr("sandbox.session.replay.writer.STATE_TICKS", 7)
+    monkeypatch.setattr("sandbox.session.session.PROGRESS_TICKS", 1)
 
 
 @pytest.mark.slow

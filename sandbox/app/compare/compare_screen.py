@@ -161,7 +161,7 @@ class CompareScreen(PlayScreen):
     def film(self, seconds: float) -> FilmPair:
         """Both, each with what it is set to."""
         assert self.beside is not None
-        words = [f"{side}   {lines[0]}" for side, lines in zip(SIDES, self.captions(), strict=True)]
+        words = [f"{side}   {text}" for side, text in zip(SIDES, self._settings_words(), strict=True)]
         films = [self._film_of(stage, seconds) for stage in (self.stage, self.beside)]
         return FilmPair(films, words, self._is_wide)
 
@@ -271,6 +271,10 @@ class CompareScreen(PlayScreen):
         solver = SOLVER_LABELS[settings.solver]
         parts = "" if settings.substeps == 1 else f", {settings.substeps} substeps"
         return [f"{springs}   {solver}{parts}", self.difference.figures(playback.current)]
+
+    def _settings_words(self) -> list[str]:
+        """What each is set to, in one line that holds for all that was seen."""
+        return [lines[0] for lines in self.captions()]
 
     def title(self) -> list[str]:
         """Words of the window's title."""

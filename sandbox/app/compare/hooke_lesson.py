@@ -108,6 +108,9 @@ class HookeLesson(CompareScreen):
             ["The article: fractions of rigid", f"Cs = {trial.cs:g}   Cd = {CD:g}"],
         )
 
+    def _settings_words(self) -> list[str]:
+        return ["   ".join(lines) for lines in self.captions()]
+
     def title(self) -> list[str]:
         """Words of the window's title."""
         state = [] if self.exploded_at is None else ["exploded"]

@@ -11,6 +11,8 @@ from sandbox.app.share.kinds import Size
 
 # What divides them, at a height of 360 pixels.
 THICK = 2.0
+# How much smaller letters over them may be, until they have room.
+SMALLER = (1.0, 0.9, 0.8, 0.7)
 
 
 class FilmPair:
@@ -77,12 +79,9 @@ class _PairSheet:
         middle = ((width // 2, 0), (width // 2, height)) if pair._is_wide else ((0, height // 2), (width, height // 2))
         self._line, self._thick = middle, max(1, round(THICK * scale))
         edge = round(EDGE * scale)
-        self._tags = []
-        for (words, _), place in zip(pair.parts, self.places, strict=True):
-            tag = name_tag(words, scale)
-            room = place.width - 2 * edge
-            tag = tag if tag.get_width() <= room else name_tag(words, scale * room / tag.get_width())
-            self._tags.append((tag, (int(place.left) + edge, int(place.top) + edge)))
+        tags = _tags_within([words for words, _ in pair.parts], half.width - 2 * edge, scale)
+        corners = [(int(place.left) + edge, int(place.top) + edge) for place in self.places]
+        self._tags = list(zip(tags, corners, strict=True))
         if name:
             self._tags.append(corner_tag(name, size))
 
@@ -94,3 +93,12 @@ class _PairSheet:
         for tag, corner in self._tags:
             self._surface.blit(tag, corner)
         return self._surface
+
+
+def _tags_within(words: Sequence[str], room: int, scale: float) -> list[pygame.Surface]:
+    """Tags in letters of one size, none wider than so many pixels; the end of what is too long is left out."""
+    for part in SMALLER:
+        tags = [name_tag(text, scale * part) for text in words]
+        if all(tag.get_width() <= room for tag in tags):
+            break
+    return [tag.subsurface((0, 0, min(tag.get_width(), room), tag.get_height())) for tag in tags]
