@@ -12,11 +12,12 @@ from functools import partial
 import numpy as np
 
 from sandbox.physics.joints.pulls import pulls_of
+from sandbox.physics.query import grip_radius
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.stability import report
 from sandbox.physics.world import World
 from sandbox.tools.drag import STRENGTHS
-from tests.support.hands import Drag, drag_away, jelly, momentum_velocity, nearest, rope, truss
+from tests.support.hands import RATE, Drag, dough, drag_away, follow, jelly, momentum_velocity, nearest, rope, truss
 from tests.support.limits import Limits
 
 SPEEDS = (5.0, 20.0)
@@ -56,6 +57,17 @@ def row(name: str, world: World, held: Drag, drag: Drag, strength: str, speed: f
     )
 
 
+def held_still(limits: Limits) -> None:
+    """What is very soft, held by a corner and not moved, for ten seconds."""
+    for stiffness, damping in ((0.01, 0.3), (0.02, 0.1), (0.05, 0.3)):
+        world = dough(stiffness, damping)
+        corner = nearest(world, (-9.0, 9.0))
+        start = world.position[corner].copy()
+        world.hold(0, corner, tuple(start), STRENGTHS["normal"], grip_radius(world, corner))
+        strained = max(follow(world, corner, [start] * (10 * RATE)).strain)
+        limits.at_most(f"jelly of Cs {stiffness}, Cd {damping}, held still by a corner: strain", strained, 1.6)
+
+
 def pinned(strength: str, **settings) -> str:
     """A girder that is pinned at both ends, dragged in its middle."""
     world = bounded(truss(("start", "end"), **settings))
@@ -86,6 +98,7 @@ def main(arguments: list[str] | None = None) -> int:
                             limits.at_most(f"{name}: strain", max(drag.strain), 1.0)
             for strength in STRENGTHS:
                 print(pinned(strength, **settings), flush=True)
+    held_still(limits)
     return int(limits.broken)
 
 

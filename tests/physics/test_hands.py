@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from sandbox.physics.jit import COMPILED
 from sandbox.physics.joints.hands import FASTEST_HAND, grips_of
 from sandbox.physics.joints.pulls import pulls_of
 from sandbox.physics.query import grip_radius
@@ -15,6 +16,7 @@ from sandbox.physics.world import HAND_STRENGTH
 from sandbox.tools.drag import STRENGTHS
 from tests.support.hands import (
     RATE,
+    dough,
     drag_away,
     follow,
     free_mass,
@@ -113,6 +115,17 @@ def test_a_soft_jelly_that_is_dragged_at_twenty_metres_a_second_is_not_torn(stre
     held, drag = drag_away(world, nearest(world, where), strength, 20.0)
     assert max(held.strain) < 0.2
     assert max(drag.strain) < 1.0
+
+
+@pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
+def test_a_very_soft_jelly_that_is_held_still_by_a_corner_does_not_swing_ever_wider():
+    world = dough(0.02, 0.1)
+    corner = nearest(world, (-9.0, 9.0))
+    start = world.position[corner].copy()
+    world.hold(0, corner, tuple(start), HAND_STRENGTH, grip_radius(world, corner))
+    drag = follow(world, corner, [start] * (10 * RATE))
+    assert max(drag.strain) < 1.6
+    assert max(drag.strain[-2 * RATE :]) < max(drag.strain[: 2 * RATE])
 
 
 def test_one_particle_of_a_soft_jelly_would_be_torn_out():

@@ -7,7 +7,7 @@ import numpy as np
 
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import Level
-from sandbox.physics.collision.inversion import triangles_of
+from sandbox.physics.collision.inversion import find_inverted, new_inversions, triangles_of
 from sandbox.physics.energy import total_energy
 from sandbox.physics.step import step
 from sandbox.physics.world import Floats, World
@@ -32,12 +32,13 @@ HEAVIER = 100.0
 class Found(NamedTuple):
     """Least area of any triangle at the end of any tick, and at the end, as a share of that wanted.
 
-    most_energy: the highest total, as a multiple of that at the start.
+    most_energy: the highest total, as a multiple of that at the start; wound: whether a jelly was, in any tick.
     """
 
     least_area: float
     last_area: float
     most_energy: float
+    wound: bool
 
 
 def level(deed: str, shape: str, coefficients: tuple[float, float], **settings: Any) -> Level:
@@ -72,17 +73,35 @@ def make(deed: str, shape: str, coefficients: tuple[float, float], **settings: A
     return build_world(level(deed, shape, coefficients, **settings))
 
 
-def wound() -> World:
-    """A disc of jelly by itself, whose outline a stirred heap has left folded over; no triangle is turned over."""
-    body = {"type": "jelly", "id": "j", "shape": {"circle": 0.55}, "spacing": 0.25, "material": "m"}
+def _alone(shape: dict[str, Any], stiffness: float, damping: float) -> World:
+    """A coarse jelly without weight."""
+    body = {"type": "jelly", "id": "j", "shape": shape, "spacing": 0.25, "material": "m"}
     given = {
-        "format": "spring-sandbox/level", "version": 1, "name": "wound", "settings": {"gravity": (0.0, 0.0)},
-        "bodies": [body], "contacts": {}, "materials": {"m": {"stiffness": 0.1, "damping": 0.5}},
+        "format": "spring-sandbox/level", "version": 1, "name": "alone", "settings": {"gravity": (0.0, 0.0)},
+        "bodies": [body], "contacts": {}, "materials": {"m": {"stiffness": stiffness, "damping": damping}},
     }  # fmt: skip
-    world = build_world(Level.model_validate_json(json.dumps(given)))
+    return build_world(Level.model_validate_json(json.dumps(given)))
+
+
+def wound() -> World:
+    """A disc by itself, whose outline begins folded over; no triangle is turned over."""
+    world = _alone({"circle": 0.55}, 0.1, 0.5)
     world.position[:13] = (
         (-0.18, -0.23), (-0.07, -0.06), (0.05, 0.01), (0.05, -0.18), (0.07, -0.18), (-0.24, -0.02), (-0.03, 0.13),
         (0.24, 0.02), (0.27, -0.18), (-0.32, -0.03), (-0.0, 0.22), (0.27, 0.23), (-0.12, 0.27),
+    )  # fmt: skip
+    return world
+
+
+def drawn_through() -> World:
+    """A box, a corner of which a hand has drawn through it to its other side, on nine times as long edges."""
+    world = _alone({"box": [1.0, 1.0]}, 0.02, 0.1)
+    world.position[:25] = (
+        (1.117, 2.064), (0.55, -0.188), (0.55, -0.182), (0.652, -0.152), (0.693, -0.156), (0.532, -0.262),
+        (0.276, -0.014), (0.221, 0.073), (0.343, 0.112), (0.403, 0.155), (-0.145, -0.212), (0.064, -0.169),
+        (-0.018, -0.11), (-0.05, 0.091), (0.017, 0.174), (-0.509, -0.212), (-0.373, -0.175), (-0.243, -0.137),
+        (-0.312, -0.067), (-0.378, 0.096), (-0.813, -0.212), (-0.74, -0.161), (-0.637, -0.127), (-0.512, -0.091),
+        (-0.689, -0.138),
     )  # fmt: skip
     return world
 
@@ -95,6 +114,14 @@ def areas(world: World, body: str = "") -> Floats:
     area = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / world.constraint_rest[triangles.constraint, 0]
     names = np.array(world.particle_names)
     return area[np.char.startswith(names[triangles.corners[:, 0]], f"{body}." if body else "")]
+
+
+def is_any_wound(world: World) -> bool:
+    """Whether triangles about a particle of an outline go on round it, of a jelly that is not inverted."""
+    triangles = triangles_of(world)
+    found, marked = new_inversions(triangles), np.zeros(world.particle_count, np.bool_)
+    find_inverted(world.position, world.constraint_rest, triangles, found, marked)
+    return bool(marked[triangles.corners[triangles.jellies.first, 0]][~found.is_inverted].any())
 
 
 def stir(world: World, generator: np.random.Generator, speed: float) -> None:
@@ -117,10 +144,11 @@ def play(
     world, generator = make(deed, shape, coefficients, **settings), np.random.default_rng(seed)
     speed = float(generator.choice([5.0, 20.0, 80.0]))
     start = total_energy(world)
-    least, most = 1.0, start
+    least, most, wound = 1.0, start, False
     for _ in range(round(seconds * world.settings.tick_rate)):
         if deed == "stirred":
             stir(world, generator, speed)
         step(world)
         least, most = min(least, float(areas(world).min())), max(most, total_energy(world))
-    return Found(least, float(areas(world).min()), most / start)
+        wound = wound or is_any_wound(world)
+    return Found(least, float(areas(world).min()), most / start, wound)

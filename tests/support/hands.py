@@ -42,6 +42,13 @@ def jelly(size: float = 1.0, cells: int = 8, sag: float | None = None, **setting
     return world_of(body, **settings)
 
 
+def dough(stiffness: float, damping: float) -> World:
+    """The jelly of 1 m, with springs that hardly carry it."""
+    world = jelly()
+    world.set_coefficients(stiffness, damping, None)
+    return world
+
+
 def truss(pins: tuple[str, ...] = (), **settings) -> World:
     """A rigid girder of 1,000 kg and 7 m."""
     body = {

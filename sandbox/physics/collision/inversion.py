@@ -34,7 +34,9 @@ class Jellies(NamedTuple):
     Of triangles: group (t,) and member (t, 3) = their corners among the k. first (g,): a triangle of each jelly; start
     (g+1,): where its particles begin; particle (k,); corner (k,): one of the 3 t corners that stands there; inner (k,):
     whether triangles are all round it. fan (f, 4): a particle of an outline, the next one on that, and the other two
-    corners of each triangle about it but the first; those of jelly g: fan[fan_start[g]:fan_start[g + 1]].
+    corners of each triangle about it but the first; those of jelly g: fan[fan_start[g]:fan_start[g + 1]]. gap (q, 4):
+    the triangle at which those about a particle of an outline begin, that particle, the one before and the next one on
+    that outline.
     """
 
     group: Slots
@@ -46,6 +48,7 @@ class Jellies(NamedTuple):
     inner: Flags
     fan: Slots
     fan_start: Slots
+    gap: Slots
 
 
 def group_triangles(corners: Slots, areas: Floats) -> Jellies:
@@ -77,12 +80,12 @@ def _grouped(content: bytes, signs: bytes) -> Jellies:
     # The same triangle twice is round nothing.
     lies_flat = np.bincount(group, is_left, len(first)) % np.bincount(group) == 0
     inner = lies_flat[particles >> 32] & (neighbours == triangles) & (triangles > 2)
-    fan, fan_start = _fans(corners, keys, group, lies_flat)
-    return Jellies(group, member, first, start, particles & 0xFFFFFFFF, corner, inner, fan, fan_start)
+    fan, fan_start, gap = _fans(corners, keys, group, lies_flat)
+    return Jellies(group, member, first, start, particles & 0xFFFFFFFF, corner, inner, fan, fan_start, gap)
 
 
-def _fans(corners: Slots, keys: Slots, group: Slots, lies_flat: Flags) -> tuple[Slots, Slots]:
-    """The fans of triangles about particles of outlines, see Jellies, of jellies g that lie flat (g,).
+def _fans(corners: Slots, keys: Slots, group: Slots, lies_flat: Flags) -> tuple[Slots, Slots, Slots]:
+    """The fans of triangles about particles of outlines and their gaps, see Jellies, of jellies g that lie flat (g,).
 
     keys (3 t,): of sides, the same where shared.
     """
@@ -92,14 +95,21 @@ def _fans(corners: Slots, keys: Slots, group: Slots, lies_flat: Flags) -> tuple[
     begins = np.flatnonzero((count[side] == 1) & np.repeat(lies_flat[group], 3))
     # Where two fans meet in a particle, neither is told from the other.
     begun, at, fans = np.unique(owner[begins], return_index=True, return_counts=True)
-    begun, following = begun[fans == 1], about[begins[at[fans == 1]], 1]
+    begins = begins[at[fans == 1]]
+    begun, following = owner[begins], about[begins, 1]
+    # What begins with one side ends with one, but where triangles lie over each other.
+    ends = np.flatnonzero((count[side].reshape(-1, 3)[:, [2, 0, 1]] == 1).reshape(-1))
+    ended, at, sides = np.unique(owner[ends], return_index=True, return_counts=True)
+    whole, of_begun, of_ended = np.intersect1d(begun, ended[sides == 1], assume_unique=True, return_indices=True)
+    last = about[ends[at[sides == 1][of_ended]], 2]
+    gap = np.stack([begins[of_begun] // 3, whole & 0xFFFFFFFF, last, following[of_begun]], axis=1)
     chosen = np.flatnonzero(np.isin(owner, begun))
     chosen = chosen[np.argsort(group[chosen // 3], kind="stable")]
     following = following[np.searchsorted(begun, owner[chosen])]
     beyond = following != about[chosen, 1]
     chosen, following = chosen[beyond], following[beyond]
     fan = np.stack([about[chosen, 0], following, about[chosen, 1], about[chosen, 2]], axis=1)
-    return fan, np.searchsorted(group[chosen // 3], np.arange(len(lies_flat) + 1))
+    return fan, np.searchsorted(group[chosen // 3], np.arange(len(lies_flat) + 1)), gap
 
 
 @inlined_kernel

@@ -1,24 +1,34 @@
 """The triangle clamp, last of all in a step: whatever the solver has left, no triangle of an area turns over in it.
 
 A jelly of which no triangle is turned over at the start of a step has none at the end, at any Cs and Cd, in every
-solver. What would turn over moves more as one: its rigid motion is left of it, which keeps momentum and angular
+solver. Nor do those about a particle of its outline close round that and go on (inversion.py): the gap that they leave,
+between the one before and the next one on the outline, is a triangle too, and as long as it is narrow it may not turn
+over either. What would turn over moves more as one: its rigid motion is left of it, which keeps momentum and angular
 momentum and has the least kinetic energy of all motions that do. Only what terrain or a pin holds stops instead. Let go
 are jellies that are inverted already (inversion.py), until they have found back, and triangles of a pin that is moved.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from sandbox.physics.collision.filter import TERRAIN_GROUP
-from sandbox.physics.collision.inversion import Inversions, Triangles, find_inverted, new_inversions, triangles_of
+from sandbox.physics.collision.inversion import (
+    Inversions,
+    Jellies,
+    Triangles,
+    find_inverted,
+    new_inversions,
+    triangles_of,
+)
 from sandbox.physics.collision.terrain_clamp import STOPS, stopped
 from sandbox.physics.collision.types import Flags
 from sandbox.physics.components import root_of, united
 from sandbox.physics.jit import bundle, contents, inlined_kernel, inner_kernel, kernel
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.terrain import Terrain
-from sandbox.physics.world import TRIANGLE, World
+from sandbox.physics.world import World
 
 # A step leaves a triangle at least this share of the area wanted, or of the area that it has, if that is less. Higher
 # stiffens what is merely squeezed, lower lets triangles be pressed flat in fewer steps.
@@ -46,13 +56,18 @@ MASS, X, Y, U, V, INERTIA, SPIN, COUNT = range(8)
 class ClampedTriangles(NamedTuple):
     """Triangles of areas and the rows that they join, particles of a world or rows of a system.
 
-    corner (t, 3): rows; group (t,): the jelly, -1: no triangle; rest (t, 2) [m^2]: area wanted and of the form. By row
-    (n,): position [m], velocity [m/s], which is clamped, mass [kg], inverse_mass [1/kg], collides: of corners, 0 of all
-    others. By jelly: inverted = let go. Scratch: label = what a row moves as one with, held: what cannot move, sums.
+    corner (k, 3): rows, of gaps too, each after a triangle beside it; gap (k,): which those are; group (k,): the jelly;
+    constraint (k,): of the triangle; those of constraint t: corner[start[t]:start[t + 1]]. rest (t, 2) [m^2]: area
+    wanted and of the form. By row (n,): position [m], velocity [m/s], which is clamped, mass [kg], inverse_mass [1/kg],
+    collides: of corners, 0 of all others. By jelly: inverted = let go. Scratch: label = what a row moves as one with,
+    held: what cannot move, sums.
     """
 
     corner: Slots
+    gap: Flags
     group: Slots
+    constraint: Slots
+    start: Slots
     rest: Floats
     position: Floats
     velocity: Floats
@@ -74,7 +89,7 @@ def _area_now(k: int, triangles: ClampedTriangles) -> float:
     b = triangles.corner[k, 1]
     c = triangles.corner[k, 2]
     area = 0.5 * ((x[b, 0] - x[a, 0]) * (x[c, 1] - x[a, 1]) - (x[b, 1] - x[a, 1]) * (x[c, 0] - x[a, 0]))
-    return area if triangles.rest[k, 0] > 0.0 else -area
+    return area if triangles.rest[triangles.constraint[k], 0] > 0.0 else -area
 
 
 @inlined_kernel
@@ -90,15 +105,16 @@ def _area_left(k: int, triangles: ClampedTriangles, h: float) -> float:
     cx = x[c, 0] - x[a, 0] + h * (v[c, 0] - v[a, 0])
     cy = x[c, 1] - x[a, 1] + h * (v[c, 1] - v[a, 1])
     area = 0.5 * (bx * cy - by * cx)
-    return area if triangles.rest[k, 0] > 0.0 else -area
+    return area if triangles.rest[triangles.constraint[k], 0] > 0.0 else -area
 
 
 @inner_kernel
 def _least_area(k: int, triangles: ClampedTriangles, share: float) -> float:
     # What the area is to be at the end of the step, or that share of it; 0: it may be anything.
     now = _area_now(k, triangles)
-    wanted = abs(triangles.rest[k, 0])
-    if not (now > 0.0 and triangles.rest[k, 0] * triangles.rest[k, 1] > 0.0):
+    t = triangles.constraint[k]
+    wanted = abs(triangles.rest[t, 0])
+    if not (now > 0.0 and triangles.rest[t, 0] * triangles.rest[t, 1] > 0.0):
         return 0.0
     for i in range(3):
         p = triangles.corner[k, i]
@@ -110,12 +126,36 @@ def _least_area(k: int, triangles: ClampedTriangles, share: float) -> float:
 
 
 @inner_kernel
+def _opens(k: int, triangles: ClampedTriangles, h: float) -> bool:
+    # Whether a gap that loses its area on the way to x + h v becomes a straight line there, and is not closed.
+    x, v = triangles.position, triangles.velocity
+    a = triangles.corner[k, 0]
+    b = triangles.corner[k, 1]
+    c = triangles.corner[k, 2]
+    bx, by, cx, cy = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[c, 0] - x[a, 0], x[c, 1] - x[a, 1]
+    ux, uy, wx, wy = v[b, 0] - v[a, 0], v[b, 1] - v[a, 1], v[c, 0] - v[a, 0], v[c, 1] - v[a, 1]
+    # The first time at which now + p t + q t^2 is 0, if it comes.
+    now = bx * cy - by * cx
+    sign = 1.0 if now > 0.0 else -1.0
+    p = sign * (bx * wy - by * wx + ux * cy - uy * cx)
+    q = sign * (ux * wy - uy * wx)
+    square = p * p - 4.0 * sign * now * q
+    root = math.sqrt(square) - p if square > 0.0 else 0.0
+    t = min(h, 2.0 * sign * now / root) if root > 0.0 else h
+    return (bx + t * ux) * (cx + t * wx) + (by + t * uy) * (cy + t * wy) <= 0.0
+
+
+@inner_kernel
 def _missing(k: int, triangles: ClampedTriangles, share: float, h: float) -> float:
     # The area that a triangle is to be left, where it will not be; 0: it will, or has been let go.
-    if triangles.group[k] < 0 or triangles.inverted[triangles.group[k]]:
+    if triangles.inverted[triangles.group[k]]:
         return 0.0
     least = _least_area(k, triangles, share)
-    return least if least > 0.0 and _area_left(k, triangles, h) < least else 0.0
+    missing = least > 0.0 and _area_left(k, triangles, h) < least
+    # A gap may open beyond a straight line, where its area is below 0 too.
+    if not missing or (triangles.gap[k] and _opens(k, triangles, h)):
+        return 0.0
+    return least
 
 
 @inner_kernel
@@ -165,6 +205,45 @@ def _rigid_motion(k: int, triangles: ClampedTriangles) -> tuple[float, float, fl
 
 
 @inner_kernel
+def _hold_open(k: int, triangles: ClampedTriangles, least: float, h: float) -> bool:
+    # Take from the corners of a gap, along the gradient of its area, what closes it, so that they may slide past each
+    # other; whether that does, and adds no energy. Drawn together, an edge that lies along another could not shorten.
+    x, v, w = triangles.position, triangles.velocity, triangles.inverse_mass
+    a = triangles.corner[k, 0]
+    b = triangles.corner[k, 1]
+    c = triangles.corner[k, 2]
+    sign = 1.0 if triangles.rest[triangles.constraint[k], 0] > 0.0 else -1.0
+    gax, gay = sign * (x[b, 1] - x[c, 1]), sign * (x[c, 0] - x[b, 0])
+    gbx, gby = sign * (x[c, 1] - x[a, 1]), sign * (x[a, 0] - x[c, 0])
+    gcx, gcy = sign * (x[a, 1] - x[b, 1]), sign * (x[b, 0] - x[a, 0])
+    # v + t w g leaves the area that is left now, and p t + q t^2.
+    bx, by = x[b, 0] - x[a, 0] + h * (v[b, 0] - v[a, 0]), x[b, 1] - x[a, 1] + h * (v[b, 1] - v[a, 1])
+    cx, cy = x[c, 0] - x[a, 0] + h * (v[c, 0] - v[a, 0]), x[c, 1] - x[a, 1] + h * (v[c, 1] - v[a, 1])
+    dbx, dby = h * (w[b] * gbx - w[a] * gax), h * (w[b] * gby - w[a] * gay)
+    dcx, dcy = h * (w[c] * gcx - w[a] * gax), h * (w[c] * gcy - w[a] * gay)
+    p = 0.5 * sign * (bx * dcy - by * dcx + dbx * cy - dby * cx)
+    q = 0.5 * sign * (dbx * dcy - dby * dcx)
+    missing = least - _area_left(k, triangles, h)
+    square = p * p + 4.0 * q * missing
+    if not (p > 0.0 and square >= 0.0):
+        return False
+    t = 2.0 * missing / (p + math.sqrt(square))
+    along = gax * v[a, 0] + gay * v[a, 1] if w[a] > 0.0 else 0.0
+    along += gbx * v[b, 0] + gby * v[b, 1] if w[b] > 0.0 else 0.0
+    along += gcx * v[c, 0] + gcy * v[c, 1] if w[c] > 0.0 else 0.0
+    weight = w[a] * (gax * gax + gay * gay) + w[b] * (gbx * gbx + gby * gby) + w[c] * (gcx * gcx + gcy * gcy)
+    if not along + 0.5 * t * weight <= 0.0:
+        return False
+    v[a, 0] += t * w[a] * gax
+    v[a, 1] += t * w[a] * gay
+    v[b, 0] += t * w[b] * gbx
+    v[b, 1] += t * w[b] * gby
+    v[c, 0] += t * w[c] * gcx
+    v[c, 1] += t * w[c] * gcy
+    return True
+
+
+@inner_kernel
 def _draw_together(k: int, triangles: ClampedTriangles, least: float, h: float) -> None:
     # v = rigid + s (v - rigid) at each corner, s halved until the area is large enough; with s = 0 it is, as a rigid
     # motion makes the area (1 + (turn h)^2) times as large.
@@ -192,7 +271,8 @@ def _sweep(first: int, last: int, triangles: ClampedTriangles, begun: int, h: fl
         for k in range(first, last):
             least = _missing(k, triangles, 1.0 - RELAXED * sweep, h)
             if least > 0.0:
-                _draw_together(k, triangles, least, h)
+                if not (triangles.gap[k] and _hold_open(k, triangles, least, h)):
+                    _draw_together(k, triangles, least, h)
                 again = True
         if not again:
             break
@@ -225,10 +305,9 @@ def _label_alone(first: int, last: int, low: int, high: int, triangles: ClampedT
         triangles.held[r] = triangles.inverse_mass[r] == 0.0
     for k in range(first, last):
         for i in range(3):
-            if triangles.group[k] >= 0:
-                p = triangles.corner[k, i]
-                triangles.label[p] = p
-                triangles.held[p] = triangles.inverse_mass[p] == 0.0
+            p = triangles.corner[k, i]
+            triangles.label[p] = p
+            triangles.held[p] = triangles.inverse_mass[p] == 0.0
 
 
 @inner_kernel
@@ -335,12 +414,14 @@ def _hold_areas(
 
 
 @inner_kernel
-def clamp_triangles(first: int, last: int, low: int, high: int, triangles: ClampedTriangles, h: float) -> int:
-    """Let no triangle of first..last turn over in the coming h [s]: AS_IT_WAS, SLOWED or JOINED.
+def clamp_triangles(begin: int, end: int, low: int, high: int, triangles: ClampedTriangles, h: float) -> int:
+    """Let no triangle of constraints begin..end turn over in the coming h [s]: AS_IT_WAS, SLOWED or JOINED.
 
     low, high: the rows that triangles join lie there, but for pinned ones. Where anything is changed, none of them
     crosses terrain.
     """
+    first = triangles.start[begin]
+    last = triangles.start[end]
     if not _any_missing(first, last, triangles, 1.0, h):
         return AS_IT_WAS
     return _hold_areas(first, last, low, high, triangles, h)
@@ -353,9 +434,10 @@ def _let_go(triangles: ClampedTriangles, of_world: Triangles, found: Inversions,
     if not matches:
         for g in range(found.is_inverted.shape[0]):
             found.is_inverted[g] = False
-        for t in range(of_world.constraint.shape[0]):
-            k = of_world.constraint[t]
-            if triangles.rest[k, 0] * triangles.rest[k, 1] > 0.0 and not _area_now(k, triangles) > 0.0:
+        for k in range(triangles.group.shape[0]):
+            t = triangles.constraint[k]
+            inside = not triangles.gap[k] and triangles.rest[t, 0] * triangles.rest[t, 1] > 0.0
+            if inside and not _area_now(k, triangles) > 0.0:
                 found.is_inverted[triangles.group[k]] = True
 
 
@@ -368,7 +450,7 @@ def _clamp_world(items: Any, matches: bool, h: float) -> None:
     # A solver that has done this itself may have gone as far as to the last share.
     if _any_missing(0, count, triangles, LAST_SHARE if matches else 1.0, h):
         _let_go(triangles, of_world, found, marked, matches)
-        clamp_triangles(0, count, 0, triangles.position.shape[0], triangles, h)
+        clamp_triangles(0, triangles.rest.shape[0], 0, triangles.position.shape[0], triangles, h)
 
 
 def has_triangles(world: World) -> bool:
@@ -385,15 +467,23 @@ def clamp_world(world: World, matches: bool, h: float) -> None:
 
 
 def new_triangles(
-    corner: Slots, group: Slots, rest: Floats, motion: tuple[Floats, Floats, Floats, Floats], collides: Slots,
-    inverted: Flags, terrain: Terrain,
+    constraint: Slots, corners: Slots, jellies: Jellies, rest: Floats, motion: tuple[Floats, Floats, Floats, Floats],
+    collides: Slots, inverted: Flags, terrain: Terrain,
 ) -> ClampedTriangles:  # fmt: skip
-    """Triangles with their scratch. motion: position, velocity, mass and inverse mass by row; collides: of all rows."""
-    count = len(collides)
-    used = np.isin(np.arange(count), corner[group >= 0])
+    """Triangles (t, 3) of these constraints (t,), with the gaps of their jellies and scratch.
+
+    motion: position, velocity, mass and inverse mass by row; collides: of all rows.
+    """
+    count, gap = len(collides), jellies.gap
+    owner = np.append(np.arange(len(corners)), gap[:, 0])
+    order = np.argsort(owner, kind="stable")
+    owner, corner = owner[order], np.append(corners, gap[:, 1:], axis=0)[order]
+    owned = constraint[owner]
+    start = np.searchsorted(owned, np.arange(len(rest) + 1))
+    used = np.isin(np.arange(count), corners)
     return ClampedTriangles(
-        corner, group, rest, *motion, np.where(used, collides, 0), inverted, np.zeros(count, np.int64),
-        np.zeros(count, np.bool_), np.zeros((count, COUNT + 1)), terrain,
+        corner, order >= len(corners), jellies.group[owner], owned, start, rest, *motion, np.where(used, collides, 0),
+        inverted, np.zeros(count, np.int64), np.zeros(count, np.bool_), np.zeros((count, COUNT + 1)), terrain,
     )  # fmt: skip
 
 
@@ -401,11 +491,9 @@ def _make_items(world: World) -> Any:
     triangles = world.derived(triangles_of)
     if not len(triangles.constraint):
         return None
-    corner = np.zeros((world.constraint_count, TRIANGLE), dtype=np.int64)
-    group = np.full(world.constraint_count, -1, dtype=np.int64)
-    corner[triangles.constraint], group[triangles.constraint] = triangles.corners, triangles.jellies.group
     motion, found = (world.position, world.velocity, world.mass, world.inverse_mass), new_inversions(triangles)
     clamped = new_triangles(
-        corner, group, world.constraint_rest, motion, world.collides, found.is_inverted, world.terrain
+        triangles.constraint, triangles.corners, triangles.jellies, world.constraint_rest, motion, world.collides,
+        found.is_inverted, world.terrain,
     )  # fmt: skip
     return bundle((clamped, triangles, found, np.zeros(world.particle_count, np.bool_)))

@@ -15,7 +15,8 @@ up:
     u = sum s v + omega x r,    omega = sum s d x v / I,    I = sum s |d|^2,    F_i = s_i (F + (r x F) perp(d_i) / I)
 
 d = place about the mean, r = the point's in the frame, perp(d) = (-d_y, d_x). x is the particle's own: the corner of a
-jelly 3 m wide that bends behind its frame would lag by 0.17 m otherwise, at a start to 5 m/s.
+jelly 3 m wide that bends behind its frame would lag by 0.17 m otherwise, at a start to 5 m/s. But only so far: a force
+that follows the one place and moves another can give energy to what swings.
 """
 
 import math
@@ -41,14 +42,18 @@ HARDEST_BRAKE = 17.0
 YIELDING = 1.0 / 120.0
 # Below this moment of inertia for the mass of one [m^2] what is gripped lies in a point and cannot turn.
 LEAST_SPREAD = 1e-150
+# How far the frame is led beyond the cursor, of the root mean square of the distances from its mean, so that the
+# particle that is held comes there. More lets what is very soft swing ever wider in a hand that stands still.
+LARGEST_LEAD = 0.05
 
 
 class Grips(NamedTuple):
     """The hands that hold something that can move, g of them, and the particles that they grip, k in all.
 
     hand (g,): numbers; cursor, spring, held (g,): slots; mass (g,): M [kg]; arm [m] (g, 2): the point that is held,
-    about the mean, in the form that the body was created in. Of hand i: particle[start[i]:start[i + 1]], with share s
-    of each (k,), and its place about the mean in that form, [m] (k, 2).
+    about the mean, in the form that the body was created in; lead [m] (g,): how far at most it is off the particle for
+    that. Of hand i: particle[start[i]:start[i + 1]], with share s of each (k,), and its place about the mean in that
+    form, [m] (k, 2).
     """
 
     hand: Slots
@@ -57,6 +62,7 @@ class Grips(NamedTuple):
     held: Slots
     mass: Floats
     arm: Floats
+    lead: Floats
     start: Slots
     particle: Slots
     share: Floats
@@ -90,7 +96,7 @@ def grips_of(world: World) -> Grips:
 
 
 def _make_grips(world: World) -> Grips:
-    hands, masses, arms, particles, shares, forms = [], [], [], [], [], []
+    hands, masses, arms, leads, particles, shares, forms = [], [], [], [], [], [], []
     for hand in range(GRAB_COUNT):
         if not world.is_held(hand):
             continue
@@ -105,10 +111,12 @@ def _make_grips(world: World) -> Grips:
             middle = [math.fsum((share * world.origin[chosen, axis]).tolist()) for axis in range(2)]
             hands.append(hand)
             masses.append(math.fsum(world.mass[body].tolist()))
+            form = world.origin[chosen] - middle
             arms.append(world.origin[held] - middle)
+            leads.append(LARGEST_LEAD * math.sqrt(math.fsum((share * (form[:, 0] ** 2 + form[:, 1] ** 2)).tolist())))
             particles.append(chosen)
             shares.append(share)
-            forms.append(world.origin[chosen] - middle)
+            forms.append(form)
     number = np.array(hands, dtype=np.int64)
     return Grips(
         number,
@@ -117,6 +125,7 @@ def _make_grips(world: World) -> Grips:
         world.particle_b[world.grab_spring + number].astype(np.int64),
         np.array(masses),
         np.reshape(np.array(arms), (-1, 2)),
+        np.array(leads),
         np.append(0, np.cumsum([len(chosen) for chosen in particles])).astype(np.int64),
         np.concatenate([number[:0], *particles]),
         np.concatenate([np.zeros(0), *shares]),
@@ -148,8 +157,8 @@ class HandRows(NamedTuple):
 
 
 @inner_kernel
-def _load_gradients(rows: JointRows, hands: HandRows, i: int) -> None:
-    # The two rows of a hand, u along x and along y.
+def _load_gradients(rows: JointRows, hands: HandRows, i: int) -> tuple[float, float]:
+    # The two rows of a hand, u along x and along y; where the point is in the frame.
     grips, position = hands.grips, hands.position
     first, last = grips.start[i], grips.start[i + 1]
     x = 0.0
@@ -183,17 +192,23 @@ def _load_gradients(rows: JointRows, hands: HandRows, i: int) -> None:
         rows.gradient[along_x + e, 1] = -s * ry * dx
         rows.gradient[along_y + e, 0] = -s * rx * dy
         rows.gradient[along_y + e, 1] = s * (1.0 + rx * dx)
+    return x + rx, y + ry
 
 
 @inner_kernel
-def _wanted(hands: HandRows, i: int, h: float) -> tuple[float, float]:
-    # w
+def _wanted(hands: HandRows, i: int, x: float, y: float, h: float) -> tuple[float, float]:
+    # w, where the point is at x, y in the frame.
     cursor = hands.grips.cursor[i]
     held = hands.grips.held[i]
     wx = hands.velocity[cursor, 0]
     wy = hands.velocity[cursor, 1]
     dx = hands.position[cursor, 0] - hands.position[held, 0]
     dy = hands.position[cursor, 1] - hands.position[held, 1]
+    bent_x = x - hands.position[held, 0]
+    bent_y = y - hands.position[held, 1]
+    beyond = 1.0 - shortened(bent_x, bent_y, hands.grips.lead[i])
+    dx -= beyond * bent_x
+    dy -= beyond * bent_y
     away = math.sqrt(dx * dx + dy * dy)
     if away > 0.0:
         brake = min(BRAKE_SHARE * hands.strength[hands.grips.hand[i]], HARDEST_BRAKE)
@@ -210,9 +225,9 @@ def load_hands(rows: JointRows, hands: HandRows, h: float) -> None:
     """Fill in the rows of hands for a substep of h [s]."""
     grips = hands.grips
     for i in range(grips.hand.shape[0]):
-        _load_gradients(rows, hands, i)
+        x, y = _load_gradients(rows, hands, i)
         hand, k = grips.hand[i], hands.row[i]
-        rows.target[k], rows.target[k + 1] = _wanted(hands, i, h)
+        rows.target[k], rows.target[k + 1] = _wanted(hands, i, x, y, h)
         limit = hands.strength[hand] * grips.mass[i] * h
         jx = hands.force[hand, 0] * h
         jy = hands.force[hand, 1] * h

@@ -304,11 +304,16 @@ def _scratch(kind: Any, given: dict[str, Slots], shape: Any, shapes: dict[str, A
     return given | {name: np.zeros(shapes.get(name, shape)) for name in kind._fields if name not in given}
 
 
+def _narrow(constraints: Constraints) -> tuple[Slots, Slots]:
+    """Which constraints are areas of three corners, and where those stand."""
+    chosen = np.flatnonzero((constraints.kind == AREA) & (constraints.wide < 0))
+    return chosen, constraints.first[:-1][chosen, None] + np.array([0, 1, 2])
+
+
 def _lay_out_goals(constraints: Constraints, body: Slots, bodies: int, world: World) -> Goals:
     """The jellies among a world's constraints; body (t,): of each."""
     count = len(constraints.slot)
-    chosen = np.flatnonzero((constraints.kind == AREA) & (constraints.wide < 0))
-    corners = constraints.first[:-1][chosen, None] + np.array([0, 1, 2])
+    chosen, corners = _narrow(constraints)
     jellies = group_triangles(constraints.row[corners], world.constraint_rest[constraints.slot[chosen], 1])
     group, member = np.full(count, -1, dtype=np.int64), np.full((count, 3), -1, dtype=np.int64)
     group[chosen], member[chosen] = jellies.group, jellies.member
@@ -332,9 +337,12 @@ def _lay_out_goals(constraints: Constraints, body: Slots, bodies: int, world: Wo
 
 
 def _lay_out_triangles(rows: Rows, constraints: Constraints, goals: Goals, world: World) -> ClampedTriangles:
-    """The triangles of all jellies, over the rows; those of other constraints are in no group."""
-    narrow = np.minimum(constraints.first[:-1, None] + np.arange(3), max(0, len(constraints.row) - 1))
-    corner = constraints.row[narrow] if len(constraints.row) else narrow
+    """The triangles of all jellies, over the rows."""
+    chosen, narrow = _narrow(constraints)
+    corners = constraints.row[narrow]
+    jellies = group_triangles(corners, world.constraint_rest[constraints.slot[chosen], 1])
     motion = rows.position, rows.trial, rows.mass, rows.inverse_mass
     collides = world.collides[rows.particle]
-    return new_triangles(corner, goals.group, constraints.rest, motion, collides, goals.inverted, world.terrain)
+    return new_triangles(
+        chosen, corners, jellies, constraints.rest, motion, collides, goals.inverted, world.terrain
+    )  # fmt: skip
