@@ -232,6 +232,20 @@ def test_runs_that_break_have_marks_where_they_broke(open_app):
     assert driver.playback.session.tick == marks[-1].tick
 
 
+def test_what_broke_breaks_again_where_a_run_is_wound_back_and_played_on(open_app):
+    weak = {"stiffness": 0.9, "damping": 0.95, "tension_limit": 1e-6}
+    body = {"type": "rope", "id": "rope", "start": [0, 0], "end": [4, 0], "segments": 4, "material": "weak"}
+    driver = open_app(small_level(materials={"weak": weak}, bodies=[{**body, "pin": ["start", "end"]}], settings={}))
+    driver.frames(20)
+    playback, told = driver.playback, driver.playback.breaks.text
+    assert told
+    playback.seek(0)
+    playback.clock.paused = False
+    driver.frames(10)
+    assert 0 < playback.session.tick <= playback.session.last_tick
+    assert playback.breaks.text == told
+
+
 def test_what_is_saved_in_the_past_leaves_the_run_and_what_follows_as_they_are(timeline, documents):
     playback = timeline.playback
     end, last = state_hash(playback.session.world), playback.session.last_tick

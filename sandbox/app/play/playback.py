@@ -344,9 +344,10 @@ class Playback:
 
     def _note_breaks(self) -> None:
         """Tell what broke in words of its own, in place of the session's."""
-        world = self.session.world
-        for line in break_lines(world):
-            self.session.messages.remove(line)
+        world, messages = self.session.world, self.session.messages
+        # Of a past that is played again the session says nothing.
+        said = break_lines(world)
+        messages[:] = [line for line in messages if line not in said]
         self.breaks.note(world)
 
     def _compare(self) -> None:
