@@ -26,7 +26,7 @@ class Breaks:
         broken = world.broken.tolist()
         if not broken:
             return
-        if not self._last <= world.tick <= self._last + QUIET * world.settings.tick_rate:
+        if not self._last < world.tick <= self._last + QUIET * world.settings.tick_rate:
             self._counts.clear()
         self._last = world.tick
         self._counts.update(self._thing(world, spring) for spring in broken)
