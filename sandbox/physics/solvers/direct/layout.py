@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.collision.inversion import group_triangles
+from sandbox.physics.collision.inversion import Jellies, group_triangles
 from sandbox.physics.collision.triangle_clamp import ClampedTriangles, new_triangles
 from sandbox.physics.components import label_bodies
 from sandbox.physics.constraints import AREA
@@ -114,7 +114,8 @@ def make_layout(world: World) -> SystemLayout:
     row_a, row_b, spring_body = row_a[grouped], row_b[grouped], spring_body[grouped]
     held = spring_body[np.maximum(row_a, row_b) >= len(nodes)], constraint_body[_anchored(constraints, len(nodes))]
     rows = _lay_out_rows(np.concatenate([nodes[order], anchors]))
-    goals = _lay_out_goals(constraints, constraint_body, len(first_rows), world)
+    triangles = _triangles_among(constraints, world)
+    goals = _lay_out_goals(constraints, triangles, constraint_body, len(first_rows), world)
     system = System(
         _lay_out_bodies(first_rows, nodes[body_of_row[first_rows]], spring_body, constraint_body, held, len(nodes)),
         rows,
@@ -123,7 +124,7 @@ def make_layout(world: World) -> SystemLayout:
         matrix,
         fronts,
         goals,
-        _lay_out_triangles(rows, constraints, goals, world),
+        _lay_out_triangles(rows, constraints, triangles, goals, world),
     )
     hooke = kind == LAW_HOOKE
     return SystemLayout(bool(hooke.any()), hooke, system, bundle((system,)))
@@ -304,17 +305,25 @@ def _scratch(kind: Any, given: dict[str, Slots], shape: Any, shapes: dict[str, A
     return given | {name: np.zeros(shapes.get(name, shape)) for name in kind._fields if name not in given}
 
 
-def _narrow(constraints: Constraints) -> tuple[Slots, Slots]:
-    """Which constraints are areas of three corners, and where those stand."""
+class _Triangles(NamedTuple):
+    """The constraints that are areas of three corners (t,), where those stand and their rows (t, 3), their jellies."""
+
+    constraint: Slots
+    corner: Slots
+    row: Slots
+    jellies: Jellies
+
+
+def _triangles_among(constraints: Constraints, world: World) -> _Triangles:
     chosen = np.flatnonzero((constraints.kind == AREA) & (constraints.wide < 0))
-    return chosen, constraints.first[:-1][chosen, None] + np.array([0, 1, 2])
+    corners = constraints.first[:-1][chosen, None] + np.array([0, 1, 2])
+    rows = constraints.row[corners]
+    return _Triangles(chosen, corners, rows, group_triangles(rows, world.constraint_rest[constraints.slot[chosen], 1]))
 
 
-def _lay_out_goals(constraints: Constraints, body: Slots, bodies: int, world: World) -> Goals:
-    """The jellies among a world's constraints; body (t,): of each."""
-    count = len(constraints.slot)
-    chosen, corners = _narrow(constraints)
-    jellies = group_triangles(constraints.row[corners], world.constraint_rest[constraints.slot[chosen], 1])
+def _lay_out_goals(constraints: Constraints, triangles: _Triangles, body: Slots, bodies: int, world: World) -> Goals:
+    """The jellies among a world's constraints; body (t,): of each constraint."""
+    count, chosen, jellies = len(constraints.slot), triangles.constraint, triangles.jellies
     group, member = np.full(count, -1, dtype=np.int64), np.full((count, 3), -1, dtype=np.int64)
     group[chosen], member[chosen] = jellies.group, jellies.member
     # Constraints lie by body, and so do their groups, in the order of the first of each.
@@ -323,7 +332,7 @@ def _lay_out_goals(constraints: Constraints, body: Slots, bodies: int, world: Wo
         of_body=np.searchsorted(body[sample], np.arange(bodies + 1)),
         start=jellies.start,
         row=jellies.particle,
-        form=world.corner_form[constraints.corner[corners.reshape(-1)[jellies.corner]]],
+        form=world.corner_form[constraints.corner[triangles.corner.reshape(-1)[jellies.corner]]],
         sample=sample,
         group=group,
         member=member,
@@ -336,13 +345,13 @@ def _lay_out_goals(constraints: Constraints, body: Slots, bodies: int, world: Wo
     )
 
 
-def _lay_out_triangles(rows: Rows, constraints: Constraints, goals: Goals, world: World) -> ClampedTriangles:
+def _lay_out_triangles(
+    rows: Rows, constraints: Constraints, triangles: _Triangles, goals: Goals, world: World
+) -> ClampedTriangles:
     """The triangles of all jellies, over the rows."""
-    chosen, narrow = _narrow(constraints)
-    corners = constraints.row[narrow]
-    jellies = group_triangles(corners, world.constraint_rest[constraints.slot[chosen], 1])
     motion = rows.position, rows.trial, rows.mass, rows.inverse_mass
     collides = world.collides[rows.particle]
     return new_triangles(
-        chosen, corners, jellies, constraints.rest, motion, collides, goals.inverted, world.terrain
+        triangles.constraint, triangles.row, triangles.jellies, constraints.rest, motion, collides, goals.inverted,
+        world.terrain,
     )  # fmt: skip
