@@ -12,6 +12,8 @@ BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 WORKERS ?= 3
 # Byte code is kept whatever the environment says, or each of many processes would compile the package anew.
 unexport PYTHONDONTWRITEBYTECODE
+# What pip says of newer ones of itself is no concern of whoever plays or tests.
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .PHONY: play install test kernels byte-code lint bounds goldens goldens-anew pictures bench abuse soak clean
 
@@ -67,7 +69,6 @@ soak: $(VENV)/installed-dev
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade pip
 
 $(VENV)/installed: $(BIN)/python pyproject.toml
 	$(BIN)/python -m pip install --quiet --editable ".[export]"
