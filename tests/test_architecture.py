@@ -46,6 +46,13 @@ def sources():
     return trees
 
 
+@pytest.fixture(autouse=True, scope="module")
+def no_tree_is_kept():
+    """A million objects: each search for garbage in the tests after these would take ten times as long."""
+    yield
+    sources.cache_clear()
+
+
 @functools.cache
 def imported(name):
     """Dotted names that a module imports, anywhere in it; what it names of our own are modules, not their contents."""
