@@ -7,6 +7,7 @@ import i18n
 import pygame
 import pygame_gui
 from pygame_gui.core import gui_font_pygame
+from pygame_gui.core.resource_loaders import IResourceLoader
 from pygame_gui.core.ui_appearance_theme import UIAppearanceTheme
 
 from sandbox.app.draw.colours import shown_theme
@@ -50,13 +51,29 @@ def scaled_theme(scale: float) -> dict[str, Any]:
     return theme
 
 
+class _AtOnce(IResourceLoader):
+    """Has each font loaded where it is first asked for; the library's own loader starts five threads a window."""
+
+    def add_resource(self, resource: Any) -> None:
+        resource.load()
+
+    def start(self) -> None:
+        pass
+
+    def update(self) -> tuple[bool, float]:
+        return True, 1.0
+
+    def started(self) -> bool:
+        return True
+
+
 class Manager(pygame_gui.UIManager):
     """The library's manager of widgets in a window of a size [pixels] and at a scale, whose theme answers at once."""
 
     def __init__(self, size: tuple[int, int], scale: float) -> None:
         self._scale = scale
         self._tip: Any = None
-        super().__init__(size, enable_live_theme_updates=False)
+        super().__init__(size, enable_live_theme_updates=False, resource_loader=_AtOnce())
         # Each manager adds the library's folder of translations, and every text with a full stop is looked up in all.
         i18n.load_path.clear()
 
