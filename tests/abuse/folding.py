@@ -3,7 +3,7 @@
 Run by hand: python -m tests.abuse.folding [--all] [--solver NAME]. Without --all, a seeded sample. Prints a
 line for each run that breaks a limit, and a summary: least area of any triangle as a share of that wanted, and for the
 direct solver with Cs <= Cd the highest energy as a multiple of the start (not of what is stirred: a hand does work).
-No outline is wound either, but in a single pass, in which stiff springs explode.
+No outline stays wound either, but in a single pass, in which stiff springs explode.
 """
 
 import argparse
@@ -14,7 +14,7 @@ import time
 import numpy as np
 
 from sandbox.physics.solvers import SOLVERS
-from tests.support.folding import COEFFICIENTS, DEEDS, SHAPES, play
+from tests.support.folding import COEFFICIENTS, DEEDS, SHAPES, WOUND_AT_MOST, play
 
 SUBSTEPS = (1, 4)
 SECONDS = 3.0
@@ -22,7 +22,7 @@ SAMPLE = 24
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the table; 1 where a triangle turned over, an outline was wound, or energy was gained."""
+    """Run the table; 1 where a triangle turned over, an outline stayed wound, or energy was gained."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--all", action="store_true")
     parser.add_argument("--solver", choices=list(SOLVERS))
@@ -37,7 +37,7 @@ def main(arguments: list[str] | None = None) -> int:
         bounded = solver == "direct" and deed != "stirred"
         least, most = min(least, found.least_area), max(most, found.most_energy if bounded else 0.0)
         gained = bounded and not found.most_energy <= 1.0 + 1e-9
-        wound = found.wound and solver != "single_pass"
+        wound = found.wound > WOUND_AT_MOST and solver != "single_pass"
         if not found.least_area > 0.0 or wound or gained:
             failed += 1
             print(f"{solver} {deed} {shape} {coefficients} {substeps} substeps: {found}", flush=True)

@@ -25,6 +25,8 @@ SHAPES: dict[str, Any] = {
 # Cs and Cd, of a tick.
 COEFFICIENTS = ((0.001, 0.01), (0.02, 0.1), (0.1, 0.5), (0.5, 0.9), (0.9, 0.99), (0.99, 0.99))
 HILLS = [[-300, 0], [0, 0], [3, 1], [5, 0], [8, 2], [9, 0], [12, 4], [300, 4]]
+# An outline that is wound for longer is not on its way back [ticks].
+WOUND_AT_MOST = 3
 # How often heavier what lies on a squeezed jelly is, and how many particles each has.
 HEAVIER = 100.0
 
@@ -32,13 +34,14 @@ HEAVIER = 100.0
 class Found(NamedTuple):
     """Least area of any triangle at the end of any tick, and at the end, as a share of that wanted.
 
-    most_energy: the highest total, as a multiple of that at the start; wound: whether a jelly was, in any tick.
+    most_energy: the highest total, as a multiple of that at the start; wound: the most ticks in a row in which a jelly
+    was: one that a hard hit winds in a tick is unwound in the next.
     """
 
     least_area: float
     last_area: float
     most_energy: float
-    wound: bool
+    wound: int
 
 
 def level(deed: str, shape: str, coefficients: tuple[float, float], **settings: Any) -> Level:
@@ -144,11 +147,12 @@ def play(
     world, generator = make(deed, shape, coefficients, **settings), np.random.default_rng(seed)
     speed = float(generator.choice([5.0, 20.0, 80.0]))
     start = total_energy(world)
-    least, most, wound = 1.0, start, False
+    least, most, wound, longest = 1.0, start, 0, 0
     for _ in range(round(seconds * world.settings.tick_rate)):
         if deed == "stirred":
             stir(world, generator, speed)
         step(world)
         least, most = min(least, float(areas(world).min())), max(most, total_energy(world))
-        wound = wound or is_any_wound(world)
-    return Found(least, float(areas(world).min()), most / start, wound)
+        wound = wound + 1 if is_any_wound(world) else 0
+        longest = max(longest, wound)
+    return Found(least, float(areas(world).min()), most / start, longest)
