@@ -140,3 +140,14 @@ def test_pictures_are_held_in_so_many_bytes_and_those_used_last_stay(open_app):
     assert held.read(paths[0], (80, 45)) is first and held.read(paths[3], (80, 45)) is second
     held.read(paths[1], (800, 450))
     assert held.bytes == 4 * 800 * 450, "one larger than all that may be held"
+
+
+def test_a_picture_is_held_in_the_size_that_was_asked_for_last(open_app):
+    open_app()
+    held = picture_cache.HeldPictures(1_000_000)
+    level = shipped_levels()[0]
+    path = shipped_picture(level, picture_key(level.read_bytes()), "dark")
+    for size in ((80, 45), (160, 90), (80, 45)):
+        picture = held.read(path, size)
+        assert picture.get_size() == size and held.bytes == 4 * size[0] * size[1]
+        assert held.read(path, size) is picture
