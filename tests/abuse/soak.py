@@ -240,6 +240,12 @@ class Monkey:
         for name in chosen:
             self.app.chosen.choose(name, None)
         self.app.start(Playback(load_level("rope")))
+        # Pictures of cards are kept in a size, for the next time: all of them in that of this page. None of them plays.
+        self._move_to((0, 0))
+        self.app.open_gallery()
+        while self.app.gallery is not None and self.app.gallery.moves:
+            self.frame()
+        self.app.close_gallery()
         for _ in range(5):
             self.frame()
         gc.collect()
