@@ -76,9 +76,7 @@ class HeldPictures:
 
     def read(self, path: Path, size: tuple[int, int]) -> pygame.Surface:
         """The picture of a file in a size. Raises OSError and pygame.error."""
-        picture = self._pictures.pop(path, None)
-        if picture is not None:
-            self.bytes -= _bytes_of(picture)
+        picture = self.forget(path)
         if picture is None or picture.get_size() != size:
             with path.open("rb") as file:
                 picture = pygame.transform.smoothscale(pygame.image.load(file, path.name).convert(32), size)
@@ -89,10 +87,12 @@ class HeldPictures:
             self.bytes -= _bytes_of(self._pictures.popitem(last=False)[1])
         return picture
 
-    def clear(self) -> None:
-        """Forget all: files are about to be others."""
-        self._pictures.clear()
-        self.bytes = 0
+    def forget(self, path: Path) -> pygame.Surface | None:
+        """Hold the picture of a file no longer, as when the file is another; what was held."""
+        picture = self._pictures.pop(path, None)
+        if picture is not None:
+            self.bytes -= _bytes_of(picture)
+        return picture
 
 
 _held = HeldPictures(HELD)
@@ -134,7 +134,7 @@ def keep_picture(picture: pygame.Surface, path: Path) -> None:
         raise OSError(0, str(error), str(path)) from None
     finally:
         unfinished.unlink(missing_ok=True)
-    _held.clear()
+    _held.forget(path)
 
 
 def keep_for_later(picture: pygame.Surface, path: Path) -> None:

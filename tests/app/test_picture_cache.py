@@ -62,13 +62,13 @@ def test_the_gallery_of_shipped_levels_draws_nothing_however_often_and_large_it_
     assert drawn == []
 
 
-def test_a_level_of_ones_own_is_drawn_once_and_again_after_a_change(open_app, drawn, tmp_path):
+def test_a_level_of_ones_own_is_drawn_once_and_again_after_a_change(open_app, drawn, tmp_path, monkeypatch):
     path = own_level(tmp_path)
     driver = open_app(small_level())
     for times, act in ((1, "open"), (1, "again"), (2, "change"), (2, "again")):
         if act == "change":
             path.write_text(level_text(small_level(name="Mine, changed")))
-        picture_cache._held.clear()
+        monkeypatch.setattr(picture_cache, "_held", picture_cache.HeldPictures(picture_cache.HELD))
         driver.app.open_gallery("mine")
         while driver.app.gallery._unfilled:
             driver.frames()
@@ -151,3 +151,17 @@ def test_a_picture_is_held_in_the_size_that_was_asked_for_last(open_app):
         picture = held.read(path, size)
         assert picture.get_size() == size and held.bytes == 4 * size[0] * size[1]
         assert held.read(path, size) is picture
+
+
+def test_a_picture_that_is_written_anew_is_read_anew_and_no_other(open_app, tmp_path):
+    open_app()
+    one, other = tmp_path / "one.jpg", tmp_path / "other.jpg"
+    for path, colour in ((one, "red"), (other, "red"), (one, "blue")):
+        picture = pygame.Surface((80, 45), 0, 32)
+        picture.fill(colour)
+        before = picture_cache._held.read(other, (80, 45)) if other.exists() else None
+        picture_cache.keep_picture(picture, path)
+        assert picture_cache._held.read(path, (80, 45)).get_at((40, 20)).b == pytest.approx(
+            255 * (colour == "blue"), abs=4
+        )
+    assert picture_cache._held.read(other, (80, 45)) is before
