@@ -64,38 +64,38 @@ def find_picture(level: Path, key: str, size: tuple[int, int], theme: ThemeName)
 
 
 class HeldPictures:
-    """Pictures that were read, those used last, in so many bytes; a name says what one shows, so it holds."""
+    """Pictures that were read, those used last, in so many bytes; a name says what one shows, so it holds.
+
+    Each is held in the size that was asked for last: a window has cards of another size once its own is another.
+    """
 
     def __init__(self, most: int) -> None:
         self._most = most
-        self._pictures: OrderedDict[tuple[Path, tuple[int, int]], pygame.Surface] = OrderedDict()
+        self._pictures: OrderedDict[Path, pygame.Surface] = OrderedDict()
         self.bytes = 0
 
     def read(self, path: Path, size: tuple[int, int]) -> pygame.Surface:
         """The picture of a file in a size. Raises OSError and pygame.error."""
-        key = path, size
-        if key not in self._pictures:
+        picture = self.forget(path)
+        if picture is None or picture.get_size() != size:
             with path.open("rb") as file:
                 picture = pygame.transform.smoothscale(pygame.image.load(file, path.name).convert(32), size)
-            self._pictures[key] = picture
-            self.bytes += _bytes_of(picture)
-        self._pictures.move_to_end(key)
+        self._pictures[path] = picture
+        self.bytes += picture.get_buffer().length
         # What is asked for now is held however large it is.
         while self.bytes > self._most and len(self._pictures) > 1:
-            self.bytes -= _bytes_of(self._pictures.popitem(last=False)[1])
-        return self._pictures[key]
+            self.bytes -= self._pictures.popitem(last=False)[1].get_buffer().length
+        return picture
 
-    def clear(self) -> None:
-        """Forget all: files are about to be others."""
-        self._pictures.clear()
-        self.bytes = 0
+    def forget(self, path: Path) -> pygame.Surface | None:
+        """Hold the picture of a file no longer, as when the file is another; what was held."""
+        picture = self._pictures.pop(path, None)
+        if picture is not None:
+            self.bytes -= picture.get_buffer().length
+        return picture
 
 
 _held = HeldPictures(HELD)
-
-
-def _bytes_of(picture: pygame.Surface) -> int:
-    return picture.get_pitch() * picture.get_height()
 
 
 def draw_in_slices(level: Level, theme: ThemeName, seconds: float = SECONDS) -> Generator[bool, None, pygame.Surface]:
@@ -130,7 +130,7 @@ def keep_picture(picture: pygame.Surface, path: Path) -> None:
         raise OSError(0, str(error), str(path)) from None
     finally:
         unfinished.unlink(missing_ok=True)
-    _held.clear()
+    _held.forget(path)
 
 
 def keep_for_later(picture: pygame.Surface, path: Path) -> None:

@@ -25,7 +25,7 @@ import pygame
 
 from sandbox.app.app import App
 from sandbox.app.compiling import warm_up_rest
-from sandbox.app.display import Display
+from sandbox.app.display import SCALE_RANGE, Display
 from sandbox.app.play.playback import Playback
 from sandbox.app.settings.chosen import SETTINGS
 from sandbox.app.start_request import StartRequest
@@ -235,10 +235,17 @@ class Monkey:
         if self.app.display.fullscreen:
             self.app.display.toggle_fullscreen()
         self.app.display.window.size = SIZES[0]
-        # Larger widgets take more: what was chosen is put back afterwards.
+        # Larger widgets take more: what was chosen is put back afterwards. Shapes of widgets are kept in so many bytes
+        # as long as the scale is the same: it becomes what it is now.
         chosen = {setting.name: self.app.chosen[setting.name] for setting in SETTINGS}
+        self.app.chosen.choose("scale", SCALE_RANGE[1])
         for name in chosen:
             self.app.chosen.choose(name, None)
+        # Pictures of cards are kept in a size, for the next time: all of them in that of this page. None of them plays.
+        self._move_to((0, 0))
+        self.app.open_gallery()
+        while self.app.gallery is not None and self.app.gallery.moves:
+            self.frame()
         self.app.start(Playback(load_level("rope")))
         for _ in range(5):
             self.frame()

@@ -36,6 +36,22 @@ def test_e_plays_the_document_from_its_beginning_and_comes_back_to_it_untouched(
     assert driver.playback.session.tick < 10
 
 
+def test_what_is_being_typed_is_in_the_run_and_is_asked_about_before_it_is_left(driver):
+    editor = driver.editor
+    editor.side.choose("level")
+    for name, leave in (("Ann", driver.app.documents.play), ("Bea", driver.app.documents.new)):
+        driver.app.ui.focus_on(editor.side.page.form.fields["author"][0].entry)
+        driver.type(name)
+        leave()
+        driver.frames(2)
+        assert editor.document.level.author == name
+        if leave == driver.app.documents.play:
+            assert driver.playback.level.author == name and editor.side is None
+            driver.app.documents.back()
+            editor.history.mark_saved()
+    assert driver.app.ui.has_question and driver.editor is editor and editor.side.tab == "level"
+
+
 def test_the_picture_stays_where_it_is_when_playing_begins(driver):
     camera = driver.editor.camera
     before = camera.to_pixels((1, 1))

@@ -4,7 +4,9 @@ import gc
 import weakref
 
 import pytest
+from pygame_gui.core.utility import get_default_manager
 
+from sandbox.app.draw.raster.painter import _scratch_for, _scratches
 from sandbox.app.idle import ENOUGH, REST, IdleCollector
 from sandbox.app.play.playback import Playback
 from tests.app.conftest import small_level
@@ -84,3 +86,43 @@ def test_what_filled_the_window_is_let_go_of_in_the_next_pause(edit, replace):
     driver.frames(2)
     driver.rest()
     assert left() is None
+
+
+def test_a_layout_that_is_over_keeps_none_of_its_widgets_whoever_has_it_still(edit):
+    driver = edit()
+    driver.app.open_gallery()
+    driver.frames(2)
+    before, card = driver.app.ui, weakref.ref(driver.app.gallery.cards[0])
+    picture = weakref.ref(card().image)
+    driver.app.show_screen(driver.editor)
+    driver.frames(2)
+    gc.collect()
+    assert get_default_manager() is driver.app.ui.manager is not before.manager
+    assert card() is None and picture() is None
+
+
+def test_an_editor_keeps_no_picture_of_its_canvas_and_panel_while_its_level_is_played(edit):
+    driver = edit()
+    driver.editor.side.choose("history")
+    driver.frames(2)
+    left = [weakref.ref(each) for each in (driver.editor.view, driver.editor.side, driver.editor.side.back)]
+    driver.app.documents.play()
+    driver.frames(2)
+    gc.collect()
+    assert [each() for each in left] == [None, None, None]
+    driver.app.documents.back()
+    driver.frames(2)
+    assert driver.app.screen is driver.editor and driver.editor.side.tab == "history"
+
+
+def test_painters_of_a_size_share_what_they_work_in_and_none_is_kept_for_a_size_that_nobody_draws(open_app):
+    driver = open_app(small_level())
+    driver.frames(2)
+    driver.app.display.window.size = (700, 500)
+    driver.frames(2)
+    gc.collect()
+    assert (1280, 720) not in _scratches
+    first = _scratch_for((41, 30))
+    assert _scratch_for((41, 30)) is first
+    del first
+    assert (41, 30) not in _scratches

@@ -62,13 +62,13 @@ def test_the_gallery_of_shipped_levels_draws_nothing_however_often_and_large_it_
     assert drawn == []
 
 
-def test_a_level_of_ones_own_is_drawn_once_and_again_after_a_change(open_app, drawn, tmp_path):
+def test_a_level_of_ones_own_is_drawn_once_and_again_after_a_change(open_app, drawn, tmp_path, monkeypatch):
     path = own_level(tmp_path)
     driver = open_app(small_level())
     for times, act in ((1, "open"), (1, "again"), (2, "change"), (2, "again")):
         if act == "change":
             path.write_text(level_text(small_level(name="Mine, changed")))
-        picture_cache._held.clear()
+        monkeypatch.setattr(picture_cache, "_held", picture_cache.HeldPictures(picture_cache.HELD))
         driver.app.open_gallery("mine")
         while driver.app.gallery._unfilled:
             driver.frames()
@@ -140,3 +140,28 @@ def test_pictures_are_held_in_so_many_bytes_and_those_used_last_stay(open_app):
     assert held.read(paths[0], (80, 45)) is first and held.read(paths[3], (80, 45)) is second
     held.read(paths[1], (800, 450))
     assert held.bytes == 4 * 800 * 450, "one larger than all that may be held"
+
+
+def test_a_picture_is_held_in_the_size_that_was_asked_for_last(open_app):
+    open_app()
+    held = picture_cache.HeldPictures(1_000_000)
+    level = shipped_levels()[0]
+    path = shipped_picture(level, picture_key(level.read_bytes()), "dark")
+    for size in ((80, 45), (160, 90), (80, 45)):
+        picture = held.read(path, size)
+        assert picture.get_size() == size and held.bytes == 4 * size[0] * size[1]
+        assert held.read(path, size) is picture
+
+
+def test_a_picture_that_is_written_anew_is_read_anew_and_no_other(open_app, tmp_path):
+    open_app()
+    one, other = tmp_path / "one.jpg", tmp_path / "other.jpg"
+    for path, colour in ((one, "red"), (other, "red"), (one, "blue")):
+        picture = pygame.Surface((80, 45), 0, 32)
+        picture.fill(colour)
+        before = picture_cache._held.read(other, (80, 45)) if other.exists() else None
+        picture_cache.keep_picture(picture, path)
+        assert picture_cache._held.read(path, (80, 45)).get_at((40, 20)).b == pytest.approx(
+            255 * (colour == "blue"), abs=4
+        )
+    assert picture_cache._held.read(other, (80, 45)) is before

@@ -242,7 +242,8 @@ class DocumentActions:
         self.app.say(f"{_called(editor.level_file.path)} was read again.{again}")
 
     def if_saved(self, then: Callable[[], object]) -> None:
-        """Go on, once the person has said what becomes of changes that are not saved."""
+        """Go on, once the person has said what becomes of changes that are not saved, that being typed among them."""
+        self.app.ui.blur()
         editor = self.editor
         if editor is None or editor.history.is_saved:
             then()
@@ -357,7 +358,9 @@ class DocumentActions:
         editor = self.editor
         if editor is None:
             return
-        editor.leave()
+        editor.settle()
+        # What is being typed is played, too.
+        self.app.ui.blur()
         screen = self.app.start_document(Playback(editor.document.level))
         screen.camera.show_as(editor.camera)
         box = editor.whole_box

@@ -71,6 +71,8 @@ class EditScreen:
         # Whether the person wants the panel at the side; None: it is shown where there is room.
         self._wants_side: bool | None = None
         self.side: Side | None = None
+        # The page of the panel that was shown last.
+        self._tab = "properties"
         self.camera = Camera(viewport=self._viewport())
         self.view = View(self)
         self.tool = "select"
@@ -139,7 +141,7 @@ class EditScreen:
     def step_to(self, index: int) -> None:
         """Show the state after a step of the history."""
         before = self.document.level
-        self.leave()
+        self.settle()
         self.history.go_to(index)
         self.level_changed(self.history.labels[index], before)
 
@@ -232,9 +234,14 @@ class EditScreen:
         left = self._palette_width
         self.options = OptionsRow(self, ui.rect(left, BAR_HEIGHT, width - left, OPTIONS_HEIGHT))
         self.rulers = Rulers(ui)
+        # What is being typed in the old panel is not lost.
+        self._close_side()
         if self.show_side:
-            self.side = Side(ui, self, self._side_place())
-        elif self.side is not None:
+            self.side = Side(ui, self, self._side_place(), self._tab)
+
+    def _close_side(self) -> None:
+        if self.side is not None:
+            self._tab = self.side.tab
             self.side.close()
             self.side = None
 
@@ -465,7 +472,13 @@ class EditScreen:
         return words
 
     def leave(self) -> None:
-        """Give up what is under way; the document stays as it is."""
+        """Give up what is under way, and let go of pictures as large as some windows; the document stays as it is."""
+        self.settle()
+        self._close_side()
+        self.view = View(self)
+
+    def settle(self) -> None:
+        """Give up what is under way."""
         if self.pointer_tool.matrix is not None or isinstance(self.pointer_tool, DrawTool):
             self.pointer_tool.cancel()
         self.history.end_merge()

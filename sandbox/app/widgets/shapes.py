@@ -10,8 +10,8 @@ from pygame_gui.core.drawable_shapes.drawable_shape import DrawableShape
 from pygame_gui.core.interfaces import IUIManagerInterface
 from pygame_gui.core.surface_cache import SurfaceCache
 
-# Pictures of buttons and the like that are kept; most have 10 kB, none has more than 160.
-MOST_SHAPES = 500
+# What pictures of buttons and the like that are kept may take [bytes]; most have 10 kB, none has more than 160.
+HELD = 8_000_000
 # Larger ones [pixels] are made anew, as the library has it.
 LARGEST_KEPT = 40_000
 # Rounded rectangles are drawn no larger [pixels], and stretched: the library gives the background inside a border the
@@ -43,6 +43,7 @@ class Shapes(SurfaceCache):
         super().__init__()
         self.cache_surfaces.clear()
         self._pictures: OrderedDict[str, pygame.Surface] = OrderedDict()
+        self.bytes = 0
         self._asked: _Asked | None = None
 
     # What a shape that is drawn here asks of a manager.
@@ -62,10 +63,12 @@ class Shapes(SurfaceCache):
         return super().build_cache_id(*asked)
 
     def add_surface_to_cache(self, surface: pygame.Surface, string_id: str) -> None:
-        """Keep a picture."""
+        """Keep a picture, in place of those that were not asked for for longest."""
+        before = self._pictures.pop(string_id, None)
         self._pictures[string_id] = surface
-        if len(self._pictures) > MOST_SHAPES:
-            self._pictures.popitem(last=False)
+        self.bytes += surface.get_buffer().length - (0 if before is None else before.get_buffer().length)
+        while self.bytes > HELD:
+            self.bytes -= self._pictures.popitem(last=False)[1].get_buffer().length
 
     def find_surface_in_cache(self, lookup_id: str) -> pygame.Surface | None:
         """A picture that was kept, or one that is stretched; None: the library is to draw it."""

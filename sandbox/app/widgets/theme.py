@@ -9,6 +9,7 @@ import pygame_gui
 from pygame_gui.core import gui_font_pygame
 from pygame_gui.core.resource_loaders import IResourceLoader
 from pygame_gui.core.ui_appearance_theme import UIAppearanceTheme
+from pygame_gui.core.utility import set_default_manager
 
 from sandbox.app.draw.colours import shown_theme
 from sandbox.app.widgets.fonts import FONT, SafeFont, font_file
@@ -74,6 +75,8 @@ class Manager(pygame_gui.UIManager):
         self._scale = scale
         self._tip: Any = None
         super().__init__(size, enable_live_theme_updates=False, resource_loader=_AtOnce())
+        # For widgets that are given none; the library would keep the first one, and all pictures of its window.
+        set_default_manager(self)
         # Each manager adds the library's folder of translations, and every text with a full stop is looked up in all.
         i18n.load_path.clear()
 

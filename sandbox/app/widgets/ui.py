@@ -244,7 +244,16 @@ class Ui(WindowLayout):
                     # The next letter is added to what was typed; it does not replace it.
                     self._focus.select_range = [0, 0]
                     self._focus.edit_position = len(self._focus.get_text())
-        before.manager.clear_and_reset()
+        before._end()
+
+    def _end(self) -> None:
+        """Take all widgets away; who still has this layout, or one of its widgets, does not keep them all."""
+        self.manager.clear_and_reset()
+        # The library would find out what is still to be seen when it draws next.
+        self.manager.ui_group.update_visibility()
+        for widgets in (self._actions, self._choosers, self._fields, self._sheets, self._page):
+            widgets.clear()
+        self._focus = self._left = None
 
     # Events and focus.
 

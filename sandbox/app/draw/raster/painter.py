@@ -1,9 +1,9 @@
 """Painter: draws layers on a surface by kernels, or plainly by pygame while these are not compiled."""
 
-import functools
 import gc
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from weakref import WeakValueDictionary
 
 import numpy as np
 import pygame
@@ -117,6 +117,8 @@ class Painter:
     compiled: bool = True
     surface: pygame.Surface = field(init=False, repr=False)
     exact: bool = field(default=False, init=False)
+    # That of the surface's size, once it has been drawn on with it.
+    _scratch: _Scratch | None = field(default=None, init=False, repr=False)
 
     def begin(self, surface: pygame.Surface) -> bool:
         """Draw on a surface from now on, inside its clip; whether kernels do it."""
@@ -151,7 +153,7 @@ class Painter:
         if not len(layer.rows.loops):
             return
         if self.exact:
-            scratch = _scratch_for(self.surface.get_size())
+            self._scratch = scratch = _scratch_for(self.surface.get_size())
             self._paint(
                 paint_bodies, layer.outlines, layer.rows, layer.skins, layer.flush, scratch.bodies, scratch.place
             )
@@ -173,8 +175,9 @@ class Painter:
     def shadows(self, thrown: Thrown, shapes: Outlines, offset: Sequence[float], colour: int, strength: float) -> None:
         """Throw shadows; there are none while kernels are not compiled."""
         if self.exact and strength > 0.0:
-            scratch = _scratch_for(self.surface.get_size()).shadows
-            self._paint(paint_shadows, shapes, thrown, scratch, np.array(offset, dtype=np.float64), colour, strength)
+            self._scratch = scratch = _scratch_for(self.surface.get_size())
+            by = np.array(offset, dtype=np.float64)
+            self._paint(paint_shadows, shapes, thrown, scratch.shadows, by, colour, strength)
 
     def trace(self, at: Floats, loops: Loops, grow: Floats) -> Outlines:
         """Outlines of loops of particles at (n, 2) [pixels], grown by (c,)."""
@@ -188,9 +191,18 @@ class Painter:
         return Outlines(point, loops.point_start)
 
 
-# One for all painters, which take turns, as it is as large as four pictures: of the window, its stage and a film.
-@functools.lru_cache(maxsize=3)
+# One for all painters of a size, which take turns, as it is as large as four pictures; it goes with the last of them.
+_scratches: WeakValueDictionary[tuple[int, int], _Scratch] = WeakValueDictionary()
+
+
 def _scratch_for(size: tuple[int, int]) -> _Scratch:
+    scratch = _scratches.get(size)
+    if scratch is None:
+        scratch = _scratches[size] = _made_scratch(size)
+    return scratch
+
+
+def _made_scratch(size: tuple[int, int]) -> _Scratch:
     pad = 2 * int(WIDEST) + 16
     width, height = size[0] + pad, size[1] + pad
     edge = int(WIDEST * SOFTNESS) + 4
@@ -266,7 +278,7 @@ def _plain_bodies(surface: pygame.Surface, layer: BodyLayer) -> None:
 
 def expect_painting() -> None:
     """Compile the drawing kernels, or load them from the cache; while kernels are interpreted, note what they take."""
-    scratch = _scratch_for((8, 8))
+    scratch = _made_scratch((8, 8))
     pixels, clip = np.zeros((8, 8), dtype=np.uint32), np.zeros(4, dtype=np.int64)
     flat, pairs, numbers = np.zeros(0), np.zeros((0, 2)), np.zeros(0, dtype=np.int64)
     many = np.zeros((0, 2), dtype=np.int64)

@@ -53,23 +53,18 @@ COLUMNS = 4
 class Side:
     """The panel in a place [pixels]; `tab` is the page that is shown."""
 
-    def __init__(self, ui: Ui, screen: Editing, place: pygame.Rect) -> None:
-        self._ui, self._screen = ui, screen
-        before: Side | None = getattr(screen, "side", None)
+    def __init__(self, ui: Ui, screen: Editing, place: pygame.Rect, tab: str) -> None:
+        self._ui, self._screen, self.tab = ui, screen, tab
         self.back = ui.panel(place)
-        self.tab: str = "properties" if before is None else before.tab
-        if before is not None:
-            # The window is laid out anew: what is being typed in the old panel is not lost.
-            before.close()
         names = list(PAGES)
         width = place.width / ui.scale - 2 * MARGIN
         is_low = place.height < ui.px(LOW)
-        tab, top, below = (LOW_TAB, LOW_TOP, LOW_BELOW) if is_low else (TAB, TOP, BELOW)
+        tall, top, below = (LOW_TAB, LOW_TOP, LOW_BELOW) if is_low else (TAB, TOP, BELOW)
         self._rows = []
         for first in range(0, len(names), COLUMNS):
             options = [(name, PAGES[name][0], PAGES[name][1]) for name in names[first : first + COLUMNS]]
-            self._rows.append(ui.choice(ui.rect(MARGIN, top, width, tab), options, self._choose_tab, self.back))
-            top += tab + GAP
+            self._rows.append(ui.choice(ui.rect(MARGIN, top, width, tall), options, self._choose_tab, self.back))
+            top += tall + GAP
         top += below
         self._place = ui.rect(MARGIN, top, width + 6, place.height / ui.scale - top - 6)
         self.page: SidePage = self._made()
