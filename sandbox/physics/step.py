@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from sandbox.physics.collision.collide import Collisions
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
-PHYSICS_VERSION = 7
+PHYSICS_VERSION = 8
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from sandbox.physics.collision.collide import last_contacts
 from sandbox.physics.collision.filter import LINE
 from sandbox.physics.energy import kinetic_energy, total_energy
 from sandbox.physics.step import step
@@ -90,3 +91,36 @@ def test_a_rope_that_is_drawn_out_of_a_box_goes_through_that_nowhere_else():
         assert overlaps(w).lines <= 1
         assert w.position[rope[5:], 1].min() > w.position[: rope[0], 1].max()
     assert overlaps(w).lines <= scaled(0, 1)
+
+
+@pytest.mark.parametrize("saved", [0.0, 10.0])
+def test_what_lies_deep_in_each_other_comes_apart_as_far_as_it_has_saved_for_that(saved):
+    w = world(FLOOR)
+    rope = add_discs(w, [(0.1 * (k - 6), 0.025) for k in range(13)], radius=0.025, owner=500) + np.arange(13)
+    w.add_springs(
+        [f"rope:{k}" for k in rope[1:]], rope[:-1], rope[1:], stiffness=0.9, damping=0.99, edge=LINE
+    )  # fmt: skip
+    # Their surfaces are 1.8 radii in each other.
+    box = add_jelly(w, (0.03, 0.48))
+    step(w)
+    for body in (rope, box):
+        w.energy_bank[body] = 0.0
+        w.parting_reserve[body] = 0.0
+        w.parting_reserve[np.arange(w.particle_count)[body][0]] = saved * float(w.mass[body].sum())
+    for _ in range(scaled(20, 2)):
+        step(w)
+    if scaled(1, 0):
+        assert (last_contacts(w).gap.min() > -0.025) == (saved > 0.0)
+
+
+def test_a_body_that_has_come_deep_through_itself_rubs_on_nothing():
+    w = world(FLOOR)
+    through, whole = add_jelly(w, (0.0, 0.475)), add_jelly(w, (2.0, 0.475))
+    # Its upper right corner, through the left side.
+    w.position[np.argmax(w.position[through].sum(axis=1))] = (-0.6, 0.53)
+    assert deepest(w) > 1.0
+    step(w)
+    contacts = last_contacts(w)
+    rubs = contacts.friction > 0.0
+    assert set(w.owner[contacts.particle[~rubs]]) == {w.owner[through][0]}
+    assert set(w.owner[contacts.particle[rubs]]) == {w.owner[whole][0]}

@@ -292,6 +292,13 @@ def give_way(pair: int, colliders: Colliders, outline: Outline, bounds: Floats, 
 
 
 @inner_kernel
+def _let_slip(s: int, colliders: Colliders, outline: Outline) -> None:
+    # Nothing but its springs parts a body from itself, and friction under a heap can hold them back.
+    for i in range(outline.member_start[s], outline.member_start[s + 1]):
+        colliders.friction[outline.member[i]] = 0.0
+
+
+@inner_kernel
 def _touched(s: int, t: int, colliders: Colliders, outline: Outline, kept: KeptContacts, kept_count: int) -> bool:
     # Whether two shapes touched in the last step.
     for c in range(kept_count):
@@ -355,4 +362,6 @@ def pair_overlaps(
             colliders.parted_count[0] += 1
             # Apart: what is caught in itself, as crumpled cloth is all over, must not go through what holds it.
             give_way(at, colliders, outline, bounds, found, colliders.caught if alone else colliders.parting)
+            if found.shape[at, 0] == found.shape[at, 1] and not alone and _is_crossed_deep(at, colliders, found):
+                _let_slip(found.shape[at, 0], colliders, outline)
     return pairs

@@ -25,7 +25,7 @@ class BodyIslands(NamedTuple):
     """The bodies and free particles that contacts touch or joints act on, in this order the members of islands.
 
     There is room for all bodies and particles; counts (5,) says how many there are. body: their numbers; free: slots of
-    particles. By member: island, before, held, after, limit [J], fresh: its energy bank is begun for all of it. By
+    particles. By member: island, mass [kg], before, held, after, limit [J], fresh: its bank is begun for all of it. By
     particle (n,): member, -1: none, row in the matrix, -1: none; given, change [m/s]: velocities without contacts, and
     what those add. By touched body: misfit; due: to be solved again; driven: a joint acts on it. By body: number among
     the touched. By island: total, allowed [J], fails. By row: unpushed [m/s] = velocities without contacts, pushed
@@ -38,6 +38,7 @@ class BodyIslands(NamedTuple):
     island: Slots
     member: Slots
     row: Slots
+    mass: Floats
     before: Floats
     held: Floats
     after: Floats
@@ -97,14 +98,14 @@ def new_islands(system: System, particle_count: int, rows: JointRows | None) -> 
     members = bodies + particle_count
     row = np.full(particle_count, -1, dtype=np.int64)
     row[system.rows.particle[:free_rows]] = np.arange(free_rows)
-    slots, energies = np.zeros((2, members), dtype=np.int64), np.zeros((6, members))
+    slots, energies = np.zeros((2, members), dtype=np.int64), np.zeros((7, members))
     islands = BodyIslands(
         counts=np.zeros(5, dtype=np.int64), body=np.zeros(bodies, dtype=np.int64),
         free=np.zeros(particle_count, dtype=np.int64), island=slots[0],
         member=np.full(particle_count, -1, dtype=np.int64), row=row, before=energies[0], held=energies[1],
         after=energies[2], limit=energies[3], fresh=np.zeros(members, dtype=np.bool_), misfit=np.zeros(bodies),
         due=np.zeros(bodies, dtype=np.bool_), driven=np.zeros(bodies, dtype=np.bool_),
-        number=np.zeros(bodies, dtype=np.int64), total=energies[4], allowed=energies[5],
+        number=np.zeros(bodies, dtype=np.int64), total=energies[4], allowed=energies[5], mass=energies[6],
         fails=np.zeros(members, dtype=np.bool_), unpushed=np.zeros((free_rows, 2)), pushed=np.zeros((free_rows, 2)),
         given=np.zeros((particle_count, 2)), change=np.zeros((particle_count, 2)), label=slots[1],
         marked=np.zeros(particle_count, dtype=np.bool_),

@@ -8,6 +8,8 @@ is stored, up to a limit, in the energy banks of bodies and particles; to push a
 import math
 
 from sandbox.physics.collision.filter import TERRAIN_GROUP
+from sandbox.physics.collision.overlaps import DEEP
+from sandbox.physics.collision.parting import PARTING_SPEED
 from sandbox.physics.collision.terrain_clamp import STOPS, stopped
 from sandbox.physics.collision.turning import SURFACE_WEIGHT
 from sandbox.physics.collision.types import Contacts, weight_of
@@ -95,12 +97,21 @@ def measure_body(k: int, span: Span, system: System, touch: Touch, energy: float
 
 
 @inner_kernel
+def weigh_body(k: int, span: Span, rows: Rows, islands: BodyIslands) -> None:
+    """Note what one body weighs."""
+    islands.mass[k] = 0.0
+    for r in range(span.first_row, span.last_row):
+        islands.mass[k] += rows.mass[r]
+
+
+@inner_kernel
 def open_free(islands: BodyIslands, state: State) -> None:
     """The energies of free particles before the step, and what their banks hold."""
     bodies = islands.counts[BODIES]
     for i in range(islands.counts[MEMBERS] - bodies):
         p = islands.free[i]
         k = bodies + i
+        islands.mass[k] = state.mass[p]
         ux, uy = islands.given[p, 0], islands.given[p, 1]
         surface = state.spin[p] * state.radius[p]
         islands.before[k] = 0.5 * state.mass[p] * (ux * ux + uy * uy + surface * surface / SURFACE_WEIGHT)
@@ -133,6 +144,40 @@ def credit_penetration(contacts: Contacts, touch: Touch, inverse_mass: Floats, h
             if p >= 0 and inverse_mass[p] > 0.0 and islands.fresh[islands.member[p]]:
                 islands.held[islands.member[p]] += _stored(c, contacts, touch.terms, h)
                 break
+
+
+@inner_kernel
+def _draw(k: int, wanted: float, touch: Touch, system: System, state: State) -> float:
+    # Move up to so much [J] of what one member saved for parting into its bank; how much it was.
+    islands = touch.islands
+    if k >= islands.counts[BODIES] or not wanted > 0.0:
+        return 0.0
+    lowest = system.bodies.lowest[islands.body[k]]
+    drawn = min(wanted, state.parting_reserve[lowest])
+    state.parting_reserve[lowest] -= drawn
+    islands.held[k] += drawn
+    return drawn
+
+
+@inner_kernel
+def draw_on_reserves(contacts: Contacts, touch: Touch, system: System, state: State) -> None:
+    """Where two bodies lie deep in each other, let them pay for being pushed apart as they would for parting."""
+    islands = touch.islands
+    for c in range(contacts.particle.shape[0]):
+        if not contacts.gap[c] < -DEEP * state.radius[contacts.particle[c]]:
+            continue
+        one = -1
+        other = -1
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p >= 0 and state.inverse_mass[p] > 0.0:
+                one = islands.member[p] if end == 0 else one
+                other = islands.member[p] if end > 0 else other
+        if one >= 0 and other >= 0 and one != other:
+            reduced = 1.0 / (1.0 / islands.mass[one] + 1.0 / islands.mass[other])
+            wanted = 0.5 * reduced * PARTING_SPEED * PARTING_SPEED - islands.held[one] - islands.held[other]
+            wanted -= _draw(one, wanted, touch, system, state)
+            _draw(other, wanted, touch, system, state)
 
 
 @inner_kernel
@@ -283,18 +328,9 @@ def _load_limits(contacts: Contacts, touch: Touch, system: System, state: State,
         if k >= 0:
             islands.limit[k] += _stored(c, contacts, touch.terms, h)
     for k in range(islands.counts[MEMBERS]):
-        mass = 0.0
-        share = 0.0
-        if k < bodies:
-            span = span_of(system, islands.body[k])
-            share = bank_limit(islands.body[k], system)
-            for r in range(span.first_row, span.last_row):
-                mass += system.rows.mass[r]
-        else:
-            share = BANK_SHARE * islands.before[k]
-            mass = state.mass[islands.free[k - bodies]]
+        share = bank_limit(islands.body[k], system) if k < bodies else BANK_SHARE * islands.before[k]
         lost = islands.held[k] + islands.before[k] - islands.after[k]
-        islands.limit[k] = max(share, min(islands.limit[k], 0.5 * mass * PAID_PUSH * PAID_PUSH, lost))
+        islands.limit[k] = max(share, min(islands.limit[k], 0.5 * islands.mass[k] * PAID_PUSH * PAID_PUSH, lost))
 
 
 @inner_kernel

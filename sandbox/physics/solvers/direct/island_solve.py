@@ -42,10 +42,12 @@ from sandbox.physics.solvers.direct.island_energy import (
     clamp_rows,
     credit_penetration,
     damp_islands,
+    draw_on_reserves,
     measure_body,
     only_hold,
     open_free,
     store_energies,
+    weigh_body,
 )
 from sandbox.physics.solvers.direct.joint_response import (
     fails_driven,
@@ -90,6 +92,7 @@ def _open(touch: Touch, system: System, state: State, inputs: Inputs, parts: int
         span = span_of(system, body)
         islands.fresh[k] = is_new(span, system, state.energy_bank)
         open_body(body, span, system, state, inputs, parts, h)
+        weigh_body(k, span, system.rows, islands)
         islands.before[k] = bodies.before[body]
         islands.held[k] = bodies.held[body]
         islands.due[k] = True
@@ -295,6 +298,7 @@ def _solve_islands(
         affordable -= sweeps
         if stage == 0:
             credit_penetration(contacts, touch, state.inverse_mass, h)
+            draw_on_reserves(contacts, touch, system, state)
         _answer(touch, system, state, h)
         failing = check_energies(touch, state.mass, inputs.start)
         inexact = False
