@@ -204,6 +204,8 @@ app.play.playback.session.record_to(Path(sys.argv[1]))
 steps, app.preparation._steps = app.preparation._steps, iter(())
 while app._tick < 4:
     app.frame(1 / 60)
+    pace = app.preparation._pace
+    assert pace is None or pace._trial.is_alive() or pace.holds, "the rope is not played while it is interpreted"
 assert "numba" not in sys.modules
 app.preparation._steps = steps
 while app._tick < ticks[0] + 30 if ticks else True:
