@@ -45,6 +45,9 @@ class Pace:
 
     def note(self, ticks: int, seconds: float) -> None:
         """Take into account that so many ticks of the run took so many seconds."""
+        # While it is paused, or has not begun, nothing is late.
+        if not ticks:
+            return
         self._late = max(0.0, self._late + seconds - ticks * TICK_LIMIT)
         if self._late > PATIENCE:
             self._has_held = False

@@ -52,6 +52,13 @@ def test_a_run_that_becomes_slow_is_stopped_after_a_while_and_a_slow_tick_alone_
     assert not found.holds
 
 
+def test_frames_without_ticks_make_no_run_late():
+    found = tried(0.5 * TICK_LIMIT)
+    for _ in range(10):
+        found.note(0, PATIENCE)
+    assert found.holds
+
+
 def test_a_trial_that_is_no_longer_wanted_ends_after_its_tick(monkeypatch):
     in_first_tick, is_ended = threading.Event(), threading.Event()
     ticks = []
