@@ -14,6 +14,15 @@ WORKERS ?= 3
 unexport PYTHONDONTWRITEBYTECODE
 # What pip says of newer ones of itself is no concern of whoever plays or tests.
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
+# uv installs in a tenth of pip's time; pip does where there is no uv, or uv does not find what pip is set up to find.
+UV := $(BIN)/python -m uv pip install --quiet --python $(BIN)/python
+PIP := $(BIN)/python -m pip install --quiet
+ifdef PIP_CONSTRAINT
+export UV_CONSTRAINT := $(PIP_CONSTRAINT)
+endif
+ifdef PIP_INDEX_URL
+export UV_DEFAULT_INDEX := $(PIP_INDEX_URL)
+endif
 
 .PHONY: play install test kernels byte-code lint bounds goldens goldens-anew pictures bench abuse soak clean
 
@@ -22,13 +31,12 @@ play: $(VENV)/installed
 
 install: $(VENV)/installed-dev
 
-test: $(VENV)/installed-base
+test: $(VENV)/installed-dev
 	$(MAKE) --jobs=2 kernels byte-code
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
-# Kernels are compiled before tests, or each worker would compile all of them. As module: the other rule installs this
-# package once more meanwhile.
-kernels: $(VENV)/installed-base
+# Kernels are compiled before tests, or each worker would compile all of them.
+kernels: $(VENV)/installed-dev
 	-$(BIN)/python -m sandbox prepare
 
 # As is the byte code of tests. What is wrong with them is for the run itself to say.
@@ -45,10 +53,10 @@ bounds: export NUMBA_BOUNDSCHECK := 1
 bounds: export NUMBA_CACHE_DIR := $(CURDIR)/$(VENV)/bounds
 bounds: test
 
-goldens: $(VENV)/installed-dev kernels
+goldens: kernels
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal tests/determinism/goldens
 
-goldens-anew: $(VENV)/installed-dev kernels
+goldens-anew: kernels
 	$(BIN)/python -m tests.determinism.make_goldens --processes $(WORKERS)
 
 pictures: $(VENV)/installed-dev
@@ -69,19 +77,16 @@ soak: $(VENV)/installed-dev
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
+	-$(PIP) uv
 
 $(VENV)/installed: $(BIN)/python pyproject.toml
-	$(BIN)/python -m pip install --quiet --editable ".[export]"
+	$(UV) --compile-bytecode --editable ".[export]" 2> $(VENV)/uv.log || $(PIP) --editable ".[export]"
 	$(BIN)/python -m compileall -q sandbox
 	touch $@
 
 # Byte code is made of what is imported, when it is; most of what is installed here never is.
-$(VENV)/installed-base: $(BIN)/python pyproject.toml
-	$(BIN)/python -m pip install --quiet --no-compile --editable .
-	touch $@
-
-$(VENV)/installed-dev: $(VENV)/installed-base
-	$(BIN)/python -m pip install --quiet --no-compile --editable ".[dev]"
+$(VENV)/installed-dev: $(BIN)/python pyproject.toml
+	$(UV) --editable ".[dev]" 2> $(VENV)/uv.log || $(PIP) --no-compile --editable ".[dev]"
 	touch $(VENV)/installed $@
 
 clean:
