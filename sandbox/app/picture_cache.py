@@ -6,7 +6,6 @@
 import contextlib
 import hashlib
 import os
-from collections import OrderedDict
 from collections.abc import Generator
 from pathlib import Path
 from typing import cast
@@ -16,6 +15,7 @@ import pygame
 
 from sandbox.app.draw.colours import THEME_NAMES, ThemeName
 from sandbox.app.draw.picture import crop_of, draw_picture, run_ahead
+from sandbox.app.recent_pictures import RecentPictures
 from sandbox.level.format.files import read_level, shipped_folder, shipped_levels
 from sandbox.level.format.model import Level
 
@@ -59,43 +59,23 @@ def find_picture(level: Path, key: str, size: tuple[int, int], theme: ThemeName)
     """The picture of a level file in a size [pixels] and a theme, where there is one."""
     for path in (shipped_picture(level, key, theme), kept_picture(key, theme)):
         with contextlib.suppress(OSError, pygame.error):
-            return _held.read(path, size)
+            return read_picture(path, size)
     return None
 
 
-class HeldPictures:
-    """Pictures that were read, those used last, in so many bytes; a name says what one shows, so it holds.
-
-    Each is held in the size that was asked for last: a window has cards of another size once its own is another.
-    """
-
-    def __init__(self, most: int) -> None:
-        self._most = most
-        self._pictures: OrderedDict[Path, pygame.Surface] = OrderedDict()
-        self.bytes = 0
-
-    def read(self, path: Path, size: tuple[int, int]) -> pygame.Surface:
-        """The picture of a file in a size. Raises OSError and pygame.error."""
-        picture = self.forget(path)
-        if picture is None or picture.get_size() != size:
-            with path.open("rb") as file:
-                picture = pygame.transform.smoothscale(pygame.image.load(file, path.name).convert(32), size)
-        self._pictures[path] = picture
-        self.bytes += picture.get_buffer().length
-        # What is asked for now is held however large it is.
-        while self.bytes > self._most and len(self._pictures) > 1:
-            self.bytes -= self._pictures.popitem(last=False)[1].get_buffer().length
-        return picture
-
-    def forget(self, path: Path) -> pygame.Surface | None:
-        """Hold the picture of a file no longer, as when the file is another; what was held."""
-        picture = self._pictures.pop(path, None)
-        if picture is not None:
-            self.bytes -= picture.get_buffer().length
-        return picture
+# Each in the size that was asked for last: a window has cards of another size once its own is another.
+_held: RecentPictures[Path] = RecentPictures(HELD)
 
 
-_held = HeldPictures(HELD)
+def read_picture(path: Path, size: tuple[int, int]) -> pygame.Surface:
+    """The picture of a file in a size. Raises OSError and pygame.error."""
+    picture = _held.find(path)
+    if picture is None or picture.get_size() != size:
+        _held.forget(path)
+        with path.open("rb") as file:
+            picture = pygame.transform.smoothscale(pygame.image.load(file, path.name).convert(32), size)
+        _held.keep(path, picture)
+    return picture
 
 
 def draw_in_slices(level: Level, theme: ThemeName, seconds: float = SECONDS) -> Generator[bool, None, pygame.Surface]:

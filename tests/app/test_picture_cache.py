@@ -8,7 +8,8 @@ import pytest
 from sandbox.app import picture_cache
 from sandbox.app.draw.colours import THEME_NAMES
 from sandbox.app.gallery import gallery
-from sandbox.app.picture_cache import kept_picture, picture_key, shipped_picture, stale_pictures
+from sandbox.app.picture_cache import kept_picture, picture_key, read_picture, shipped_picture, stale_pictures
+from sandbox.app.recent_pictures import RecentPictures
 from sandbox.editor.storage.recent import remember
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import shipped_levels
@@ -68,7 +69,7 @@ def test_a_level_of_ones_own_is_drawn_once_and_again_after_a_change(open_app, dr
     for times, act in ((1, "open"), (1, "again"), (2, "change"), (2, "again")):
         if act == "change":
             path.write_text(level_text(small_level(name="Mine, changed")))
-        monkeypatch.setattr(picture_cache, "_held", picture_cache.HeldPictures(picture_cache.HELD))
+        monkeypatch.setattr(picture_cache, "_held", RecentPictures(picture_cache.HELD))
         driver.app.open_gallery("mine")
         while driver.app.gallery._unfilled:
             driver.frames()
@@ -127,30 +128,16 @@ def test_old_pictures_are_removed_and_those_used_last_stay(tmp_path, monkeypatch
     assert sorted(path.stem for path in tmp_path.iterdir()) == ["old", "older"]
 
 
-def test_pictures_are_held_in_so_many_bytes_and_those_used_last_stay(open_app):
+def test_a_picture_is_held_in_the_size_that_was_asked_for_last(open_app, monkeypatch):
     open_app()
-    held = picture_cache.HeldPictures(3 * 4 * 80 * 45)
-    paths = [shipped_picture(path, picture_key(path.read_bytes()), "dark") for path in shipped_levels()[:4]]
-    first = held.read(paths[0], (80, 45))
-    for path in paths[1:3]:
-        held.read(path, (80, 45))
-    assert held.read(paths[0], (80, 45)) is first
-    second = held.read(paths[3], (80, 45))
-    assert held.bytes == 3 * 4 * 80 * 45
-    assert held.read(paths[0], (80, 45)) is first and held.read(paths[3], (80, 45)) is second
-    held.read(paths[1], (800, 450))
-    assert held.bytes == 4 * 800 * 450, "one larger than all that may be held"
-
-
-def test_a_picture_is_held_in_the_size_that_was_asked_for_last(open_app):
-    open_app()
-    held = picture_cache.HeldPictures(1_000_000)
+    held = RecentPictures(1_000_000)
+    monkeypatch.setattr(picture_cache, "_held", held)
     level = shipped_levels()[0]
     path = shipped_picture(level, picture_key(level.read_bytes()), "dark")
     for size in ((80, 45), (160, 90), (80, 45)):
-        picture = held.read(path, size)
+        picture = read_picture(path, size)
         assert picture.get_size() == size and held.bytes == 4 * size[0] * size[1]
-        assert held.read(path, size) is picture
+        assert read_picture(path, size) is picture
 
 
 def test_a_picture_that_is_written_anew_is_read_anew_and_no_other(open_app, tmp_path):
@@ -159,9 +146,7 @@ def test_a_picture_that_is_written_anew_is_read_anew_and_no_other(open_app, tmp_
     for path, colour in ((one, "red"), (other, "red"), (one, "blue")):
         picture = pygame.Surface((80, 45), 0, 32)
         picture.fill(colour)
-        before = picture_cache._held.read(other, (80, 45)) if other.exists() else None
+        before = read_picture(other, (80, 45)) if other.exists() else None
         picture_cache.keep_picture(picture, path)
-        assert picture_cache._held.read(path, (80, 45)).get_at((40, 20)).b == pytest.approx(
-            255 * (colour == "blue"), abs=4
-        )
-    assert picture_cache._held.read(other, (80, 45)) is before
+        assert read_picture(path, (80, 45)).get_at((40, 20)).b == pytest.approx(255 * (colour == "blue"), abs=4)
+    assert read_picture(other, (80, 45)) is before

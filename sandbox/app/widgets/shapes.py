@@ -1,6 +1,5 @@
 """Shapes: the backgrounds of buttons, lines of text and boxes; each is drawn once, and as small as it can be."""
 
-from collections import OrderedDict
 from collections.abc import Sequence
 from typing import Any, NamedTuple, cast
 
@@ -9,6 +8,8 @@ from pygame_gui.core.drawable_shapes import RoundedRectangleShape
 from pygame_gui.core.drawable_shapes.drawable_shape import DrawableShape
 from pygame_gui.core.interfaces import IUIManagerInterface
 from pygame_gui.core.surface_cache import SurfaceCache
+
+from sandbox.app.recent_pictures import RecentPictures
 
 # What pictures of buttons and the like that are kept may take [bytes]; most have 10 kB, none has more than 160.
 HELD = 8_000_000
@@ -42,8 +43,7 @@ class Shapes(SurfaceCache):
     def __init__(self) -> None:
         super().__init__()
         self.cache_surfaces.clear()
-        self._pictures: OrderedDict[str, pygame.Surface] = OrderedDict()
-        self.bytes = 0
+        self._kept: RecentPictures[str] = RecentPictures(HELD)
         self._asked: _Asked | None = None
 
     # What a shape that is drawn here asks of a manager.
@@ -64,21 +64,17 @@ class Shapes(SurfaceCache):
 
     def add_surface_to_cache(self, surface: pygame.Surface, string_id: str) -> None:
         """Keep a picture, in place of those that were not asked for for longest."""
-        before = self._pictures.pop(string_id, None)
-        self._pictures[string_id] = surface
-        self.bytes += surface.get_buffer().length - (0 if before is None else before.get_buffer().length)
-        while self.bytes > HELD:
-            self.bytes -= self._pictures.popitem(last=False)[1].get_buffer().length
+        self._kept.keep(string_id, surface)
 
     def find_surface_in_cache(self, lookup_id: str) -> pygame.Surface | None:
         """A picture that was kept, or one that is stretched; None: the library is to draw it."""
-        if lookup_id in self._pictures:
-            self._pictures.move_to_end(lookup_id)
-            return self._pictures[lookup_id]
+        kept = self._kept.find(lookup_id)
+        if kept is not None:
+            return kept
         asked, self._asked = self._asked, None
         picture = None if asked is None else self._stretched(asked)
         if picture is not None and picture.width * picture.height < LARGEST_KEPT:
-            self.add_surface_to_cache(picture, lookup_id)
+            self._kept.keep(lookup_id, picture)
         return picture
 
     def remove_user_from_cache_item(self, string_id: str) -> None:
