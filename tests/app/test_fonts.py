@@ -5,7 +5,7 @@ import json
 import pygame
 import pytest
 
-from sandbox.app.widgets.fonts import FONT, SafeFont, font_file, plain_font
+from sandbox.app.widgets.fonts import FONT, FONTS_HELD, SafeFont, font_file, plain_font
 from sandbox.app.widgets.theme import scaled_theme
 from sandbox.level.format.shipped import shipped_folder
 
@@ -56,3 +56,12 @@ def test_no_text_is_an_error(text):
     font = SafeFont(str(font_file(False)), 12)
     font.render(text, True, (255, 255, 255))
     assert font.size("" if text is None else text)[1] > 0
+
+
+def test_fonts_are_held_for_the_sizes_used_last(open_app):
+    open_app()
+    first = plain_font(11, False)
+    assert plain_font(11, False) is first
+    for size in range(12, 12 + FONTS_HELD):
+        plain_font(size, False)
+    assert plain_font(11, False) is not first

@@ -1,5 +1,6 @@
 """Fonts: the one that everything is written in, and another for letters that it does not have."""
 
+import functools
 import io
 from importlib.util import find_spec
 from pathlib import Path
@@ -16,6 +17,8 @@ _FILES = {False: "AtkinsonHyperlegible-Regular.ttf", True: "AtkinsonHyperlegible
 _OTHERS = {False: "NotoSans-Regular.ttf", True: "NotoSans-Bold.ttf"}
 # All letters below are in the font; a character that no font has, as which it draws others that it lacks.
 _LATIN, _NONE = "\u017f", "\uffff"
+# What is painted uses a dozen sizes at one scale of the window; each takes 0.1 to 0.3 MB with its letters.
+FONTS_HELD = 24
 
 
 def font_file(bold: bool) -> Path:
@@ -78,14 +81,10 @@ def _other_font(bold: bool, size: int) -> pygame.font.Font:
     return pygame.font.Font(io.BytesIO(data.read_bytes()), size)
 
 
-_FONTS: dict[tuple[int, bool], SafeFont] = {}
-
-
+@functools.lru_cache(FONTS_HELD)
 def plain_font(size: int, bold: bool) -> SafeFont:
     """The font in a size of pixels, for what is painted."""
-    if (size, bold) not in _FONTS:
-        _FONTS[size, bold] = SafeFont(str(font_file(bold)), size)
-    return _FONTS[size, bold]
+    return SafeFont(str(font_file(bold)), size)
 
 
 def _clean(text: Any) -> Any:
