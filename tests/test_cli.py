@@ -95,6 +95,28 @@ def test_a_script_that_names_nothing_is_refused_with_its_line(rope, tmp_path, ca
     assert err == [f"{moves}: tick 5: line 1: there is no particle 'rope.99'"]
 
 
+def test_commands_after_the_end_of_a_run_are_refused_and_one_at_its_end_is_carried_out(rope, tmp_path, capsys):
+    moves = tmp_path / "moves.jsonl"
+    cuts = [
+        f'{{"tick": {tick}, "command": {{"type": "cut_springs", "springs": ["rope:{tick}"]}}}}\n' for tick in (3, 4, 7)
+    ]
+    moves.write_text("".join(cuts))
+    assert main(["run", rope, "--ticks", "3", "--commands", str(moves)]) == 2
+    line = f"{moves}: 2 commands are at ticks 4 to 7, but the run ends at tick 3; run it for longer with --ticks"
+    assert _lines(capsys) == ([], [line])
+    moves.write_text(cuts[0])
+    assert main(["run", rope, "--ticks", "3", "--commands", str(moves), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["broken_springs"] == 1
+
+
+def test_a_spring_that_is_cut_twice_is_called_by_the_name_in_the_file(rope, tmp_path, capsys):
+    moves = tmp_path / "moves.jsonl"
+    line = '{"tick": 1, "command": {"type": "cut_springs", "springs": ["rope:3"]}}\n'
+    moves.write_text(line + line.replace('"tick": 1', '"tick": 2'))
+    assert main(["run", rope, "--ticks", "3", "--commands", str(moves)]) == 2
+    assert _lines(capsys)[1] == [f"{moves}: tick 2: line 2: there is no spring 'rope:3' to cut"]
+
+
 def test_a_probe_of_nothing_lists_names_that_are_near(rope, tmp_path, capsys):
     assert main(["run", rope, "--ticks", "1", "--probe", "rpoe.4", "-o", str(tmp_path / "out.csv")]) == 2
     (line,) = _lines(capsys)[1]
@@ -656,8 +678,11 @@ def test_a_headless_run_loads_no_drawing_and_without_contacts_nothing_that_finds
     for modules in runs:
         assert not {name for name in modules if name.startswith(("pygame", "sandbox.app", "sandbox.editor"))}
     for modules in runs[:2]:
-        # Which terrain a triangle that is about to turn over must not cross.
-        assert contacts(modules) <= {"sandbox.physics.solvers.contact", "sandbox.physics.collision.terrain_clamp"}
+        # Which terrain a triangle that is about to turn over must not cross, and how long the steps of a lone disc are.
+        assert contacts(modules) <= {
+            "sandbox.physics.solvers.contact", "sandbox.physics.solvers.contact.small_steps",
+            "sandbox.physics.collision.terrain_clamp", "sandbox.physics.collision.narrow_phase",
+        }  # fmt: skip
         # Nor anything of what parts folds, of triangles, joints and drives: none of these are there.
         assert not modules & {"sandbox.physics.changing.freeing", "sandbox.physics.collision.parting"}
         words = ("joint", "driving", "triangle", "constraint", "breaking", "dissect", "lowest_mode", "parallel")

@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
     from sandbox.session.probe import dump, finite
 
     _keep_apart(options)
-    session = _scripted_session(level, options.commands)
+    session = _scripted_session(level, options.commands, ticks)
     probe = _probe(options, session.world)
     if options.record:
         session.record_to(options.record)
@@ -91,7 +91,7 @@ def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
         raise Refused(*error.faults) from None
 
 
-def _scripted_session(level: "Level", commands: Path | None) -> "Session":
+def _scripted_session(level: "Level", commands: Path | None, ticks: int) -> "Session":
     from sandbox.session.session import Session
 
     if commands is None:
@@ -100,9 +100,15 @@ def _scripted_session(level: "Level", commands: Path | None) -> "Session":
     from sandbox.session.replay.script import read_script
 
     try:
-        return Session(level, read_script(commands))
+        script = read_script(commands)
     except ReplayError as error:
         raise Refused(*error.faults) from None
+    late = [line.tick for line in script if line.tick > ticks]
+    if late:
+        number = "1 command is" if len(late) == 1 else f"{len(late):,} commands are"
+        when = f"at tick {late[0]}" if late[0] == late[-1] else f"at ticks {late[0]} to {late[-1]}"
+        raise Refused(f"{commands}: {number} {when}, but the run ends at tick {ticks}; run it for longer with --ticks")
+    return Session(level, script)
 
 
 def _probe(options: argparse.Namespace, world: "World") -> Any:

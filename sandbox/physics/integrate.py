@@ -6,19 +6,21 @@ from sandbox.physics.collision.types import Flags
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.state import Floats
 
-# s += SLOW_SHARE (v' - s), per step. Higher leaves fast vibration undamped, lower damps slow turning.
+# s += c,  c = SLOW_SHARE (v' - s);  r += SLOW_SHARE (c - r), per step.
 SLOW_SHARE = 0.3
 # One turn [rad].
 FULL_TURN = 6.283185307179586
 
 
 @inner_kernel
-def follow(velocity: Floats, slow_velocity: Floats, active: Flags) -> None:
-    """Let the slow part of velocities follow them: s += SLOW_SHARE (v' - s)."""
+def follow(velocity: Floats, slow_velocity: Floats, slow_change: Floats, active: Flags) -> None:
+    """Let the slow part of velocities follow them, and that of its change in a step."""
     for p in range(active.shape[0]):
         if active[p]:
-            slow_velocity[p, 0] += SLOW_SHARE * (velocity[p, 0] - slow_velocity[p, 0])
-            slow_velocity[p, 1] += SLOW_SHARE * (velocity[p, 1] - slow_velocity[p, 1])
+            for axis in range(2):
+                change = SLOW_SHARE * (velocity[p, axis] - slow_velocity[p, axis])
+                slow_velocity[p, axis] += change
+                slow_change[p, axis] += SLOW_SHARE * (change - slow_change[p, axis])
 
 
 @inner_kernel

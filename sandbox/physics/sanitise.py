@@ -102,12 +102,14 @@ def _sound_elements(arrays: CheckedArrays) -> bool:
 
 
 @inner_kernel
-def are_sound(arrays: CheckedArrays, impulse: Floats, count: int) -> bool:
-    """Whether all that a tick reads is what physics can give, the impulses of `count` contacts too; NaN is not."""
+def are_sound(arrays: CheckedArrays, impulse: Floats, impact: Floats, count: int) -> bool:
+    """Whether all that a tick begins with is what physics can give, impulses of `count` contacts too; NaN is not."""
     if not _sound_motion(arrays) or not _sound_elements(arrays):
         return False
     for c in range(count):
         if not (-ABSURD <= impulse[c, 0] <= ABSURD and -ABSURD <= impulse[c, 1] <= ABSURD):
+            return False
+        if not -ABSURD <= impact[c] <= ABSURD:
             return False
     for p in range(arrays.mass.shape[0]):
         if not (
@@ -148,9 +150,9 @@ def keep_if_sound(arrays: CheckedArrays) -> bool:
 
 
 @kernel
-def _are_sound(items: Any, impulse: Floats) -> bool:
+def _are_sound(items: Any, impulse: Floats, impact: Floats) -> bool:
     (arrays,) = contents(items)
-    return are_sound(arrays, impulse, impulse.shape[0])
+    return are_sound(arrays, impulse, impact, impact.shape[0])
 
 
 @kernel
@@ -172,12 +174,13 @@ def _lent_arrays(world: World) -> Any:
 
 def contain_inputs(world: World) -> None:
     """Before a tick: take back whatever something outside the physics has put there."""
-    if _are_sound(world.derived(_lent_arrays), world.contact_impulse):
+    if _are_sound(world.derived(_lent_arrays), world.contact_impulse, world.contact_impact):
         return
-    for slot in np.flatnonzero(_outside(world.contact_impulse, -ABSURD)).tolist():
-        world.contact_impulse[slot] = 0.0
-        owner = slot_name(world, "contact_impulse", slot)
-        world.contained.append(Containment(world.tick, "contact_impulse", owner, frozen=False))
+    for name in ("contact_impulse", "contact_impact"):
+        values = getattr(world, name)
+        for slot in np.flatnonzero(_outside(values, -ABSURD)).tolist():
+            values[slot] = 0.0
+            world.contained.append(Containment(world.tick, name, slot_name(world, name, slot), frozen=False))
     for name in ("mass", *_MOTION, "inverse_mass", *_CONSTANTS_OF_PARTICLES):
         values = getattr(world, name)
         lowest = -ABSURD if name in (*_MOTION, "gravity_scale") else 0.0

@@ -80,6 +80,7 @@ def restore(world: World, snapshot: Snapshot) -> None:
     world.tick = snapshot.tick
     world.grab_particle = snapshot.grab_particle
     world.grab_spring = snapshot.grab_spring
+    world.may_fly = True
     world.trust()
 
 

@@ -113,6 +113,8 @@ class StateArrays:
     spin = _array("spin", P, F64, "rad/s", "how fast its disc turns; 0 where springs, constraints or a pin hold it", guarded=True, sparse=True)
     rolls = _array("rolls", P, BOOL, "", "whether its disc turns while nothing holds it", sparse=True, usual=True)
     rolling = _array("rolling", P, F64, "1", "rolling resistance; of two that touch the larger counts", guarded=True, sparse=True, usual=ROLLING_RESISTANCE)
+    slow_change = _array("slow_change", P, F64, "m/s", "the slow part of the change of slow_velocity in a step, for the direct solver", width=2, sparse=True)
+    unmoved = _array("unmoved", P, BOOL, "", "whether it has not taken a step yet: its velocity is that of the tick, not of half a step before", sparse=True)
 
     particle_a = _array("particle_a", S, I32, "slot", "its first end", topology=True)
     particle_b = _array("particle_b", S, I32, "slot", "its second end", topology=True)
@@ -150,6 +152,7 @@ class StateArrays:
     contact_particle = _array("contact_particle", T, I32, "slot", "the particle of a contact of the last step")
     contact_feature = _array("contact_feature", T, I64, "", "what it touched there (contacts.py)")
     contact_impulse = _array("contact_impulse", T, F64, "N s", "along and across", width=2)
+    contact_impact = _array("contact_impact", T, F64, "N s", "along, of its impacts in the last tick, which `contact_impulse` is without; it is heard and shown", sparse=True)
 
     hand_strength = _array("hand_strength", H, F64, "m/s^2", "largest force over the mass of the body held; 0: it holds nothing", sparse=True)
     hand_radius = _array("hand_radius", H, F64, "m", "what of a body is so near to the particle held bears the force with it; 0: nothing", sparse=True)

@@ -11,6 +11,7 @@ from sandbox.physics.breaking import yield_and_break
 from sandbox.physics.collision.triangle_clamp import clamp_world, has_triangles
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_springs, drives_springs
+from sandbox.physics.flight import begin_flight
 from sandbox.physics.forces import Before, apply_forces, forces_of
 from sandbox.physics.integrate import integrate
 from sandbox.physics.joints.joint_set import JointSet, joints_of, keep_joints, load_joints
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from sandbox.physics.collision.collide import Collisions
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
-PHYSICS_VERSION = 8
+PHYSICS_VERSION = 9
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,8 +78,10 @@ def expect(world: World) -> None:
 def step(world: World) -> None:
     """Advance the world by one tick of 1 / tick_rate seconds."""
     plan = world.derived(_plan)
-    if plan.free is None or not _step_free(world, plan.free):
-        _step_held(world)
+    flies = world.may_fly and bool(world.unmoved.any())
+    if plan.free is None or flies or not _step_free(world, plan.free):
+        _step_held(world, flies)
+    world.may_fly = False
     yield_and_break(world)
 
 
@@ -100,7 +103,7 @@ def _step_free(world: World, collisions: "Collisions") -> bool:
     return True
 
 
-def _step_held(world: World) -> None:
+def _step_held(world: World, flies: bool) -> None:
     settings = world.settings
     solver = SOLVERS[settings.solver]
     contain_inputs(world)
@@ -111,7 +114,7 @@ def _step_held(world: World) -> None:
     h = substep_time(settings, count)
     # Solvers only read them, so a tick of one substep needs no copies.
     springs, constraints = (world.stiffness, world.damping), world.constraint_coefficients
-    if count > 1:
+    if count > 1 or settings.drag > 0.0:
         keeps_constant = solver.bounded and settings.substeps == AUTO
         springs = substep_coefficients(world, count, plan.springs, keeps_constant, solver.highest)
         constraints = constraint_coefficients(world, count, plan.constraints, keeps_constant, solver.highest)
@@ -120,6 +123,7 @@ def _step_held(world: World) -> None:
     world.scale_impulses(scale)
     if collisions is not None:
         collisions.begin(world)
+        collisions.forget_impacts()
     forces = forces_of(world)
     before = forces.particles.before
     for _ in range(count):
@@ -129,13 +133,19 @@ def _step_held(world: World) -> None:
             load_joints(joints, world, springs, h)
         contacts = None if collisions is None else collisions.collide(joints is not None, world.tick, h)
         solver.solve(world, Substep(h, count, springs, constraints, Before(before, rest_length)), contacts)
+        if flies:
+            flies = False
+            begin_flight(world, np.zeros(0, np.int64) if collisions is None else collisions.touched(), h)
         if joints is not None:
             keep_joints(joints, world, h)
         if collisions is not None:
             collisions.finish(h, not plan.folds)
         if plan.folds:
             clamp_world(world, solver.follows, h)
-        if plan.folds or collisions is None:
+        has_moved = collisions is not None and not plan.folds
+        if solver.settle is not None:
+            solver.settle(world, not has_moved, h)
+        elif not has_moved:
             integrate(world.position, world.velocity, world.particle_active, world.angle, world.spin, h)
         rest_length = world.rest_length
     if collisions is not None:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.equation import half_step_of_network, part_of_network
+from sandbox.physics.equation import HIGHEST_COEFFICIENT, half_step_of_network, part_of_network
 from sandbox.physics.forces import Before
 from sandbox.physics.jit import kernel
 from sandbox.physics.settings import AUTO, WorldSettings
@@ -21,6 +21,10 @@ MOST_AUTO = 8
 # The ends of a spring move by at most this share of its rest length against each other in a substep. A link that turns
 # over within one step is beyond any linear solve; a smaller share costs time on every swing.
 LARGEST_TURN = 0.5
+
+# What substeps leave as it is: the motion of each spring, k of all springs, or that of all but those of a body with a
+# firmness, whose wobble stays.
+MOTION, ALL_CONSTANT, ALL_BUT_FIRM = range(3)
 
 # Cs and Cd of springs (m,) or constraints (t,).
 Pair = tuple[Floats, Floats]
@@ -61,15 +65,16 @@ def substep_coefficients(
     world: World | Snapshot, count: int | None = None, into: Pair | None = None, keeps_constant: bool = False,
     highest: float = 1.0,
 ) -> Pair:  # fmt: skip
-    """Cs and Cd (m,) of one substep, which leave every spring's motion from tick to tick as its Cs and Cd say.
+    """Cs and Cd (m,) of one substep: the same k and c in the direct solver, else the same motion from tick to tick.
 
     count: substeps in the tick (None: the fewest that the settings give it). into: the arrays that are filled in and
     returned (None: new ones). keeps_constant: leave its k instead, as the direct solver's where ticks choose their
-    parts. highest: one of several substeps is made of Cs and Cd of at most this, see `Solver`.
+    parts, whatever the body. highest: one of several substeps is made of Cs and Cd of at most this, see `Solver`.
     """
     count = count or world.settings.fewest_substeps
     coefficients = world.stiffness, world.damping
-    return _of_substep(coefficients, world.lowest_mode, count, into, keeps_constant, highest)
+    keeps, ease = _keeps(world.settings, keeps_constant), ease_of(world.settings, count)
+    return _of_substep(coefficients, world.lowest_mode, count, into, keeps, highest, ease)
 
 
 def constraint_coefficients(
@@ -78,21 +83,52 @@ def constraint_coefficients(
 ) -> Pair:  # fmt: skip
     """Cs and Cd (t,) of constraints, as `substep_coefficients` gives those of springs."""
     count, modes = count or world.settings.fewest_substeps, world.constraint_lowest_mode
-    return _of_substep(world.constraint_coefficients, modes, count, into, keeps_constant, highest)
+    keeps, ease = _keeps(world.settings, keeps_constant), ease_of(world.settings, count)
+    return _of_substep(world.constraint_coefficients, modes, count, into, keeps, highest, ease)
+
+
+def ease_of(settings: WorldSettings, count: int) -> float:
+    """1 + drag h: how many times as heavily the air lets everything be moved in a substep of a tick of so many."""
+    # Where ticks choose their parts, that of a whole tick: the energy of a spring does not depend on the parts.
+    return 1.0 + settings.drag / (settings.tick_rate * (1 if settings.substeps == AUTO else count))
+
+
+def _keeps(settings: WorldSettings, keeps_constant: bool) -> int:
+    if keeps_constant:
+        return ALL_CONSTANT
+    return ALL_BUT_FIRM if settings.solver == "direct" and settings.substeps != AUTO else MOTION
 
 
 def _of_substep(
-    coefficients: Pair, lowest_mode: Floats, count: int, into: Pair | None, keeps_constant: bool, highest: float
+    coefficients: Pair, lowest_mode: Floats, count: int, into: Pair | None, keeps: int, highest: float, ease: float
 ) -> Pair:
     # Of nothing there is nothing to copy, which takes a fifth of the tick of a few discs.
     if not len(coefficients[0]):
         return coefficients
+    if count == 1 and ease == 1.0:
+        return coefficients
     pair = into or (np.empty_like(coefficients[0]), np.empty_like(coefficients[1]))
     for part, whole in zip(pair, coefficients, strict=True):
         np.minimum(whole, highest if count > 1 else 1.0, out=part)
-    turn = divide if keeps_constant else halve
-    turn(*pair, lowest_mode, count)
+    if keeps == MOTION:
+        halve(*pair, lowest_mode, count)
+    else:
+        divide(*pair, lowest_mode, count, keeps == ALL_BUT_FIRM)
+    if ease != 1.0:
+        weigh_down(*pair, ease)
     return pair
+
+
+@kernel
+def weigh_down(stiffness: Floats, damping: Floats, ease: float) -> None:
+    """Turn Cs and Cd (m,) into those of springs of the same k and c whose ends are so many times as heavy, in place.
+
+    The air takes part in every step: (1 + drag h) m (v' - v*) = J.
+    """
+    for s in range(stiffness.shape[0]):
+        whole = damping[s] + (1.0 - damping[s]) * ease
+        stiffness[s] /= whole
+        damping[s] /= whole
 
 
 @kernel
@@ -110,11 +146,18 @@ def halve(stiffness: Floats, damping: Floats, lowest_mode: Floats, substeps: int
 
 
 @kernel
-def divide(stiffness: Floats, damping: Floats, lowest_mode: Floats, parts: int) -> None:
-    """The same for one of the parts that a tick chooses, with the k of the tick in one part (`part_of_network`)."""
+def divide(stiffness: Floats, damping: Floats, lowest_mode: Floats, parts: int, firm: bool) -> None:
+    """The same with the k of the tick in one part (`part_of_network`); firm: not of bodies that have a firmness."""
     if parts > 1:
         for s in range(stiffness.shape[0]):
-            stiffness[s], damping[s] = part_of_network(stiffness[s], damping[s], lowest_mode[s], parts)
+            # What is rigid, k at its cap, stays as rigid as a step lets it be.
+            if firm and (lowest_mode[s] > 0.0 or damping[s] > HIGHEST_COEFFICIENT):
+                count = 1
+                while count < parts:
+                    stiffness[s], damping[s] = half_step_of_network(stiffness[s], damping[s], lowest_mode[s])
+                    count *= 2
+            else:
+                stiffness[s], damping[s] = part_of_network(stiffness[s], damping[s], lowest_mode[s], parts)
 
 
 @kernel

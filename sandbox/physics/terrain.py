@@ -17,6 +17,10 @@ Slots = NDArray[np.int64]
 MOST_CELLS = 256
 # Share by which a cell is left wider than it must be, so that rounding puts no edge into the wrong one.
 CELL_SLACK = 1e-6
+# Corners of pieces of terrain that are so near [m] to another piece meet it; 1 - cosine of the angle by which ways must
+# differ from a straight line to be a corner.
+WELD = 1e-3
+FLAT = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +42,10 @@ class Terrain(NamedTuple):
     vertex [m] (k, 2); edge_a, edge_b (e,) = vertices, what is solid lies on the left of the way from a to b where solid
     (e,); chain (e,); friction, restitution (e,). Grid: corner [m] (2,), cell [m] (1,), size (2,) = columns, rows;
     edges by cell, row by row: cell_edge[cell_start[c]:cell_start[c + 1]].
+
+    tip (t,): the vertices that stand out, at which an edge of a body can be hit: no seams, no hollows. The ways along
+    all terrain that begins there, of length 1: way[way_start[i]:way_start[i + 1]] of tip i; tips by cell (their places
+    in tip) likewise: cell_tip[tip_start[c]:tip_start[c + 1]].
     """
 
     vertex: Floats
@@ -52,6 +60,11 @@ class Terrain(NamedTuple):
     size: Slots
     cell_start: Slots
     cell_edge: Slots
+    tip: Slots
+    way_start: Slots
+    way: Floats
+    tip_start: Slots
+    cell_tip: Slots
 
 
 @inner_kernel
@@ -67,8 +80,8 @@ def cells_between(low: float, high: float, corner: float, per_cell: float, size:
     return math.floor(max(0.0, first)), math.floor(min(last, size - 1.0))
 
 
-def make_terrain(chains: Sequence[Chain]) -> Terrain:
-    """Lay chains out as edges, in their order, and sort those into a grid."""
+def make_terrain(chains: Sequence[Chain], tips: bool = True) -> Terrain:
+    """Lay chains out as edges, in their order, and sort those into a grid; tips: whether to look for corners."""
     vertices, ends, rows = [np.zeros((0, 2))], [np.zeros((0, 2), dtype=np.int64)], []
     first = 0
     for number, chain in enumerate(chains):
@@ -82,6 +95,7 @@ def make_terrain(chains: Sequence[Chain]) -> Terrain:
         first += len(corners)
     vertex, pairs = np.concatenate(vertices), np.concatenate(ends)
     table = np.array(rows, dtype=np.float64).reshape(-1, 4)
+    grid = _grid(vertex[pairs[:, 0]], vertex[pairs[:, 1]])
     return Terrain(
         vertex,
         np.ascontiguousarray(pairs[:, 0]),
@@ -90,7 +104,8 @@ def make_terrain(chains: Sequence[Chain]) -> Terrain:
         table[:, 0].astype(np.int64),
         np.ascontiguousarray(table[:, 2]),
         np.ascontiguousarray(table[:, 3]),
-        *_grid(vertex[pairs[:, 0]], vertex[pairs[:, 1]]),
+        *grid,
+        *_tips(vertex if tips else vertex[:0], vertex, pairs, table[:, 1] > 0.0, *grid[:3]),
     )
 
 
@@ -134,6 +149,76 @@ def _cells(start: list[float], end: list[float]) -> list[tuple[int, int]]:
         columns = range(int(min(across) - CELL_SLACK), int(max(across) + CELL_SLACK) + 1)
         found += [(column, row) for column in columns]
     return found
+
+
+def _tips(
+    looked_at: Floats, vertex: Floats, pairs: Slots, solid: NDArray[np.bool_], corner: Floats, cell: Floats, size: Slots
+) -> tuple[Slots, Slots, Floats, Slots, Slots]:
+    """The tips of terrain with the ways from them, and tips by cell; see Terrain."""
+    cells = int(size[0] * size[1])
+    tips, starts, ways, at = [], [0], [np.zeros((0, 2))], []
+    a, b = vertex[pairs[:, 0]], vertex[pairs[:, 1]]
+    along = b - a
+    length = np.sqrt(np.sum(along * along, axis=1))
+    taken = np.zeros((0, 2))
+    for v, place in enumerate(looked_at):
+        from_a = place - a
+        share = np.clip(np.sum(from_a * along, axis=1) / np.maximum(length * length, 1e-300), 0.0, 1.0)
+        off = from_a - share[:, None] * along
+        near = (np.sum(off * off, axis=1) <= WELD * WELD) & (length > 0.0)
+        if len(taken) and (np.sum((taken - place) ** 2, axis=1) <= WELD * WELD).any():
+            continue
+        unit = along[near] / length[near, None]
+        found = np.concatenate([
+            unit[(1.0 - share[near]) * length[near] > WELD], -unit[share[near] * length[near] > WELD]
+        ])  # fmt: skip
+        if not len(found) or (found @ found.T < FLAT - 1.0).any() or _is_hollow(v, pairs, solid, along, length):
+            continue
+        if not (_polar(found) @ found.T <= 1e-9).all(axis=1).any() or _is_buried(place, a, b, solid):
+            continue
+        tips.append(v)
+        starts.append(starts[-1] + len(found))
+        ways.append(found)
+        taken = np.append(taken, [place], axis=0)
+        column, row = ((place - corner) / cell).astype(np.int64).tolist()
+        at.append(row * int(size[0]) + column)
+    order = np.argsort(np.array(at, dtype=np.int64), kind="stable")
+    tip_start = np.append(0, np.cumsum(np.bincount(np.array(at, dtype=np.int64), minlength=cells)))
+    return (
+        np.array(tips, dtype=np.int64), np.array(starts, dtype=np.int64), np.ascontiguousarray(np.concatenate(ways)),
+        tip_start.astype(np.int64), order.astype(np.int64),
+    )  # fmt: skip
+
+
+def _polar(ways: Floats) -> Floats:
+    """Directions that may lie across all ways: those away from each, and the two across each."""
+    across = np.stack([-ways[:, 1], ways[:, 0]], axis=1)
+    return np.concatenate([-ways, across, -across])
+
+
+def _is_hollow(v: int, pairs: Slots, solid: NDArray[np.bool_], along: Floats, length: Floats) -> bool:
+    """Whether what is solid lies around a vertex by more than half a turn."""
+    before, after = np.flatnonzero(pairs[:, 1] == v), np.flatnonzero(pairs[:, 0] == v)
+    if not len(before) or not len(after) or not solid[before[0]]:
+        return False
+    one, two = along[before[0]], along[after[0]]
+    return bool(one[0] * two[1] - one[1] * two[0] <= 0.0)
+
+
+def _is_buried(place: Floats, a: Floats, b: Floats, solid: NDArray[np.bool_]) -> bool:
+    """Whether a place lies inside what is solid, and not at its rim."""
+    # Looked at a little to four sides of it: at a rim one of these is outside.
+    for dx, dy in ((2.0, 1.0), (-1.0, 2.0), (-2.0, -1.0), (1.0, -2.0)):
+        x, y = place[0] + dx * WELD, place[1] + dy * WELD
+        below = a[:, 1] <= y
+        crossing = solid & (below != (b[:, 1] <= y))
+        right = (x - a[:, 0]) * (b[:, 1] - a[:, 1]) - (y - a[:, 1]) * (b[:, 0] - a[:, 0])
+        winding = np.count_nonzero(crossing & below & (right < 0.0)) - np.count_nonzero(
+            crossing & ~below & (right > 0.0)
+        )
+        if winding <= 0:
+            return False
+    return True
 
 
 NO_TERRAIN = make_terrain(())

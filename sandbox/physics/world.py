@@ -57,14 +57,13 @@ _WATCHED = frozenset(
 class World(StateArrays):
     """A world's state, see StateArrays, plus the settings of a tick, and what is constant: limits, driven, terrain.
 
-    Slots are append-only: an index stays a particle's or spring's handle for ever; removing clears the active flag.
-    Arrays of the table that are no topology may be written in place; those that are only by methods of World, `change`
-    where there is no other, as what was derived from them (`derived`) would not notice.
+    Slots are append-only: an index stays a particle's or spring's handle; removing clears the active flag. Arrays that
+    are topology are written by methods of World (`change` where there is no other), or `derived` would not notice.
     """
 
     def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
-        # Counts the changes of what solvers and collision derive from, see derived; never state.
-        self.topology_version = 0
+        # Never state: counts the changes of what solvers and collision derive from; whether any may be `unmoved`.
+        self.topology_version, self.may_fly = 0, True
         self._derived: dict[Callable[[World], Any], tuple[int, Any]] = {}
         self._room = Room()
         for column in COLUMNS:
@@ -105,10 +104,9 @@ class World(StateArrays):
         return self.__dict__ | {"_derived": {}, "_room": Room()}
 
     def derived(self, make: Callable[["World"], Derived]) -> Derived:
-        """What `make` makes of this world, kept until the world's topology or one of its arrays is another.
+        """What `make` makes of this world, kept until `topology_version` goes up or one of its arrays is another.
 
-        That is the place for layouts, scratch and pointers to arrays that outlive a step: not compared with anything,
-        but made anew when `topology_version` has gone up. Of a world of the same arrays it is the same, so no state.
+        The place for layouts, scratch and pointers that outlive a step: the same of the same arrays, so no state.
         """
         version, kept = self._derived.get(make, (-1, None))
         if version != self.topology_version:
@@ -148,6 +146,7 @@ class World(StateArrays):
                 good = self.good[name] = room(f"good {name}", self.good[name], count)
                 good[len(good) - count :] = grown[len(grown) - count :]
         self.topology_version += 1
+        self.may_fly = True
         assert not arrays, f"no arrays of {family}: {', '.join(arrays)}"
 
     def disturb(self, *particles: NDArray[np.integer] | int) -> None:
@@ -202,9 +201,10 @@ class World(StateArrays):
         for name, value in equipment._asdict().items():
             setattr(self, name, value)
 
-    def keep_contacts(self, particle: NDArray[np.int32], feature: Slots, impulse: Floats) -> None:
-        """Keep the contacts of a step and their impulses [N s] for the next."""
-        self.contact_particle, self.contact_feature, self.contact_impulse = particle, feature, impulse
+    def keep_contacts(self, particle: NDArray[np.int32], feature: Slots, impulse: Floats, impact: Floats) -> None:
+        """Keep the contacts of a step and their impulses [N s] for the next, and those of the tick's impacts [N s]."""
+        self.contact_particle, self.contact_feature = particle, feature
+        self.contact_impulse, self.contact_impact = impulse, impact
 
     @property
     def particle_count(self) -> int:
@@ -315,6 +315,7 @@ class World(StateArrays):
             radius=radius,
             gravity_scale=gravity_scale,
             particle_active=True,
+            unmoved=True,
             friction=friction,
             restitution=restitution,
             owner=-1 - first - np.arange(count) if owner is None else owner,

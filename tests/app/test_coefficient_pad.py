@@ -6,7 +6,7 @@ import pytest
 
 from sandbox.app.play.coefficient_pad import critical_stiffness
 from sandbox.app.play.response_curve import response, rest_tick
-from sandbox.physics.coefficient_zones import coefficient_zones
+from sandbox.physics.analysis.coefficient_zones import coefficient_zones
 from sandbox.physics.equation import frequency_from_coefficients
 from sandbox.session.commands import SetCoefficients
 from sandbox.session.session import Session

@@ -65,3 +65,8 @@ def test_fonts_are_held_for_the_sizes_used_last(open_app):
     for size in range(12, 12 + FONTS_HELD):
         plain_font(size, False)
     assert plain_font(11, False) is not first
+
+
+def test_marks_that_turn_the_order_of_text_are_not_drawn():
+    font = plain_font(14, False)
+    assert font.size("ab\u202ecd\u2066e") == font.size("abcde")

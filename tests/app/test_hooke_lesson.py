@@ -8,7 +8,7 @@ import pytest
 
 from sandbox.app.compare.compare_screen import CompareScreen
 from sandbox.app.compare.hooke_lesson import HookeLesson, has_exploded
-from sandbox.app.compare.hooke_level import MOST_DOUBLINGS, SpringTrial, lesson_level, words
+from sandbox.app.compare.hooke_level import CD, MOST_DOUBLINGS, SpringTrial, lesson_level, words
 from sandbox.app.compare.lesson_panel import MASSES, RATES, SPRINGS
 from sandbox.app.draw.colours import LINE
 from sandbox.session.session import Session
@@ -48,7 +48,8 @@ def test_both_sides_are_one_spring_until_cs_is_1():
             for _ in range(60):
                 session.advance()
             ends.append(session.world.position[1])
-        assert ends[0] == pytest.approx(ends[1], abs=1e-9)
+        # They hang apart by Cd m g / k.
+        assert np.abs(ends[0] - ends[1]).max() < 2.0 * CD * 9.81 / trial.k
     assert not SpringTrial(5).are_equal and SpringTrial(5).cs == 1.0
 
 
@@ -116,7 +117,7 @@ def test_a_drag_moves_the_weights_of_both(lesson):
     assert screen.playback.session.world.any_held() and screen.other.session.world.any_held()
     lesson.release((at[0] + 60, at[1] - 30))
     one, other = screen.playback.session.world.position[1], screen.other.session.world.position[1]
-    assert one == pytest.approx(other, abs=1e-6) and one[0] > 0.1
+    assert one == pytest.approx(other, abs=0.004) and one[0] > 0.1
 
 
 def test_the_gallery_offers_two_settings_of_a_shipped_level(open_app):

@@ -112,7 +112,8 @@ def test_impulses_that_are_dropped_between_ticks_are_not_remembered():
     other = copy.deepcopy(w)
     for changed in (w, other):
         changed.contact_impulse[:] = 0.0
-    other.keep_contacts(other.contact_particle.copy(), other.contact_feature.copy(), other.contact_impulse.copy())
+    kept = (other.contact_particle, other.contact_feature, other.contact_impulse, other.contact_impact)
+    other.keep_contacts(*[array.copy() for array in kept])
     assert hashes(w, 3) == hashes(other, 3)
 
 

@@ -250,7 +250,8 @@ def test_a_spring_of_no_length_draws_its_ends_together():
     world.add_particles(["a", "b", "c"], [(0.0, 0.0), (1.0, 0.5), (1.0, 0.5)])
     world.add_springs(["s", "t"], [0, 1], [1, 2], rest_length=0.0, stiffness=0.5, damping=1.0)
     run(world, 60)
-    assert np.abs(world.position - world.position[0]).max() < 1e-9
+    # Nearer than this the spin that rounding has given it, which it keeps, holds them apart.
+    assert np.abs(world.position - world.position[0]).max() < 1e-8
 
 
 def test_a_hand_lifts_a_heavy_rope_as_readily_as_a_light_one():

@@ -232,7 +232,7 @@ def test_a_jelly_on_its_floors_has_their_energy_and_gets_no_more_out_of_them():
 
 @pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
 def test_a_soft_jelly_that_is_dropped_lies_on_its_floors_like_dough():
-    found = folding.play("dropped", "box", (0.02, 0.1), solver="direct", substeps=1, seconds=3.0, seed=0)
+    found = folding.play("dropped", "box", (0.02, 0.1), solver="direct", substeps=1, seconds=4.0, seed=0)
     assert 0.2 < found.last_area < 0.3
 
 

@@ -218,7 +218,8 @@ def test_the_force_on_a_soft_body_acts_at_the_point_that_is_held():
     free, h = slice(0, 81), 1.0 / RATE
     momentum = world.mass[free, None] * world.velocity[free]
     assert momentum.sum(axis=0) == pytest.approx(h * world.hand_force[0], rel=1e-9, abs=1e-12)
-    place = world.origin[free]
+    # About the places where the step ends, to which its velocities belong.
+    place = world.position[free]
     spin = np.sum(place[:, 0] * momentum[:, 1] - place[:, 1] * momentum[:, 0])
     x, y = world.origin[corner]
     fx, fy = h * world.hand_force[0]

@@ -56,6 +56,8 @@ def test_a_tick_is_the_five_lines_of_the_method(warm_start, iterations):
             gravity=(1.0, -9.81), solver="iterative", iterations=iterations, warm_start=warm_start
         )
         world.cut([3])
+        # The method, without the half step that what flies begins with.
+        world.unmoved[:] = False
         accumulated = world.impulse.copy()
         for _ in range(5):
             expected = textbook_step(world, accumulated)

@@ -211,6 +211,6 @@ def test_a_large_body_cut_loose_falls_freely():
     start = world.position.copy()
     ticks = 30 if COMPILED else 2
     run(world, ticks)
-    fallen = np.array([0.0, -9.81 * ticks * (ticks + 1) / 2 / 3600])
+    fallen = np.array([0.0, -9.81 * ticks * ticks / 2 / 3600])
     others = np.arange(len(world.mass)) != pin
     assert np.abs(world.position - start - fallen)[others].max() < 1e-9

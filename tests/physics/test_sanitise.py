@@ -183,7 +183,9 @@ def test_what_a_tick_of_free_discs_itself_blows_up_stays_where_it_was_and_alone(
     hit, left = add_discs(w, [(0.0, 5.0)], gravity_scale=1e18), add_discs(w, [(3.0, 5.0)])
     w.settings = WorldSettings(gravity=(0.0, -1e6))
     _steps(w, 2)
-    assert {taken.name for taken in w.contained} == {f"contact of {w.particle_names[hit]}"}
+    name = w.particle_names[hit]
+    assert {taken.name for taken in w.contained} <= {name, f"contact of {name}"}
+    assert w.contained
     assert w.position[hit].tolist() == [0.0, 5.0]
     assert np.isfinite(w.velocity).all()
     assert 0.0 < w.position[left, 1] < 5.0

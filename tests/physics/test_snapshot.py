@@ -95,7 +95,7 @@ def test_a_snapshot_is_a_read_only_copy():
 @pytest.mark.parametrize("column", COLUMNS, ids=lambda column: column.stored)
 def test_each_array_changes_the_hash_and_its_own_hash_alone(column):
     world = busy_world()
-    world.keep_contacts(np.zeros(1, dtype=np.int32), np.ones(1, dtype=np.int64), np.ones((1, 2)))
+    world.keep_contacts(np.zeros(1, dtype=np.int32), np.ones(1, dtype=np.int64), np.ones((1, 2)), np.ones(1))
     before, by_array = state_hash(world), hash_by_array(world)
     array = getattr(world, column.name)
     if array.dtype.kind == "f":

@@ -26,8 +26,8 @@ STORED = [
 ]  # fmt: skip
 # Those that are no part of a state where all of them are as usual.
 SPARSE = [
-    "parting_reserve", "angle", "spin", "rolls", "rolling", "lowest_mode", "element_lowest_mode", "part_impulse",
-    "hand_strength", "hand_radius", "hand_force",
+    "parting_reserve", "angle", "spin", "rolls", "rolling", "slow_change", "unmoved", "lowest_mode",
+    "element_lowest_mode", "part_impulse", "contact_impact", "hand_strength", "hand_radius", "hand_force",
 ]  # fmt: skip
 
 

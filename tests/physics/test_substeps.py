@@ -147,8 +147,8 @@ def test_a_rope_dragged_by_a_hand_at_twenty_metres_a_second_stays_short(anchored
         world.unpin(0)
     dragged, released = drag(world, 100 if anchored else 0)
     assert dragged <= 1e-2
-    # Since hands brake it whirls on longer: 1.07e-4.
-    assert released <= 1.5e-4
+    # It whirls on, and nothing but its springs damps that: 2.3e-4 where it is anchored.
+    assert released <= 3e-4
 
 
 @pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")

@@ -216,7 +216,10 @@ def test_a_changed_byte_in_a_compressed_recording_is_refused(tmp_path):
     generator = random.Random(8)
     head_of_gzip = [0, 1, 2, 3]  # behind them stand a time and a system, which say nothing of the run
     for place in [*head_of_gzip, *(generator.randrange(10, len(data)) for _ in range(100))]:
-        path.write_bytes(data[:place] + bytes([data[place] ^ 0x40]) + data[place + 1 :])
+        changed = data[:place] + bytes([data[place] ^ 0x40]) + data[place + 1 :]
+        if data[place + 1 : place + 5] == b"\x00\x00\xff\xff":
+            continue  # padding before an empty block, which no reader looks at
+        path.write_bytes(changed)
         with pytest.raises(ReplayError):
             read_replay(path)
 

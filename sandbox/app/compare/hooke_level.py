@@ -1,6 +1,7 @@
 """The levels of the lesson: a weight on Hooke's spring F = -k x - c v, and the same weight on the article's spring.
 
-Both are integrated alike, by symplectic Euler in a single pass, each spring on the velocities before the step.
+Both are integrated alike, by symplectic Euler in a single pass. The article's damping acts on what gravity has just
+added, too, so its weight hangs higher by Cd m g / k: 2 mm at first, and less the stiffer both are.
 """
 
 import json
@@ -95,8 +96,8 @@ def words(trial: SpringTrial, exploded_at: int | None) -> str:
         )
     if trial.are_equal and trial.cs < 1.0:
         return (
-            "Both are the same spring now: Cs = k h²/m. Drag a weight, and both move alike. Now make them stiffer, "
-            "again and again."
+            "Both are the same spring now: Cs = k h²/m. Drag a weight: both move alike, to 2 mm. Now make them "
+            "stiffer, again and again."
         )
     if trial.are_equal:
         return (

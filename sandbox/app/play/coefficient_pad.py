@@ -13,7 +13,7 @@ from sandbox.app.sweeps.sweep_layer import SweepLayer
 from sandbox.app.widgets.painted import Draggable, wrapped
 from sandbox.app.widgets.sliders import FINE_KEY_STEP, HIGHEST, KEY_STEP, LOWEST, fraction_of, value_at
 from sandbox.app.widgets.ui import Ui
-from sandbox.physics.coefficient_zones import CoefficientZones
+from sandbox.physics.analysis.coefficient_zones import CoefficientZones
 
 # Sizes in layout units: what stands around the map, and of what is on it.
 LEFT, RIGHT, TOP, BOTTOM = 38.0, 8.0, 18.0, 40.0

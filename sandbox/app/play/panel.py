@@ -23,7 +23,7 @@ from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.sliders import LogSlider
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.limits import GRAVITY_LIMIT, SUBSTEPS
-from sandbox.physics.coefficient_zones import CoefficientZones, coefficient_zones
+from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
 from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
 from sandbox.physics.firmness import WORDS

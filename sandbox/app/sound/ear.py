@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.sound.bank import Note, note
 from sandbox.app.sound.timbre import Timbres, timbres_of
-from sandbox.physics.collision.narrow_phase import DISC, TERRAIN
+from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import GRAB_COUNT, World
@@ -255,10 +255,11 @@ class Ear:
 
 
 def _touching(world: World, others: Slots) -> _Touching:
-    """What contacts of the last step say, of two discs for each of them; and other particles that were struck."""
+    """Contacts of the last step and impacts of the tick, of two discs for each of them; and others that were struck."""
     own = (world.contact_particle >= 0) & (world.contact_particle < world.particle_count)
     particle, feature = world.contact_particle[own].astype(np.int64), world.contact_feature[own]
-    kind, number, impulse = feature % 3, feature // 3, np.abs(world.contact_impulse[own])
+    kind, number, impulse = feature % KINDS, feature // KINDS, np.abs(world.contact_impulse[own])
+    push, rub = impulse[:, 0] + np.abs(world.contact_impact[own]), impulse[:, 1]
     discs = (kind == DISC) & (number < world.particle_count)
     other = np.where(discs, number, -1)
     others = others[~np.isin(others, np.concatenate([particle, number[discs]]))] if len(others) else others
@@ -266,9 +267,9 @@ def _touching(world: World, others: Slots) -> _Touching:
     return _Touching(
         np.concatenate([particle, number[discs], others]),
         np.concatenate([other, particle[discs], others - others - 1]),
-        np.concatenate([impulse[:, 0], impulse[discs, 0], none]),
-        np.concatenate([impulse[:, 1], impulse[discs, 1], none]),
-        np.concatenate([kind == TERRAIN, np.zeros(np.count_nonzero(discs) + len(others), dtype=np.bool_)]),
+        np.concatenate([push, push[discs], none]),
+        np.concatenate([rub, rub[discs], none]),
+        np.concatenate([np.isin(kind, (TERRAIN, TIP)), np.zeros(discs.sum() + len(others), dtype=np.bool_)]),
     )
 
 

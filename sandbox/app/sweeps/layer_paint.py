@@ -8,7 +8,7 @@ import pygame
 from sandbox.app.draw.colours import DECADE, MUTED, TEXT
 from sandbox.app.sweeps.sweep_layer import BLOWN, SweepLayer
 from sandbox.app.widgets.layout import WindowLayout
-from sandbox.physics.coefficient_zones import CoefficientZones
+from sandbox.physics.analysis.coefficient_zones import CoefficientZones
 
 # Limits are seen on every colour: a light line in a dark one.
 LIGHT, DARK = (255, 255, 255), (16, 20, 28)

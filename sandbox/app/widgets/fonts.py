@@ -19,6 +19,8 @@ _OTHERS = {False: "NotoSans-Regular.ttf", True: "NotoSans-Bold.ttf"}
 _LATIN, _NONE = "\u017f", "\uffff"
 # What is painted uses a dozen sizes at one scale of the window; each takes 0.1 to 0.3 MB with its letters.
 FONTS_HELD = 24
+# Marks of Unicode Standard Annex 9 that turn text, their own name's and any after it.
+_TURNING = dict.fromkeys([0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A)])
 
 
 def font_file(bold: bool) -> Path:
@@ -88,7 +90,8 @@ def plain_font(size: int, bold: bool) -> SafeFont:
 
 
 def _clean(text: Any) -> Any:
-    """A text without halves of surrogate pairs and null characters."""
+    """A text without halves of surrogate pairs, null characters, and marks that turn the order of what is shown."""
     if not isinstance(text, str) or text.isprintable():
         return text
+    text = text.translate(_TURNING)
     return text.encode("utf-8", "replace").decode().replace("\0", "?")

@@ -65,7 +65,8 @@ class Settings(Description):
     tick_rate: int = Field(default=60, ge=1, le=10_000, description="Ticks in a second.", json_schema_extra=unit("1/s"))
     substeps: Substeps = Field(
         default=1,
-        description="Parts that a tick is cut into; coefficients are converted, so springs keep their motion. "
+        description="Parts that a tick is cut into; coefficients are converted: in the direct solver springs keep "
+        "their k and c, else their motion. "
         '"auto": every tick chooses 1, 2, 4 or 8, by how far the springs turn in it.',
         json_schema_extra={"enum": [*SUBSTEPS, AUTO]},
     )

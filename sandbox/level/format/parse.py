@@ -4,6 +4,7 @@ Order: size, depth by a scan of the bytes, duplicate keys, sizes of lists, the m
 and counts. Each stage trusts what the one before has refused.
 """
 
+import codecs
 import collections
 import itertools
 import json
@@ -15,6 +16,7 @@ from pydantic import ValidationError
 
 from sandbox.level.build.plan import keep_plan
 from sandbox.level.faults.early_end import early_end
+from sandbox.level.faults.foreign import foreign_bytes, foreign_keys
 from sandbox.level.faults.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.faults.validate import check_level
 from sandbox.level.format.gc_pause import collector_paused
@@ -67,9 +69,13 @@ def parse_level(data: bytes, source: str) -> Level:
 def _parse(data: bytes, source: str) -> Level:
     if len(data) > FILE_LIMIT:
         raise LevelError(source, [("", f"is larger than {FILE_LIMIT // 1024 // 1024} MiB; make it smaller")])
+    data = data.removeprefix(codecs.BOM_UTF8)
     raw = _load(data, source)
     if not isinstance(raw, dict):
         raise LevelError(source, [("", f"a level is an object {{...}}; this is {shown(raw)}")])
+    kind = None if "format" in raw else foreign_keys(raw)
+    if kind:
+        raise LevelError(source, [("", f"is {kind}, not a Spring Sandbox level")])
     if raw.get("format", FORMAT) != FORMAT:
         fault = "format", f'{shown(raw["format"])} is not "{FORMAT}"; this is no level'
         raise LevelError(source, [fault])
@@ -123,8 +129,9 @@ def _load(data: bytes, source: str) -> Any:
 def _not_text(data: bytes) -> Fault | None:
     if not data.strip():
         return "", "is empty; a level is a JSON object {...}"
-    if data.startswith(b"\xef\xbb\xbf"):
-        return "line 1", "begins with a byte order mark; save it as UTF-8 without one"
+    kind = foreign_bytes(data)
+    if kind:
+        return "", f"is {kind}, not a Spring Sandbox level"
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return "line 1", "is UTF-16 text; save it as UTF-8"
     try:

@@ -1,9 +1,8 @@
 """Pushing: an impulse on everything near a place, as a gust of wind or a burst gives it. No part of a tick."""
 
-import math
-
 import numpy as np
 
+from sandbox.physics.geometry.sums import sum_in_order
 from sandbox.physics.query import shown_particles
 from sandbox.physics.world import World
 
@@ -26,8 +25,7 @@ def push(world: World, place: tuple[float, float], impulse: tuple[float, float],
     if not len(pushed):
         return False
     weight = 1.0 - squares[pushed] / (radius * radius)
-    # A sum that does not depend on the order in which it is made.
-    total = math.fsum((world.mass[pushed] * weight).tolist())
+    total = sum_in_order(world.mass[pushed] * weight)
     distance = np.sqrt(squares[pushed])
     share = np.divide(outward, distance, out=np.zeros_like(distance), where=distance > 0.0)
     change = (np.array(impulse) + share[:, None] * away[pushed]) * (weight / total)[:, None]

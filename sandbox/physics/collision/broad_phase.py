@@ -60,6 +60,17 @@ class Pairs(NamedTuple):
     other: Slots
 
 
+class Candidates(NamedTuple):
+    """What may touch, by boxes: pairs of particles with what moves, and with terrain.
+
+    box (n, 4) [m]: those of particles, then of edges.
+    """
+
+    pairs: Pairs
+    terrain: Pairs
+    box: Floats
+
+
 @inner_kernel
 def is_large(left: float, bottom: float, right: float, top: float, cell: float) -> bool:
     """Whether a box covers too many cells, or lies too far away, to be put into the grid."""

@@ -13,8 +13,8 @@ import numpy as np
 
 from sandbox.physics.collision.broad_phase import (
     Boxes,
+    Candidates,
     Grid,
-    Pairs,
     cell_size,
     fill_grid,
     find_pairs,
@@ -23,6 +23,7 @@ from sandbox.physics.collision.broad_phase import (
     new_pairs,
 )
 from sandbox.physics.collision.contacts import bound_solids, carry_over, fill_boxes, find_contacts, find_terrain
+from sandbox.physics.collision.disc_stop import stop_discs
 from sandbox.physics.collision.inversion import Inversions, Triangles, find_inverted, new_inversions, triangles_of
 from sandbox.physics.collision.meeting import Meetings, new_meetings
 from sandbox.physics.collision.outline import Outline, colliders_of, outline_of
@@ -36,7 +37,7 @@ from sandbox.physics.collision.overlaps import (
 )
 from sandbox.physics.collision.parting import MovedParticles, part_overlaps
 from sandbox.physics.collision.restitution import find_bounces
-from sandbox.physics.collision.terrain_clamp import clamp_at_terrain
+from sandbox.physics.collision.terrain_clamp import clamp_at_pins, clamp_at_terrain, clamp_at_tips
 from sandbox.physics.collision.turning import SURFACE_WEIGHT, load_arms
 from sandbox.physics.collision.types import (
     NO_CONTACTS,
@@ -70,6 +71,8 @@ MORE_ROOM = 2
 # Places in `counts`: contacts of the present step and of the last, entries of the grid, pairs by boxes, with terrain,
 # crossings of outlines, pairs of shapes that overlap; substeps that are done of a tick of free particles.
 CONTACTS, KEPT, ENTRIES, PAIRS, TERRAIN_PAIRS, CROSSED, OVERLAPPING, DONE = range(8)
+# Rounds in which edges are stopped at corners of terrain, and particles at terrain; the latter has the last word.
+TIP_ROUNDS = 4
 # What `_collide` returns in place of a number of contacts where there is too little room.
 NO_ROOM = -1
 
@@ -80,6 +83,7 @@ class CollidingParticles(NamedTuple):
     position: Floats
     velocity: Floats
     slow_velocity: Floats
+    slow_change: Floats
     origin: Floats
     mass: Floats
     inverse_mass: Floats
@@ -106,8 +110,7 @@ class CollisionRoom(NamedTuple):
 
     boxes: Boxes
     grid: Grid
-    pairs: Pairs
-    terrain_pairs: Pairs
+    candidates: Candidates
     bounds: Floats
     near: Near
     contacts: Contacts
@@ -179,16 +182,17 @@ def _detect(
     room.counts[ENTRIES] = entries
     if entries > room.grid.object.shape[0]:
         return NO_ROOM
-    room.counts[PAIRS] = find_pairs(room.boxes, room.grid, larges, room.pairs)
-    room.counts[TERRAIN_PAIRS] = find_terrain(room.boxes, terrain, room.terrain_pairs)
-    if room.counts[PAIRS] > room.pairs.other.shape[0] or room.counts[TERRAIN_PAIRS] > room.terrain_pairs.other.shape[0]:
+    pairs, terrain_pairs = room.candidates.pairs, room.candidates.terrain
+    room.counts[PAIRS] = find_pairs(room.boxes, room.grid, larges, pairs)
+    room.counts[TERRAIN_PAIRS] = find_terrain(room.boxes, terrain, terrain_pairs)
+    if room.counts[PAIRS] > pairs.other.shape[0] or room.counts[TERRAIN_PAIRS] > terrain_pairs.other.shape[0]:
         return NO_ROOM
     bound_solids(colliders, outline, 0, outline.dynamic[1], room.bounds)
     if not _find_overlaps(outline, colliders, room, larges):
         return NO_ROOM
     count = find_contacts(
-        colliders, outline, room.pairs, room.terrain_pairs, room.bounds, room.near, room.kept, room.counts[KEPT], tick,
-        h, room.contacts,
+        colliders, outline, room.candidates, room.bounds, room.near,
+        room.kept, room.counts[KEPT], tick, h, room.contacts, terrain,
     )  # fmt: skip
     room.counts[CONTACTS] = count
     return count if count <= room.contacts.particle.shape[0] else NO_ROOM
@@ -255,18 +259,22 @@ def _after_solver(
     k = 0
     for c in range(count):
         if room.islands.bound[c]:
-            contacts.impulse[c, 0] = room.bound.impulse[k, 0]
-            contacts.impulse[c, 1] = room.bound.impulse[k, 1]
+            contacts.impulse[c, 0], contacts.impulse[c, 1] = room.bound.impulse[k, 0], room.bound.impulse[k, 1]
+            if room.bound.bounce[k] >= 0.0:
+                # The impulse of an impact is no guess of what the next step needs.
+                contacts.impact[c] += room.bound.impulse[k, 0]
+                contacts.impulse[c, 0], contacts.impulse[c, 1] = 0.0, 0.0
             k += 1
         room.kept.particle[c] = contacts.particle[c]
         room.kept.feature[c] = contacts.feature[c]
         room.kept.impulse[c, 0] = contacts.impulse[c, 0]
         room.kept.impulse[c, 1] = contacts.impulse[c, 1]
+        room.kept.impact[c] = contacts.impact[c]
     room.counts[KEPT] = count
     ahead = room.work.ahead
     clamp_at_terrain(
         particles.position, particles.velocity, ahead, particles.collides, particles.particle_active,
-        particles.inverse_mass, terrain, room.boxes.box, room.terrain_pairs.start, h,
+        particles.inverse_mass, terrain, room.boxes.box, room.candidates.terrain.start, h,
     )  # fmt: skip
     for p in range(ahead.shape[0]):
         particles.position[p, 0] += ahead[p, 0]
@@ -283,8 +291,11 @@ def _collide(items: Any, first: int, last: int, follows: bool, tick: int, h: flo
     # it. Else substeps first..last of a tick in which nothing is held, and what is to come before and after them; how
     # many contacts there are.
     particles, outline, terrain, triangles, colliders, room, forced, checked = contents(items)
-    if last > 0 and first == 0 and not are_sound(checked, room.kept.impulse, room.counts[KEPT]):
-        return UNSOUND
+    if last > 0 and first == 0:
+        if not are_sound(checked, room.kept.impulse, room.kept.impact, room.counts[KEPT]):
+            return UNSOUND
+        for c in range(room.counts[KEPT]):
+            room.kept.impact[c] = 0.0
     substep = first
     while True:
         if last > 0 or first == 0:
@@ -299,7 +310,7 @@ def _collide(items: Any, first: int, last: int, follows: bool, tick: int, h: flo
             room.counts[DONE] = substep
             return NO_ROOM
         if follows:
-            follow(particles.velocity, particles.slow_velocity, particles.particle_active)
+            follow(particles.velocity, particles.slow_velocity, particles.slow_change, particles.particle_active)
         count = _after_solver(particles, terrain, room, True, h)
         substep += 1
         if substep == last:
@@ -308,7 +319,25 @@ def _collide(items: Any, first: int, last: int, follows: bool, tick: int, h: flo
 
 @kernel
 def _finish(items: Any, moves: bool, h: float) -> int:
-    particles, _, terrain, _, _, room, _, _ = contents(items)
+    particles, outline, terrain, _, colliders, room, _, _ = contents(items)
+    if outline.dynamic[1] > 0:
+        stop_discs(
+            room.contacts, room.counts[CONTACTS], outline, colliders, particles.velocity,
+            particles.mass, particles.inverse_mass, h,
+        )  # fmt: skip
+    clamp_at_pins(
+        particles.position, particles.velocity, room.work.ahead, particles.inverse_mass, outline, colliders,
+        room.boxes.box, room.candidates.pairs.start, h,
+    )  # fmt: skip
+    for k in range(TIP_ROUNDS):
+        if not clamp_at_tips(
+            particles.velocity, particles.inverse_mass, terrain, outline.dynamic[0], colliders, k == TIP_ROUNDS - 1, h
+        ):
+            break
+        clamp_at_terrain(
+            particles.position, particles.velocity, room.work.ahead, particles.collides, particles.particle_active,
+            particles.inverse_mass, terrain, room.boxes.box, room.candidates.terrain.start, h,
+        )  # fmt: skip
     return _after_solver(particles, terrain, room, moves, h)
 
 
@@ -348,7 +377,12 @@ class Collisions:
         room.particle[: self.count] = world.contact_particle
         room.feature[: self.count] = world.contact_feature
         room.impulse[: self.count] = world.contact_impulse
+        room.impact[: self.count] = world.contact_impact
         _share_kept(world, self)
+
+    def forget_impacts(self) -> None:
+        """Begin a tick, in which no impact has happened yet."""
+        self.room.kept.impact[: self.count] = 0.0
 
     def collide(self, has_begun: bool, tick: int, h: float) -> LentContacts | None:
         """Find the contacts of a step of h [s] and solve those of free particles; the others, returned, are a solver's.
@@ -376,6 +410,16 @@ class Collisions:
             count = _collide(self.items, int(self.room.counts[DONE]), substeps, follows, tick, h)
         self.count = count if count >= 0 else int(self.room.counts[KEPT])
         return count
+
+    def touched(self) -> Slots:
+        """The particles that contacts of the present step push."""
+        count = int(self.room.counts[CONTACTS])
+        contacts, bound = self.room.contacts, self.room.islands.bound[:count]
+        pushes = contacts.impulse[:count, 0] > 0.0
+        pushes[np.flatnonzero(bound)] = self.room.bound.impulse[: int(bound.sum()), 0] > 0.0
+        ends = [array[:count][pushes] for array in (contacts.particle, contacts.end_a, contacts.end_b)]
+        slots = np.concatenate(ends).astype(np.int64)
+        return slots[slots >= 0]
 
     def finish(self, h: float, moves: bool) -> None:
         """Keep a step's contacts with their impulses, stop what would cross terrain, and move particles over h [s].
@@ -419,12 +463,12 @@ def _make_room(outline: Outline, triangles: Triangles, wanted: Slots) -> Collisi
     particles = len(outline.held)
     objects = particles + int(outline.dynamic[0])
     contacts, kept, entries, pairs, terrain_pairs, crossings, overlaps = _room(wanted)
-    contacts = max(contacts, kept)
+    contacts, boxes = max(contacts, kept), new_boxes(particles, objects)
+    candidates = Candidates(new_pairs(particles, pairs), new_pairs(particles, terrain_pairs), boxes.box)
     return CollisionRoom(
-        new_boxes(particles, objects), new_grid(objects, entries), new_pairs(particles, pairs),
-        new_pairs(particles, terrain_pairs), np.zeros((len(outline.solid), 5)), room_near(), room_for(contacts),
-        room_for(contacts), room_to_keep(contacts), new_islands(particles, contacts), new_work(particles, contacts),
-        new_inversions(triangles), new_meetings(len(outline.solid_of)),
+        boxes, new_grid(objects, entries), candidates, np.zeros((len(outline.solid), 5)), room_near(),
+        room_for(contacts), room_for(contacts), room_to_keep(contacts), new_islands(particles, contacts),
+        new_work(particles, contacts), new_inversions(triangles), new_meetings(len(outline.solid_of)),
         new_overlaps(len(outline.solid_of), crossings, overlaps), np.zeros(particles, np.bool_),
         np.zeros(DONE + 1, np.int64),
     )  # fmt: skip
@@ -448,7 +492,7 @@ def _grow(collisions: Collisions) -> None:
     collisions.room.counts[:] = old.counts
     count = len(old.kept.particle)
     new = collisions.room.kept
-    new.particle[:count], new.feature[:count], new.impulse[:count] = old.kept
+    new.particle[:count], new.feature[:count], new.impulse[:count], new.impact[:count] = old.kept
     collisions.solved, collisions.kept = {}, NOTHING_KEPT
     _bundle_up(collisions)
 

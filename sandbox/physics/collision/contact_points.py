@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.collision.filter import LINE, SOLID_RIGHT
-from sandbox.physics.collision.narrow_phase import DISC, EDGE
+from sandbox.physics.collision.narrow_phase import DISC, EDGE, INSIDE, KINDS, TERRAIN, TIP, TIP_SHIFT
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.substeps import substep_time
@@ -26,16 +26,24 @@ class ContactPoints(NamedTuple):
 def contact_points(state: World | Snapshot, position: Floats | None = None) -> ContactPoints:
     """The contacts that a state keeps of its last step; position (n, 2) [m]: where particles are, None = as they are.
 
-    Of contacts with what is not there any more nothing is said. force is the mean one of the step.
+    Of contacts with what is not there any more nothing is said. force is the mean one of the step, that of impacts over
+    the tick.
     """
     position = state.position if position is None else position
-    kind, number = state.contact_feature % 3, state.contact_feature // 3
+    kind, number = state.contact_feature % KINDS, state.contact_feature // KINDS
     chosen = (state.contact_particle >= 0) & (state.contact_particle < len(position))
-    chosen &= number < np.where(kind == DISC, len(position), np.where(kind == EDGE, len(state.edge), _edges(state)))
+    last = np.where(
+        kind == DISC, len(position), np.where((kind == EDGE) | (kind == INSIDE), len(state.edge), _edges(state))
+    )
+    last = np.where(kind == TIP, len(state.terrain.vertex) * TIP_SHIFT, last)
+    chosen &= (number < last) & ((kind != TIP) | (number % TIP_SHIFT < len(state.edge)))
     kind, number, particle = kind[chosen], number[chosen], state.contact_particle[chosen].astype(np.int64)
     impulse = state.contact_impulse[chosen]
     start, along, is_solid = _features(state, position, kind, number)
     centre = position[particle]
+    tips = np.flatnonzero(kind == TIP)
+    # The edge pushes against the corner; what is said is how the corner pushes the edge.
+    centre[tips] = state.terrain.vertex[number[tips] // TIP_SHIFT]
     squared = np.sum(along * along, axis=1)
     share = np.divide(np.sum((centre - start) * along, axis=1), squared, out=np.zeros(len(start)), where=squared > 0.0)
     nearest = start + np.clip(share, 0.0, 1.0)[:, None] * along
@@ -45,8 +53,13 @@ def contact_points(state: World | Snapshot, position: Floats | None = None) -> C
     beside = (share > 0.0) & (share < 1.0)
     side = np.where(is_solid | (np.sum(outward * away, axis=1) >= 0.0), 1.0, -1.0)
     normal = _unit(np.where(beside[:, None], side[:, None] * outward, away))
-    radius = np.where(kind == DISC, state.radius[particle], np.minimum(state.radius[particle], _length(away)))
-    along_normal, across = impulse[:, :1], impulse[:, 1:]
+    normal[tips] *= -1.0
+    radius = np.where(kind == TIP, 0.0, 1.0) * np.where(
+        kind == DISC, state.radius[particle], np.minimum(state.radius[particle], _length(away))
+    )
+    # An impact's is that of a tick, beside what a step pushes.
+    impact = state.contact_impact[chosen, None] * state.settings.tick_rate * substep_time(state.settings)
+    along_normal, across = impulse[:, :1] + impact, impulse[:, 1:]
     tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
     force = (along_normal * normal + across * tangent) / substep_time(state.settings)
     return ContactPoints(particle, centre - radius[:, None] * normal, normal, force)
@@ -62,9 +75,13 @@ def _features(
     """Start [m] and way along it (k, 2) of what contacts are with, and whether it is solid on the left (k,)."""
     start, end = np.zeros((2, len(kind), 2))
     is_solid = np.zeros(len(kind), dtype=np.bool_)
-    discs, edges, ground = (np.flatnonzero(kind == each) for each in range(3))
+    discs, edges, ground = (
+        np.flatnonzero(each)
+        for each in (kind == DISC, (kind == EDGE) | (kind == INSIDE) | (kind == TIP), kind == TERRAIN)
+    )
     start[discs] = end[discs] = position[number[discs]]
-    springs, swapped = number[edges], state.edge[number[edges]] == SOLID_RIGHT
+    springs = np.where(kind[edges] == TIP, number[edges] % TIP_SHIFT, number[edges])
+    swapped = state.edge[springs] == SOLID_RIGHT
     first, last = state.particle_a[springs], state.particle_b[springs]
     start[edges] = position[np.where(swapped, last, first)]
     end[edges] = position[np.where(swapped, first, last)]

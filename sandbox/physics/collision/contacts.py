@@ -7,21 +7,23 @@ manifold: two points at which two bodies touch are two contacts.
 
 import math
 
-from sandbox.physics.collision.broad_phase import WITH_ALL, WITH_EDGES, WITH_NOTHING, Boxes, Pairs
+from sandbox.physics.collision.broad_phase import WITH_ALL, WITH_EDGES, WITH_NOTHING, Boxes, Candidates, Pairs
+from sandbox.physics.collision.edge_geometry import CORNER, closest, is_enclosed
+from sandbox.physics.collision.entered import find_entered
 from sandbox.physics.collision.narrow_phase import (
-    CORNER,
-    DISC,
+    EDGE,
+    KINDS,
     MARGIN,
     TERRAIN,
-    closest,
     collide_disc,
     collide_edges,
     find_near,
-    is_enclosed,
+    leave_out,
     may_collide,
     push_out,
 )
 from sandbox.physics.collision.outline import TERRAIN_OWNER, Outline
+from sandbox.physics.collision.tips import find_tips
 from sandbox.physics.collision.types import Colliders, Contacts, KeptContacts, Near
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import Floats
@@ -53,8 +55,9 @@ def fill_boxes(colliders: Colliders, dynamic: int, h: float, boxes: Boxes) -> No
             way = h * colliders.velocity[p, axis]
             box[p, axis] = x + min(0.0, way) - reach
             box[p, 2 + axis] = x + max(0.0, way) + reach
-        boxes.is_target[p] = colliders.edge_start[p] == colliders.edge_start[p + 1] and not colliders.shielded[p]
-        boxes.filter[p] = WITH_EDGES if colliders.shielded[p] else WITH_ALL
+        is_loose = colliders.edge_start[p] == colliders.edge_start[p + 1] and not colliders.shielded[p]
+        boxes.is_target[p] = is_loose
+        boxes.filter[p] = WITH_ALL if is_loose else WITH_EDGES
     for e in range(dynamic):
         a = colliders.edge_a[e]
         b = colliders.edge_b[e]
@@ -132,6 +135,7 @@ def _find_penetration(
     bounds: Floats,
     near: Near,
     edges: int,
+    entered: int,
     contacts: Contacts,
     count: int,
 ) -> int:
@@ -144,6 +148,8 @@ def _find_penetration(
             continue
         body = colliders.edge_a[solid[k, 0]]
         skipped = colliders.owner[body] == colliders.owner[p] or not may_collide(p, body, colliders)
+        if entered >= 0 and colliders.owner[entered] == colliders.owner[body]:
+            skipped = True
         for i in range(edges):
             if colliders.owner[colliders.edge_a[near.edge[i]]] == colliders.owner[body]:
                 skipped = True
@@ -172,13 +178,13 @@ def _was_penetrating(
 ) -> bool:
     # Whether a particle touched, in the last step, an edge that it is not near now.
     for at in range(first, last):
-        kind = kept.feature[at] % 3
-        if kind == DISC:
+        kind = kept.feature[at] % KINDS
+        if kind != EDGE and kind != TERRAIN:
             continue
         found = False
         for i in range(edges):
             e = near.edge[i]
-            if (kind == TERRAIN) == (e >= dynamic) and colliders.number[e] == kept.feature[at] // 3:
+            if (kind == TERRAIN) == (e >= dynamic) and colliders.number[e] == kept.feature[at] // KINDS:
                 found = True
         if not found:
             return True
@@ -226,8 +232,7 @@ def bound_solids(colliders: Colliders, outline: Outline, begin: int, end: int, b
 def find_contacts(
     colliders: Colliders,
     outline: Outline,
-    pairs: Pairs,
-    terrain_pairs: Pairs,
+    candidates: Candidates,
     bounds: Floats,
     near: Near,
     kept: KeptContacts,
@@ -235,13 +240,15 @@ def find_contacts(
     tick: int,
     h: float,
     contacts: Contacts,
+    terrain: Terrain,
 ) -> int:
-    """All contacts of a step of h [s]; their number, counted on where there is no room. pairs: by boxes.
+    """All contacts of a step of h [s]; their number, counted on where there is no room.
 
     The velocities are those which gravity and all else have left. kept: the contacts of the last step.
     """
     count = 0
     last = 0
+    pairs, terrain_pairs, box = candidates.pairs, candidates.terrain, candidates.box
     particles = pairs.start.shape[0] - 1
     dynamic = outline.dynamic[0]
     for p in range(particles):
@@ -262,23 +269,33 @@ def find_contacts(
                 edges = find_near(p, k - particles, colliders, near, edges)
         for at in range(terrain_pairs.start[p], terrain_pairs.start[p + 1]):
             edges = find_near(p, dynamic + terrain_pairs.other[at], colliders, near, edges)
+        entered = -1
+        if last > first and colliders.shape[p] < 0 and outline.dynamic[1] > 0:
+            count, entered = find_entered(
+                p, colliders, outline, bounds, kept, first, last, contacts, count
+            )  # fmt: skip
+            if entered >= 0:
+                edges = leave_out(colliders.owner[entered], colliders, near, edges)
         if edges > 0:
             count = collide_edges(p, h, colliders, near, edges, outline.solid, bounds, dynamic, contacts, count)
         if outline.solid.shape[0] > 0 and (
             (tick + p) % PENETRATION_TICKS == 0 or _was_penetrating(colliders, near, edges, dynamic, kept, first, last)
         ):
-            count = _find_penetration(p, colliders, outline, bounds, near, edges, contacts, count)
+            count = _find_penetration(p, colliders, outline, bounds, near, edges, entered, contacts, count)
+        if terrain.tip.shape[0] > 0:
+            count = find_tips(p, h, box, terrain, colliders, contacts, dynamic, particles, count)
     return count
 
 
 @inner_kernel
 def carry_over(contacts: Contacts, count: int, kept: KeptContacts, kept_count: int) -> None:
-    """Begin with the last step's impulses of the same features; both lists ascend by particle."""
+    """Begin with the last step's impulses of the same features, and add to its impacts; both ascend by particle."""
     begin = 0
     for c in range(count):
         p = contacts.particle[c]
         contacts.impulse[c, 0] = 0.0
         contacts.impulse[c, 1] = 0.0
+        contacts.impact[c] = 0.0
         while begin < kept_count and kept.particle[begin] < p:
             begin += 1
         at = begin
@@ -286,5 +303,6 @@ def carry_over(contacts: Contacts, count: int, kept: KeptContacts, kept_count: i
             if kept.feature[at] == contacts.feature[c]:
                 contacts.impulse[c, 0] = kept.impulse[at, 0]
                 contacts.impulse[c, 1] = kept.impulse[at, 1]
+                contacts.impact[c] = kept.impact[at]
                 break
             at += 1

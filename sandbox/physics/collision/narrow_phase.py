@@ -6,6 +6,19 @@ and is pushed out there. What moves fast is followed along its way, and meets wh
 
 import math
 
+from sandbox.physics.collision.edge_geometry import (
+    CORNER,
+    closest,
+    corner_normal,
+    edge_normal,
+    end_of,
+    is_behind,
+    is_in,
+    owns_corner,
+    place_on,
+    time_to_circle,
+)
+from sandbox.physics.collision.seams import is_seam, passes_beside
 from sandbox.physics.collision.types import MOST_NEAR, Colliders, Contacts, Near
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inlined_kernel, inner_kernel
@@ -16,11 +29,15 @@ from sandbox.physics.state import Floats, Slots
 MARGIN = 0.1
 # What moves by more than this share of the radii in a step is followed along its way.
 FAST = 0.5
-# Parts of an edge by which a path may miss it: a path through a corner meets one of the two edges.
-CORNER = 1e-9
 # Particles of one body this many radii apart where they were created, or nearer, never touch each other.
 OWN_REACH = 2.0
-DISC, EDGE, TERRAIN = 0, 1, 2
+# TIP: a corner of terrain on an edge of a body; its number = vertex * TIP_SHIFT + number of the spring.
+# INSIDE: a disc that has come into a solid body through that edge, and goes out there.
+DISC, EDGE, TERRAIN, TIP, INSIDE = 0, 1, 2, 3, 4
+KINDS = 5
+TIP_SHIFT = 0x100000000
+# Edges that a fast particle meets one after the other in a step, at most.
+MOST_BOUNCES = 4
 
 
 @inner_kernel
@@ -107,7 +124,7 @@ def collide_disc(p: int, q: int, h: float, colliders: Colliders, contacts: Conta
     travel = math.sqrt(wx * wx + wy * wy)
     gap = distance - reach
     if travel > FAST * reach and gap > MARGIN * reach:
-        when = _time_to_circle(dx, dy, wx, wy, reach)
+        when = time_to_circle(dx, dy, wx, wy, reach)
         if when > 1.0 or not reach > 0.0:
             return count
         nx = (dx + when * wx) / reach
@@ -122,7 +139,7 @@ def collide_disc(p: int, q: int, h: float, colliders: Colliders, contacts: Conta
         else:
             nx = 0.0
             ny = 1.0
-    return add_contact(count, contacts, p, 3 * q + DISC, q, -1, 0.0, nx, ny, gap, q, colliders)
+    return add_contact(count, contacts, p, KINDS * q + DISC, q, -1, 0.0, nx, ny, gap, q, colliders)
 
 
 @inner_kernel
@@ -130,23 +147,9 @@ def _is_corner_before(p: int, dx: float, dy: float, colliders: Colliders) -> boo
     # Whether p is a corner of a solid body, and looks towards d: what lies behind it is inside, and edges push it out.
     for at in range(colliders.edge_start[p], colliders.edge_start[p + 1]):
         if colliders.side[colliders.edge_of[at]] != 0:
-            nx, ny = _corner_normal(p, colliders)
+            nx, ny = corner_normal(p, colliders)
             return nx * dx + ny * dy > 0.0
     return False
-
-
-@inlined_kernel
-def _time_to_circle(dx: float, dy: float, wx: float, wy: float, reach: float) -> float:
-    # Part of the way w from d at which the origin is first `reach` away; 2 where it never is.
-    squared = wx * wx + wy * wy
-    along = dx * wx + dy * wy
-    if not (squared > 0.0 and along < 0.0):
-        return 2.0
-    inside = along * along - squared * (dx * dx + dy * dy - reach * reach)
-    if inside < 0.0:
-        return 2.0
-    when = (-along - math.sqrt(inside)) / squared
-    return when if when >= 0.0 else 2.0
 
 
 @inlined_kernel
@@ -179,121 +182,6 @@ def find_near(p: int, e: int, colliders: Colliders, near: Near, count: int) -> i
 
 
 @inner_kernel
-def closest(p: int, a: int, b: int, position: Floats) -> tuple[float, float, float, int]:
-    """Place along the edge a b that is closest to p, distance, signed distance (right of the edge: above 0), region."""
-    dx = position[b, 0] - position[a, 0]
-    dy = position[b, 1] - position[a, 1]
-    px = position[p, 0] - position[a, 0]
-    py = position[p, 1] - position[a, 1]
-    squared = dx * dx + dy * dy
-    if not squared > SHORTEST:
-        distance = math.sqrt(px * px + py * py)
-        return 0.0, distance, distance, -1
-    share = (px * dx + py * dy) / squared
-    signed = (px * dy - py * dx) / math.sqrt(squared)
-    region = 0
-    if share <= 0.0:
-        share = 0.0
-        region = -1
-    elif share >= 1.0:
-        share = 1.0
-        region = 1
-    qx = px - share * dx
-    qy = py - share * dy
-    return share, math.sqrt(qx * qx + qy * qy), signed, region
-
-
-@inner_kernel
-def edge_normal(e: int, colliders: Colliders) -> tuple[float, float]:
-    """Unit normal on the right of the edge, away from what is solid."""
-    dx = colliders.position[colliders.edge_b[e], 0] - colliders.position[colliders.edge_a[e], 0]
-    dy = colliders.position[colliders.edge_b[e], 1] - colliders.position[colliders.edge_a[e], 1]
-    length = math.sqrt(dx * dx + dy * dy)
-    if length > SHORTEST:
-        return dy / length, -dx / length
-    return 0.0, 1.0
-
-
-@inner_kernel
-def _end_of(e: int, region: int, colliders: Colliders) -> int:
-    return colliders.edge_a[e] if region < 0 else colliders.edge_b[e]
-
-
-@inner_kernel
-def _owns_corner(e: int, v: int, x: float, y: float, colliders: Colliders) -> bool:
-    # Whether (x, y) is nearer to vertex v than to any other place of its edges, and e is the first of those.
-    first = colliders.edge_start[v]
-    if colliders.edge_of[first] != e:
-        return False
-    vx = colliders.position[v, 0]
-    vy = colliders.position[v, 1]
-    for at in range(first, colliders.edge_start[v + 1]):
-        other = colliders.edge_a[colliders.edge_of[at]]
-        if other == v:
-            other = colliders.edge_b[colliders.edge_of[at]]
-        dx = colliders.position[other, 0] - vx
-        dy = colliders.position[other, 1] - vy
-        if (x - vx) * dx + (y - vy) * dy > CORNER * (dx * dx + dy * dy):
-            return False
-    return True
-
-
-@inner_kernel
-def _corner_normal(v: int, colliders: Colliders) -> tuple[float, float]:
-    # Sum of the normals of the solid edges that meet in a vertex.
-    nx = 0.0
-    ny = 0.0
-    for at in range(colliders.edge_start[v], colliders.edge_start[v + 1]):
-        e = colliders.edge_of[at]
-        if colliders.side[e] != 0:
-            ex, ey = edge_normal(e, colliders)
-            nx += ex
-            ny += ey
-    length = math.sqrt(nx * nx + ny * ny)
-    if length > SHORTEST:
-        return nx / length, ny / length
-    return 0.0, 1.0
-
-
-@inner_kernel
-def winds(x: float, y: float, first: int, last: int, colliders: Colliders) -> int:
-    """How often solid edges first..last run round a place."""
-    # A ray to the right crosses one that has it on its left going up, or on its right going down.
-    winding = 0
-    for e in range(first, last):
-        a = colliders.edge_a[e]
-        b = colliders.edge_b[e]
-        below = colliders.position[a, 1] <= y
-        if below == (colliders.position[b, 1] <= y) or colliders.side[e] == 0:
-            continue
-        dx = colliders.position[b, 0] - colliders.position[a, 0]
-        dy = colliders.position[b, 1] - colliders.position[a, 1]
-        right = (x - colliders.position[a, 0]) * dy - (y - colliders.position[a, 1]) * dx
-        if below and right < 0.0:
-            winding += 1
-        elif not below and right > 0.0:
-            winding -= 1
-    return winding
-
-
-@inner_kernel
-def is_enclosed(p: int, k: int, solid: Slots, bounds: Floats, colliders: Colliders) -> bool:
-    """Whether particle p is inside the solid edges of span k."""
-    winding = winds(colliders.position[p, 0], colliders.position[p, 1], solid[k, 0], solid[k, 1], colliders)
-    # A hollow chain runs the other way round: nothing is counted outside it, -1 inside.
-    return winding == 0 if bounds[k, 4] > 0.0 else winding > 0
-
-
-@inner_kernel
-def _is_in(p: int, owner: int, solid: Slots, bounds: Floats, colliders: Colliders) -> bool:
-    # Whether particle p is inside the solid edges of that owner.
-    for k in range(solid.shape[0]):
-        if colliders.owner[colliders.edge_a[solid[k, 0]]] == owner:
-            return is_enclosed(p, k, solid, bounds, colliders)
-    return False
-
-
-@inner_kernel
 def collide_edges(
     p: int,
     h: float,
@@ -307,6 +195,8 @@ def collide_edges(
     count: int,
 ) -> int:
     """Contacts of a particle with the edges noted, owner by owner; the number of contacts then."""
+    begun = count
+    way_x, way_y = _held_way(p, h, colliders, near, edges)
     for i in range(edges):
         owner = colliders.owner[colliders.edge_a[near.edge[i]]]
         nearest = i
@@ -322,12 +212,136 @@ def collide_edges(
             continue
         # Where an outline is folded, the edge that is nearest by itself can be seen from behind outside.
         behind = owner != colliders.owner[p] and _is_behind(p, nearest, colliders, near)
-        if behind and _is_in(p, owner, solid, bounds, colliders):
+        if behind and is_in(p, owner, solid, bounds, colliders):
             count = push_out(p, near.edge[nearest], near.share[nearest], near.distance[nearest],
                              near.region[nearest], colliders, dynamic, contacts, count)  # fmt: skip
         else:
-            count = _collide_outside(p, h, i, edges, owner, colliders, near, dynamic, contacts, count)
+            count = _collide_outside(
+                p, h, way_x, way_y, i, edges, owner, colliders, near, dynamic, contacts, count
+            )  # fmt: skip
+    return _collide_later(p, h, edges, colliders, near, dynamic, begun, contacts, count)
+
+
+@inner_kernel
+def _collide_later(
+    p: int, h: float, edges: int, colliders: Colliders, near: Near, dynamic: int, begun: int, contacts: Contacts,
+    count: int,
+) -> int:  # fmt: skip
+    # What a fast particle meets in the step, one edge that stands after the other, as it bounces off each.
+    if colliders.inverse_mass[p] == 0.0:
+        return count
+    x, y = colliders.position[p, 0], colliders.position[p, 1]
+    wx, wy = h * colliders.velocity[p, 0], h * colliders.velocity[p, 1]
+    last = -1
+    travel = math.sqrt(wx * wx + wy * wy)
+    for _ in range(MOST_BOUNCES):
+        soonest = 2.0
+        met = -1
+        met_share, met_x, met_y = 0.0, 0.0, 0.0
+        for j in range(edges):
+            e = near.edge[j]
+            a, b = colliders.edge_a[e], colliders.edge_b[e]
+            reach = colliders.radius[p] + colliders.radius[a]
+            if e == last or travel <= FAST * reach or colliders.inverse_mass[a] + colliders.inverse_mass[b] > 0.0:
+                continue
+            ax, ay = colliders.position[a, 0], colliders.position[a, 1]
+            dx, dy = colliders.position[b, 0] - ax, colliders.position[b, 1] - ay
+            length = math.sqrt(dx * dx + dy * dy)
+            if not length > SHORTEST:
+                continue
+            px, py = x - ax, y - ay
+            signed = (px * dy - py * dx) / length
+            when, share, nx, ny, _ = _sweep_edge(p, x, y, e, wx, wy, reach, signed, colliders, near, edges)
+            if when < soonest:
+                soonest, met, met_share, met_x, met_y = when, e, share, nx, ny
+        if met < 0:
+            return count
+        a = colliders.edge_a[met]
+        if not _is_known(p, met, begun, count, dynamic, colliders, contacts):
+            px = colliders.position[p, 0] - place_on(met, met_share, 0, colliders)
+            py = colliders.position[p, 1] - place_on(met, met_share, 1, colliders)
+            gap = px * met_x + py * met_y - colliders.radius[p] - colliders.radius[a]
+            count = _add_edge(p, met, met_share, met_x, met_y, gap, colliders, dynamic, contacts, count)
+        restitution = max(colliders.restitution[p], colliders.restitution[a])
+        x, y = x + soonest * wx, y + soonest * wy
+        wx, wy = (1.0 - soonest) * wx, (1.0 - soonest) * wy
+        along = (1.0 + restitution) * (wx * met_x + wy * met_y)
+        wx, wy = wx - along * met_x, wy - along * met_y
+        last = met
     return count
+
+
+@inner_kernel
+def _is_known(p: int, e: int, begun: int, count: int, dynamic: int, colliders: Colliders, contacts: Contacts) -> bool:
+    # Whether a particle has a contact with that edge already.
+    feature = KINDS * colliders.number[e] + (EDGE if e < dynamic else TERRAIN)
+    known = False
+    for c in range(begun, min(count, contacts.particle.shape[0])):
+        known = known or contacts.feature[c] == feature
+    return known
+
+
+@inlined_kernel
+def _held_way(p: int, h: float, colliders: Colliders, near: Near, edges: int) -> tuple[float, float]:
+    # The way of a particle in a step of h [s], as edges on which it lies let it go, or the corner that is nearest.
+    wx = h * colliders.velocity[p, 0]
+    wy = h * colliders.velocity[p, 1]
+    nearest = -1
+    lies = False
+    for _ in range(2):
+        held = False
+        for j in range(edges):
+            a = colliders.edge_a[near.edge[j]]
+            reach = colliders.radius[p] + colliders.radius[a]
+            if near.distance[j] - reach > MARGIN * reach or not near.distance[j] > SHORTEST:
+                continue
+            if near.region[j] != 0:
+                if nearest < 0 or near.distance[j] < near.distance[nearest]:
+                    nearest = j
+                continue
+            if colliders.side[near.edge[j]] != 0 and near.signed[j] < 0.0:
+                continue
+            lies = True
+            ux, uy = _hold_way(p, j, wx, wy, h, colliders, near)
+            held = held or ux != wx or uy != wy
+            wx, wy = ux, uy
+        if not held:
+            break
+    if not lies and nearest >= 0:
+        wx, wy = _hold_way(p, nearest, wx, wy, h, colliders, near)
+    return wx, wy
+
+
+@inlined_kernel
+def _hold_way(p: int, j: int, wx: float, wy: float, h: float, colliders: Colliders, near: Near) -> tuple[float, float]:
+    e = near.edge[j]
+    a = colliders.edge_a[e]
+    b = colliders.edge_b[e]
+    share = near.share[j]
+    nx = (colliders.position[p, 0] - place_on(e, share, 0, colliders)) / near.distance[j]
+    ny = (colliders.position[p, 1] - place_on(e, share, 1, colliders)) / near.distance[j]
+    ux = wx - h * ((1.0 - share) * colliders.velocity[a, 0] + share * colliders.velocity[b, 0])
+    uy = wy - h * ((1.0 - share) * colliders.velocity[a, 1] + share * colliders.velocity[b, 1])
+    gap = near.distance[j] - colliders.radius[p] - colliders.radius[a]
+    missing = -(ux * nx + uy * ny) - max(0.0, gap)
+    if missing > 0.0:
+        return wx + missing * nx, wy + missing * ny
+    return wx, wy
+
+
+@inner_kernel
+def leave_out(owner: int, colliders: Colliders, near: Near, edges: int) -> int:
+    """Strike an owner's edges off what a particle is near; how many are left."""
+    left = 0
+    for i in range(edges):
+        if colliders.owner[colliders.edge_a[near.edge[i]]] != owner:
+            near.edge[left] = near.edge[i]
+            near.share[left] = near.share[i]
+            near.distance[left] = near.distance[i]
+            near.signed[left] = near.signed[i]
+            near.region[left] = near.region[i]
+            left += 1
+    return left
 
 
 @inner_kernel
@@ -335,13 +349,7 @@ def _is_behind(p: int, i: int, colliders: Colliders, near: Near) -> bool:
     e = near.edge[i]
     if colliders.side[e] == 0:
         return False
-    if near.region[i] == 0:
-        return near.signed[i] < 0.0
-    v = _end_of(e, near.region[i], colliders)
-    nx, ny = _corner_normal(v, colliders)
-    return (colliders.position[p, 0] - colliders.position[v, 0]) * nx + (
-        colliders.position[p, 1] - colliders.position[v, 1]
-    ) * ny < 0.0
+    return is_behind(p, e, near.signed[i], near.region[i], colliders)
 
 
 @inner_kernel
@@ -359,7 +367,7 @@ def push_out(
     """Contact of a particle inside a solid body with the edge that is nearest; the number of contacts then."""
     nx, ny = edge_normal(e, colliders)
     if region != 0:
-        nx, ny = _corner_normal(_end_of(e, region, colliders), colliders)
+        nx, ny = corner_normal(end_of(e, region, colliders), colliders)
     reach = colliders.radius[p] + colliders.radius[colliders.edge_a[e]]
     return _add_edge(p, e, share, nx, ny, -distance - reach, colliders, dynamic, contacts, count)
 
@@ -380,15 +388,30 @@ def _add_edge(
     a = colliders.edge_a[e]
     if e < dynamic:
         return add_contact(
-            count, contacts, p, 3 * colliders.number[e] + EDGE, a, colliders.edge_b[e], share, nx, ny, gap, a, colliders
+            count,
+            contacts,
+            p,
+            KINDS * colliders.number[e] + EDGE,
+            a,
+            colliders.edge_b[e],
+            share,
+            nx,
+            ny,
+            gap,
+            a,
+            colliders,
         )
-    return add_contact(count, contacts, p, 3 * colliders.number[e] + TERRAIN, -1, -1, share, nx, ny, gap, a, colliders)
+    return add_contact(
+        count, contacts, p, KINDS * colliders.number[e] + TERRAIN, -1, -1, share, nx, ny, gap, a, colliders
+    )
 
 
 @inner_kernel
 def _collide_outside(
     p: int,
     h: float,
+    way_x: float,
+    way_y: float,
     first: int,
     edges: int,
     owner: int,
@@ -412,26 +435,19 @@ def _collide_outside(
         if colliders.owner[a] != owner:
             continue
         reach = colliders.radius[p] + colliders.radius[a]
-        wx = h * (colliders.velocity[p, 0] - 0.5 * (colliders.velocity[a, 0] + colliders.velocity[b, 0]))
-        wy = h * (colliders.velocity[p, 1] - 0.5 * (colliders.velocity[a, 1] + colliders.velocity[b, 1]))
+        part = near.share[j]
+        wx = way_x - h * ((1.0 - part) * colliders.velocity[a, 0] + part * colliders.velocity[b, 0])
+        wy = way_y - h * ((1.0 - part) * colliders.velocity[a, 1] + part * colliders.velocity[b, 1])
         travel = math.sqrt(wx * wx + wy * wy)
         gap = near.distance[j] - reach
         fast = travel > FAST * reach
         if gap <= MARGIN * reach + (0.0 if fast else travel):
-            if colliders.side[e] != 0 and near.signed[j] < 0.0 and near.region[j] == 0:
-                continue
-            if near.region[j] != 0:
-                v = _end_of(e, near.region[j], colliders)
-                if not _owns_corner(e, v, colliders.position[p, 0], colliders.position[p, 1], colliders):
-                    continue
-            if near.distance[j] > SHORTEST:
-                nx = (colliders.position[p, 0] - _along(e, near.share[j], 0, colliders)) / near.distance[j]
-                ny = (colliders.position[p, 1] - _along(e, near.share[j], 1, colliders)) / near.distance[j]
-            else:
-                nx, ny = edge_normal(e, colliders)
-            count = _add_edge(p, e, near.share[j], nx, ny, gap, colliders, dynamic, contacts, count)
+            touches, nx, ny, gap = _touch_edge(p, j, gap, wx, wy, colliders, near, edges)
+            if touches:
+                count = _add_edge(p, e, near.share[j], nx, ny, gap, colliders, dynamic, contacts, count)
         elif fast:
-            when, share, nx, ny, gap = _sweep_edge(p, e, wx, wy, reach, near.signed[j], colliders)
+            x, y = colliders.position[p, 0], colliders.position[p, 1]
+            when, share, nx, ny, gap = _sweep_edge(p, x, y, e, wx, wy, reach, near.signed[j], colliders, near, edges)
             if when < soonest:
                 soonest, met, met_share, met_x, met_y, met_gap = when, e, share, nx, ny, gap
     if met >= 0:
@@ -440,22 +456,59 @@ def _collide_outside(
 
 
 @inner_kernel
-def _along(e: int, share: float, axis: int, colliders: Colliders) -> float:
-    a = colliders.position[colliders.edge_a[e], axis]
-    return a + share * (colliders.position[colliders.edge_b[e], axis] - a)
+def _touch_edge(
+    p: int, j: int, gap: float, wx: float, wy: float, colliders: Colliders, near: Near, edges: int
+) -> tuple[bool, float, float, float]:
+    # Whether a particle, whose way on an edge that is close is w, touches that; the normal and the gap.
+    e = near.edge[j]
+    x, y = colliders.position[p, 0], colliders.position[p, 1]
+    if near.region[j] == 0:
+        if colliders.side[e] != 0 and near.signed[j] < 0.0:
+            return False, 0.0, 0.0, gap
+        if gap > 0.0 and passes_beside(p, j, gap, wx, wy, colliders, near, edges):
+            return False, 0.0, 0.0, gap
+    else:
+        v = end_of(e, near.region[j], colliders)
+        if not owns_corner(e, v, x, y, colliders) or is_seam(p, e, v, x, y, colliders, near, edges):
+            return False, 0.0, 0.0, gap
+    if near.distance[j] > SHORTEST:
+        nx = (x - place_on(e, near.share[j], 0, colliders)) / near.distance[j]
+        ny = (y - place_on(e, near.share[j], 1, colliders)) / near.distance[j]
+    else:
+        nx, ny = edge_normal(e, colliders)
+    if near.region[j] != 0 and gap > 0.0 and -2.0 * (wx * nx + wy * ny) > gap:
+        # What comes to a corner meets it where its way does, or passes it. Small steps look ahead, by one more at most.
+        v = end_of(e, near.region[j], colliders)
+        reach = colliders.radius[p] + colliders.radius[v]
+        px, py = x - colliders.position[v, 0], y - colliders.position[v, 1]
+        when = time_to_circle(px, py, wx, wy, reach)
+        if when >= 2.0 or not reach > 0.0:
+            return False, 0.0, 0.0, gap
+        nx = (px + when * wx) / reach
+        ny = (py + when * wy) / reach
+        gap = -when * (wx * nx + wy * ny)
+    return True, nx, ny, gap
 
 
 @inner_kernel
 def _sweep_edge(
-    p: int, e: int, wx: float, wy: float, reach: float, signed: float, colliders: Colliders
+    p: int,
+    x: float,
+    y: float,
+    e: int,
+    wx: float,
+    wy: float,
+    reach: float,
+    signed: float,
+    colliders: Colliders,
+    near: Near,
+    edges: int,
 ) -> tuple[float, float, float, float, float]:
     # Where the way w of a particle first comes within reach of an edge: when (2: never), share, normal, gap.
     nx, ny = edge_normal(e, colliders)
     if colliders.side[e] == 0 and signed < 0.0:
         nx, ny, signed = -nx, -ny, -signed
     approach = -(wx * nx + wy * ny)
-    x = colliders.position[p, 0]
-    y = colliders.position[p, 1]
     a = colliders.edge_a[e]
     dx = colliders.position[colliders.edge_b[e], 0] - colliders.position[a, 0]
     dy = colliders.position[colliders.edge_b[e], 1] - colliders.position[a, 1]
@@ -475,8 +528,11 @@ def _sweep_edge(
             v = a if end == 0 else colliders.edge_b[e]
             vx = x - colliders.position[v, 0]
             vy = y - colliders.position[v, 1]
-            when = _time_to_circle(vx, vy, wx, wy, reach)
-            if when <= 1.0 and when < soonest and _owns_corner(e, v, x + when * wx, y + when * wy, colliders):
+            when = time_to_circle(vx, vy, wx, wy, reach)
+            if not (when <= 1.0 and when < soonest):
+                continue
+            ox, oy = x + when * wx, y + when * wy
+            if owns_corner(e, v, ox, oy, colliders) and not is_seam(p, e, v, ox, oy, colliders, near, edges):
                 soonest = when
                 found = float(end)
                 nx = (vx + when * wx) / reach

@@ -8,7 +8,7 @@ from sandbox.physics.collision.close_edges import CloseEdges, close_edges
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_RIGHT, TERRAIN_GROUP
 from sandbox.physics.collision.types import Colliders, Flags
 from sandbox.physics.state import Slots
-from sandbox.physics.terrain import Terrain
+from sandbox.physics.terrain import Chain, Terrain, make_terrain
 from sandbox.physics.world import GRAB_MATERIAL, World
 
 # Owner of the first chain of terrain, the others below it; particles and bodies are above.
@@ -23,7 +23,8 @@ class Outline(NamedTuple):
     is solid, terrain's last. dynamic (2,): edges of bodies, and how many of those in solid are bodies'. Shapes are the
     owners of edges of bodies, in the order of their edges: shape, by vertex, -1: none; solid_of = by shape, the row of
     solid, -1: lines alone; particles of shape s: member[member_start[s]:member_start[s + 1]]. close: edges
-    of lines alone that were made close to each other. spring_end: one particle of each spring.
+    of lines alone that were made close to each other. spring_end: one particle of each spring. pins: edges of bodies
+    of which both ends are pinned, as terrain; chain = the edge.
     """
 
     edge_a: Slots
@@ -45,6 +46,7 @@ class Outline(NamedTuple):
     member: Slots
     close: CloseEdges
     spring_end: Slots
+    pins: Terrain
 
 
 def outline_of(world: World) -> Outline:
@@ -68,7 +70,7 @@ def _make_outline(world: World) -> Outline:
     edges = np.arange(len(edge_a))
     near_start, near_of = _listed(np.append(*ends), np.append(*ends[::-1]), count)
     held = np.diff(near_start) > 0
-    held[world.corner_particle] = True
+    held[world.corner_particle[np.repeat(world.constraint_active, world.constraint_corners)]] = True
     solid = _solid(owner[edge_a] if len(edge_a) else edge_a, side)
     shape, solid_of, member_start, member = _shapes(world, owner, a, solid)
     return Outline(
@@ -90,7 +92,17 @@ def _make_outline(world: World) -> Outline:
         member,
         close_edges(world.origin, a, b, shape[a], solid_of < 0),
         world.particle_a.astype(np.int64),
+        _pins(world, a, b, side),
     )
+
+
+def _pins(world: World, a: Slots, b: Slots, side: Slots) -> Terrain:
+    """The edges a to b that pins hold at both ends, as terrain."""
+    still = (world.inverse_mass[a] == 0.0) & (world.inverse_mass[b] == 0.0)
+    still &= ~world.velocity[a].any(axis=1) & ~world.velocity[b].any(axis=1)
+    edges = np.flatnonzero(still & (world.position[a] != world.position[b]).any(axis=1))
+    made = make_terrain([Chain(world.position[[a[e], b[e]]]) for e in edges.tolist()], tips=False)
+    return made._replace(solid=side[edges].astype(np.int64), chain=edges.astype(np.int64))
 
 
 def _shapes(world: World, owner: Slots, edge_a: Slots, solid: Slots) -> tuple[Slots, Slots, Slots, Slots]:

@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.broad_phase import Boxes, Grid, bucket_of, cell_number, overlap
+from sandbox.physics.collision.edge_geometry import closest, winds
 from sandbox.physics.collision.meeting import Meetings, cross, find_meetings, may_cross
-from sandbox.physics.collision.narrow_phase import DISC, TERRAIN, closest, may_collide, winds
+from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, may_collide
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, Flags, KeptContacts
 from sandbox.physics.jit import inlined_kernel, inner_kernel
@@ -303,9 +304,10 @@ def _touched(s: int, t: int, colliders: Colliders, outline: Outline, kept: KeptC
     # Whether two shapes touched in the last step.
     for c in range(kept_count):
         k = colliders.shape[kept.particle[c]]
-        kind = kept.feature[c] % 3
-        if k in (s, t) and kind != TERRAIN:
-            number = kept.feature[c] // 3
+        kind = kept.feature[c] % KINDS
+        if k in (s, t) and kind != TERRAIN and kind != TIP:
+            number = kept.feature[c] // KINDS
+            # An edge that a disc has come in by is its spring too.
             other = colliders.shape[number if kind == DISC else outline.spring_end[number]]
             if (k == s and other == t) or (k == t and other == s):
                 return True

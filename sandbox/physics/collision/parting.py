@@ -9,7 +9,7 @@ it is paid with: energy that the two have lost before.
 import math
 from typing import NamedTuple
 
-from sandbox.physics.collision.narrow_phase import edge_normal, winds
+from sandbox.physics.collision.edge_geometry import edge_normal, winds
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.overlaps import OVERLAPS, Overlaps, give_way
 from sandbox.physics.collision.types import Colliders, Flags

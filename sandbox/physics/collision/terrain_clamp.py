@@ -3,7 +3,10 @@
 import math
 
 from sandbox.physics.collision.filter import TERRAIN_GROUP
-from sandbox.physics.collision.types import Flags
+from sandbox.physics.collision.narrow_phase import are_joined, may_collide
+from sandbox.physics.collision.outline import Outline
+from sandbox.physics.collision.tips import meet_tip
+from sandbox.physics.collision.types import Colliders, Flags
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.terrain import Terrain, cells_between
@@ -50,6 +53,172 @@ def clamp_at_terrain(
         elif stops > 0:
             velocity[p, 0] += (x - wx) / h
             velocity[p, 1] += (y - wy) / h
+
+
+@inner_kernel
+def clamp_at_pins(
+    position: Floats, velocity: Floats, ahead: Floats, inverse_mass: Floats, outline: Outline, colliders: Colliders,
+    box: Floats, near_start: Slots, h: float,
+) -> None:  # fmt: skip
+    """The same at edges of bodies that pins hold, which particles of other bodies may touch.
+
+    near_start (n + 1,): how many discs and edges of bodies are in each box, summed up.
+    """
+    pins = outline.pins
+    if pins.edge_a.shape[0] == 0:
+        return
+    for p in range(position.shape[0]):
+        if colliders.collides[p] == 0 or inverse_mass[p] == 0.0:
+            continue
+        wx = h * velocity[p, 0] + ahead[p, 0]
+        wy = h * velocity[p, 1] + ahead[p, 1]
+        if near_start[p] == near_start[p + 1] and _stays_in(box, p, position[p, 0], position[p, 1], wx, wy):
+            continue
+        x = wx
+        y = wy
+        stops = 0
+        while stops <= STOPS:
+            e, signed, nx, ny = _pin_crossing(p, position[p, 0], position[p, 1], x, y, outline, colliders)
+            if e < 0:
+                break
+            missing = max(STOP_SHARE * signed, SKIN) - (signed + x * nx + y * ny)
+            x += missing * nx
+            y += missing * ny
+            stops += 1
+        if stops > STOPS:
+            velocity[p, 0] = 0.0
+            velocity[p, 1] = 0.0
+            ahead[p, 0] = 0.0
+            ahead[p, 1] = 0.0
+        elif stops > 0:
+            velocity[p, 0] += (x - wx) / h
+            velocity[p, 1] += (y - wy) / h
+
+
+@inner_kernel
+def clamp_at_tips(
+    velocity: Floats, inverse_mass: Floats, terrain: Terrain, dynamic: int, colliders: Colliders, holds: bool, h: float
+) -> bool:
+    """Cut the velocities of the ends of edges that would cross a corner of terrain in the coming h [s]; whether any.
+
+    holds: such ends stay where they are.
+    """
+    found = False
+    if terrain.tip.shape[0] == 0:
+        return found
+    first = velocity.shape[0]
+    per_cell = 1.0 / terrain.cell[0]
+    for e in range(dynamic):
+        a = colliders.edge_a[e]
+        b = colliders.edge_b[e]
+        if colliders.collides[a] == 0 or colliders.collides[b] == 0 or inverse_mass[a] + inverse_mass[b] == 0.0:
+            continue
+        ax, ay = colliders.position[a, 0], colliders.position[a, 1]
+        bx, by = colliders.position[b, 0], colliders.position[b, 1]
+        ux, uy = ax + h * velocity[a, 0], ay + h * velocity[a, 1]
+        vx, vy = bx + h * velocity[b, 0], by + h * velocity[b, 1]
+        low_x, high_x = min(min(ax, bx), min(ux, vx)), max(max(ax, bx), max(ux, vx))
+        low_y, high_y = min(min(ay, by), min(uy, vy)), max(max(ay, by), max(uy, vy))
+        left, right = cells_between(low_x, high_x, terrain.corner[0], per_cell, terrain.size[0])
+        bottom, top = cells_between(low_y, high_y, terrain.corner[1], per_cell, terrain.size[1])
+        for row in range(bottom, top + 1):
+            cell = row * terrain.size[0]
+            for entry in range(terrain.tip_start[cell + left], terrain.tip_start[cell + right + 1]):
+                i = terrain.cell_tip[entry]
+                x = terrain.vertex[terrain.tip[i], 0]
+                y = terrain.vertex[terrain.tip[i], 1]
+                v = first + terrain.tip[i]
+                if low_x <= x <= high_x and low_y <= y <= high_y and may_collide(a, v, colliders):
+                    stopped_here = _stop_edge(e, i, v, velocity, inverse_mass, terrain, colliders, holds, h)
+                    found = found or stopped_here
+    return found
+
+
+@inner_kernel
+def _stop_edge(
+    e: int, i: int, v: int, velocity: Floats, inverse_mass: Floats, terrain: Terrain, colliders: Colliders,
+    holds: bool, h: float,
+) -> bool:  # fmt: skip
+    found = False
+    a = colliders.edge_a[e]
+    b = colliders.edge_b[e]
+    for _ in range(STOPS):
+        meets, share, nx, ny, distance = meet_tip(e, i, v, 0.0, 0.0, h, velocity, terrain, colliders)
+        if not meets:
+            break
+        ux = (1.0 - share) * velocity[a, 0] + share * velocity[b, 0]
+        uy = (1.0 - share) * velocity[a, 1] + share * velocity[b, 1]
+        missing = STOP_SHARE * max(0.0, distance) - (distance + h * (ux * nx + uy * ny))
+        answer = (1.0 - share) * (1.0 - share) * inverse_mass[a] + share * share * inverse_mass[b]
+        if not (missing > 0.0 and answer > 0.0 and distance > 0.0):
+            break
+        found = True
+        if holds:
+            for axis in range(2):
+                velocity[a, axis] = 0.0
+                velocity[b, axis] = 0.0
+            break
+        j = missing / (h * answer)
+        velocity[a, 0] += (1.0 - share) * j * inverse_mass[a] * nx
+        velocity[a, 1] += (1.0 - share) * j * inverse_mass[a] * ny
+        velocity[b, 0] += share * j * inverse_mass[b] * nx
+        velocity[b, 1] += share * j * inverse_mass[b] * ny
+    return found
+
+
+@inner_kernel
+def _pin_crossing(
+    p: int, x: float, y: float, wx: float, wy: float, outline: Outline, colliders: Colliders
+) -> tuple[int, float, float, float]:
+    # As _crossing, of those edges that the particle may touch.
+    terrain = outline.pins
+    per_cell = 1.0 / terrain.cell[0]
+    left, right = cells_between(
+        x + min(0.0, wx) - SKIN, x + max(0.0, wx) + SKIN, terrain.corner[0], per_cell, terrain.size[0]
+    )
+    bottom, top = cells_between(
+        y + min(0.0, wy) - SKIN, y + max(0.0, wy) + SKIN, terrain.corner[1], per_cell, terrain.size[1]
+    )
+    soonest = 2.0
+    found = -1
+    distance = 0.0
+    nx = 0.0
+    ny = 0.0
+    for row in range(bottom, top + 1):
+        for column in range(left, right + 1):
+            at = row * terrain.size[0] + column
+            for entry in range(terrain.cell_start[at], terrain.cell_start[at + 1]):
+                e = terrain.cell_edge[entry]
+                a = colliders.edge_a[terrain.chain[e]]
+                b = colliders.edge_b[terrain.chain[e]]
+                if colliders.owner[a] == colliders.owner[p] or not may_collide(p, a, colliders):
+                    continue
+                if are_joined(p, a, colliders) or are_joined(p, b, colliders):
+                    continue
+                dx = colliders.position[b, 0] - colliders.position[a, 0]
+                dy = colliders.position[b, 1] - colliders.position[a, 1]
+                px = x - colliders.position[a, 0]
+                py = y - colliders.position[a, 1]
+                before = px * dy - py * dx
+                change = wx * dy - wy * dx
+                if before < 0.0 and terrain.solid[e] == 0:
+                    before, change, dx, dy = -before, -change, -dx, -dy
+                    px = x - colliders.position[b, 0]
+                    py = y - colliders.position[b, 1]
+                squared = dx * dx + dy * dy
+                skin = SKIN * math.sqrt(squared)
+                if not (change < 0.0 and before > -skin and before + change < 0.5 * skin):
+                    continue
+                when = max(0.0, before / -change)
+                share = ((px + when * wx) * dx + (py + when * wy) * dy) / squared
+                if when < soonest and -1e-9 <= share <= 1.0 + 1e-9:
+                    length = math.sqrt(squared)
+                    soonest = when
+                    found = e
+                    distance = before / length
+                    nx = dy / length
+                    ny = -dx / length
+    return found, distance, nx, ny
 
 
 @inner_kernel

@@ -70,9 +70,11 @@ class Near(NamedTuple):
 class Contacts(NamedTuple):
     """Contacts in ascending order of particle: particle, feature = 3 number + kind, the particles it pushes against.
 
-    end_a, end_b: the other disc and -1, or the ends of an edge; -1, -1: terrain. share: place along the edge. normal:
+    end_a, end_b: the other disc and -1, or the ends of an edge; -1, -1: terrain; -1, b: the particle and b are the ends
+    of an edge that lies on a corner of terrain. share: place along the edge. normal:
     towards the particle. gap [m], below 0: penetration; bounce [m/s]: the velocity along the normal that is left where
-    it bounces, below 0: it does not; impulse [N s] (k, 2) along normal and tangent.
+    it bounces, below 0: it does not; impulse [N s] (k, 2) along normal and tangent; impact [N s]: what impacts in this
+    tick have given along the normal, which is no part of the impulse and starts no sweep.
 
     Of its particle and of the other disc (k, 2): turning [1/kg], arm = that of friction over the radius, ratio = the
     smaller radius over its own; and their rolling resistance. couple (k, 2): what an impulse across does to an edge as
@@ -95,6 +97,7 @@ class Contacts(NamedTuple):
     ratio: Floats
     rolling: Floats
     couple: Floats
+    impact: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,14 +114,20 @@ class KeptContacts(NamedTuple):
     particle: NDArray[np.int32]
     feature: Slots
     impulse: Floats
+    impact: Floats
 
 
 @inner_kernel
 def weight_of(contacts: Contacts, c: int, end: int) -> tuple[int, float]:
     """Particle of an end of a contact (-1: none) and the share of the impulse that it takes, with its sign."""
+    a = contacts.end_a[c]
+    if a < 0 and contacts.end_b[c] >= 0:
+        # An edge on a corner of terrain: both ends are pushed alike.
+        if end == 0:
+            return contacts.particle[c], 1.0 - contacts.share[c]
+        return (-1, 0.0) if end == 1 else (contacts.end_b[c], contacts.share[c])
     if end == 0:
         return contacts.particle[c], 1.0
-    a = contacts.end_a[c]
     if end == 1:
         return a, -1.0 if contacts.end_b[c] < 0 else -(1.0 - contacts.share[c])
     return contacts.end_b[c], -contacts.share[c]
@@ -126,18 +135,18 @@ def weight_of(contacts: Contacts, c: int, end: int) -> tuple[int, float]:
 
 def room_for(count: int) -> Contacts:
     """Contacts to be filled in."""
-    slots, numbers, pairs = np.zeros((4, count), dtype=np.int64), np.zeros((6, count)), np.zeros((6, count, 2))
-    gap, friction, restitution, bounce, share, rolling = numbers
+    slots, numbers, pairs = np.zeros((4, count), dtype=np.int64), np.zeros((7, count)), np.zeros((6, count, 2))
+    gap, friction, restitution, bounce, share, rolling, impact = numbers
     particle, feature, end_a, end_b = slots
     return Contacts(
         particle, feature, end_a, end_b, share, pairs[0], gap, friction, restitution, bounce, pairs[1], pairs[2],
-        pairs[3], pairs[4], rolling, pairs[5],
+        pairs[3], pairs[4], rolling, pairs[5], impact,
     )  # fmt: skip
 
 
 def room_to_keep(count: int) -> KeptContacts:
     """What is kept of contacts, to be filled in."""
-    return KeptContacts(np.zeros(count, np.int32), np.zeros(count, np.int64), np.zeros((count, 2)))
+    return KeptContacts(np.zeros(count, np.int32), np.zeros(count, np.int64), np.zeros((count, 2)), np.zeros(count))
 
 
 def room_near() -> Near:

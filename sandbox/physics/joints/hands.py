@@ -25,6 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.components import label_bodies
+from sandbox.physics.geometry.sums import sum_in_order
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import JointRows, shortened
 from sandbox.physics.world import GRAB_COUNT, GRAB_MATERIAL, Floats, Slots, World
@@ -106,14 +107,13 @@ def _make_grips(world: World) -> Grips:
         body = np.flatnonzero((label == label[held]) & (world.inverse_mass > 0.0))
         chosen, weight = _gripped(world, body, int(held), float(world.hand_radius[hand]))
         if len(chosen):
-            # Sums that do not depend on the order in which they are made.
-            share = weight / math.fsum(weight.tolist())
-            middle = [math.fsum((share * world.origin[chosen, axis]).tolist()) for axis in range(2)]
+            share = weight / sum_in_order(weight)
+            middle = [sum_in_order(share * world.origin[chosen, axis]) for axis in range(2)]
             hands.append(hand)
-            masses.append(math.fsum(world.mass[body].tolist()))
+            masses.append(sum_in_order(world.mass[body]))
             form = world.origin[chosen] - middle
             arms.append(world.origin[held] - middle)
-            leads.append(LARGEST_LEAD * math.sqrt(math.fsum((share * (form[:, 0] ** 2 + form[:, 1] ** 2)).tolist())))
+            leads.append(LARGEST_LEAD * math.sqrt(sum_in_order(share * (form[:, 0] ** 2 + form[:, 1] ** 2))))
             particles.append(chosen)
             shares.append(share)
             forms.append(form)

@@ -43,6 +43,11 @@ class Solver:
         return self._schedule.solve
 
     @cached_property
+    def settle(self) -> "Callable[[World, bool, float], None] | None":
+        """settle(world, moves, h): brings velocities to the end of a substep, positions first if asked to; None: no."""
+        return getattr(self._schedule, "settle", None)
+
+    @cached_property
     def spring_constant(self) -> "Callable[[Floats, Floats, Floats, float], Floats]":
         """spring_constant(stiffness, damping, reduced_mass [kg], h): k [N/m] of the energy k/2 x^2."""
         return self._schedule.spring_constant

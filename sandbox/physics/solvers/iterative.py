@@ -17,6 +17,7 @@ from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
 from sandbox.physics.joints.joint_set import joints_of
 from sandbox.physics.joints.joint_sweep import iterate_joints, joints_by_mass, no_joints, start_masses
 from sandbox.physics.joints.limited_springs import unlimited_active
+from sandbox.physics.solvers.contact.body_impacts import pass_on
 from sandbox.physics.solvers.contact.gauss_seidel import (
     ContactTerms,
     Delassus,
@@ -247,10 +248,11 @@ def _iterate(
         change[p, 1] = 0.0
     load_surfaces(terms, spin, radius)
     order = step.springs.listed if alternates else step.springs.heavy_first
-    count = _prepare_springs(step.particles, step.springs, order, given, warm_start, h, step.pulling)
-    _prepare_constraints(step.particles, step.constraints, given, h, step.wanted)
     load_biases(contacts, terms, h)
     load_responses(contacts, terms, inverse_mass, step.delassus)
+    pass_on(contacts, terms, velocity, change, inverse_mass, step.delassus, h)
+    count = _prepare_springs(step.particles, step.springs, order, given, warm_start, h, step.pulling)
+    _prepare_constraints(step.particles, step.constraints, given, h, step.wanted)
     start_impulses(contacts, terms, change, inverse_mass, step.delassus)
     start_masses(step.delassus.joints, change, inverse_mass)
     for k in range(iterations):
@@ -314,7 +316,7 @@ def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None
     """Bring the velocities to the end of a substep; world.impulse keeps the sums for the next warm start."""
     room, settings = world.derived(_make_room), world.settings
     if room.hooke is not None:
-        apply_explicit(world, room.hooke, substep.springs, substep.h)
+        apply_explicit(world, room.hooke, substep)
     if contacts is not None:
         room.grow(len(contacts.arrays.particle))
     _iterate(

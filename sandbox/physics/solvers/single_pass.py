@@ -18,7 +18,7 @@ from sandbox.physics.joints.joint_set import joints_of
 from sandbox.physics.joints.joint_sweep import Joints, couple_masses, iterate_joint, joints_by_mass
 from sandbox.physics.joints.limited_springs import force_limits
 from sandbox.physics.joints.rows import ALONE, FIRST_OF_TWO, clamped, row_velocity
-from sandbox.physics.substeps import Pair, Substep
+from sandbox.physics.substeps import Pair, Substep, ease_of
 from sandbox.physics.world import Floats, World
 
 # Cs and Cd of a joint: (Cs + 2 Cd) n < 4 for n = 1, which leaves room for the springs of what it acts on.
@@ -86,8 +86,11 @@ def _constraint_pass(
 
 
 @kernel
-def _explicit_pass(particles: Particles, ends: Ends, chosen: NDArray[np.bool_], h: float, impulse: Floats) -> None:
-    # Nissen: J = -(Cs x / h + Cd u) m_r.  Hooke: J = -(k x + c u) h.  Then v += J w.
+def _explicit_pass(
+    particles: Particles, ends: Ends, chosen: NDArray[np.bool_], start: Floats, ease: float, h: float, impulse: Floats
+) -> None:
+    # Nissen: J = -(Cs x / h + Cd u) m_r.  Hooke: J = -(k x + c u) h / ease, u before forces: at rest it is 0, and so
+    # k x alone carries a weight.  Then v += J w.
     position, velocity, inverse_mass = particles.position, particles.velocity, particles.inverse_mass
     for s in range(chosen.shape[0]):
         if not chosen[s]:
@@ -105,7 +108,8 @@ def _explicit_pass(particles: Particles, ends: Ends, chosen: NDArray[np.bool_], 
         if ends.law[s] == 0:
             j = spring_impulse(ends.stiffness[s], ends.damping[s], x, u, mass, h)
         else:
-            j = -(ends.hooke_stiffness[s] * x + ends.hooke_damping[s] * u) * h
+            u = nx * (start[b, 0] - start[a, 0]) + ny * (start[b, 1] - start[a, 1])
+            j = -(ends.hooke_stiffness[s] * x + ends.hooke_damping[s] * u) * h / ease
         if ends.limit[s] < math.inf:
             j = clamped(j, ends.limit[s] * h)
         impulse[a, 0] -= j * nx
@@ -119,18 +123,18 @@ def _explicit_pass(particles: Particles, ends: Ends, chosen: NDArray[np.bool_], 
             velocity[p, 1] += impulse[p, 1] * inverse_mass[p]
 
 
-def apply_explicit(
-    world: World, chosen: NDArray[np.bool_], springs: Pair, h: float, constraints: Pair | None = None
-) -> None:
+def apply_explicit(world: World, chosen: NDArray[np.bool_], substep: Substep, constraints: Pair | None = None) -> None:
     """Evaluate the chosen springs (m,) on the present velocities and apply their summed impulses.
 
-    springs and, for all constraints too, constraints: their Cs and Cd.
+    constraints: Cs and Cd of all constraints, where they are to be too.
     """
+    h = substep.h
     impulse, particles = np.zeros((world.particle_count, 2)), particles_of(world)
     if constraints is not None and world.constraint_count:
         place, slope = np.zeros((2, len(world.corner_particle), 2))
         _constraint_pass(particles, world.constraints, *constraints, h, place, slope, impulse)
-    _explicit_pass(particles, ends_of(world, springs), chosen, h, impulse)
+    ease = ease_of(world.settings, substep.substeps)
+    _explicit_pass(particles, ends_of(world, substep.springs), chosen, substep.before.velocity, ease, h, impulse)
 
 
 class ExplicitJoints(NamedTuple):
@@ -204,11 +208,12 @@ def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None
     if joints is not None:
         still = np.zeros((world.particle_count, 2))
         _find_joint_impulses(joints, world.velocity, world.inverse_mass, still)
-    apply_explicit(world, world.spring_active, substep.springs, substep.h, substep.constraints)
+    apply_explicit(world, world.spring_active, substep, substep.constraints)
     if joints is not None:
         _give_joint_impulses(joints, world.velocity, world.inverse_mass, still)
     if contacts is not None:
-        from sandbox.physics.solvers.contact.gauss_seidel import lent_masses, new_terms, sweep_masses
+        from sandbox.physics.solvers.contact.body_impacts import sweep_masses
+        from sandbox.physics.solvers.contact.gauss_seidel import lent_masses, new_terms
 
         count = world.particle_count
         sweep_masses(

@@ -17,5 +17,6 @@ class CutSprings(Command):
     def carry_out(self, world: World) -> None:
         for slot in self.springs:
             if slot >= world.spring_count or world.is_grab_spring(slot) or not world.spring_active[slot]:
-                raise CommandError(f"there is no spring {slot} to cut")
+                name = repr(world.spring_names[slot]) if slot < len(world.spring_names) else slot
+                raise CommandError(f"there is no spring {name} to cut")
         world.cut(self.springs)

@@ -35,9 +35,10 @@ FOLLOWS, COMING, STANDS = 0.0, 1.0, 2.0
 ACROSS, FRICTION, MASS, MASS_ACROSS, WEIGHT_P, WEIGHT_Q, TURN_P, TURN_Q, ARM = range(6, 15)
 ROLLING, ROLLING_MASS, RATIO_P, RATIO_Q, ROLL_P, ROLL_Q = range(15, 21)
 # What the gap comes from: without what its particles are apart [m], of two discs minus their radii; how far two discs
-# are apart at the start [m], else 0; 1 over the radii [1/m]. Restitution; how hard it is, 1 / (1 + softness).
-REACH, APART_X, APART_Y, PER_REACH, RESTITUTION, HARDNESS = range(21, 27)
-COLUMNS = 27
+# are apart at the start [m], else 0; 1 over the radii [1/m]. Restitution; how hard it is, 1 / (1 + softness); impulse
+# [N s] of the step's impacts along.
+REACH, APART_X, APART_Y, PER_REACH, RESTITUTION, HARDNESS, IMPACT = range(21, 28)
+COLUMNS = 28
 # Columns of a place: velocity [m/s], way [m] so far, speed of its surface [m/s] = spin times radius; and what the
 # impulses of a small step add to the first and the last.
 VX, VY, WX, WY, SURFACE, PUSHED_X, PUSHED_Y, PUSHED_SURFACE = range(8)
@@ -58,6 +59,11 @@ class Work(NamedTuple):
     columns, gain [m/s] (m, 2) = what forces add to the velocity in the step, highest = level so far; what cannot move
     has a place for each contact. local (n,): the place of a particle, -1: none. ahead [m] (n, 2): how much further than
     h v' each particle has gone in the step. There is room for more.
+
+    Of impacts (impacts.py), by place: added [m/s] (m, 2) = what has been added in this small step; stamp, since: the
+    pass that it was hit in, and when [s]; first [s]: when its first hit of a pass is. By hit: hit = the constraint;
+    pushed, across [N s]; met [s] = when; speed, slip, wanted [m/s]: before it along and across, and after it along;
+    held [N s]: across before the last friction; last [N s]: what pushed for that.
     """
 
     place: Slots
@@ -81,6 +87,19 @@ class Work(NamedTuple):
     highest: Slots
     local: Slots
     ahead: Floats
+    added: Floats
+    stamp: Slots
+    since: Floats
+    hit: Slots
+    pushed: Floats
+    across: Floats
+    met: Floats
+    speed: Floats
+    wanted: Floats
+    slip: Floats
+    held: Floats
+    last: Floats
+    first: Floats
 
 
 @inner_kernel
@@ -93,7 +112,9 @@ def _place_of(p: int, colliders: Colliders, start: Floats, spin: Floats, work: W
     work.weight[count] = colliders.inverse_mass[p]
     work.turning[count] = colliders.turning[p]
     work.highest[count] = 0
+    work.stamp[count] = 0
     for axis in range(2):
+        work.added[count, axis] = 0.0
         work.motion[count, VX + axis] = start[p, axis]
         work.motion[count, WX + axis] = 0.0
         work.motion[count, PUSHED_X + axis] = 0.0
@@ -113,6 +134,9 @@ def _place_of_edge(contacts: Contacts, c: int, start: Floats, work: Work, count:
     work.weight[count] = 0.0
     work.turning[count] = 0.0
     work.highest[count] = 0
+    work.stamp[count] = 0
+    work.added[count, 0] = 0.0
+    work.added[count, 1] = 0.0
     for column in range(8):
         work.motion[count, column] = 0.0
     for axis in range(2):
@@ -260,8 +284,8 @@ def _fill_constraint(contacts: Contacts, c: int, i: int, k: int, colliders: Coll
     row[k, ALONG], row[k, ACROSS] = contacts.impulse[c, 0], contacts.impulse[c, 1]
     row[k, MASS] = 1.0 / mass
     row[k, MASS_ACROSS] = 1.0 / (mass + work.turning[p] + work.turning[q])
-    row[k, FRICTION], row[k, BOUNCE] = contacts.friction[c], contacts.bounce[c]
-    row[k, RESTITUTION] = contacts.restitution[c]
+    row[k, FRICTION], row[k, BOUNCE] = contacts.friction[c], -1.0
+    row[k, RESTITUTION], row[k, IMPACT] = contacts.restitution[c], 0.0
     disc = _disc_of(contacts, c)
     if disc >= 0:
         _fill_pair(contacts, c, k, colliders, work)
@@ -294,7 +318,7 @@ def _fill_pair(contacts: Contacts, c: int, k: int, colliders: Colliders, work: W
 
 def new_work(particles: int, contacts: int) -> Work:
     """Work to be filled in, with room for so many contacts."""
-    places = 2 * contacts
+    places, hits = 2 * contacts, np.zeros((8, contacts))
     return Work(
         np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64), np.zeros(contacts),
         np.zeros((contacts, COLUMNS)), np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64),
@@ -302,4 +326,6 @@ def new_work(particles: int, contacts: int) -> Work:
         np.zeros(contacts), np.zeros(contacts, np.bool_), np.zeros(contacts), np.zeros(contacts, np.int64),
         np.zeros(places, np.int64), np.zeros(places), np.zeros(places), np.zeros((places, 8)), np.zeros((places, 2)),
         np.zeros(places, np.int64), np.zeros(particles, np.int64), np.zeros((particles, 2)),
+        np.zeros((places, 2)), np.zeros(places, np.int64), np.zeros(places), np.zeros(contacts, np.int64), hits[0],
+        hits[1], hits[2], hits[3], hits[4], hits[5], hits[6], hits[7], np.zeros(places),
     )  # fmt: skip

@@ -13,38 +13,25 @@ from typing import NamedTuple
 from sandbox.physics.collision.restitution import SLOWEST_BOUNCE
 from sandbox.physics.collision.turning import SURFACE_WEIGHT, spin_of
 from sandbox.physics.collision.types import Colliders, Contacts
-from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inlined_kernel, inner_kernel, unsigned
 from sandbox.physics.solvers.contact.free_constraints import (
     ACROSS,
     ALONG,
-    ALONG_CENTRES,
-    APART_X,
-    APART_Y,
     ARM,
     BOUNCE,
     COMING,
-    FOLLOWS,
     FRICTION,
     GAP,
     HARDNESS,
+    IMPACT,
     MASS,
     MASS_ACROSS,
     NX,
     NY,
     OVERLAP_SHARE,
-    PER_REACH,
     PUSHED_SURFACE,
     PUSHED_X,
     PUSHED_Y,
-    RATIO_P,
-    RATIO_Q,
-    REACH,
-    RESTITUTION,
-    ROLL_P,
-    ROLL_Q,
-    ROLLING,
-    ROLLING_MASS,
     SURFACE,
     TURN_P,
     TURN_Q,
@@ -60,7 +47,9 @@ from sandbox.physics.solvers.contact.free_constraints import (
     plan_islands,
 )
 from sandbox.physics.solvers.contact.free_islands import Islands
+from sandbox.physics.solvers.contact.free_motion import apply, look, meet
 from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH
+from sandbox.physics.solvers.contact.impacts import collide_fast
 from sandbox.physics.solvers.contact.small_steps import small_steps
 from sandbox.physics.state import Floats
 
@@ -110,123 +99,26 @@ def _begin(work: Work, count: int, scale: float) -> None:
         _push(work, i, row[i, NX], row[i, NY], row[i, ALONG], row[i, ACROSS], row[i, ARM])
 
 
-@inner_kernel
-def _time_until(dx: float, dy: float, ux: float, uy: float, reach: float) -> float:
-    # When two discs meet that are d apart and move by u; infinite where they never do.
-    # |d + t u| = reach
-    squared = ux * ux + uy * uy
-    along = dx * ux + dy * uy
-    apart = dx * dx + dy * dy - reach * reach
-    if apart <= 0.0:
-        return 0.0
-    inside = along * along - squared * apart
-    if not (along < 0.0 and inside >= 0.0):
-        return math.inf
-    return apart / (math.sqrt(inside) - along)
-
-
-@inner_kernel
-def _meet(work: Work, i: int, p: int, q: int, small: float) -> float:
-    # When two discs that are coming meet, if in this small step, else infinite: then the normal, and with what speed
-    # they part.
-    row, motion = work.constraint, work.motion
-    ux, uy = motion[p, VX] - motion[q, VX], motion[p, VY] - motion[q, VY]
-    wx = row[i, APART_X] + (motion[p, WX] - motion[q, WX])
-    wy = row[i, APART_Y] + (motion[p, WY] - motion[q, WY])
-    late = _time_until(wx, wy, ux, uy, -row[i, REACH])
-    if not late < small:
-        return math.inf
-    dx, dy = wx + late * ux, wy + late * uy
-    distance = math.sqrt(dx * dx + dy * dy)
-    if distance > SHORTEST:
-        row[i, NX] = dx / distance
-        row[i, NY] = dy / distance
-    row[i, GAP] = row[i, REACH] + row[i, NX] * wx + row[i, NY] * wy
-    row[i, ARM] = distance * row[i, PER_REACH]
-    row[i, WAY] = FOLLOWS
-    speed = -(row[i, NX] * ux + row[i, NY] * uy)
-    if speed > 0.0:
-        row[i, BOUNCE] = row[i, RESTITUTION] * speed if speed > SLOWEST_BOUNCE else 0.0
-    return late
-
-
-@inner_kernel
-def _look(work: Work, first: int, last: int) -> None:
-    # Where contacts are by now: their gaps, and of discs the normals and arms, which follow the centres.
-    row, end, motion = work.constraint, work.end, work.motion
-    for c in range(first, last):
-        i = unsigned(c)
-        p = unsigned(end[i, 0])
-        q = unsigned(end[i, 1])
-        nx, ny = row[i, NX], row[i, NY]
-        wx = row[i, APART_X] + (motion[p, WX] - motion[q, WX])
-        wy = row[i, APART_Y] + (motion[p, WY] - motion[q, WY])
-        gap = row[i, REACH] + nx * wx + ny * wy
-        if row[i, WAY] == FOLLOWS:
-            if abs(nx * wy - ny * wx) > -ALONG_CENTRES * row[i, REACH]:
-                distance = math.sqrt(wx * wx + wy * wy)
-                if distance > SHORTEST:
-                    per_distance = 1.0 / distance
-                    row[i, NX] = wx * per_distance
-                    row[i, NY] = wy * per_distance
-                gap = row[i, REACH] + distance
-            row[i, ARM] = 1.0 + gap * row[i, PER_REACH]
-        row[i, GAP] = gap
-
-
 @inlined_kernel
-def _apply(
-    work: Work, i: int, nx: float, ny: float, jn: float, jt: float, arm: float, late: float, rolls: bool
-) -> None:  # fmt: skip
-    # v += J / m, and what it does to the surfaces. rolls: against their turn on each other acts a torque as well, as an
-    # impulse at the smaller radius of at most ROLLING times that along the normal.
-    row, motion = work.constraint, work.motion
-    p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
-    jx, jy = jn * nx - jt * ny, jn * ny + jt * nx
-    weight_p, weight_q = row[i, WEIGHT_P], row[i, WEIGHT_Q]
-    surface_p, surface_q = motion[p, SURFACE], motion[q, SURFACE]
-    roll_p, roll_q = row[i, ROLL_P], row[i, ROLL_Q]
-    turn = row[i, RATIO_P] * surface_p - row[i, RATIO_Q] * surface_q
-    surface_p -= jt * (arm * row[i, TURN_P])
-    surface_q -= jt * (arm * row[i, TURN_Q])
-    if rolls and row[i, ROLLING] > 0.0:
-        most = row[i, ROLLING] * row[i, ALONG]
-        turn -= jt * (arm * (roll_p - roll_q))
-        j = min(most, max(-most, -turn * row[i, ROLLING_MASS]))
-        surface_p += j * roll_p
-        surface_q -= j * roll_q
-    motion[p, VX] += jx * weight_p
-    motion[p, VY] += jy * weight_p
-    motion[q, VX] -= jx * weight_q
-    motion[q, VY] -= jy * weight_q
-    motion[p, SURFACE], motion[q, SURFACE] = surface_p, surface_q
-    if late > 0.0:
-        # It acts where discs meet that are coming: what it changes of their ways until then is taken off.
-        motion[p, WX] -= late * jx * weight_p
-        motion[p, WY] -= late * jy * weight_p
-        motion[q, WX] += late * jx * weight_q
-        motion[q, WY] += late * jy * weight_q
-
-
-@inlined_kernel
-def _iterate(work: Work, count: int, small: float, pushes: bool, is_last: bool) -> None:
+def _iterate(work: Work, count: int, small: float, pushes: bool, skips: bool) -> int:
     # One Gauss-Seidel iteration over contacts as they were looked at. pushes: what overlaps is pushed apart, softly;
-    # with the impulses of the other iteration of a small step the next one starts. is_last: whether the step ends with
-    # it; what would meet in the first small step of the next one, and bounce there, is not slowed before.
+    # with the impulses of the other iteration of a small step the next one starts. skips: what meets fast is an impact,
+    # which is left out and noted in `hit`, or one of the next small step. How many impacts there are.
     # J = max(0, (J - (u + b) m) / (1 + soft));  |J_t| <= friction J, against the slip of the surfaces
     row, end, motion = work.constraint, work.end, work.motion
     rate = 1.0 / small
     displaced = False
+    hits = 0
     for c in range(count):
         if displaced:
-            _look(work, c, c + 1)
+            look(work, c, c + 1)
         i = unsigned(c)
         p = unsigned(end[i, 0])
         q = unsigned(end[i, 1])
         ux, uy = motion[p, VX] - motion[q, VX], motion[p, VY] - motion[q, VY]
         late = 0.0
         if row[i, WAY] == COMING:
-            late = _meet(work, i, p, q, small) if pushes else math.inf
+            late = meet(work, i, p, q, small) if pushes else math.inf
             if late == math.inf:
                 continue
             displaced = displaced or late > 0.0
@@ -237,8 +129,13 @@ def _iterate(work: Work, count: int, small: float, pushes: bool, is_last: bool) 
         bias, hard = _bias(bounce, gap, rate, row[i, HARDNESS], pushes)
         if old == 0.0 and along + bias >= 0.0:
             continue
-        if is_last and not bounce >= 0.0 and gap > 0.0 and row[i, RESTITUTION] > 0.0 and along < -SLOWEST_BOUNCE:
-            continue
+        if skips and along < -SLOWEST_BOUNCE:
+            if not pushes:
+                continue
+            if gap + small * along <= 0.0:
+                work.hit[hits], work.met[hits] = c, late
+                hits += 1
+                continue
         arm = row[i, ARM]
         mass = row[i, MASS] * hard
         new = max(0.0, (old * hard - bias * mass) - along * mass)
@@ -248,9 +145,10 @@ def _iterate(work: Work, count: int, small: float, pushes: bool, is_last: bool) 
         across = min(most, max(-most, held - slip * row[i, MASS_ACROSS]))
         row[i, ALONG] = new
         row[i, ACROSS] = across
-        _apply(work, i, nx, ny, new - old, across - held, arm, late, not pushes and new > 0.0)
+        apply(work, i, nx, ny, new - old, across - held, arm, late, not pushes and new > 0.0)
         if not pushes and new > 0.0:
             _push(work, i, nx, ny, new, across, arm)
+    return hits
 
 
 @inner_kernel
@@ -354,7 +252,9 @@ def _begin_small_step(work: Work, begin: int, end: int, scale: float) -> None:
     for k in range(begin, end):
         if work.weight[k] > 0.0:
             for axis in range(2):
-                motion[k, VX + axis] += work.gain[k, axis] * scale + motion[k, PUSHED_X + axis]
+                more = work.gain[k, axis] * scale + motion[k, PUSHED_X + axis]
+                work.added[k, axis] = more
+                motion[k, VX + axis] += more
                 motion[k, PUSHED_X + axis] = 0.0
             motion[k, SURFACE] += motion[k, PUSHED_SURFACE]
             motion[k, PUSHED_SURFACE] = 0.0
@@ -373,15 +273,18 @@ def _take_small_steps(work: Work, rows: int, besides: int, count: int, h: float)
     small = h / count
     scale = 1.0 / count
     _begin(work, rows, scale)
-    _look(work, 0, rows)
-    for step in range(count):
+    look(work, 0, rows)
+    for _ in range(count):
         for b in range(besides):
             _begin_small_step(work, work.begin[work.beside[b]], work.begin[work.beside[b] + 1], scale)
-        _iterate(work, rows, small, True, False)
+        hits = _iterate(work, rows, small, True, True)
+        if hits > 0 and not collide_fast(work, hits, rows, besides, small):
+            look(work, 0, rows)
+            _iterate(work, rows, small, True, False)
         for b in range(besides):
             _move(work, work.begin[work.beside[b]], work.begin[work.beside[b] + 1], small)
-        _look(work, 0, rows)
-        _iterate(work, rows, small, False, step == count - 1)
+        look(work, 0, rows)
+        _iterate(work, rows, small, False, True)
 
 
 @inner_kernel
@@ -418,6 +321,7 @@ def _solve_beside(
         c = work.contact[i]
         contacts.impulse[c, 0] = work.constraint[i, ALONG] * count
         contacts.impulse[c, 1] = work.constraint[i, ACROSS] * count
+        contacts.impact[c] += work.constraint[i, IMPACT]
 
 
 @inner_kernel

@@ -27,9 +27,9 @@ class BodyIslands(NamedTuple):
     There is room for all bodies and particles; counts (5,) says how many there are. body: their numbers; free: slots of
     particles. By member: island, mass [kg], before, held, after, limit [J], fresh: its bank is begun for all of it. By
     particle (n,): member, -1: none, row in the matrix, -1: none; given, change [m/s]: velocities without contacts, and
-    what those add. By touched body: misfit; due: to be solved again; driven: a joint acts on it. By body: number among
-    the touched. By island: total, allowed [J], fails. By row: unpushed [m/s] = velocities without contacts, pushed
-    [m/s] = what contacts and joints add. label, marked: scratch.
+    what those add. By touched body: misfit; due: to be solved again; rigid: all its springs are; driven: a joint acts
+    on it. By body: number among the touched. By island: total, allowed [J], fails. By row: unpushed [m/s] = velocities
+    without contacts, pushed [m/s] = what contacts and joints add. label, marked: scratch.
     """
 
     counts: Slots
@@ -46,6 +46,7 @@ class BodyIslands(NamedTuple):
     fresh: Flags
     misfit: Floats
     due: Flags
+    rigid: Flags
     driven: Flags
     number: Slots
     total: Floats
@@ -105,7 +106,8 @@ def new_islands(system: System, particle_count: int, rows: JointRows | None) -> 
         member=np.full(particle_count, -1, dtype=np.int64), row=row, before=energies[0], held=energies[1],
         after=energies[2], limit=energies[3], fresh=np.zeros(members, dtype=np.bool_), misfit=np.zeros(bodies),
         due=np.zeros(bodies, dtype=np.bool_), driven=np.zeros(bodies, dtype=np.bool_),
-        number=np.zeros(bodies, dtype=np.int64), total=energies[4], allowed=energies[5], mass=energies[6],
+        rigid=np.zeros(bodies, dtype=np.bool_), number=np.zeros(bodies, dtype=np.int64), total=energies[4],
+        allowed=energies[5], mass=energies[6],
         fails=np.zeros(members, dtype=np.bool_), unpushed=np.zeros((free_rows, 2)), pushed=np.zeros((free_rows, 2)),
         given=np.zeros((particle_count, 2)), change=np.zeros((particle_count, 2)), label=slots[1],
         marked=np.zeros(particle_count, dtype=np.bool_),

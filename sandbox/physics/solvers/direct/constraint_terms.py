@@ -87,7 +87,7 @@ def load_constraints(
             underdamped = True
         constraints.norm[k] = restoring
         if parts > 1:
-            constraints.norm[k] = _whole_restoring(k, constraints, state, mass) / (parts * parts)
+            constraints.norm[k] = _whole_restoring(k, constraints, state, mass) / (parts * parts * inputs.ease)
         _look(k, constraints, rows.moved, rows.moved, 0.0)
         error = _error(k, constraints, constraints.spare)
         moved += _floor_energy(k, constraints, error, h)

@@ -3,6 +3,7 @@
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.families import potential, start_potential
 from sandbox.physics.solvers.direct.motion import kinetic
+from sandbox.physics.solvers.direct.rigid_turn import kinetic_at_end
 from sandbox.physics.solvers.direct.system import Span, State, System
 from sandbox.physics.world import BANK_UNOPENED, Floats
 
@@ -20,11 +21,11 @@ LAST_HALVINGS = 60
 
 
 @inner_kernel
-def body_energy(span: Span, system: System, h: float) -> float:
+def body_energy(body: int, span: Span, system: System, h: float) -> float:
     """Energy of one body after the step [J]: kinetic at `trial`, and that of its springs and constraints."""
     # H = KE(v') + PE(x + h v')
     rows = system.rows
-    return kinetic(span, rows.mass, rows.trial) + potential(span, system, rows.position, rows.trial, h, h)
+    return kinetic_at_end(body, span, system, h) + potential(span, system, rows.position, rows.trial, h, h)
 
 
 @inner_kernel

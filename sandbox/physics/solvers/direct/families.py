@@ -54,14 +54,14 @@ def load_rows(system: System, state: State, inputs: Inputs, h: float) -> None:
             rows.target[r, axis] = state.velocity[p, axis]
             rows.aim[r, axis] = state.velocity[p, axis]
             rows.start[r, axis] = inputs.start[p, axis]
-            rows.slow[r, axis] = state.slow_velocity[p, axis]
+            rows.slow[r, axis] = state.velocity[p, axis]
         if r >= free_count:
             rows.moved[r, 0] += state.velocity[p, 0] * h
             rows.moved[r, 1] += state.velocity[p, 1] * h
         for axis in range(2):
             rows.trial[r, axis] = rows.start[r, axis]
             if r < free_count:
-                rows.trial[r, axis] += CHANGE_AHEAD * (rows.start[r, axis] - rows.slow[r, axis])
+                rows.trial[r, axis] += CHANGE_AHEAD * (rows.start[r, axis] - state.slow_velocity[p, axis])
 
 
 @inner_kernel

@@ -28,11 +28,28 @@ from sandbox.physics.solvers.direct.energy_bank import (
 from sandbox.physics.solvers.direct.families import find_tension
 from sandbox.physics.solvers.direct.joint_response import work_of_joints
 from sandbox.physics.solvers.direct.motion import copy, hold_triangles, scale
-from sandbox.physics.solvers.direct.system import Rows, Span, State, System, span_of
+from sandbox.physics.solvers.direct.rigid_turn import damp_within
+from sandbox.physics.solvers.direct.system import (
+    END_INERTIA,
+    END_INWARD,
+    END_X,
+    END_Y,
+    INERTIA,
+    INWARD,
+    SPIN_X,
+    SPIN_Y,
+    Rows,
+    Span,
+    State,
+    System,
+    span_of,
+)
 from sandbox.physics.world import BANK_UNOPENED, Floats
 
 # Halvings of what moves within bodies that fail the test, before all that moves is slowed down.
 INNER_HALVINGS = 3
+# The same of a body that joints alone drive.
+DRIVEN_HALVINGS = 12
 # What banks save for pushing apart what penetrates lets a body have this speed [m/s] as a whole. More lets what a crash
 # has lost come back, less leaves what lies deep in terrain there for longer.
 PAID_PUSH = 0.4
@@ -86,14 +103,43 @@ def work_of_forces(span: Span, rows: Rows, underdamped: bool) -> float:
 
 
 @inner_kernel
-def measure_body(k: int, span: Span, system: System, touch: Touch, energy: float) -> None:
+def _work_at_ends(body: int, span: Span, system: System, touch: Touch, driven: bool, h: float) -> float:
+    # What forces and joints do at the velocities of the ends of a step beyond what they do at those of its chords [J].
+    rows, bodies, push = system.rows, system.bodies, touch.delassus.joints.push
+    before, after = bodies.spin[body, INWARD], bodies.spin[body, END_INWARD]
+    spared = bodies.spared[body]
+    if not bodies.spin[body, END_INERTIA] > 0.0 or (before == 0.0 and after == 0.0 and spared == 0.0):
+        return 0.0
+    turn, turned = spared / bodies.spin[body, INERTIA], spared / bodies.spin[body, END_INERTIA]
+    pivots = bodies.pivot[body] >= 0
+    total = 0.0
+    for r in range(span.first_row, span.last_row):
+        dx = rows.position[r, 0] - bodies.spin[body, SPIN_X]
+        dy = rows.position[r, 1] - bodies.spin[body, SPIN_Y]
+        ex = rows.position[r, 0] + h * rows.trial[r, 0] - bodies.spin[body, END_X]
+        ey = rows.position[r, 1] + h * rows.trial[r, 1] - bodies.spin[body, END_Y]
+        ux, uy = -before * dx - turn * dy, -before * dy + turn * dx
+        vx, vy = -after * ex - turned * ey, -after * ey + turned * ex
+        if pivots:
+            total += rows.mass[r] * (rows.target[r, 0] - rows.start[r, 0]) * (vx - ux)
+            total += rows.mass[r] * (rows.target[r, 1] - rows.start[r, 1]) * (vy - uy)
+        if driven:
+            p = rows.particle[r]
+            total += push[p, 0] * (ux + vx) + push[p, 1] * (uy + vy)
+    return 0.5 * total
+
+
+@inner_kernel
+def measure_body(k: int, span: Span, system: System, touch: Touch, energy: float, h: float) -> None:
     """Note the norm of one body after the step, whose motion and springs then hold so much [J]."""
     islands, rows = touch.islands, system.rows
     underdamped = system.bodies.underdamped[islands.body[k]]
     islands.after[k] = energy - work_of_forces(span, rows, underdamped)
+    work = 0.0
     if islands.driven[k]:
         work = work_of_joints(span, rows, touch.delassus.joints.push)
-        islands.after[k] -= work * (1.0 + UNDERDAMPED_BANK_SHARE if underdamped else 1.0)
+    work += _work_at_ends(islands.body[k], span, system, touch, islands.driven[k], h)
+    islands.after[k] -= work * (1.0 + UNDERDAMPED_BANK_SHARE if underdamped else 1.0)
 
 
 @inner_kernel
@@ -248,21 +294,13 @@ def only_hold(contacts: Contacts, touch: Touch, inverse_mass: Floats, parts: boo
 
 
 @inner_kernel
-def _damp_within(span: Span, rows: Rows) -> None:
-    # Halve the velocities within one body, v = mean + (v - mean) / 2.
-    x = 0.0
-    y = 0.0
-    total = 0.0
-    for r in range(span.first_row, span.last_row):
-        total += rows.mass[r]
-        x += rows.mass[r] * rows.trial[r, 0]
-        y += rows.mass[r] * rows.trial[r, 1]
-    if total > 0.0:
-        x /= total
-        y /= total
-    for r in range(span.first_row, span.last_row):
-        rows.trial[r, 0] = x + 0.5 * (rows.trial[r, 0] - x)
-        rows.trial[r, 1] = y + 0.5 * (rows.trial[r, 1] - y)
+def _slower(halving: int) -> float:
+    # What of all that moves a round of slowing down leaves of what joints alone drive: most fail by a hair.
+    if halving >= LAST_HALVINGS:
+        return 0.0
+    if halving < DRIVEN_HALVINGS + 3:
+        return 0.999 if halving == DRIVEN_HALVINGS else 0.99 if halving == DRIVEN_HALVINGS + 1 else 0.9
+    return 0.5
 
 
 @inner_kernel
@@ -280,15 +318,22 @@ def _damp_bodies(touch: Touch, system: System, state: State, halving: int, h: fl
             for r in range(span.first_row, span.last_row):
                 islands.unpushed[r, 0] += islands.pushed[r, 0]
                 islands.unpushed[r, 1] += islands.pushed[r, 1]
-        if halving < INNER_HALVINGS:
-            if not bodies.anchored[body]:
-                _damp_within(span, rows)
+        turns = bodies.spin[body, INERTIA] > 0.0
+        # Contacts hold what is to stop, and springs what is to come back; joints alone drive what goes round.
+        fine = turns and islands.driven[k] and touch.delassus.start[k] == touch.delassus.start[k + 1]
+        if halving < INNER_HALVINGS or (fine and halving < DRIVEN_HALVINGS):
+            if turns:
+                damp_within(body, span, system, islands.unpushed, 1.0, 0.5, h)
+        elif fine and halving < DRIVEN_HALVINGS + 8:
+            # As one that is rigid, no length of which changes however fast it turns.
+            scale(span, _slower(halving), islands.unpushed)
+            damp_within(body, span, system, islands.unpushed, 1.0, 0.0, h)
         else:
             scale(span, 0.5 if halving < LAST_HALVINGS else 0.0, islands.unpushed)
             copy(span, islands.unpushed, rows.trial)
         clamp_rows(span, rows, state, h)
         hold_triangles(span, system, h)
-        measure_body(k, span, system, touch, body_energy(span, system, h))
+        measure_body(k, span, system, touch, body_energy(body, span, system, h), h)
 
 
 @inner_kernel

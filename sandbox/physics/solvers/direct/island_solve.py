@@ -15,6 +15,7 @@ from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.joints.joint_set import joints_of
 from sandbox.physics.joints.joint_sweep import gather_push
 from sandbox.physics.joints.rows import any_on
+from sandbox.physics.solvers.contact.body_impacts import pass_on
 from sandbox.physics.solvers.contact.gauss_seidel import (
     ContactTerms,
     Delassus,
@@ -22,6 +23,7 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     load_biases,
     load_responses,
     load_surfaces,
+    mark_calm,
     solve_contacts,
 )
 from sandbox.physics.solvers.contact.islands import (
@@ -35,7 +37,14 @@ from sandbox.physics.solvers.contact.islands import (
 )
 from sandbox.physics.solvers.direct.energy_bank import is_new
 from sandbox.physics.solvers.direct.factor import respond, solve_linear
-from sandbox.physics.solvers.direct.families import find_tension, keep_tension, linearise, load_rows, potential, update
+from sandbox.physics.solvers.direct.families import (
+    find_tension,
+    keep_tension,
+    linearise,
+    load_rows,
+    potential,
+    update,
+)
 from sandbox.physics.solvers.direct.island_energy import (
     check_energies,
     clamp_free,
@@ -51,17 +60,18 @@ from sandbox.physics.solvers.direct.island_energy import (
 )
 from sandbox.physics.solvers.direct.joint_response import (
     fails_driven,
-    keep_spin,
     load_answers,
     open_joints,
     prepare_joints,
     release_joints,
 )
 from sandbox.physics.solvers.direct.layout import layout_of
-from sandbox.physics.solvers.direct.motion import copy, hold_spin, hold_triangles, kinetic, scale
+from sandbox.physics.solvers.direct.motion import copy, hold_triangles, scale
 from sandbox.physics.solvers.direct.response import load_block
+from sandbox.physics.solvers.direct.rigid_turn import hold_spin, kinetic_at_end, spin_of_body, torque_of
 from sandbox.physics.solvers.direct.shape_matching import release_shape
-from sandbox.physics.solvers.direct.step_body import AHEAD, LINEAR_SOLVES, MISFIT_RATE, open_body, step_bodies
+from sandbox.physics.solvers.direct.slow_motion import AHEAD
+from sandbox.physics.solvers.direct.step_body import LINEAR_SOLVES, MISFIT_RATE, open_body, step_bodies
 from sandbox.physics.solvers.direct.system import Inputs, Rows, Span, State, System, span_of
 from sandbox.physics.world import Floats, World
 
@@ -72,11 +82,25 @@ SWEEPS = 20
 # soft, more makes piles of inverted bodies slow.
 WORK = 7.2e7
 FEWEST_SWEEPS = 4
+# And of what is calm, but has not settled, at most: a tower of 10 boxes needs as many in its first ticks, 14 later.
+CALM_SWEEPS = 200
+# Bodies all of whose springs have such Cs and Cd are rigid. Softer ones settle by their springs, over many ticks; with
+# as many sweeps a tick machines take three times as long.
+RIGID = 0.9999
 # Solves in which contacts only hold.
 HOLDS = 2
 # Linear solves more, while an island with a joint fails its energy test: wheels turn fast. With none of them a cart of
 # 120 kg fails in 9 to 61 of 240 steps, is slowed down, and drives at a fifth of its speed.
 DRIVEN_SOLVES = 5
+
+
+@inner_kernel
+def _is_rigid(body: int, system: System, inputs: Inputs) -> bool:
+    for i in range(system.bodies.spring_start[body], system.bodies.spring_start[body + 1]):
+        slot = system.springs.slot[i]
+        if min(inputs.stiffness[slot], inputs.damping[slot]) < RIGID:
+            return False
+    return True
 
 
 @inner_kernel
@@ -91,7 +115,8 @@ def _open(touch: Touch, system: System, state: State, inputs: Inputs, parts: int
         body = islands.body[k]
         span = span_of(system, body)
         islands.fresh[k] = is_new(span, system, state.energy_bank)
-        open_body(body, span, system, state, inputs, parts, h)
+        open_body(body, span, system, state, inputs, 0.0, parts, h)
+        islands.rigid[k] = _is_rigid(body, system, inputs)
         weigh_body(k, span, system.rows, islands)
         islands.before[k] = bodies.before[body]
         islands.held[k] = bodies.held[body]
@@ -110,8 +135,7 @@ def _solve_due(touch: Touch, system: System, h: float, ahead: float, behind: flo
         span = span_of(system, body)
         linearise(span, system, h, ahead, behind)
         solve_linear(span, system)
-        turns = span.last_constraint > span.first_constraint and not system.bodies.anchored[body]
-        _leave_unpushed(span, turns, system.rows, islands.unpushed)
+        _leave_unpushed(span, system.rows, islands.unpushed)
         load_block(k, span, system, delassus, islands.row, islands.pushed)
         if islands.driven[k]:
             load_answers(body, span, system, delassus.joints, islands.row, islands.pushed)
@@ -122,16 +146,11 @@ def _solve_due(touch: Touch, system: System, h: float, ahead: float, behind: flo
 
 
 @inner_kernel
-def _leave_unpushed(span: Span, turns: bool, rows: Rows, unpushed: Floats) -> None:
-    # What a body does without contacts, which gain it no spin; `trial` stays where the body was linearised.
-    copy(span, rows.trial, rows.best)
+def _leave_unpushed(span: Span, rows: Rows, unpushed: Floats) -> None:
+    # What a body does without contacts; `trial` stays where the body was linearised.
     for r in range(span.first_row, span.last_row):
-        rows.trial[r, 0] += rows.change[r, 0]
-        rows.trial[r, 1] += rows.change[r, 1]
-    if turns:
-        hold_spin(span, rows)
-    copy(span, rows.trial, unpushed)
-    copy(span, rows.best, rows.trial)
+        unpushed[r, 0] = rows.trial[r, 0] + rows.change[r, 0]
+        unpushed[r, 1] = rows.trial[r, 1] + rows.change[r, 1]
 
 
 @inner_kernel
@@ -161,14 +180,20 @@ def _cost_of(contacts: Contacts, delassus: Delassus) -> int:
 @inner_kernel
 def _push_all(
     contacts: Contacts, islands: BodyIslands, terms: ContactTerms, delassus: Delassus, state: State,
-    sweeps: int, hasten: bool,
-) -> None:  # fmt: skip
-    # Sweep all contacts and joints; the impulses J^T lambda of bodies are left in `pushed`.
+    sweeps: int, most: int, hasten: bool, begins: bool, h: float,
+) -> int:  # fmt: skip
+    # Sweep all contacts and joints, and look for impacts before where the step begins; how many sweeps. The impulses
+    # J^T lambda of bodies are left in `pushed`.
     inverse_mass = state.inverse_mass
     load_responses(contacts, terms, inverse_mass, delassus)
     _clear(islands.change)
     load_surfaces(terms, state.spin, state.radius)
-    solve_contacts(contacts, terms, islands.given, islands.change, inverse_mass, delassus, sweeps, hasten)
+    if begins:
+        mark_calm(contacts, terms, state.velocity, delassus.block, islands.rigid)
+        pass_on(contacts, terms, islands.given, islands.change, inverse_mass, delassus, h)
+    done = solve_contacts(
+        contacts, terms, islands.given, islands.change, inverse_mass, delassus, sweeps, most, hasten
+    )  # fmt: skip
     _clear(islands.pushed)
     push = delassus.joints.push
     gather_push(delassus.joints)
@@ -187,30 +212,31 @@ def _push_all(
                 cx, cy = couple_of(contacts, c, end)
                 islands.pushed[islands.row[p], 0] += weight * jx + jt * cx
                 islands.pushed[islands.row[p], 1] += weight * jy + jt * cy
+    return done
 
 
 @inner_kernel
 def _answer(touch: Touch, system: System, state: State, h: float) -> None:
     # v' = unpushed + A^-1 J^T lambda of every body, clamped; its energy and misfit.
-    islands, delassus, rows = touch.islands, touch.delassus, system.rows
+    islands, rows = touch.islands, system.rows
     for k in range(islands.counts[BODIES]):
         span = span_of(system, islands.body[k])
+        spin = spin_of_body(islands.body[k], system)
+        momentum = spin.momentum + torque_of(span, rows, spin, islands.pushed)
         respond(span, system, islands.pushed)
         for r in range(span.first_row, span.last_row):
             for axis in range(2):
                 v = islands.unpushed[r, axis] + islands.pushed[r, axis]
                 rows.change[r, axis] = v - rows.trial[r, axis]
                 rows.trial[r, axis] = v
-        alone = delassus.start[k] == delassus.start[k + 1]
-        if islands.driven[k] and alone and not system.bodies.anchored[islands.body[k]]:
-            keep_spin(span, rows, delassus.joints.push)
+        hold_spin(span, rows, spin, system.bodies.pivot[islands.body[k]] >= 0, True, momentum, h)
         held, misfit, _ = update(span, system, h)
         keep_tension(span, system)
         clamped = clamp_rows(span, rows, state, h)
         if hold_triangles(span, system, h) != AS_IT_WAS or clamped:
             held = potential(span, system, rows.position, rows.trial, h, h)
             find_tension(span, system, h)
-        measure_body(k, span, system, touch, kinetic(span, rows.mass, rows.trial) + held)
+        measure_body(k, span, system, touch, kinetic_at_end(islands.body[k], span, system, h) + held, h)
         islands.misfit[k] = misfit
     clamp_free(islands, state, h)
 
@@ -241,6 +267,7 @@ def _begin_again(islands: BodyIslands, system: System, share: float) -> None:
             body = islands.body[k]
             span = span_of(system, body)
             copy(span, rows.target, rows.trial)
+            copy(span, rows.target, rows.aim)
             scale(span, share, rows.trial)
             if bodies.matched[body]:
                 release_shape(span, rows)
@@ -250,7 +277,7 @@ def _begin_again(islands: BodyIslands, system: System, share: float) -> None:
 @kernel
 def _solve_touched(
     lent_contacts: Any, lent_room: Any, lent_system: Any, lent_state: Any, lent_inputs: Any, start_length: Floats,
-    parts: int, h: float,
+    ease: float, parts: int, h: float,
 ) -> bool:  # fmt: skip
     # Bring islands, and then all other bodies, to the end of a step of h [s]; False: there is too little room.
     (contacts,) = contents(lent_contacts)
@@ -259,7 +286,8 @@ def _solve_touched(
     (touch,) = contents(lent_room)
     (given,) = contents(lent_inputs)
     inputs = Inputs(
-        given.stiffness, given.damping, given.constraint_stiffness, given.constraint_damping, given.start, start_length
+        given.stiffness, given.damping, given.constraint_stiffness, given.constraint_damping, given.start, start_length,
+        ease,
     )  # fmt: skip
     if not find_body_islands(contacts, state.inverse_mass, system, touch):
         return False
@@ -294,8 +322,10 @@ def _solve_islands(
             _solve_due(touch, system, h, 1.0, 0.0)
         prepare_joints(touch)
         sweeps = max(FEWEST_SWEEPS, min(SWEEPS, affordable))
-        _push_all(contacts, islands, terms, delassus, state, sweeps, stage < LINEAR_SOLVES)
-        affordable -= sweeps
+        most = max(sweeps, min(CALM_SWEEPS, affordable))
+        affordable -= _push_all(
+            contacts, islands, terms, delassus, state, sweeps, most, stage < LINEAR_SOLVES, stage == 0, h
+        )  # fmt: skip
         if stage == 0:
             credit_penetration(contacts, touch, state.inverse_mass, h)
             draw_on_reserves(contacts, touch, system, state)
@@ -330,7 +360,7 @@ def _islands_of(world: World) -> IslandRoom:
 
 def solve_touched(
     contacts: LentContacts | None, world: World, system: Any, state: Any, inputs: Any, start_length: Floats,
-    parts: int, h: float,
+    ease: float, parts: int, h: float,
 ) -> None:  # fmt: skip
     """Solve the islands of what contacts touch or joints act on, and all other bodies; arguments as `solve` has them.
 
@@ -338,5 +368,5 @@ def solve_touched(
     """
     room = world.derived(_islands_of)
     count, lent = (0, room.no_contacts) if contacts is None else (len(contacts.arrays.particle), contacts.lent)
-    while not _solve_touched(lent, room.lent, system, state, inputs, start_length, parts, h):
+    while not _solve_touched(lent, room.lent, system, state, inputs, start_length, ease, parts, h):
         room.grow(count)

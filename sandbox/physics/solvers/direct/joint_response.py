@@ -102,34 +102,3 @@ def work_of_joints(span: Span, rows: Rows, push: Floats) -> float:
         total += push[p, 0] * (rows.start[r, 0] + rows.trial[r, 0])
         total += push[p, 1] * (rows.start[r, 1] + rows.trial[r, 1])
     return 0.5 * total
-
-
-@inner_kernel
-def keep_spin(span: Span, rows: Rows, push: Floats) -> None:
-    """Give `trial` of a free body the angular momentum that forces and joints have left it, as a turn of the whole.
-
-    Directions taken ahead turn a body, and motors' impulses are large: they would win or lose a hundredth of its spin.
-    """
-    # v' += turn x r,  turn = (sum r x (m v* + push) - sum r x m v') / I, about the centre of mass
-    mass = x = y = 0.0
-    for r in range(span.first_row, span.last_row):
-        mass += rows.mass[r]
-        x += rows.mass[r] * rows.position[r, 0]
-        y += rows.mass[r] * rows.position[r, 1]
-    x /= mass
-    y /= mass
-    inertia = missing = 0.0
-    for r in range(span.first_row, span.last_row):
-        p = rows.particle[r]
-        m = rows.mass[r]
-        dx = rows.position[r, 0] - x
-        dy = rows.position[r, 1] - y
-        inertia += m * (dx * dx + dy * dy)
-        missing += dx * (m * (rows.target[r, 1] - rows.trial[r, 1]) + push[p, 1])
-        missing -= dy * (m * (rows.target[r, 0] - rows.trial[r, 0]) + push[p, 0])
-    if not inertia > 0.0:
-        return
-    turn = missing / inertia
-    for r in range(span.first_row, span.last_row):
-        rows.trial[r, 0] -= turn * (rows.position[r, 1] - y)
-        rows.trial[r, 1] += turn * (rows.position[r, 0] - x)

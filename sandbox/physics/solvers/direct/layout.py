@@ -16,7 +16,7 @@ from sandbox.physics.components import label_bodies
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import bundle
 from sandbox.physics.joints.limited_springs import unlimited_active
-from sandbox.physics.solvers.direct.system import Bodies, Constraints, Goals, Rows, Springs, System
+from sandbox.physics.solvers.direct.system import SPIN_NUMBERS, Bodies, Constraints, Goals, Rows, Springs, System
 from sandbox.physics.solvers.linear.dissection import Dissection, dissect_bodies, make_fronts, spring_places
 from sandbox.physics.solvers.linear.fronts import Fronts
 from sandbox.physics.solvers.linear.minimum_degree import (
@@ -117,7 +117,15 @@ def make_layout(world: World) -> SystemLayout:
     triangles = _triangles_among(constraints, world)
     goals = _lay_out_goals(constraints, triangles, constraint_body, len(first_rows), world)
     system = System(
-        _lay_out_bodies(first_rows, nodes[body_of_row[first_rows]], spring_body, constraint_body, held, len(nodes)),
+        _lay_out_bodies(
+            first_rows,
+            nodes[body_of_row[first_rows]],
+            spring_body,
+            constraint_body,
+            held,
+            _pivots(spring_body, np.maximum(row_a, row_b), constraint_body, constraints, len(nodes), len(first_rows)),
+            len(nodes),
+        ),
         rows,
         _lay_out_springs(chosen[grouped], row_a, row_b, place(row_a, row_b)),
         constraints,
@@ -270,22 +278,37 @@ def _anchored(constraints: Constraints, free_count: int) -> NDArray[np.bool_]:
     return anchored
 
 
+def _pivots(
+    spring_body: Slots, high: Slots, constraint_body: Slots, constraints: Constraints, free_count: int, bodies: int
+) -> Slots:
+    """The row of the one pinned particle of each body; -1: it has none, -2: several. high: the larger of ends' rows."""
+    owner = np.repeat(np.arange(len(constraints.slot)), np.diff(constraints.first))
+    body = np.concatenate([spring_body, constraint_body[owner]])
+    row = np.concatenate([high, constraints.row])
+    lowest, highest = np.full(bodies, np.iinfo(np.int64).max), np.full(bodies, -1)
+    pinned = row >= free_count
+    np.minimum.at(lowest, body[pinned], row[pinned])
+    np.maximum.at(highest, body[pinned], row[pinned])
+    return np.where(highest < 0, -1, np.where(lowest == highest, highest, -2))
+
+
 def _lay_out_bodies(
     first_rows: Slots,
     lowest: Slots,
     spring_body: Slots,
     constraint_body: Slots,
     held: tuple[Slots, Slots],
+    pivot: Slots,
     free_count: int,
 ) -> Bodies:
-    """The bodies; held: those of springs and constraints that something pinned holds."""
+    """The bodies; held: those of springs and constraints that something pinned holds; pivot: see _pivots."""
     count = len(first_rows)
     every_body = np.arange(count + 1)
-    flags, numbers = np.zeros((4, count), dtype=np.bool_), np.zeros((2, count))
+    scratch = (*np.zeros((4, count), dtype=np.bool_), *np.zeros((3, count)), np.zeros((count, SPIN_NUMBERS)))
     return Bodies(
         np.append(first_rows, free_count), np.searchsorted(spring_body, every_body),
-        np.searchsorted(constraint_body, every_body), lowest, np.isin(every_body[:-1], np.concatenate(held)), *flags,
-        *numbers,
+        np.searchsorted(constraint_body, every_body), lowest, pivot,
+        np.isin(every_body[:-1], np.concatenate(held)), *scratch,
     )  # fmt: skip
 
 

@@ -1,8 +1,8 @@
-"""Velocities of one body's rows: copied, scaled, their energy, the spin that a free body keeps, and its triangles."""
+"""Velocities of one body's rows: copied, scaled, their energy, and what triangles leave of them."""
 
 from sandbox.physics.collision.triangle_clamp import AS_IT_WAS, clamp_triangles
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.solvers.direct.system import Rows, Span, System
+from sandbox.physics.solvers.direct.system import Span, System
 from sandbox.physics.world import Floats
 
 
@@ -30,41 +30,6 @@ def kinetic(span: Span, mass: Floats, velocity: Floats) -> float:
     for r in range(span.first_row, span.last_row):
         total += 0.5 * mass[r] * (velocity[r, 0] * velocity[r, 0] + velocity[r, 1] * velocity[r, 1])
     return total
-
-
-@inner_kernel
-def hold_spin(span: Span, rows: Rows) -> None:
-    """Take from `trial` the angular momentum that a free body would gain: nothing outside turns it.
-
-    Directions taken ahead turn a body that is violently out of shape. What is taken is a turn as a whole.
-    """
-    # v' -= turn x r,  turn = (L' - L) / I about the centre of mass
-    mass = x = y = before = after = inertia = u = v = p = q = 0.0
-    for r in range(span.first_row, span.last_row):
-        m = rows.mass[r]
-        mass += m
-        x += m * rows.position[r, 0]
-        y += m * rows.position[r, 1]
-        u += m * rows.target[r, 0]
-        v += m * rows.target[r, 1]
-        p += m * rows.trial[r, 0]
-        q += m * rows.trial[r, 1]
-    x /= mass
-    y /= mass
-    for r in range(span.first_row, span.last_row):
-        m = rows.mass[r]
-        dx = rows.position[r, 0] - x
-        dy = rows.position[r, 1] - y
-        inertia += m * (dx * dx + dy * dy)
-        before += m * (dx * (rows.target[r, 1] - v / mass) - dy * (rows.target[r, 0] - u / mass))
-        after += m * (dx * (rows.trial[r, 1] - q / mass) - dy * (rows.trial[r, 0] - p / mass))
-    kept = min(max(after, min(0.0, before)), max(0.0, before))
-    if kept == after or not inertia > 0.0:
-        return
-    turn = (kept - after) / inertia
-    for r in range(span.first_row, span.last_row):
-        rows.trial[r, 0] -= turn * (rows.position[r, 1] - y)
-        rows.trial[r, 1] += turn * (rows.position[r, 0] - x)
 
 
 @inner_kernel

@@ -55,7 +55,7 @@ def load_springs(span: Span, system: System, state: State, inputs: Inputs, parts
         if parts > 1:
             # Of the whole tick, to the bit: that of a part has other digits where Cd is near 1.
             _, whole = implicit_masses(state.stiffness[s], state.damping[s], mass)
-            springs.norm[k] = whole / (parts * parts)
+            springs.norm[k] = whole / (parts * parts * inputs.ease)
         rest = state.rest_length[s]
         springs.rest[k] = rest
         springs.start_rest[k] = inputs.start_length[s]

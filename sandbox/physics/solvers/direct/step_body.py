@@ -20,13 +20,20 @@ from sandbox.physics.solvers.direct.energy_bank import (
 )
 from sandbox.physics.solvers.direct.factor import refine, solve_linear
 from sandbox.physics.solvers.direct.families import find_tension, keep_tension, linearise, load, potential, update
-from sandbox.physics.solvers.direct.motion import copy, hold_spin, hold_triangles, kinetic, scale
+from sandbox.physics.solvers.direct.motion import copy, hold_triangles, kinetic, scale
 from sandbox.physics.solvers.direct.newton import minimise
+from sandbox.physics.solvers.direct.rigid_turn import (
+    Spin,
+    begin_turn,
+    halve_within,
+    hold_spin,
+    kinetic_at_end,
+    spin_of_body,
+)
 from sandbox.physics.solvers.direct.shape_matching import find_inverted, match_shape, release_shape
+from sandbox.physics.solvers.direct.slow_motion import AHEAD
 from sandbox.physics.solvers.direct.system import Inputs, Span, State, System, span_of
 
-# Directions are those at x + h AHEAD (v' - s). Lower explodes taut ropes, higher gains nothing.
-AHEAD = 0.75
 # A body of which a spring, after a linear solve, misses the length that was predicted by more than this share of it
 # times h^2 [1/s^2] (1e-4 at 60 Hz) gets another: what turns fast, a whipping tip or a dragged end, stretches 5 to 20
 # times less for it. Lower costs time on every swing, higher stretch; with h^2 so that substeps keep their gain.
@@ -34,16 +41,23 @@ MISFIT_RATE = 0.36
 # Linear solves of a step at most. With 2, whipping ropes stretch up to 10 times as much and a hundredth of their steps
 # has to be minimised; a fourth is hardly ever asked for.
 LINEAR_SOLVES = 3
+# Halvings of what moves beside the motion of a body as a whole, before that is slowed down too.
+INNER_HALVINGS = 30
+# Relative error of the energy of a rigid motion, which has no more than was there.
+RIGID_ROUNDING = 1e-10
 
 
 @inner_kernel
-def open_body(body: int, span: Span, system: System, state: State, inputs: Inputs, parts: int, h: float) -> None:
+def open_body(
+    body: int, span: Span, system: System, state: State, inputs: Inputs, arc: float, parts: int, h: float
+) -> None:
     """Load a body's springs and constraints, its energies and its bank, and match its shape where that is lost."""
     bodies, rows = system.bodies, system.rows
     underdamped, moved = load(span, system, state, inputs, not bodies.anchored[body], parts, h)
     bodies.underdamped[body] = underdamped
     bodies.before[body] = kinetic(span, rows.mass, rows.target) + moved
     bodies.held[body] = open_bank(body, span, system, state.energy_bank, moved, h)
+    begin_turn(body, span, system, state, arc, h)
     bodies.inverted[body] = False
     bodies.matched[body] = False
     if span.last_constraint > span.first_constraint:
@@ -54,9 +68,9 @@ def open_body(body: int, span: Span, system: System, state: State, inputs: Input
 
 
 @inner_kernel
-def _take_candidate(span: Span, system: System, free: bool, h: float) -> tuple[float, float]:
+def _take_candidate(body: int, span: Span, system: System, spin: Spin, h: float) -> tuple[float, float]:
     # v' = v + D;  J = q - K n.(D_b - D_a);  T = max(0, -J) for what follows. Returned: H, and the largest misfit.
-    rows = system.rows
+    rows, bodies = system.rows, system.bodies
     linearise(span, system, h, AHEAD, AHEAD)
     solve_linear(span, system)
     held = 0.0
@@ -65,8 +79,7 @@ def _take_candidate(span: Span, system: System, free: bool, h: float) -> tuple[f
         for r in range(span.first_row, span.last_row):
             rows.trial[r, 0] += rows.change[r, 0]
             rows.trial[r, 1] += rows.change[r, 1]
-        if free and span.last_constraint > span.first_constraint:
-            hold_spin(span, rows)
+        hold_spin(span, rows, spin, bodies.pivot[body] >= 0, True, spin.momentum, h)
         held, misfit, rounded = update(span, system, h)
         if not rounded:
             break
@@ -79,14 +92,13 @@ def _take_candidate(span: Span, system: System, free: bool, h: float) -> tuple[f
     if taken == JOINED:
         # So far from what is possible that it would stand still: f has to show the way.
         return math.inf, misfit
-    return kinetic(span, rows.mass, rows.trial) + held, misfit
+    return kinetic_at_end(body, span, system, h) + held, misfit
 
 
 @inner_kernel
-def _solve_within(body: int, span: Span, system: System, allowed: float, h: float) -> float:
+def _solve_within(body: int, span: Span, system: System, spin: Spin, allowed: float, h: float) -> float:
     # Linear solves until one fits and has no more energy than is allowed; the energy of the last that is taken.
     bodies, rows = system.bodies, system.rows
-    free = not bodies.anchored[body]
     after = 0.0
     solves = 0
     while solves < LINEAR_SOLVES:
@@ -94,7 +106,7 @@ def _solve_within(body: int, span: Span, system: System, allowed: float, h: floa
         within = solves > 0 and once <= allowed
         if within:
             copy(span, rows.trial, rows.best)
-        after, misfit = _take_candidate(span, system, free, h)
+        after, misfit = _take_candidate(body, span, system, spin, h)
         solves += 1
         if within and not after <= allowed:
             copy(span, rows.best, rows.trial)
@@ -119,13 +131,17 @@ def step_body(body: int, span: Span, system: System, state: State, h: float) -> 
     before = bodies.before[body]
     held = bodies.held[body]
     allowed = before * (1.0 + ENERGY_ROUNDING) + held
-    after = _solve_within(body, span, system, allowed, h)
+    spin = spin_of_body(body, system)
+    after = _solve_within(body, span, system, spin, allowed, h)
     if not after <= allowed:
+        copy(span, rows.target, rows.aim)
         minimise(span, system, h)
+        hold_spin(span, rows, spin, bodies.pivot[body] >= 0, False, spin.momentum, h)
         copy(span, rows.trial, rows.best)
-        after = body_energy(span, system, h)
+        hold_triangles(span, system, h)
+        after = body_energy(body, span, system, h)
         if not after <= allowed:
-            after = _damp(span, system, allowed, h)
+            after = _damp(body, span, system, spin, allowed, h)
     limit = bank_limit(body, system)
     saved = held + before - after
     # An inverted body keeps all that it lost for the way back to its form; one that grabs move, no more than others do.
@@ -136,23 +152,41 @@ def step_body(body: int, span: Span, system: System, state: State, h: float) -> 
 
 
 @inner_kernel
-def _damp(span: Span, system: System, allowed: float, h: float) -> float:
-    # Halve the free velocities, as they were found, until the energy test holds; at rest it always does.
+def _damp(body: int, span: Span, system: System, spin: Spin, allowed: float, h: float) -> float:
+    # Halve the free velocities, as they were found, until the energy test holds; at rest it always does. First only
+    # what moves beside the motion of the whole.
     rows = system.rows
     after = 0.0
+    if spin.inertia > 0.0:
+        copy(span, rows.best, rows.change)
+        for _halving in range(INNER_HALVINGS):
+            halve_within(span, rows, spin, 0.5, h, rows.change)
+            copy(span, rows.change, rows.trial)
+            hold_triangles(span, system, h)
+            after = body_energy(body, span, system, h)
+            if after <= allowed:
+                find_tension(span, system, h)
+                return after
+        # That motion itself: no length changes in it.
+        halve_within(span, rows, spin, 0.0, h, rows.trial)
+        hold_triangles(span, system, h)
+        after = body_energy(body, span, system, h)
+        if after <= allowed * (1.0 + RIGID_ROUNDING):
+            find_tension(span, system, h)
+            return after
     for _halving in range(LAST_HALVINGS):
         # Not of what triangles have left: what was found leads downwards, once it is so short that none turns over.
         scale(span, 0.5, rows.best)
         copy(span, rows.best, rows.trial)
         hold_triangles(span, system, h)
-        after = body_energy(span, system, h)
+        after = body_energy(body, span, system, h)
         if after <= allowed:
             break
     if not after <= allowed:
         for r in range(span.first_row, span.last_row):
             rows.trial[r, 0] = 0.0
             rows.trial[r, 1] = 0.0
-        after = body_energy(span, system, h)
+        after = body_energy(body, span, system, h)
     find_tension(span, system, h)
     return after
 
@@ -168,11 +202,11 @@ def step_bodies(system: System, state: State, inputs: Inputs, touched: bool, par
         if touched and bodies.touched[body]:
             continue
         span = span_of(system, body)
-        open_body(body, span, system, state, inputs, parts, h)
+        open_body(body, span, system, state, inputs, 1.0, parts, h)
         step_body(body, span, system, state, h)
         for r in range(span.first_row, span.last_row):
             state.velocity[rows.particle[r], 0] = rows.trial[r, 0]
             state.velocity[rows.particle[r], 1] = rows.trial[r, 1]
         for k in range(span.first_spring, span.last_spring):
             state.tension[springs.slot[k]] = springs.tension[k]
-    follow(state.velocity, state.slow_velocity, state.particle_active)
+    follow(state.velocity, state.slow_velocity, state.slow_change, state.particle_active)

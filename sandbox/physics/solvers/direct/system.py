@@ -31,10 +31,12 @@ class State(NamedTuple):
     mass: Floats
     inverse_mass: Floats
     slow_velocity: Floats
+    slow_change: Floats
     energy_bank: Floats
     parting_reserve: Floats
     radius: Floats
     spin: Floats
+    angle: Floats
     particle_active: Flags
     collides: Slots
     rest_length: Floats
@@ -53,7 +55,7 @@ class State(NamedTuple):
 class Inputs(NamedTuple):
     """What a substep is given: Cs and Cd of springs (m,) and constraints (t,) in it, and its start.
 
-    start [m/s] (n, 2), start_length [m] (m,): velocities and rest lengths before forces and drives.
+    start [m/s] (n, 2), start_length [m] (m,): velocities and rest lengths before forces and drives. ease: 1 + drag h.
     """
 
     stiffness: Floats
@@ -62,19 +64,31 @@ class Inputs(NamedTuple):
     constraint_damping: Floats
     start: Floats
     start_length: Floats
+    ease: float
+
+
+# Columns of `Bodies.spin`: the place [m] that a body turns about, the velocity [m/s] of that, inertia [kg m^2] and
+# angular momentum [kg m^2/s] about it; whether its angle, not the sine of that, follows from those; the rates [1/s] at
+# which chords lead inwards where the step begins, and where it ends; inertia and place there.
+SPIN_X, SPIN_Y, SPIN_VX, SPIN_VY, INERTIA, MOMENTUM, BY_ARC, INWARD, END_INWARD, END_INERTIA, END_X, END_Y = range(12)
+SPIN_NUMBERS = 12
 
 
 class Bodies(NamedTuple):
     """First row, spring and constraint of each body and one past the last; free particle of lowest slot; if anchored.
 
+    pivot: the row of the one pinned particle that holds it; -1: none does, -2: several do.
+
     The rest is scratch: touched by contacts; underdamped: some Cs is above its Cd; inverted, matched: see
-    shape_matching.py; before [J]: energy once forces, pins and drives have moved; held [J]: what its energy bank holds.
+    shape_matching.py; before [J]: energy once forces, pins and drives have moved; held [J]: what its energy bank holds;
+    spared [kg m^2/s], spin (b, SPIN_NUMBERS): see rigid_turn.py.
     """
 
     row_start: Slots
     spring_start: Slots
     constraint_start: Slots
     lowest: Slots
+    pivot: Slots
     anchored: Flags
     touched: Flags
     underdamped: Flags
@@ -82,6 +96,8 @@ class Bodies(NamedTuple):
     matched: Flags
     before: Floats
     held: Floats
+    spared: Floats
+    spin: Floats
 
 
 class Rows(NamedTuple):

@@ -1,0 +1,45 @@
+"""Files of other programs, given as levels: what a file is, by its first bytes or by its keys."""
+
+import re
+from typing import Any
+
+_STARTS = (
+    (b"\x1f\x8b", "compressed by gzip"),
+    (b"\x89PNG\r\n", "a PNG picture"),
+    (b"GIF8", "a GIF picture"),
+    (b"\xff\xd8\xff", "a JPEG picture"),
+    (b"%PDF", "a PDF document"),
+)
+_ROOTS = {"map": "a Tiled map (XML)", "tileset": "a Tiled tile set (XML)", "svg": "an SVG drawing"}
+_ROOT = re.compile(rb"<(?:[A-Za-z_][\w.-]*:)?([A-Za-z_][\w.-]*)[\s/>]")
+_MAYBE_XML = re.compile(rb"<(?:[?!]|[A-Za-z_])")
+# Where the first element of an XML file is looked for: after its declaration and comments.
+_HEAD = 4096  # [bytes]
+
+
+def foreign_bytes(data: bytes) -> str | None:
+    """What a file is by its first bytes, in words; None where they tell nothing."""
+    for start, kind in _STARTS:
+        if data.startswith(start):
+            return kind
+    if data.startswith(b"PK\x03\x04"):
+        is_scene = b".phn" in data[:_HEAD]
+        return "an Algodoo scene (.phz)" if is_scene else "a zip archive, as Algodoo's .phz is"
+    head = data[:_HEAD].lstrip()
+    if _MAYBE_XML.match(head):
+        root = _ROOT.search(re.sub(rb"<!--.*?-->", b"", head, flags=re.DOTALL))
+        return _ROOTS.get(root[1].decode(), "an XML file") if root else "an XML file"
+    if b"Scene.add" in head or head.startswith((b"FileInfo", b"// FileVersion")):
+        return "an Algodoo scene (.phn)"
+    return None
+
+
+def foreign_keys(raw: dict[str, Any]) -> str | None:
+    """What an object without a "format" is by its keys, in words; None where they tell nothing."""
+    if raw.get("type") == "map" or {"layers", "tilewidth"} <= raw.keys():
+        return "a Tiled map (JSON)"
+    if {"body", "gravity"} <= raw.keys() and isinstance(raw["body"], list):
+        return "an R.U.B.E. scene (JSON)"
+    if raw.get("type") in ("composite", "engine") or {"world", "timing"} <= raw.keys():
+        return "a Matter.js world (JSON)"
+    return None

@@ -1,0 +1,160 @@
+"""Places of particles beside edges: which place of an edge is nearest, whose a corner is, what is inside an outline."""
+
+import math
+
+from sandbox.physics.collision.types import Colliders
+from sandbox.physics.equation import SHORTEST
+from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.state import Floats, Slots
+
+# Parts of an edge by which a path may miss it: a path through a corner meets one of the two edges.
+CORNER = 1e-9
+
+
+@inlined_kernel
+def time_to_circle(dx: float, dy: float, wx: float, wy: float, reach: float) -> float:
+    """Part of the way w from d at which the origin is first `reach` [m] away; 2 where it never is."""
+    squared = wx * wx + wy * wy
+    along = dx * wx + dy * wy
+    if not (squared > 0.0 and along < 0.0):
+        return 2.0
+    inside = along * along - squared * (dx * dx + dy * dy - reach * reach)
+    if inside < 0.0:
+        return 2.0
+    when = (-along - math.sqrt(inside)) / squared
+    return when if when >= 0.0 else 2.0
+
+
+@inner_kernel
+def closest(p: int, a: int, b: int, position: Floats) -> tuple[float, float, float, int]:
+    """Place along the edge a b that is closest to p, distance, signed distance (right of the edge: above 0), region."""
+    dx = position[b, 0] - position[a, 0]
+    dy = position[b, 1] - position[a, 1]
+    px = position[p, 0] - position[a, 0]
+    py = position[p, 1] - position[a, 1]
+    squared = dx * dx + dy * dy
+    if not squared > SHORTEST:
+        distance = math.sqrt(px * px + py * py)
+        return 0.0, distance, distance, -1
+    share = (px * dx + py * dy) / squared
+    signed = (px * dy - py * dx) / math.sqrt(squared)
+    region = 0
+    if share <= 0.0:
+        share = 0.0
+        region = -1
+    elif share >= 1.0:
+        share = 1.0
+        region = 1
+    qx = px - share * dx
+    qy = py - share * dy
+    return share, math.sqrt(qx * qx + qy * qy), signed, region
+
+
+@inner_kernel
+def edge_normal(e: int, colliders: Colliders) -> tuple[float, float]:
+    """Unit normal on the right of the edge, away from what is solid."""
+    dx = colliders.position[colliders.edge_b[e], 0] - colliders.position[colliders.edge_a[e], 0]
+    dy = colliders.position[colliders.edge_b[e], 1] - colliders.position[colliders.edge_a[e], 1]
+    length = math.sqrt(dx * dx + dy * dy)
+    if length > SHORTEST:
+        return dy / length, -dx / length
+    return 0.0, 1.0
+
+
+@inner_kernel
+def end_of(e: int, region: int, colliders: Colliders) -> int:
+    """The vertex at which an edge ends, by the region beyond it that a place is in: -1 or 1."""
+    return colliders.edge_a[e] if region < 0 else colliders.edge_b[e]
+
+
+@inner_kernel
+def owns_corner(e: int, v: int, x: float, y: float, colliders: Colliders) -> bool:
+    """Whether (x, y) is nearer to vertex v than to any other place of its edges, and e is the first of those."""
+    first = colliders.edge_start[v]
+    if colliders.edge_of[first] != e:
+        return False
+    vx = colliders.position[v, 0]
+    vy = colliders.position[v, 1]
+    for at in range(first, colliders.edge_start[v + 1]):
+        other = colliders.edge_a[colliders.edge_of[at]]
+        if other == v:
+            other = colliders.edge_b[colliders.edge_of[at]]
+        dx = colliders.position[other, 0] - vx
+        dy = colliders.position[other, 1] - vy
+        if (x - vx) * dx + (y - vy) * dy > CORNER * (dx * dx + dy * dy):
+            return False
+    return True
+
+
+@inner_kernel
+def corner_normal(v: int, colliders: Colliders) -> tuple[float, float]:
+    """Sum of the normals of the solid edges that meet in a vertex."""
+    nx = 0.0
+    ny = 0.0
+    for at in range(colliders.edge_start[v], colliders.edge_start[v + 1]):
+        e = colliders.edge_of[at]
+        if colliders.side[e] != 0:
+            ex, ey = edge_normal(e, colliders)
+            nx += ex
+            ny += ey
+    length = math.sqrt(nx * nx + ny * ny)
+    if length > SHORTEST:
+        return nx / length, ny / length
+    return 0.0, 1.0
+
+
+@inner_kernel
+def place_on(e: int, share: float, axis: int, colliders: Colliders) -> float:
+    """A coordinate [m] of the place at a share of an edge."""
+    a = colliders.position[colliders.edge_a[e], axis]
+    return a + share * (colliders.position[colliders.edge_b[e], axis] - a)
+
+
+@inner_kernel
+def winds(x: float, y: float, first: int, last: int, colliders: Colliders) -> int:
+    """How often solid edges first..last run round a place."""
+    # A ray to the right crosses one that has it on its left going up, or on its right going down.
+    winding = 0
+    for e in range(first, last):
+        a = colliders.edge_a[e]
+        b = colliders.edge_b[e]
+        below = colliders.position[a, 1] <= y
+        if below == (colliders.position[b, 1] <= y) or colliders.side[e] == 0:
+            continue
+        dx = colliders.position[b, 0] - colliders.position[a, 0]
+        dy = colliders.position[b, 1] - colliders.position[a, 1]
+        right = (x - colliders.position[a, 0]) * dy - (y - colliders.position[a, 1]) * dx
+        if below and right < 0.0:
+            winding += 1
+        elif not below and right > 0.0:
+            winding -= 1
+    return winding
+
+
+@inner_kernel
+def is_enclosed(p: int, k: int, solid: Slots, bounds: Floats, colliders: Colliders) -> bool:
+    """Whether particle p is inside the solid edges of span k."""
+    winding = winds(colliders.position[p, 0], colliders.position[p, 1], solid[k, 0], solid[k, 1], colliders)
+    # A hollow chain runs the other way round: nothing is counted outside it, -1 inside.
+    return winding == 0 if bounds[k, 4] > 0.0 else winding > 0
+
+
+@inner_kernel
+def is_in(p: int, owner: int, solid: Slots, bounds: Floats, colliders: Colliders) -> bool:
+    """Whether particle p is inside the solid edges of that owner."""
+    for k in range(solid.shape[0]):
+        if colliders.owner[colliders.edge_a[solid[k, 0]]] == owner:
+            return is_enclosed(p, k, solid, bounds, colliders)
+    return False
+
+
+@inner_kernel
+def is_behind(p: int, e: int, signed: float, region: int, colliders: Colliders) -> bool:
+    """Whether a particle is behind a solid edge, to which it lies so."""
+    if region == 0:
+        return signed < 0.0
+    v = end_of(e, region, colliders)
+    nx, ny = corner_normal(v, colliders)
+    return (colliders.position[p, 0] - colliders.position[v, 0]) * nx + (
+        colliders.position[p, 1] - colliders.position[v, 1]
+    ) * ny < 0.0

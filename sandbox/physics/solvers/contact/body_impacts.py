@@ -1,0 +1,170 @@
+"""Impacts of what springs hold: how fast each contact that bounces leaves, in passes as those of free particles.
+
+    0 <= J,   u' >= b,   J (u' - b) = 0
+
+of all hits of a pass at once (impacts.py), on the Delassus blocks of bodies. The passes only look ahead. What they find
+is the velocity at which the sweeps of the step hold each contact, and the impulses with which these begin: the springs
+and all that rests have their say in the sweeps.
+"""
+
+import math
+from typing import Any
+
+from sandbox.physics.collision.restitution import SLOWEST_PASSED
+from sandbox.physics.collision.types import Contacts
+from sandbox.physics.jit import contents, inner_kernel, kernel
+from sandbox.physics.solvers.contact.gauss_seidel import (
+    ContactTerms,
+    Delassus,
+    add_change,
+    approach_of,
+    load_biases,
+    load_responses,
+    load_surfaces,
+    push_contact,
+    solve_contacts,
+    store_spins,
+)
+from sandbox.physics.world import Floats
+
+# Passes at most; a row of n balls takes n - 1. Sweeps of each at most, which end where no hit changed its velocity by
+# more [m/s].
+PASSES = 64
+PASS_SWEEPS = 50
+SETTLED = 1e-10
+# What they may cost in all: so many pushes for each contact, and so many.
+WORK_EACH = 200
+LEAST_WORK = 4000
+
+
+@inner_kernel
+def _find_hits(
+    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, is_first: bool, h: float
+) -> int:  # fmt: skip
+    # direction = impulse in this pass, and the velocity along the normal that is wanted (-inf: no hit); before = the
+    # sum of impulses, and how fast forces alone bring it near. How many hits there are.
+    hits = 0
+    for c in range(contacts.particle.shape[0]):
+        terms.direction[c, 0] = 0.0
+        terms.direction[c, 1] = -math.inf
+        if not terms.normal[c] > 0.0:
+            continue
+        if is_first:
+            if contacts.bounce[c] >= 0.0:
+                terms.direction[c, 1] = contacts.bounce[c]
+                hits += 1
+            continue
+        u = approach_of(contacts, c, velocity, change)
+        v = u - terms.before[c, 1]
+        gap = contacts.gap[c]
+        if v < -SLOWEST_PASSED and gap + h * u <= 0.0:
+            e = contacts.restitution[c]
+            terms.direction[c, 1] = -e * v if e > 0.0 else -max(0.0, gap) / h
+            hits += 1
+    return hits
+
+
+@inner_kernel
+def _find_held(contacts: Contacts, terms: ContactTerms, h: float) -> None:
+    # What has been hit is stopped where it still approaches.
+    for c in range(contacts.particle.shape[0]):
+        terms.direction[c, 0] = 0.0
+        terms.direction[c, 1] = -max(0.0, contacts.gap[c]) / h if terms.before[c, 0] > 0.0 else -math.inf
+
+
+@inner_kernel
+def _solve_pass(
+    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, delassus: Delassus,
+    is_alone: bool,
+) -> int:  # fmt: skip
+    # J = max(0, J + (b - u) / W) in sweeps; how many. Then `before` has what they have given.
+    count = contacts.particle.shape[0]
+    done = 0
+    for _ in range(PASS_SWEEPS):
+        largest = 0.0
+        done += 1
+        for c in range(count):
+            wanted = terms.direction[c, 1]
+            if wanted == -math.inf:
+                continue
+            old = terms.direction[c, 0]
+            lacks = wanted - approach_of(contacts, c, velocity, change)
+            j = max(0.0, old + lacks / terms.normal[c]) - old
+            if j != 0.0:
+                terms.direction[c, 0] += j
+                push_contact(contacts, c, j, 0.0, terms.surface, change, inverse_mass, delassus)
+                largest = max(largest, abs(j) * terms.normal[c])
+        if is_alone or largest < SETTLED:
+            break
+    for c in range(count):
+        terms.before[c, 0] += terms.direction[c, 0]
+        if terms.direction[c, 0] > 0.0:
+            terms.before[c, 1] = 0.0
+    return done
+
+
+@inner_kernel
+def _begins_with_passes(contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats) -> bool:
+    # Whether anything bounces at all, and what `before` is then.
+    bounces = False
+    for c in range(contacts.particle.shape[0]):
+        bounces = bounces or (contacts.bounce[c] >= 0.0 and terms.normal[c] > 0.0)
+    if bounces:
+        for c in range(contacts.particle.shape[0]):
+            terms.before[c, 0] = 0.0
+            terms.before[c, 1] = 0.0
+            if not contacts.bounce[c] >= 0.0:
+                terms.before[c, 1] = min(0.0, approach_of(contacts, c, velocity, change))
+    return bounces
+
+
+@inner_kernel
+def pass_on(
+    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, delassus: Delassus,
+    h: float,
+) -> None:  # fmt: skip
+    """Find how fast all that bounces in a step of h [s] leaves, in passes from what is hit to what that hits in turn.
+
+    Then `bounce` and bias say so, and contacts begin with these impulses. change is zero before and afterwards.
+    """
+    if not _begins_with_passes(contacts, terms, velocity, change):
+        return
+    count = contacts.particle.shape[0]
+    left = LEAST_WORK + WORK_EACH * count
+    hits = _find_hits(contacts, terms, velocity, change, True, h)
+    for _ in range(PASSES):
+        left -= hits * _solve_pass(contacts, terms, velocity, change, inverse_mass, delassus, hits == 1)
+        if left <= 0:
+            break
+        hits = _find_hits(contacts, terms, velocity, change, False, h)
+        if hits == 0:
+            break
+    _find_held(contacts, terms, h)
+    _solve_pass(contacts, terms, velocity, change, inverse_mass, delassus, False)
+    for c in range(count):
+        terms.direction[c, 0] = 0.0
+        terms.direction[c, 1] = 0.0
+        if terms.before[c, 0] > 0.0:
+            contacts.impulse[c, 0] += terms.before[c, 0]
+            if contacts.restitution[c] > 0.0:
+                contacts.bounce[c] = max(0.0, approach_of(contacts, c, velocity, change))
+                terms.bias[c] = -contacts.bounce[c]
+    for p in range(change.shape[0]):
+        change[p, 0] = 0.0
+        change[p, 1] = 0.0
+
+
+@kernel
+def sweep_masses(
+    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, spin: Floats,
+    radius: Floats, lent_masses: Any, sweeps: int, h: float,
+) -> None:  # fmt: skip
+    """Solve contacts of particles that answer by their own mass; bring velocities and spins to the end of the step."""
+    (delassus,) = contents(lent_masses)
+    load_surfaces(terms, spin, radius)
+    load_biases(contacts, terms, h)
+    load_responses(contacts, terms, inverse_mass, delassus)
+    pass_on(contacts, terms, velocity, change, inverse_mass, delassus, h)
+    solve_contacts(contacts, terms, velocity, change, inverse_mass, delassus, sweeps, sweeps, True)
+    add_change(velocity, change, inverse_mass)
+    store_spins(terms, spin, radius)

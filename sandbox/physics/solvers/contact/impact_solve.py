@@ -1,0 +1,244 @@
+"""A pass of impacts among free particles: the impulses at which all hits of it leave as fast as they are to.
+
+    0 <= J,   u' >= b,   J (u' - b) = 0
+
+of all hits at once, so that what lies alike leaves alike: a disc straight out of a wedge. Their energy changes by the
+sum of J (u + u')/2, and where J > 0 there is u < 0 and u' = b <= -u: never upwards, whatever the b of each is. Sweeps
+that are cut short, and friction at several places, may not end there; they are scaled back along J.
+"""
+
+from sandbox.physics.collision.restitution import SLOWEST_PASSED
+from sandbox.physics.jit import inner_kernel, unsigned
+from sandbox.physics.solvers.contact.free_constraints import (
+    ARM,
+    FRICTION,
+    IMPACT,
+    MASS,
+    MASS_ACROSS,
+    NX,
+    NY,
+    RATIO_P,
+    RATIO_Q,
+    ROLL_P,
+    ROLL_Q,
+    ROLLING,
+    ROLLING_MASS,
+    SURFACE,
+    WEIGHT_P,
+    WEIGHT_Q,
+    Work,
+)
+from sandbox.physics.solvers.contact.free_motion import apply, approach, slip
+
+# Sweeps over the hits of a pass, where they are more than two: less leaves a symmetric hit of three askew. And over
+# their friction, and at most over more hits than a few.
+SWEEPS = 100
+FRICTION_SWEEPS = 16
+FEW = 8
+CROWD_SWEEPS = 20
+# And at least, however little work is left.
+LEAST_SWEEPS = 4
+# Sweeps end where no hit changed its velocity by more [m/s]; of more hits than a few, where none did by more.
+SETTLED = 1e-8
+CROWD_SETTLED = 1e-3
+# Two hits whose answers to each other come nearer than this to being the same are one.
+ALIKE = 1e-12
+
+
+@inner_kernel
+def _push_hit(work: Work, k: int, jn: float, jt: float) -> None:
+    i = unsigned(work.hit[k])
+    row = work.constraint
+    apply(work, i, row[i, NX], row[i, NY], jn, jt, row[i, ARM], work.met[k], False)
+    work.pushed[k] += jn
+    work.across[k] += jt
+
+
+@inner_kernel
+def _answer_between(work: Work, i: int, j: int) -> float:
+    # What an impulse of 1 along the normal of one contact does to the velocity of another.
+    row = work.constraint
+    p, q = work.end[i, 0], work.end[i, 1]
+    r, s = work.end[j, 0], work.end[j, 1]
+    weight = 0.0
+    if p == r:
+        weight += row[i, WEIGHT_P]
+    if q == s:
+        weight += row[i, WEIGHT_Q]
+    if p == s:
+        weight -= row[i, WEIGHT_P]
+    if q == r:
+        weight -= row[i, WEIGHT_Q]
+    return weight * (row[i, NX] * row[j, NX] + row[i, NY] * row[j, NY])
+
+
+@inner_kernel
+def _solve_two(work: Work) -> None:
+    # 0 <= J, W J >= r, one of both; r: what each lacks.
+    row = work.constraint
+    i, j = unsigned(work.hit[0]), unsigned(work.hit[1])
+    one = max(0.0, work.wanted[0] - work.speed[0])
+    two = max(0.0, work.wanted[1] - work.speed[1])
+    a, b = 1.0 / row[i, MASS], 1.0 / row[j, MASS]
+    c = _answer_between(work, i, j)
+    jn, jm = one / a, two / b
+    if c != 0.0:
+        inside = a * b - c * c
+        x, y = 0.0, 0.0
+        if inside > ALIKE * a * b:
+            x, y = (b * one - c * two) / inside, (a * two - c * one) / inside
+        if x > 0.0 and y > 0.0:
+            jn, jm = x, y
+        elif c * jn >= two:
+            jm = 0.0
+        else:
+            jn = 0.0
+    _push_hit(work, 0, jn, 0.0)
+    _push_hit(work, 1, jm, 0.0)
+
+
+@inner_kernel
+def _restrain(work: Work, hits: int) -> None:
+    # What sweeps have not finished, and friction at several places, gains no energy: dE = sum of J (u + u') / 2, at a
+    # share s of all impulses s J u + s^2 J W J / 2.
+    begun = 0.0
+    gained = 0.0
+    for k in range(hits):
+        i = unsigned(work.hit[k])
+        begun += work.pushed[k] * work.speed[k] + work.across[k] * work.slip[k]
+        gained += work.pushed[k] * (approach(work, i) - work.speed[k])
+        gained += work.across[k] * (slip(work, i) - work.slip[k])
+    if begun + 0.5 * gained > 0.0 and gained > 0.0:
+        share = min(1.0, max(0.0, -2.0 * begun / gained))
+        for k in range(hits):
+            _push_hit(work, k, (share - 1.0) * work.pushed[k], (share - 1.0) * work.across[k])
+
+
+@inner_kernel
+def _solve_many(work: Work, hits: int, sweeps: int) -> int:
+    # The same of many, in sweeps; how many there were.
+    row = work.constraint
+    settled = SETTLED if hits <= FEW else CROWD_SETTLED
+    done = sweeps
+    largest = 0.0
+    for sweep in range(sweeps):
+        largest = 0.0
+        for k in range(hits):
+            i = unsigned(work.hit[k])
+            lacks = work.wanted[k] - approach(work, i)
+            if abs(lacks) <= settled:
+                continue
+            old = work.pushed[k]
+            j = max(0.0, old + lacks * row[i, MASS]) - old
+            if j != 0.0:
+                _push_hit(work, k, j, 0.0)
+                largest = max(largest, abs(j) / row[i, MASS])
+        if largest <= settled:
+            done = sweep + 1
+            break
+    if largest > SETTLED:
+        _restrain(work, hits)
+    return done
+
+
+@inner_kernel
+def _rub(work: Work, hits: int) -> int:
+    # Friction of what `last` of the hits pushes, beyond what there is: sweeps that only take energy.
+    row = work.constraint
+    settled = SETTLED if hits <= FEW else CROWD_SETTLED
+    for k in range(hits):
+        work.held[k] = work.across[k]
+    for sweep in range(FRICTION_SWEEPS):
+        largest = 0.0
+        for k in range(hits):
+            i = unsigned(work.hit[k])
+            most = row[i, FRICTION] * work.last[k]
+            if not most > 0.0:
+                continue
+            old = work.across[k]
+            j = min(work.held[k] + most, max(work.held[k] - most, old - slip(work, i) * row[i, MASS_ACROSS])) - old
+            if j != 0.0:
+                _push_hit(work, k, 0.0, j)
+                largest = max(largest, abs(j) / row[i, MASS_ACROSS])
+        if hits == 1 or largest <= settled:
+            return sweep + 1
+    return FRICTION_SWEEPS
+
+
+@inner_kernel
+def _solve_rubbing(work: Work, hits: int, sweeps: int) -> int:
+    # Several hits with friction: first all that approaches is stopped, then what pushed it gives its share back
+    # (Poisson), and rubs again. How many sweeps there were.
+    row = work.constraint
+    settled = SETTLED if hits <= FEW else CROWD_SETTLED
+    done = sweeps
+    for sweep in range(sweeps):
+        largest = 0.0
+        for k in range(hits):
+            i = unsigned(work.hit[k])
+            old = work.pushed[k]
+            j = max(0.0, old + (min(0.0, work.wanted[k]) - approach(work, i)) * row[i, MASS]) - old
+            if abs(j) > settled * row[i, MASS]:
+                _push_hit(work, k, j, 0.0)
+                largest = max(largest, abs(j) / row[i, MASS])
+            most = row[i, FRICTION] * work.pushed[k]
+            old = work.across[k]
+            j = min(most, max(-most, old - slip(work, i) * row[i, MASS_ACROSS])) - old
+            if abs(j) > settled * row[i, MASS_ACROSS]:
+                _push_hit(work, k, 0.0, j)
+                largest = max(largest, abs(j) / row[i, MASS_ACROSS])
+        if largest <= settled:
+            done = sweep + 1
+            break
+    for k in range(hits):
+        work.last[k] = max(0.0, work.wanted[k]) / max(SLOWEST_PASSED, -work.speed[k]) * work.pushed[k]
+    for k in range(hits):
+        _push_hit(work, k, work.last[k], 0.0)
+    done += _rub(work, hits)
+    _restrain(work, hits)
+    return done
+
+
+@inner_kernel
+def _resist(work: Work, hits: int) -> None:
+    # Rolling resistance of the hits.
+    row, motion = work.constraint, work.motion
+    for k in range(hits):
+        i = unsigned(work.hit[k])
+        most = row[i, ROLLING] * work.pushed[k]
+        if not most > 0.0:
+            continue
+        p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
+        turn = row[i, RATIO_P] * motion[p, SURFACE] - row[i, RATIO_Q] * motion[q, SURFACE]
+        j = min(most, max(-most, -turn * row[i, ROLLING_MASS]))
+        motion[p, SURFACE] += j * row[i, ROLL_P]
+        motion[q, SURFACE] -= j * row[i, ROLL_Q]
+
+
+@inner_kernel
+def solve_pass(work: Work, hits: int, left: int) -> int:
+    """Push the hits of a pass until each leaves as fast as is wanted; how many pushes it took, of so many left."""
+    row = work.constraint
+    rubs = False
+    for k in range(hits):
+        i = unsigned(work.hit[k])
+        work.pushed[k], work.across[k] = 0.0, 0.0
+        work.speed[k], work.slip[k] = approach(work, i), slip(work, i)
+        rubs = rubs or row[i, FRICTION] > 0.0
+    if hits == 1:
+        i = unsigned(work.hit[0])
+        work.last[0] = max(0.0, (work.wanted[0] - work.speed[0]) * row[i, MASS])
+        _push_hit(work, 0, work.last[0], 0.0)
+        if rubs:
+            _rub(work, 1)
+        done = 1
+    elif hits == 2 and not rubs:
+        _solve_two(work)
+        done = 2
+    else:
+        sweeps = max(LEAST_SWEEPS, min(SWEEPS if hits <= FEW else CROWD_SWEEPS, left // hits))
+        done = hits * (_solve_rubbing(work, hits, sweeps) if rubs else _solve_many(work, hits, sweeps))
+    _resist(work, hits)
+    for k in range(hits):
+        row[unsigned(work.hit[k]), IMPACT] += work.pushed[k]
+    return done

@@ -1,0 +1,400 @@
+"""The turn of a body as a whole: nothing inside it changes that.
+
+A rigid body that turns by omega goes in a step along chords, v = V + (R - 1) r / h, where R turns by h omega. Stored
+velocities are those at the end of a step, omega x r. So each step begins by leading them from its start to its chords
+and ends by leading them from these to its end:
+
+    begin_turn   v += (1 - cos) r / h       once the body is opened, before it is solved
+    hold_spin    v' += turn x r'            after each solution: L' = L + what acts from outside
+    end_turns    v' -= (1 - cos) r' / h     once positions have moved
+
+None of the three changes the angular momentum L about the centre of mass, or about the one pin that a body turns about.
+"""
+
+import math
+from typing import NamedTuple
+
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.solvers.direct.motion import kinetic
+from sandbox.physics.solvers.direct.slow_motion import find_slow
+from sandbox.physics.solvers.direct.system import (
+    BY_ARC,
+    END_INERTIA,
+    END_INWARD,
+    END_X,
+    END_Y,
+    INERTIA,
+    INWARD,
+    MOMENTUM,
+    SPIN_VX,
+    SPIN_VY,
+    SPIN_X,
+    SPIN_Y,
+    Rows,
+    Span,
+    State,
+    System,
+    span_of,
+)
+from sandbox.physics.world import Floats
+
+# Below this angle [rad] in a step the turn of a body is not foreseen, so that what falls without turning falls without
+# rounding.
+SMALLEST_TURN = 1e-6
+# No step turns a body farther than by this angle [rad]. Beyond a right angle springs would turn over.
+LARGEST_ANGLE = 1.3
+LARGEST_SINE = 0.96
+# What has turned so far in a step that r . r' is less than this share of r . r is turned about where the step begins.
+LEAST_ACROSS = 0.2
+
+
+class Spin(NamedTuple):
+    """How a body turns: about (x, y) [m], with the velocity (u, v) [m/s] of that, inertia [kg m^2].
+
+    momentum [kg m^2/s]: the angular momentum about that. inertia is 0 where pins hold it, and not one alone, about
+    which it turns.
+    """
+
+    x: float
+    y: float
+    u: float
+    v: float
+    inertia: float
+    momentum: float
+
+
+@inner_kernel
+def sine_of(angle: float) -> float:
+    """sin of an angle [rad] of at most LARGEST_ANGLE, of + and * alone."""
+    x = angle * angle
+    total = 0.0
+    for k in range(11, 0, -1):
+        total = -x / (2.0 * k * (2.0 * k + 1.0)) * (1.0 + total)
+    return angle * (1.0 + total)
+
+
+@inner_kernel
+def turned(momentum: float, inertia: float, arc: float, h: float) -> tuple[float, float]:
+    """Sine and cosine of the angle by which a rigid body of this angular momentum turns in a step of h [s].
+
+    arc: 1: that angle is h L / I; 0: its sine is, so that what moves on chords has the angular momentum of what turns,
+    as contacts and joints need it. It is at most LARGEST_ANGLE.
+    """
+    angle = h * momentum / inertia if inertia > 0.0 else 0.0
+    if arc > 0.0:
+        sine = sine_of(min(max(angle, -LARGEST_ANGLE), LARGEST_ANGLE))
+    else:
+        sine = min(max(angle, -LARGEST_SINE), LARGEST_SINE)
+    return sine, math.sqrt(1.0 - sine * sine)
+
+
+@inner_kernel
+def spin_of_body(body: int, system: System) -> Spin:
+    """How a body turns by v*, on chords."""
+    numbers = system.bodies.spin
+    return Spin(
+        numbers[body, SPIN_X],
+        numbers[body, SPIN_Y],
+        numbers[body, SPIN_VX],
+        numbers[body, SPIN_VY],
+        numbers[body, INERTIA],
+        numbers[body, MOMENTUM],
+    )
+
+
+@inner_kernel
+def _inward(momentum: float, inertia: float, arc: float, h: float) -> float:
+    # At what rate [1/s] the chords of what turns lead out of the circle where they begin, and back where they end.
+    sine, cosine = turned(momentum, inertia, arc, h)
+    if not abs(sine) > SMALLEST_TURN:
+        return 0.0
+    # (1 - cos) / h
+    return sine * sine / ((1.0 + cosine) * h)
+
+
+@inner_kernel
+def _find_spin(body: int, span: Span, system: System) -> float:
+    # How a body turns by v* about its centre of mass, or about the one pin that holds it; L before forces.
+    rows, spin = system.rows, system.bodies.spin
+    pivot = system.bodies.pivot[body]
+    total = x = y = u = v = inertia = after = before = 0.0
+    for k in range(SPIN_X, MOMENTUM + 1):
+        spin[body, k] = 0.0
+    if pivot >= 0:
+        x = rows.position[pivot, 0]
+        y = rows.position[pivot, 1]
+        if rows.target[pivot, 0] != 0.0 or rows.target[pivot, 1] != 0.0:
+            return 0.0
+    elif pivot == -1:
+        for r in range(span.first_row, span.last_row):
+            m = rows.mass[r]
+            total += m
+            x += m * rows.position[r, 0]
+            y += m * rows.position[r, 1]
+            u += m * rows.target[r, 0]
+            v += m * rows.target[r, 1]
+        u /= total
+        v /= total
+        x /= total
+        y /= total
+    else:
+        return 0.0
+    for r in range(span.first_row, span.last_row):
+        m = rows.mass[r]
+        dx = rows.position[r, 0] - x
+        dy = rows.position[r, 1] - y
+        inertia += m * (dx * dx + dy * dy)
+        after += m * (dx * (rows.target[r, 1] - v) - dy * (rows.target[r, 0] - u))
+        before += m * (dx * (rows.start[r, 1] - v) - dy * (rows.start[r, 0] - u))
+    spin[body, SPIN_X] = x
+    spin[body, SPIN_Y] = y
+    spin[body, SPIN_VX] = u
+    spin[body, SPIN_VY] = v
+    spin[body, INERTIA] = inertia
+    spin[body, MOMENTUM] = after
+    return before
+
+
+@inner_kernel
+def begin_turn(body: int, span: Span, system: System, state: State, arc: float, h: float) -> None:
+    """Bring a body's velocities, which are those at the end of a step, to the chords on which it goes in one.
+
+    What is foreseen turns on with it, and so does the slow part of its velocities. What a chord is shorter than its arc
+    is taken off its angular momentum meanwhile, in `bodies.spared`. arc: see `turned`.
+    """
+    # v += (1 - cos) r / h - (L - I sin / h) / I x r:  of what turns as a whole, v' = (R - 1) r / h is a chord
+    rows, bodies = system.rows, system.bodies
+    bodies.spared[body] = 0.0
+    before = _find_spin(body, span, system)
+    bodies.spin[body, BY_ARC] = arc
+    spin = spin_of_body(body, system)
+    rate = _inward(before, spin.inertia, arc, h)
+    bodies.spin[body, INWARD] = rate
+    for k in range(END_INWARD, END_Y + 1):
+        bodies.spin[body, k] = 0.0
+    sine, cosine = turned(spin.momentum, spin.inertia, arc, h)
+    if rate != 0.0 or abs(sine) > SMALLEST_TURN:
+        bodies.spared[body] = spin.momentum - spin.inertia * sine / h
+        bodies.spin[body, MOMENTUM] = spin.momentum - bodies.spared[body]
+        turn = -bodies.spared[body] / spin.inertia
+        _turn_on(span, rows, state, sine, cosine)
+        for r in range(span.first_row, span.last_row):
+            dx = rows.position[r, 0] - spin.x
+            dy = rows.position[r, 1] - spin.y
+            x = rate * dx - turn * dy
+            y = rate * dy + turn * dx
+            for vector in (rows.start, rows.target, rows.aim):
+                vector[r, 0] += x
+                vector[r, 1] += y
+            x += rows.trial[r, 0] - spin.u
+            y += rows.trial[r, 1] - spin.v
+            rows.trial[r, 0] = spin.u + (cosine * x - sine * y)
+            rows.trial[r, 1] = spin.v + (sine * x + cosine * y)
+    find_slow(span, rows, state)
+
+
+@inner_kernel
+def _turn_on(span: Span, rows: Rows, state: State, sine: float, cosine: float) -> None:
+    # The slow part of a body's velocities, beside that of the whole, and of their change turns as the body does.
+    mass = u = v = 0.0
+    for r in range(span.first_row, span.last_row):
+        p = rows.particle[r]
+        mass += rows.mass[r]
+        u += rows.mass[r] * state.slow_velocity[p, 0]
+        v += rows.mass[r] * state.slow_velocity[p, 1]
+    u /= mass
+    v /= mass
+    for r in range(span.first_row, span.last_row):
+        p = rows.particle[r]
+        x = state.slow_velocity[p, 0] - u
+        y = state.slow_velocity[p, 1] - v
+        state.slow_velocity[p, 0] = u + (cosine * x - sine * y)
+        state.slow_velocity[p, 1] = v + (sine * x + cosine * y)
+        x = state.slow_change[p, 0]
+        y = state.slow_change[p, 1]
+        state.slow_change[p, 0] = cosine * x - sine * y
+        state.slow_change[p, 1] = sine * x + cosine * y
+
+
+@inner_kernel
+def kinetic_at_end(body: int, span: Span, system: System, h: float) -> float:
+    """Kinetic energy of a body [J] by `trial`, as it is at the end of the step."""
+    rows = system.rows
+    pivot, spared = system.bodies.pivot[body], system.bodies.spared[body]
+    spin = spin_of_body(body, system)
+    if not spin.inertia > 0.0:
+        return kinetic(span, rows.mass, rows.trial)
+    doubled = total = u = v = inertia = momentum = outward = 0.0
+    for r in range(span.first_row, span.last_row):
+        m = rows.mass[r]
+        vx = rows.trial[r, 0]
+        vy = rows.trial[r, 1]
+        dx = rows.position[r, 0] - spin.x + h * vx
+        dy = rows.position[r, 1] - spin.y + h * vy
+        doubled += m * (vx * vx + vy * vy)
+        inertia += m * (dx * dx + dy * dy)
+        momentum += m * (dx * vy - dy * vx)
+        outward += m * (dx * vx + dy * vy)
+        total += m
+        u += m * vx
+        v += m * vy
+    if pivot < 0:
+        # About the centre of mass as it then is, which has gone on by h V.
+        common = (u * u + v * v) / total
+        inertia -= h * h * common
+        outward -= h * common
+    if not inertia > 0.0:
+        return 0.5 * doubled
+    rate = _inward(momentum + spared, inertia, system.bodies.spin[body, BY_ARC], h)
+    system.bodies.spin[body, END_INWARD] = rate
+    system.bodies.spin[body, END_INERTIA] = inertia
+    system.bodies.spin[body, END_X] = spin.x
+    system.bodies.spin[body, END_Y] = spin.y
+    if pivot < 0:
+        system.bodies.spin[body, END_X] += h * u / total
+        system.bodies.spin[body, END_Y] += h * v / total
+    doubled += spared * (2.0 * momentum + spared) / inertia
+    return 0.5 * doubled - rate * outward + 0.5 * rate * rate * inertia
+
+
+@inner_kernel
+def end_turns(system: System, state: State, h: float) -> None:
+    """Bring the velocities of all bodies from the chords of a step of h [s] to its end, once positions have moved."""
+    rows, bodies = system.rows, system.bodies
+    for body in range(bodies.lowest.shape[0]):
+        span = span_of(system, body)
+        pivot, spared = bodies.pivot[body], bodies.spared[body]
+        if not bodies.spin[body, INERTIA] > 0.0:
+            continue
+        # Sums about a place nearby, so that nothing cancels.
+        p = rows.particle[span.first_row if pivot < 0 else pivot]
+        cx = state.position[p, 0]
+        cy = state.position[p, 1]
+        total = x = y = u = v = inertia = momentum = 0.0
+        for r in range(span.first_row, span.last_row):
+            p = rows.particle[r]
+            m = rows.mass[r]
+            dx = state.position[p, 0] - cx
+            dy = state.position[p, 1] - cy
+            mx = m * state.velocity[p, 0]
+            my = m * state.velocity[p, 1]
+            total += m
+            x += m * dx
+            y += m * dy
+            u += mx
+            v += my
+            inertia += m * (dx * dx + dy * dy)
+            momentum += dx * my - dy * mx
+        if pivot < 0:
+            inertia -= (x * x + y * y) / total
+            momentum -= (x * v - y * u) / total
+            cx += x / total
+            cy += y / total
+        if not inertia > 0.0:
+            continue
+        rate = _inward(momentum + spared, inertia, system.bodies.spin[body, BY_ARC], h)
+        turn = spared / inertia
+        if rate != 0.0 or turn != 0.0:
+            for r in range(span.first_row, span.last_row):
+                p = rows.particle[r]
+                dx = state.position[p, 0] - cx
+                dy = state.position[p, 1] - cy
+                state.velocity[p, 0] -= rate * dx + turn * dy
+                state.velocity[p, 1] -= rate * dy - turn * dx
+
+
+@inner_kernel
+def torque_of(span: Span, rows: Rows, spin: Spin, impulse: Floats) -> float:
+    """The angular momentum [kg m^2/s] that impulses on a body's rows give it about the place that it turns about."""
+    total = 0.0
+    for r in range(span.first_row, span.last_row):
+        total += (rows.position[r, 0] - spin.x) * impulse[r, 1] - (rows.position[r, 1] - spin.y) * impulse[r, 0]
+    return total
+
+
+@inner_kernel
+def hold_spin(span: Span, rows: Rows, spin: Spin, pivots: bool, aims: bool, momentum: float, h: float) -> None:
+    """Turn where `trial` leads to, as a whole, until it has this angular momentum: nothing within a body turns it.
+
+    Directions taken ahead do, as does the minimum of f. pivots: it turns about a pin. aims: the next linear solve
+    starts from there, and is to stay there.
+    """
+    # v' += turn x r',  r' = r + h (v' - V'),  turn = (L - L') / sum m r . r'.  To first order no length of the end of
+    # the step changes; turned about where it begins, what has turned far would be stretched.
+    if not spin.inertia > 0.0:
+        return
+    missing = momentum
+    across = spin.inertia
+    total = u = v = 0.0
+    for r in range(span.first_row, span.last_row):
+        m = rows.mass[r]
+        dx = rows.position[r, 0] - spin.x
+        dy = rows.position[r, 1] - spin.y
+        vx = rows.trial[r, 0] - spin.u
+        vy = rows.trial[r, 1] - spin.v
+        missing -= m * (dx * vy - dy * vx)
+        across += h * m * (dx * vx + dy * vy)
+        total += m
+        u += m * vx
+        v += m * vy
+    if missing == 0.0:
+        return
+    ahead = h
+    if pivots:
+        u = 0.0
+        v = 0.0
+    else:
+        u /= total
+        v /= total
+    if not across > LEAST_ACROSS * spin.inertia:
+        across = spin.inertia
+        ahead = 0.0
+    turn = missing / across
+    for r in range(span.first_row, span.last_row):
+        dx = rows.position[r, 0] - spin.x + ahead * (rows.trial[r, 0] - spin.u - u)
+        dy = rows.position[r, 1] - spin.y + ahead * (rows.trial[r, 1] - spin.v - v)
+        rows.trial[r, 0] -= turn * dy
+        rows.trial[r, 1] += turn * dx
+        if aims:
+            rows.aim[r, 0] -= turn * dy
+            rows.aim[r, 1] += turn * dx
+
+
+@inner_kernel
+def damp_within(body: int, span: Span, system: System, found: Floats, factor: float, share: float, h: float) -> None:
+    """Leave in `trial` a share of what moves within a body, beside the rigid motion by a factor of its momenta.
+
+    found (n, 2) [m/s]: the velocities whose momenta those are.
+    """
+    rows = system.rows
+    spin = spin_of_body(body, system)
+    total = u = v = momentum = 0.0
+    for r in range(span.first_row, span.last_row):
+        m = rows.mass[r]
+        total += m
+        u += m * found[r, 0]
+        v += m * found[r, 1]
+        momentum += m * ((rows.position[r, 0] - spin.x) * found[r, 1] - (rows.position[r, 1] - spin.y) * found[r, 0])
+    if system.bodies.pivot[body] >= 0:
+        u = 0.0
+        v = 0.0
+    else:
+        u *= factor / total
+        v *= factor / total
+    halve_within(span, rows, Spin(spin.x, spin.y, u, v, spin.inertia, factor * momentum), share, h, rows.trial)
+
+
+@inner_kernel
+def halve_within(span: Span, rows: Rows, spin: Spin, share: float, h: float, vector: Floats) -> None:
+    """Leave this share of what moves beside the rigid motion that keeps a body's momenta and all its lengths."""
+    # v = V + (R - 1) r / h,  whose angular momentum is I sin / h
+    sine = h * spin.momentum / spin.inertia
+    sine = min(max(sine, -1.0), 1.0)
+    cosine = math.sqrt(1.0 - sine * sine)
+    for r in range(span.first_row, span.last_row):
+        dx = rows.position[r, 0] - spin.x
+        dy = rows.position[r, 1] - spin.y
+        x = spin.u + ((cosine - 1.0) * dx - sine * dy) / h
+        y = spin.v + (sine * dx + (cosine - 1.0) * dy) / h
+        vector[r, 0] = x + share * (vector[r, 0] - x)
+        vector[r, 1] = y + share * (vector[r, 1] - y)
