@@ -105,7 +105,7 @@ def make_terrain(chains: Sequence[Chain], tips: bool = True) -> Terrain:
         np.ascontiguousarray(table[:, 2]),
         np.ascontiguousarray(table[:, 3]),
         *grid,
-        *_tips(vertex if tips else vertex[:0], vertex, pairs, table[:, 1] > 0.0, *grid[:3]),
+        *_tips(vertex if tips else vertex[:0], vertex, pairs, table[:, 1] > 0.0, *grid),
     )
 
 
@@ -152,29 +152,44 @@ def _cells(start: list[float], end: list[float]) -> list[tuple[int, int]]:
 
 
 def _tips(
-    looked_at: Floats, vertex: Floats, pairs: Slots, solid: NDArray[np.bool_], corner: Floats, cell: Floats, size: Slots
+    looked_at: Floats,
+    vertex: Floats,
+    pairs: Slots,
+    solid: NDArray[np.bool_],
+    corner: Floats,
+    cell: Floats,
+    size: Slots,
+    cell_start: Slots,
+    cell_edge: Slots,
 ) -> tuple[Slots, Slots, Floats, Slots, Slots]:
     """The tips of terrain with the ways from them, and tips by cell; see Terrain."""
     cells = int(size[0] * size[1])
     tips, starts, ways, at = [], [0], [np.zeros((0, 2))], []
     a, b = vertex[pairs[:, 0]], vertex[pairs[:, 1]]
-    along = b - a
-    length = np.sqrt(np.sum(along * along, axis=1))
+    rim_a, rim_b = a[solid], b[solid]
     taken = np.zeros((0, 2))
     for v, place in enumerate(looked_at):
-        from_a = place - a
+        if len(taken) and (np.sum((taken - place) ** 2, axis=1) <= WELD * WELD).any():
+            continue
+        left, bottom = ((place - WELD - corner) / cell).astype(np.int64).tolist()
+        right, top = ((place + WELD - corner) / cell).astype(np.int64).tolist()
+        rows = range(bottom * int(size[0]), top * int(size[0]) + 1, int(size[0]))
+        edges = np.unique(
+            np.concatenate([cell_edge[cell_start[row + left] : cell_start[row + right + 1]] for row in rows])
+        )
+        along = b[edges] - a[edges]
+        length = np.sqrt(np.sum(along * along, axis=1))
+        from_a = place - a[edges]
         share = np.clip(np.sum(from_a * along, axis=1) / np.maximum(length * length, 1e-300), 0.0, 1.0)
         off = from_a - share[:, None] * along
         near = (np.sum(off * off, axis=1) <= WELD * WELD) & (length > 0.0)
-        if len(taken) and (np.sum((taken - place) ** 2, axis=1) <= WELD * WELD).any():
-            continue
         unit = along[near] / length[near, None]
         found = np.concatenate([
             unit[(1.0 - share[near]) * length[near] > WELD], -unit[share[near] * length[near] > WELD]
         ])  # fmt: skip
-        if not len(found) or (found @ found.T < FLAT - 1.0).any() or _is_hollow(v, pairs, solid, along, length):
+        if not len(found) or (found @ found.T < FLAT - 1.0).any() or _is_hollow(v, pairs[edges], solid[edges], along):
             continue
-        if not (_polar(found) @ found.T <= 1e-9).all(axis=1).any() or _is_buried(place, a, b, solid):
+        if not (_polar(found) @ found.T <= 1e-9).all(axis=1).any() or _is_buried(place, rim_a, rim_b):
             continue
         tips.append(v)
         starts.append(starts[-1] + len(found))
@@ -196,7 +211,7 @@ def _polar(ways: Floats) -> Floats:
     return np.concatenate([-ways, across, -across])
 
 
-def _is_hollow(v: int, pairs: Slots, solid: NDArray[np.bool_], along: Floats, length: Floats) -> bool:
+def _is_hollow(v: int, pairs: Slots, solid: NDArray[np.bool_], along: Floats) -> bool:
     """Whether what is solid lies around a vertex by more than half a turn."""
     before, after = np.flatnonzero(pairs[:, 1] == v), np.flatnonzero(pairs[:, 0] == v)
     if not len(before) or not len(after) or not solid[before[0]]:
@@ -205,13 +220,13 @@ def _is_hollow(v: int, pairs: Slots, solid: NDArray[np.bool_], along: Floats, le
     return bool(one[0] * two[1] - one[1] * two[0] <= 0.0)
 
 
-def _is_buried(place: Floats, a: Floats, b: Floats, solid: NDArray[np.bool_]) -> bool:
-    """Whether a place lies inside what is solid, and not at its rim."""
+def _is_buried(place: Floats, a: Floats, b: Floats) -> bool:
+    """Whether a place lies inside what is solid, whose edges are a to b (e, 2), and not at its rim."""
     # Looked at a little to four sides of it: at a rim one of these is outside.
     for dx, dy in ((2.0, 1.0), (-1.0, 2.0), (-2.0, -1.0), (1.0, -2.0)):
         x, y = place[0] + dx * WELD, place[1] + dy * WELD
         below = a[:, 1] <= y
-        crossing = solid & (below != (b[:, 1] <= y))
+        crossing = below != (b[:, 1] <= y)
         right = (x - a[:, 0]) * (b[:, 1] - a[:, 1]) - (y - a[:, 1]) * (b[:, 0] - a[:, 0])
         winding = np.count_nonzero(crossing & below & (right < 0.0)) - np.count_nonzero(
             crossing & ~below & (right > 0.0)
