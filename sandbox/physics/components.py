@@ -1,7 +1,12 @@
 """Connected components of what links join; union-find with path halving (Tarjan 1975)."""
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.state import Slots
+from sandbox.physics.state import Slots, StateArrays
+
+Flags = NDArray[np.bool_]
 
 
 @kernel
@@ -23,6 +28,24 @@ def label_bodies(link_a: Slots, link_b: Slots, label: Slots) -> None:
     # Labels never point upwards, so one ascending pass flattens them.
     for node in range(label.shape[0]):
         label[node] = label[label[node]]
+
+
+def label_joined(world: StateArrays, springs: Flags, particles: Flags) -> Slots:
+    """Label every particle (n,) with the lowest one that it is joined to.
+
+    springs (m,), particles (n,): which of them join; constraints do where they are active.
+    """
+    joins = springs & particles[world.particle_a] & particles[world.particle_b]
+    owner = np.repeat(np.arange(len(world.constraint_corners)), world.constraint_corners)
+    corner = np.flatnonzero(world.constraint_active[owner] & particles[world.corner_particle])
+    goes_on = owner[corner[:-1]] == owner[corner[1:]]
+    link_a, link_b = (
+        np.concatenate([of_springs[joins], world.corner_particle[corners[goes_on]]]).astype(np.int64)
+        for of_springs, corners in ((world.particle_a, corner[:-1]), (world.particle_b, corner[1:]))
+    )
+    label = np.arange(len(particles))
+    label_bodies(link_a, link_b, label)
+    return label
 
 
 @inner_kernel

@@ -10,23 +10,10 @@ step, unless the body is held or touches something.
 
 import numpy as np
 
-from sandbox.physics.components import label_bodies
+from sandbox.physics.components import label_joined
 from sandbox.physics.solvers.contact.small_steps import small_steps
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.world import World
-
-
-def _labels(world: World) -> Slots:
-    springs = np.flatnonzero(world.spring_active)
-    sizes = world.constraint_corners.astype(np.int64)
-    owner = np.repeat(np.arange(len(sizes)), sizes)
-    corner = np.flatnonzero(world.constraint_active[owner]) if len(sizes) else np.zeros(0, np.int64)
-    first = world.constraint_first.astype(np.int64)[owner[corner]] if len(corner) else corner
-    a = np.concatenate([world.particle_a[springs].astype(np.int64), world.corner_particle[first].astype(np.int64)])
-    b = np.concatenate([world.particle_b[springs].astype(np.int64), world.corner_particle[corner].astype(np.int64)])
-    label = np.arange(world.particle_count)
-    label_bodies(a, b, label)
-    return label
 
 
 def begin_flight(world: World, touched: Slots, h: float) -> None:
@@ -34,7 +21,7 @@ def begin_flight(world: World, touched: Slots, h: float) -> None:
 
     touched: particles that contacts have pushed.
     """
-    label = _labels(world)
+    label = label_joined(world, world.spring_active, np.ones(world.particle_count, dtype=np.bool_))
     free = world.inverse_mass > 0.0
     stays = np.zeros(world.particle_count, dtype=np.bool_)
     stays[label[~free & world.particle_active]] = True

@@ -23,6 +23,7 @@ from sandbox.physics.substeps import (
     Substep,
     cadence_of,
     constraint_coefficients,
+    ease_of,
     substep_coefficients,
     substep_count,
     substep_time,
@@ -111,7 +112,7 @@ def _step_held(world: World, flies: bool) -> None:
     collisions, joints = plan.collisions, plan.joints
     rest_length = drive_springs(world) if plan.drives else world.rest_length
     count = substep_count(world)
-    h = substep_time(settings, count)
+    h, ease = substep_time(settings, count), ease_of(settings, count)
     # Solvers only read them, so a tick of one substep needs no copies.
     springs, constraints = (world.stiffness, world.damping), world.constraint_coefficients
     if count > 1 or settings.drag > 0.0:
@@ -132,7 +133,7 @@ def _step_held(world: World, flies: bool) -> None:
         if joints is not None:
             load_joints(joints, world, springs, h)
         contacts = None if collisions is None else collisions.collide(joints is not None, world.tick, h)
-        solver.solve(world, Substep(h, count, springs, constraints, Before(before, rest_length)), contacts)
+        solver.solve(world, Substep(h, count, ease, springs, constraints, Before(before, rest_length)), contacts)
         if flies:
             flies = False
             begin_flight(world, np.zeros(0, np.int64) if collisions is None else collisions.touched(), h)

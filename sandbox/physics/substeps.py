@@ -33,11 +33,12 @@ Pair = tuple[Floats, Floats]
 class Substep(NamedTuple):
     """What a solver is given: time step h [s] of one of so many substeps, Cs and Cd of springs and constraints in it.
 
-    before: what the substep began with.
+    ease: 1 + drag h, see `ease_of`. before: what the substep began with.
     """
 
     h: float
     substeps: int
+    ease: float
     springs: Pair
     constraints: Pair
     before: Before

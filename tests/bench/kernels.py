@@ -32,7 +32,7 @@ def seconds_per_pass(passes: int) -> float:
     springs, elements = substep_coefficients(world), constraint_coefficients(world)
     h, times = substep_time(world.settings), []
     before = Before(world.velocity, world.rest_length)
-    substep = Substep(h, 1, springs, elements, before)
+    substep = Substep(h, 1, 1.0, springs, elements, before)
     for _ in range(passes):
         start = time.perf_counter()
         single_pass.solve(world, substep, None)

@@ -28,6 +28,14 @@ def _motion_of(
 
 
 @inner_kernel
+def _move(s: int, outline: Outline, velocity: Floats, vx: float, vy: float) -> None:
+    # Add to the velocities of all of a body.
+    for i in range(outline.member_start[s], outline.member_start[s + 1]):
+        velocity[outline.member[i], 0] += vx
+        velocity[outline.member[i], 1] += vy
+
+
+@inner_kernel
 def _stop_at_tip(
     contacts: Contacts, c: int, outline: Outline, colliders: Colliders, velocity: Floats, mass: Floats,
     inverse_mass: Floats, h: float,
@@ -50,10 +58,7 @@ def _stop_at_tip(
     lightness, ux, uy = _motion_of(s, outline, mass, inverse_mass, velocity)
     more = min(excess / h, -(ux * nx + uy * ny))
     if lightness > 0.0 and more > 0.0:
-        for i in range(outline.member_start[s], outline.member_start[s + 1]):
-            q = outline.member[i]
-            velocity[q, 0] += more * nx
-            velocity[q, 1] += more * ny
+        _move(s, outline, velocity, more * nx, more * ny)
 
 
 @inner_kernel
@@ -99,7 +104,4 @@ def stop_discs(
         velocity[p, 0] += j * inverse_mass[p] * nx
         velocity[p, 1] += j * inverse_mass[p] * ny
         if lightness > 0.0:
-            for i in range(outline.member_start[s], outline.member_start[s + 1]):
-                q = outline.member[i]
-                velocity[q, 0] -= j * lightness * nx
-                velocity[q, 1] -= j * lightness * ny
+            _move(s, outline, velocity, -(j * lightness * nx), -(j * lightness * ny))

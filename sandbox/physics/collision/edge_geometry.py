@@ -68,22 +68,28 @@ def end_of(e: int, region: int, colliders: Colliders) -> int:
 
 
 @inner_kernel
-def owns_corner(e: int, v: int, x: float, y: float, colliders: Colliders) -> bool:
-    """Whether (x, y) is nearer to vertex v than to any other place of its edges, and e is the first of those."""
-    first = colliders.edge_start[v]
-    if colliders.edge_of[first] != e:
-        return False
+def is_covered(e: int, v: int, x: float, y: float, colliders: Colliders) -> bool:
+    """Whether an edge that meets vertex v, but for e (-1: any), has a place nearer to (x, y) than that."""
     vx = colliders.position[v, 0]
     vy = colliders.position[v, 1]
-    for at in range(first, colliders.edge_start[v + 1]):
-        other = colliders.edge_a[colliders.edge_of[at]]
-        if other == v:
-            other = colliders.edge_b[colliders.edge_of[at]]
+    for at in range(colliders.edge_start[v], colliders.edge_start[v + 1]):
+        f = colliders.edge_of[at]
+        if f == e:
+            continue
+        other = colliders.edge_a[f] if colliders.edge_a[f] != v else colliders.edge_b[f]
         dx = colliders.position[other, 0] - vx
         dy = colliders.position[other, 1] - vy
         if (x - vx) * dx + (y - vy) * dy > CORNER * (dx * dx + dy * dy):
-            return False
-    return True
+            return True
+    return False
+
+
+@inner_kernel
+def owns_corner(e: int, v: int, x: float, y: float, colliders: Colliders) -> bool:
+    """Whether (x, y) is nearer to vertex v than to any other place of its edges, and e is the first of those."""
+    if colliders.edge_of[colliders.edge_start[v]] != e:
+        return False
+    return not is_covered(-1, v, x, y, colliders)
 
 
 @inner_kernel

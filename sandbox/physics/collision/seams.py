@@ -2,7 +2,7 @@
 
 import math
 
-from sandbox.physics.collision.edge_geometry import CORNER
+from sandbox.physics.collision.edge_geometry import is_covered
 from sandbox.physics.collision.types import Colliders, Near
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inner_kernel
@@ -56,23 +56,6 @@ def is_seam(p: int, e: int, v: int, x: float, y: float, colliders: Colliders, ne
 
 
 @inner_kernel
-def _is_covered(e: int, v: int, x: float, y: float, colliders: Colliders) -> bool:
-    # Whether another edge that meets e in corner v is nearer to (x, y) than that.
-    vx = colliders.position[v, 0]
-    vy = colliders.position[v, 1]
-    for at in range(colliders.edge_start[v], colliders.edge_start[v + 1]):
-        f = colliders.edge_of[at]
-        if f == e:
-            continue
-        other = colliders.edge_a[f] if colliders.edge_a[f] != v else colliders.edge_b[f]
-        dx = colliders.position[other, 0] - vx
-        dy = colliders.position[other, 1] - vy
-        if (x - vx) * dx + (y - vy) * dy > CORNER * (dx * dx + dy * dy):
-            return True
-    return False
-
-
-@inner_kernel
 def passes_beside(
     p: int, i: int, gap: float, wx: float, wy: float, colliders: Colliders, near: Near, edges: int
 ) -> bool:
@@ -101,4 +84,4 @@ def passes_beside(
     v = a if share < 0.0 else b
     x = colliders.position[p, 0] + when * wx
     y = colliders.position[p, 1] + when * wy
-    return _is_covered(e, v, x, y, colliders) or is_seam(p, e, v, x, y, colliders, near, edges)
+    return is_covered(e, v, x, y, colliders) or is_seam(p, e, v, x, y, colliders, near, edges)

@@ -7,7 +7,7 @@ from sandbox.physics.collision.narrow_phase import are_joined, may_collide
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.tips import meet_tip
 from sandbox.physics.collision.types import Colliders, Flags
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.terrain import Terrain, cells_between
 
@@ -45,14 +45,19 @@ def clamp_at_terrain(
         if near_start[p] == near_start[p + 1] and _stays_in(box, p, position[p, 0], position[p, 1], wx, wy):
             continue
         stops, x, y = stopped(position[p, 0], position[p, 1], wx, wy, terrain)
-        if stops > STOPS:
-            velocity[p, 0] = 0.0
-            velocity[p, 1] = 0.0
-            ahead[p, 0] = 0.0
-            ahead[p, 1] = 0.0
-        elif stops > 0:
-            velocity[p, 0] += (x - wx) / h
-            velocity[p, 1] += (y - wy) / h
+        _cut(p, stops, x - wx, y - wy, velocity, ahead, h)
+
+
+@inlined_kernel
+def _cut(p: int, stops: int, dx: float, dy: float, velocity: Floats, ahead: Floats, h: float) -> None:
+    # Take from a particle's velocity what its way was cut by, -d; all that moves it, where it was cut too often.
+    if stops > STOPS:
+        for axis in range(2):
+            velocity[p, axis] = 0.0
+            ahead[p, axis] = 0.0
+    elif stops > 0:
+        velocity[p, 0] += dx / h
+        velocity[p, 1] += dy / h
 
 
 @inner_kernel
@@ -85,14 +90,7 @@ def clamp_at_pins(
             x += missing * nx
             y += missing * ny
             stops += 1
-        if stops > STOPS:
-            velocity[p, 0] = 0.0
-            velocity[p, 1] = 0.0
-            ahead[p, 0] = 0.0
-            ahead[p, 1] = 0.0
-        elif stops > 0:
-            velocity[p, 0] += (x - wx) / h
-            velocity[p, 1] += (y - wy) / h
+        _cut(p, stops, x - wx, y - wy, velocity, ahead, h)
 
 
 @inner_kernel
@@ -166,12 +164,9 @@ def _stop_edge(
     return found
 
 
-@inner_kernel
-def _pin_crossing(
-    p: int, x: float, y: float, wx: float, wy: float, outline: Outline, colliders: Colliders
-) -> tuple[int, float, float, float]:
-    # As _crossing, of those edges that the particle may touch.
-    terrain = outline.pins
+@inlined_kernel
+def _cells_of_way(x: float, y: float, wx: float, wy: float, terrain: Terrain) -> tuple[int, int, int, int]:
+    # The cells that the way w lies in: left, right, bottom, top.
     per_cell = 1.0 / terrain.cell[0]
     left, right = cells_between(
         x + min(0.0, wx) - SKIN, x + max(0.0, wx) + SKIN, terrain.corner[0], per_cell, terrain.size[0]
@@ -179,6 +174,41 @@ def _pin_crossing(
     bottom, top = cells_between(
         y + min(0.0, wy) - SKIN, y + max(0.0, wy) + SKIN, terrain.corner[1], per_cell, terrain.size[1]
     )
+    return left, right, bottom, top
+
+
+@inlined_kernel
+def _meet_line(
+    ax: float, ay: float, bx: float, by: float, is_solid: bool, x: float, y: float, wx: float, wy: float
+) -> tuple[float, float, float, float]:
+    # When the way w of a centre crosses a line from a to b (2: never), the distance from it and the normal towards it.
+    dx, dy = bx - ax, by - ay
+    px, py = x - ax, y - ay
+    # Signed area, above 0 on the right of the line; it changes by `change` on the way.
+    before = px * dy - py * dx
+    change = wx * dy - wy * dx
+    if before < 0.0 and not is_solid:
+        before, change, dx, dy = -before, -change, -dx, -dy
+        px, py = x - bx, y - by
+    squared = dx * dx + dy * dy
+    skin = SKIN * math.sqrt(squared)
+    if not (change < 0.0 and before > -skin and before + change < 0.5 * skin):
+        return 2.0, 0.0, 0.0, 0.0
+    when = max(0.0, before / -change)
+    share = ((px + when * wx) * dx + (py + when * wy) * dy) / squared
+    if not -1e-9 <= share <= 1.0 + 1e-9:
+        return 2.0, 0.0, 0.0, 0.0
+    length = math.sqrt(squared)
+    return when, before / length, dy / length, -dx / length
+
+
+@inner_kernel
+def _pin_crossing(
+    p: int, x: float, y: float, wx: float, wy: float, outline: Outline, colliders: Colliders
+) -> tuple[int, float, float, float]:
+    # As _crossing, of those edges that the particle may touch.
+    terrain = outline.pins
+    left, right, bottom, top = _cells_of_way(x, y, wx, wy, terrain)
     soonest = 2.0
     found = -1
     distance = 0.0
@@ -195,29 +225,12 @@ def _pin_crossing(
                     continue
                 if are_joined(p, a, colliders) or are_joined(p, b, colliders):
                     continue
-                dx = colliders.position[b, 0] - colliders.position[a, 0]
-                dy = colliders.position[b, 1] - colliders.position[a, 1]
-                px = x - colliders.position[a, 0]
-                py = y - colliders.position[a, 1]
-                before = px * dy - py * dx
-                change = wx * dy - wy * dx
-                if before < 0.0 and terrain.solid[e] == 0:
-                    before, change, dx, dy = -before, -change, -dx, -dy
-                    px = x - colliders.position[b, 0]
-                    py = y - colliders.position[b, 1]
-                squared = dx * dx + dy * dy
-                skin = SKIN * math.sqrt(squared)
-                if not (change < 0.0 and before > -skin and before + change < 0.5 * skin):
-                    continue
-                when = max(0.0, before / -change)
-                share = ((px + when * wx) * dx + (py + when * wy) * dy) / squared
-                if when < soonest and -1e-9 <= share <= 1.0 + 1e-9:
-                    length = math.sqrt(squared)
-                    soonest = when
-                    found = e
-                    distance = before / length
-                    nx = dy / length
-                    ny = -dx / length
+                when, signed, mx, my = _meet_line(
+                    colliders.position[a, 0], colliders.position[a, 1], colliders.position[b, 0],
+                    colliders.position[b, 1], terrain.solid[e] != 0, x, y, wx, wy,
+                )  # fmt: skip
+                if when < soonest:
+                    soonest, found, distance, nx, ny = when, e, signed, mx, my
     return found, distance, nx, ny
 
 
@@ -251,13 +264,7 @@ def stopped(x: float, y: float, wx: float, wy: float, terrain: Terrain) -> tuple
 @inner_kernel
 def _crossing(x: float, y: float, wx: float, wy: float, terrain: Terrain) -> tuple[int, float, float, float]:
     # The first edge that the way w of a particle's centre crosses (-1: none), distance from it, normal towards it.
-    per_cell = 1.0 / terrain.cell[0]
-    left, right = cells_between(
-        x + min(0.0, wx) - SKIN, x + max(0.0, wx) + SKIN, terrain.corner[0], per_cell, terrain.size[0]
-    )
-    bottom, top = cells_between(
-        y + min(0.0, wy) - SKIN, y + max(0.0, wy) + SKIN, terrain.corner[1], per_cell, terrain.size[1]
-    )
+    left, right, bottom, top = _cells_of_way(x, y, wx, wy, terrain)
     soonest = 2.0
     found = -1
     distance = 0.0
@@ -268,29 +275,11 @@ def _crossing(x: float, y: float, wx: float, wy: float, terrain: Terrain) -> tup
             at = row * terrain.size[0] + column
             for entry in range(terrain.cell_start[at], terrain.cell_start[at + 1]):
                 e = terrain.cell_edge[entry]
-                a = terrain.edge_a[e]
-                dx = terrain.vertex[terrain.edge_b[e], 0] - terrain.vertex[a, 0]
-                dy = terrain.vertex[terrain.edge_b[e], 1] - terrain.vertex[a, 1]
-                px = x - terrain.vertex[a, 0]
-                py = y - terrain.vertex[a, 1]
-                # Signed area, above 0 on the right of the edge; it changes by `change` on the way.
-                before = px * dy - py * dx
-                change = wx * dy - wy * dx
-                if before < 0.0 and terrain.solid[e] == 0:
-                    before, change, dx, dy = -before, -change, -dx, -dy
-                    px = x - terrain.vertex[terrain.edge_b[e], 0]
-                    py = y - terrain.vertex[terrain.edge_b[e], 1]
-                squared = dx * dx + dy * dy
-                skin = SKIN * math.sqrt(squared)
-                if not (change < 0.0 and before > -skin and before + change < 0.5 * skin):
-                    continue
-                when = max(0.0, before / -change)
-                share = ((px + when * wx) * dx + (py + when * wy) * dy) / squared
-                if when < soonest and -1e-9 <= share <= 1.0 + 1e-9:
-                    length = math.sqrt(squared)
-                    soonest = when
-                    found = e
-                    distance = before / length
-                    nx = dy / length
-                    ny = -dx / length
+                a, b = terrain.edge_a[e], terrain.edge_b[e]
+                when, signed, mx, my = _meet_line(
+                    terrain.vertex[a, 0], terrain.vertex[a, 1], terrain.vertex[b, 0], terrain.vertex[b, 1],
+                    terrain.solid[e] != 0, x, y, wx, wy,
+                )  # fmt: skip
+                if when < soonest:
+                    soonest, found, distance, nx, ny = when, e, signed, mx, my
     return found, distance, nx, ny

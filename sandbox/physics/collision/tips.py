@@ -105,7 +105,7 @@ def collide_tip(
     a = colliders.edge_a[e]
     b = colliders.edge_b[e]
     v = first + terrain.tip[i]
-    if colliders.inverse_mass[a] + colliders.inverse_mass[b] == 0.0 or not may_collide(a, v, colliders):
+    if not may_collide(a, v, colliders):
         return count
     reach = colliders.radius[a]
     meets, share, nx, ny, distance = meet_tip(

@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sandbox.physics.components import label_bodies
+from sandbox.physics.components import label_joined
 from sandbox.physics.geometry.sums import sum_in_order
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import JointRows, shortened
@@ -76,19 +76,8 @@ def bodies_of(world: World) -> Slots:
 
 
 def _label_bodies(world: World) -> Slots:
-    free = world.inverse_mass > 0.0
-    joins = world.spring_active & (world.material != GRAB_MATERIAL)
-    joins &= free[world.particle_a] & free[world.particle_b]
-    owner = np.repeat(np.arange(world.constraint_count), world.constraint_corners)
-    corner = np.flatnonzero(world.constraint_active[owner] & free[world.corner_particle])
-    goes_on = owner[corner[:-1]] == owner[corner[1:]]
-    link_a, link_b = (
-        np.concatenate([of_springs[joins], world.corner_particle[corners[goes_on]]]).astype(np.int64)
-        for of_springs, corners in ((world.particle_a, corner[:-1]), (world.particle_b, corner[1:]))
-    )
-    label = np.arange(world.particle_count)
-    label_bodies(link_a, link_b, label)
-    return label
+    springs = world.spring_active & (world.material != GRAB_MATERIAL)
+    return label_joined(world, springs, world.inverse_mass > 0.0)
 
 
 def grips_of(world: World) -> Grips:

@@ -18,7 +18,7 @@ from sandbox.physics.joints.joint_set import joints_of
 from sandbox.physics.joints.joint_sweep import Joints, couple_masses, iterate_joint, joints_by_mass
 from sandbox.physics.joints.limited_springs import force_limits
 from sandbox.physics.joints.rows import ALONE, FIRST_OF_TWO, clamped, row_velocity
-from sandbox.physics.substeps import Pair, Substep, ease_of
+from sandbox.physics.substeps import Pair, Substep
 from sandbox.physics.world import Floats, World
 
 # Cs and Cd of a joint: (Cs + 2 Cd) n < 4 for n = 1, which leaves room for the springs of what it acts on.
@@ -133,8 +133,9 @@ def apply_explicit(world: World, chosen: NDArray[np.bool_], substep: Substep, co
     if constraints is not None and world.constraint_count:
         place, slope = np.zeros((2, len(world.corner_particle), 2))
         _constraint_pass(particles, world.constraints, *constraints, h, place, slope, impulse)
-    ease = ease_of(world.settings, substep.substeps)
-    _explicit_pass(particles, ends_of(world, substep.springs), chosen, substep.before.velocity, ease, h, impulse)
+    _explicit_pass(
+        particles, ends_of(world, substep.springs), chosen, substep.before.velocity, substep.ease, h, impulse
+    )
 
 
 class ExplicitJoints(NamedTuple):

@@ -296,8 +296,6 @@ def only_hold(contacts: Contacts, touch: Touch, inverse_mass: Floats, parts: boo
 @inner_kernel
 def _slower(halving: int) -> float:
     # What of all that moves a round of slowing down leaves of what joints alone drive: most fail by a hair.
-    if halving >= LAST_HALVINGS:
-        return 0.0
     if halving < DRIVEN_HALVINGS + 3:
         return 0.999 if halving == DRIVEN_HALVINGS else 0.99 if halving == DRIVEN_HALVINGS + 1 else 0.9
     return 0.5
@@ -323,11 +321,11 @@ def _damp_bodies(touch: Touch, system: System, state: State, halving: int, h: fl
         fine = turns and islands.driven[k] and touch.delassus.start[k] == touch.delassus.start[k + 1]
         if halving < INNER_HALVINGS or (fine and halving < DRIVEN_HALVINGS):
             if turns:
-                damp_within(body, span, system, islands.unpushed, 1.0, 0.5, h)
+                damp_within(body, span, system, islands.unpushed, 0.5, h)
         elif fine and halving < DRIVEN_HALVINGS + 8:
             # As one that is rigid, no length of which changes however fast it turns.
             scale(span, _slower(halving), islands.unpushed)
-            damp_within(body, span, system, islands.unpushed, 1.0, 0.0, h)
+            damp_within(body, span, system, islands.unpushed, 0.0, h)
         else:
             scale(span, 0.5 if halving < LAST_HALVINGS else 0.0, islands.unpushed)
             copy(span, islands.unpushed, rows.trial)

@@ -361,8 +361,8 @@ def hold_spin(span: Span, rows: Rows, spin: Spin, pivots: bool, aims: bool, mome
 
 
 @inner_kernel
-def damp_within(body: int, span: Span, system: System, found: Floats, factor: float, share: float, h: float) -> None:
-    """Leave in `trial` a share of what moves within a body, beside the rigid motion by a factor of its momenta.
+def damp_within(body: int, span: Span, system: System, found: Floats, share: float, h: float) -> None:
+    """Leave in `trial` a share of what moves within a body, beside the rigid motion of its momenta.
 
     found (n, 2) [m/s]: the velocities whose momenta those are.
     """
@@ -379,9 +379,9 @@ def damp_within(body: int, span: Span, system: System, found: Floats, factor: fl
         u = 0.0
         v = 0.0
     else:
-        u *= factor / total
-        v *= factor / total
-    halve_within(span, rows, Spin(spin.x, spin.y, u, v, spin.inertia, factor * momentum), share, h, rows.trial)
+        u *= 1.0 / total
+        v *= 1.0 / total
+    halve_within(span, rows, Spin(spin.x, spin.y, u, v, spin.inertia, momentum), share, h, rows.trial)
 
 
 @inner_kernel

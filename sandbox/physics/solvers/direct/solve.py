@@ -21,7 +21,7 @@ from sandbox.physics.solvers.direct.step_body import step_bodies
 from sandbox.physics.solvers.direct.system import Inputs, State
 from sandbox.physics.solvers.lent_substep import LentSubstep
 from sandbox.physics.solvers.single_pass import apply_explicit
-from sandbox.physics.substeps import Substep, ease_of
+from sandbox.physics.substeps import Substep
 from sandbox.physics.world import Floats, World
 
 _STATE = attrgetter(*State._fields)
@@ -89,10 +89,9 @@ def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None
         apply_explicit(world, layout.hooke, substep)
     inputs, start_length = lent.substep.lend(substep), substep.before.rest_length
     parts = substep.substeps if world.settings.substeps == AUTO else 0
-    ease = ease_of(world.settings, substep.substeps)
     if contacts is not None or (joints is not None and joints.on):
         from sandbox.physics.solvers.direct.island_solve import solve_touched
 
-        solve_touched(contacts, world, layout.lent, lent.state, inputs, start_length, ease, parts, substep.h)
+        solve_touched(contacts, world, layout.lent, lent.state, inputs, start_length, substep.ease, parts, substep.h)
     else:
-        _solve_bodies(layout.lent, lent.state, inputs, start_length, ease, parts, substep.h)
+        _solve_bodies(layout.lent, lent.state, inputs, start_length, substep.ease, parts, substep.h)
