@@ -23,7 +23,7 @@ from sandbox.session.session import Session
 
 def level(more=""):
     return (
-        '{"format": "spring-sandbox/level", "version": 1, "name": "Two",'
+        '{"format": "spring-sandbox/level", "version": 2, "name": "Two",'
         '"settings": {"solver": "iterative"' + more + '},'
         '"bodies": [{"type": "rope", "id": "r", "start": [0, 0], "end": [2, 0], "segments": 2, "pin": ["start"]}]}'
     ).encode()

@@ -173,6 +173,21 @@ def part_of_network(stiffness: float, damping: float, lowest_mode: float, parts:
     return restoring / (1.0 + stiff), stiff / (1.0 + stiff)
 
 
+def whole_of_parts(stiffness: float, damping: float, parts: int) -> tuple[float, float]:
+    """Cs and Cd of a tick of which `part_of_network` makes these of one of its parts, for a spring of its own: Cd < 1.
+
+    The inverse of the map, but for digits: of three lines that all rise the greatest counts there, so here the least of
+    their inverses.
+    """
+    # One doubling: S = 4 S';  D = min(D'^2 + 2 D', 4 D', 2 D' + S / 2)
+    restoring, stiff = stiffness / (1.0 - damping), damping / (1.0 - damping)
+    while parts > 1:
+        restoring *= 4.0
+        stiff = min(stiff * (stiff + 2.0), 4.0 * stiff, 2.0 * stiff + 0.5 * restoring)
+        parts //= 2
+    return restoring / (1.0 + stiff), stiff / (1.0 + stiff)
+
+
 def coefficients_from_frequency(frequency: float, damping_ratio: float, h: float) -> tuple[float, float]:
     """Cs and Cd that give one spring the frequency [Hz] and damping ratio at time step h [s], exactly.
 

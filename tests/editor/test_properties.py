@@ -22,7 +22,7 @@ from sandbox.level.kinds.body_def import BodyDef
 
 LEVEL = {
     "format": "spring-sandbox/level",
-    "version": 1,
+    "version": 2,
     "name": "Everything",
     "materials": {"steel": {"stiffness": 1.0}, "hook": {"law": "hooke", "k": 3.0, "c": 1.0}},
     "bodies": [

@@ -153,7 +153,7 @@ def test_a_flood_of_keys_does_not_make_present_keys_missing():
             ["rope.3", "rope.4"],
             'bodies.0: the welds make one particle of both ends of "rope:3"; take a weld out or cut 3',
         ),
-        ("version", 2, "version: 2: this program reads version 1 of the format"),
+        ("version", 3, "version: 3: this program reads version 2 of the format"),
         ("format", "map", 'format: "map" is not "spring-sandbox/level"; this is no level'),
     ],
 )

@@ -12,7 +12,7 @@ from sandbox.session.check_run import checks_as_they_end, run_checks
 
 # A ball falls 4 m onto the ground in 0.9 s; a rope of two springs hangs beside it, of which the lower one is slack.
 LEVEL = {
-    "format": "spring-sandbox/level", "version": 1, "name": "Drop", "settings": {"solver": "iterative"},
+    "format": "spring-sandbox/level", "version": 2, "name": "Drop", "settings": {"solver": "iterative"},
     "contacts": {"restitution": 0.0, "friction": 0.5},
     "terrain": [{"id": "ground", "polygon": [[-9, -2], [9, -2], [9, 0], [-9, 0]]}],
     "bodies": [

@@ -50,7 +50,7 @@ from tests.support.rope_level import rope_level
 
 EMPTY = parse_level(
     json.dumps(
-        {"format": "spring-sandbox/level", "version": 1, "name": "Empty", "settings": {"solver": "single_pass"}}
+        {"format": "spring-sandbox/level", "version": 2, "name": "Empty", "settings": {"solver": "single_pass"}}
     ).encode(),
     "test",
 )

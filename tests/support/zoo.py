@@ -7,7 +7,7 @@ from sandbox.level.format.parse import parse_level
 
 ZOO = {
     "format": "spring-sandbox/level",
-    "version": 1,
+    "version": 2,
     "name": "Zoo",
     "settings": {"solver": "single_pass"},
     "materials": {

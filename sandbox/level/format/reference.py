@@ -17,7 +17,7 @@ from sandbox.level.kinds.bodies import EXPANSIONS
 EXAMPLE = """\
 {
   "format": "spring-sandbox/level",
-  "version": 1,
+  "version": 2,
   "name": "A ball under a bridge",
   "settings": {"solver": "iterative", "iterations": 20, "substeps": 4},
   "materials": {"steel": {"stiffness": 1.0, "damping": 1.0}},
@@ -56,6 +56,10 @@ is the place for other tools' data.
 
 `sandbox check FILE` says what is wrong with a level and runs its checks, `sandbox format FILE` rewrites it in
 canonical form, `sandbox schema` prints the JSON Schema for an editor that completes keys.
+
+Files of older versions open as what they were, and are of this version once they are saved. In version 1 substeps of
+the direct solver left the motion of each spring as it was; from version 2 on they leave k and c. So Cs and Cd of a file
+of version 1 that has several are changed when it is read, such that each of its substeps does what it did.
 """
 
 _GENERATION = "\n".join(each.generation for each in EXPANSIONS.values() if each.generation)
