@@ -273,8 +273,8 @@ def test_a_jelly_and_a_balloon_are_filled_and_a_crushed_jelly_is_bluer():
         JellyDef(type="jelly", id="cube", shape=BoxShape(box=(2.0, 2.0)), spacing=1.0),
         RingDef(type="ring", id="balloon", radius=1.0, segments=16, position=(4.0, 0.0)),
     )
-    level = Level(format="spring-sandbox/level", version=1, name="Filled", bodies=bodies)
-    empty = Level(format="spring-sandbox/level", version=1, name="Empty")
+    level = Level(format="spring-sandbox/level", version=2, name="Filled", bodies=bodies)
+    empty = Level(format="spring-sandbox/level", version=2, name="Empty")
     camera = Camera((2.0, 0.0), 50.0, (0, 0, 400, 200))
 
     def colour_at(level, world, place):
