@@ -6,6 +6,7 @@ import pygame
 import pytest
 
 from sandbox.app.widgets.fonts import FONT, FONTS_HELD, SafeFont, font_file, plain_font
+from sandbox.app.widgets.text_runs import runs
 from sandbox.app.widgets.theme import scaled_theme
 from sandbox.level.format.shipped import shipped_folder
 
@@ -70,3 +71,37 @@ def test_fonts_are_held_for_the_sizes_used_last(open_app):
 def test_marks_that_turn_the_order_of_text_are_not_drawn():
     font = plain_font(14, False)
     assert font.size("ab\u202ecd\u2066e") == font.size("abcde")
+
+
+@pytest.mark.parametrize(
+    ("text", "seen"),
+    [
+        ("rope", ["rope"]),
+        ("\u05e9\u05dc\u05d5\u05dd", ["\u05e9\u05dc\u05d5\u05dd"]),
+        ("a \u05d0\u05d1 b", ["a ", "\u05d0\u05d1", " b"]),
+        ("\u05d0 12 \u05d1, c", [" \u05d1", "12", "\u05d0 ", ", c"]),
+        ("\u0645\u064e 3", ["\u0645\u064e", " 3"]),
+        ("\u05d0 b \u05d1", ["\u05d0", " b ", "\u05d1"]),
+    ],
+)
+def test_right_to_left_letters_are_seen_last_first_and_numbers_among_them_are_not_turned(text, seen):
+    found = runs(text)
+    assert [run.text for run in found] == seen
+    assert "".join(sorted(text)) == "".join(sorted("".join(seen)))
+    for run in found:
+        assert run.turned == any(char in "\u05e9\u05dc\u05d5\u05dd\u05d0\u05d1\u0645" for char in run.text)
+
+
+@pytest.mark.parametrize(
+    "other", ["\u05e9\u05dc\u05d5\u05dd", "\u65e5\u672c", "\U0001f600", "\u0939\u093f\u0928\u094d\u0926\u0940"]
+)
+def test_other_scripts_stand_beside_the_font_s_own_letters_at_their_height(other):
+    font = plain_font(20, False)
+    alone, mixed = font.size(other), font.size(f"Rope {other}")
+    assert mixed[0] == alone[0] + font.size("Rope ")[0]
+    assert mixed[1] <= 2 * font.size("Rope")[1]
+    picture = font.render(f"Rope {other}", True, (255, 255, 255))
+    assert picture.get_width() == mixed[0]
+    place = pygame.Rect(font.size("Rope ")[0], 0, alone[0], picture.get_height())
+    assert picture.subsurface(place).get_bounding_rect().width > 0
+    assert len(font.metrics(f"Rope {other}")) == len(f"Rope {other}")

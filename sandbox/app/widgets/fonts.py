@@ -1,26 +1,28 @@
-"""Fonts: the one that everything is written in, and another for letters that it does not have."""
+"""Fonts: the one that everything is written in, and others for letters that it does not have."""
 
 import functools
-import io
-from importlib.util import find_spec
+import unicodedata
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 import pygame
 
+from sandbox.app.widgets.other_fonts import Face, face_with
+from sandbox.app.widgets.text_runs import runs
 from sandbox.level.format.shipped import shipped_folder
 
 # The font in assets/fonts with its licence, by the name that the theme of the widgets calls it.
 FONT = "atkinson"
 _FILES = {False: "AtkinsonHyperlegible-Regular.ttf", True: "AtkinsonHyperlegible-Bold.ttf"}
-# What the library of the widgets brings along knows more alphabets.
-_OTHERS = {False: "NotoSans-Regular.ttf", True: "NotoSans-Bold.ttf"}
 # All letters below are in the font; a character that no font has, as which it draws others that it lacks.
 _LATIN, _NONE = "\u017f", "\uffff"
 # What is painted uses a dozen sizes at one scale of the window; each takes 0.1 to 0.3 MB with its letters.
 FONTS_HELD = 24
 # Marks of Unicode Standard Annex 9 that turn text, their own name's and any after it.
 _TURNING = dict.fromkeys([0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A)])
+# Kinds of characters that are drawn with the letter before.
+_JOINED = ("Mn", "Mc", "Me", "Cf")
 
 
 def font_file(bold: bool) -> Path:
@@ -29,12 +31,11 @@ def font_file(bold: bool) -> Path:
 
 
 class SafeFont(pygame.font.Font):
-    """A font that shows any text: by another one where it lacks a letter, and never with an error."""
+    """A font that shows any text: by others where it lacks a letter, and never with an error."""
 
     def __init__(self, file: Any, size: int) -> None:
         super().__init__(file, size)
         self._size, self._is_bold = size, str(file).endswith(_FILES[True])
-        self._other: pygame.font.Font | None = None
         self._lacks: dict[str, bool] = {}
 
     # pygame raises errors for texts that it cannot show, and names in files that people open may be such texts.
@@ -42,26 +43,32 @@ class SafeFont(pygame.font.Font):
         """The picture of a text."""
         text = _clean(text)
         try:
-            return pygame.font.Font.render(self._font_for(text), text, *arguments, **named)
+            if self._has_all(text):
+                return super().render(text, *arguments, **named)
+            pieces = self._pieces(text)
+            if len(pieces) == 1 and pieces[0][1].share == 1.0:
+                return pieces[0][1].font.render(pieces[0][0], *arguments, **named)
+            return _side_by_side(pieces, *arguments[:2])
         except pygame.error:  # nothing but characters without a width
             return super().render("", *arguments, **named)
 
     def size(self, text: Any) -> tuple[int, int]:
         """Width and height of a text [pixels]."""
         text = _clean(text)
-        return pygame.font.Font.size(self._font_for(text), text)
+        if self._has_all(text):
+            return super().size(text)
+        sizes = [face.size(piece) for piece, face in self._pieces(text)]
+        return sum(width for width, _ in sizes), max(height for _, height in sizes)
 
     def metrics(self, text: Any) -> list[Any]:
         """Extents of each letter."""
         text = _clean(text)
-        return pygame.font.Font.metrics(self._font_for(text), text)
+        if self._has_all(text):
+            return super().metrics(text)
+        return [each for piece, face in self._pieces(text) for each in face.metrics(piece)]
 
-    def _font_for(self, text: Any) -> pygame.font.Font:
-        if not isinstance(text, str) or text.isascii() or not any(map(self._lacks_letter, text)):
-            return self
-        if self._other is None:
-            self._other = _other_font(self._is_bold, self._size)
-        return self._other
+    def _has_all(self, text: Any) -> bool:
+        return not isinstance(text, str) or text.isascii() or not any(map(self._lacks_letter, text))
 
     def _lacks_letter(self, letter: str) -> bool:
         if letter <= _LATIN:
@@ -73,14 +80,45 @@ class SafeFont(pygame.font.Font):
             self._lacks[letter] = super().metrics(letter) == nothing
         return self._lacks[letter]
 
+    def _pieces(self, text: str) -> list[tuple[str, Face]]:
+        # What is seen from left to right, each in a font that has its letters; marks go with the letter before.
+        found: list[tuple[str, Face]] = []
+        for run in runs(text):
+            faces = self._faces(run.text, run.turned)
+            pieces = [
+                ("".join(run.text[k] for k in places), face)
+                for face, places in groupby(range(len(run.text)), faces.__getitem__)
+            ]
+            found += reversed(pieces) if run.turned else pieces
+        return found
 
-def _other_font(bold: bool, size: int) -> pygame.font.Font:
-    # Found without importing the library, which takes long.
-    library = find_spec("pygame_gui")
-    if library is None or library.origin is None:
-        return pygame.font.Font(None, size)
-    data = Path(library.origin).parent / "data" / _OTHERS[bold]
-    return pygame.font.Font(io.BytesIO(data.read_bytes()), size)
+    def _faces(self, text: str, turned: bool) -> list[Face]:
+        own = Face(self, 1.0)
+        faces: list[Face] = []
+        for letter in text:
+            last = faces[-1] if faces else None
+            if last is not None and (unicodedata.category(letter) in _JOINED or (turned and letter == " ")):
+                faces.append(last)
+            elif not turned and not self._lacks_letter(letter):
+                faces.append(own)
+            else:
+                faces.append(face_with(letter, self._size, self._is_bold, turned))
+        return faces
+
+
+def _side_by_side(
+    pieces: list[tuple[str, Face]], antialias: bool = True, colour: Any = (255, 255, 255)
+) -> pygame.Surface:
+    pictures = [face.render(text, antialias, colour) for text, face in pieces]
+    ascents = [face.ascent for _, face in pieces]
+    base = max(ascents)
+    height = max(base - up + picture.get_height() for up, picture in zip(ascents, pictures, strict=True))
+    whole = pygame.Surface((sum(picture.get_width() for picture in pictures), height), pygame.SRCALPHA)
+    x = 0
+    for up, picture in zip(ascents, pictures, strict=True):
+        whole.blit(picture, (x, base - up))
+        x += picture.get_width()
+    return whole
 
 
 @functools.lru_cache(FONTS_HELD)
