@@ -12,30 +12,30 @@ _RIGHT_TO_LEFT = ("R", "AL")
 _NUMBERS = ("EN", "AN")
 
 
-class Run(NamedTuple):
+class TextRun(NamedTuple):
     """A piece of a text; turned: its letters go from right to left."""
 
     text: str
     turned: bool
 
 
-def runs(text: str) -> list[Run]:
+def runs(text: str) -> list[TextRun]:
     """The runs of a text without line breaks."""
     kinds = [unicodedata.bidirectional(char) for char in text]
     turned = [k for k, kind in enumerate(kinds) if kind in _RIGHT_TO_LEFT]
     if not turned:
-        return [Run(text, False)]
-    result: list[Run] = []
+        return [TextRun(text, False)]
+    result: list[TextRun] = []
     done = 0
     for first, last in _stretches(kinds, turned):
         if first > done:
-            result.append(Run(text[done:first], False))
+            result.append(TextRun(text[done:first], False))
         pieces = groupby(range(first, last), lambda k: kinds[k] not in _NUMBERS)
-        found = [Run("".join(text[k] for k in places), is_turned) for is_turned, places in pieces]
+        found = [TextRun("".join(text[k] for k in places), is_turned) for is_turned, places in pieces]
         result += reversed(found)
         done = last
     if done < len(text):
-        result.append(Run(text[done:], False))
+        result.append(TextRun(text[done:], False))
     return result
 
 
