@@ -3,7 +3,9 @@
 A body's slowest wobble moves as one spring with a Cs and Cd of its own (`of_body`). Firmness gives these two: by the
 frequency and damping ratio of the wobble, or by the part of its height by which the body sags under its weight,
 
-    f = sqrt(STANDING g / (sag H)),   H = height of the form along gravity g
+    sag = STANDING g / (F^2 H),   (2 pi F)^2 = k / m = Cs / ((1 - Cd) h^2),   H = height of the form along gravity g
+
+F is the frequency f of the wobble where h is short; at Cs and Cd near 1 the wobble is slower than its k says.
 """
 
 import math
@@ -11,20 +13,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 
-import numpy as np
-
 from sandbox.physics.equation import (
     HIGHEST_COEFFICIENT,
     coefficients_from_frequency,
     frequency_from_coefficients,
-    of_body,
     of_springs,
 )
 from sandbox.physics.forms import Firmness, StiffForm, strength_of
 from sandbox.physics.world import BANK_UNOPENED, World
 
-# f^2 sag H / g of a box that stands on the floor, which holds its foot: 0.73 of that of a free column.
-STANDING = 0.055
+# F^2 sag H / g of a box that stands on the floor, which holds its foot: 0.75 of that of a free column.
+STANDING = 0.0565
 # Damping ratio of a sag, where no higher one is needed: it wobbles a few times. Then the least that is possible, and
 # a little more.
 USUAL_RATIO = 0.15
@@ -99,12 +98,12 @@ class Reach:
 
     def reading(self, stiffness: float, damping: float) -> tuple[float, float, float]:
         """Sag, frequency [Hz] and damping ratio of a body of these Cs and Cd as a whole."""
-        hz, ratio = frequency_from_coefficients(stiffness, damping, self.h)
-        return self.sag_of(hz), hz, ratio
+        return self.sag_of(stiffness, damping), *frequency_from_coefficients(stiffness, damping, self.h)
 
-    def sag_of(self, hz: float) -> float:
-        """The sag of a body whose slowest wobble has this frequency [Hz]; inf where that is 0."""
-        squares = self.height * hz * hz
+    def sag_of(self, stiffness: float, damping: float) -> float:
+        """The sag of a body of these Cs and Cd as a whole; inf where Cs is 0."""
+        per_second = stiffness / (1.0 - min(damping, HIGHEST_COEFFICIENT)) / (2.0 * math.pi * self.h) ** 2
+        squares = self.height * per_second
         return STANDING * self.gravity / squares if squares > 0.0 else math.inf
 
     def _of_sag(self, sag: float) -> tuple[float, float]:
@@ -113,19 +112,27 @@ class Reach:
         if not self.height > 0.0:
             raise OutOfReach("it has no height along gravity to sag by; say its frequency in Hz", None)
 
-        def frequency(share: float) -> float:
-            # Along a ratio that is the least possible anyhow, there is no highest frequency.
-            return math.sqrt(STANDING * self.gravity / (share * self.height))
-
         def can(share: float) -> bool:
-            hz = frequency(share)
-            return self._can_share(hz, usual_ratio(hz, self.h))
+            # Along a ratio that is the least possible anyhow, there is no highest frequency.
+            return self._can_share(*self._standing(share))
 
         if can(sag):
-            hz = frequency(sag)
-            return self._pair(hz, usual_ratio(hz, self.h))
+            return self._pair(*self._standing(sag))
         least = _rounded(1.0 - _last(lambda less: can(1.0 - less), 0.0, 1.0 - sag), ROUND_CEILING)
         raise self._out_of_reach(Firmness(sag=sag), Firmness(sag=least) if can(least) else Firmness(sag=0.0))
+
+    def _standing(self, sag: float) -> tuple[float, float]:
+        """Frequency [Hz] and damping ratio of the wobble of a body that sags so far."""
+        highest = math.sqrt(STANDING * self.gravity / (sag * self.height))
+        ratio = usual_ratio(highest, self.h)
+
+        def is_softer(hz: float) -> bool:
+            try:
+                return self.sag_of(*coefficients_from_frequency(hz, ratio, self.h)) > sag
+            except ValueError:
+                return False
+
+        return _last(is_softer, 0.0, SPARE_RATIO * highest), ratio
 
     def _out_of_reach(self, asked: Firmness, nearest: Firmness) -> OutOfReach:
         at = f"at {1.0 / self.h:g} ticks a second"
@@ -165,19 +172,6 @@ def set_firmness(world: World, body: int, stiffness: float, damping: float) -> N
         world.change("energy_bank", BANK_UNOPENED, ends[form.springs])
 
 
-def coefficients_of(world: World, body: int, lowest_mode: float) -> tuple[float, float] | None:
-    """Cs and Cd of a body as a whole, by its place in the world's `forms`; None where its springs have several.
-
-    lowest_mode: that of its form.
-    """
-    springs = world.forms[body].springs
-    springs = springs[world.spring_active[springs]]
-    stiffness, damping = world.stiffness[springs], world.damping[springs]
-    if not len(springs) or np.ptp(stiffness) or np.ptp(damping):
-        return None
-    return of_body(float(stiffness[0]), float(damping[0]), lowest_mode)
-
-
 def usual_ratio(hz: float, h: float) -> float:
     """Damping ratio of a sag of that frequency [Hz] in ticks of h [s]."""
     return max(USUAL_RATIO, min(1.0, _rounded(SPARE_RATIO * least_ratio(hz, h), ROUND_CEILING)))
@@ -200,11 +194,6 @@ def least_ratio(hz: float, h: float) -> float:
         middle = (low + high) // 2
         low, high = (low, middle) if passive(middle / RATIO_STEPS) else (middle, high)
     return high / RATIO_STEPS
-
-
-def word_of(sag: float) -> str | None:
-    """The word of a sag; None where it has none."""
-    return next((word for word, value in WORDS.items() if math.isclose(sag, value, rel_tol=0.05, abs_tol=1e-9)), None)
 
 
 def _rounded(value: float, rounding: str) -> float:

@@ -59,7 +59,7 @@ class Driver:
 
     @property
     def panel(self):
-        return self.app.play.panel
+        return self.app.panel.panel
 
     @property
     def editor(self):
@@ -97,7 +97,7 @@ class Driver:
 
     def take_sliders(self):
         """Have the whole panel in sight, with sliders in place of the pad."""
-        self.app.play.shape.world = True
+        self.app.play.shape.open.update(engineers=True, world=True)
         self.app.play._set_by("sliders")
         self.frames(2)
 

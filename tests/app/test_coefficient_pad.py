@@ -4,10 +4,9 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.play.coefficient_pad import critical_stiffness
-from sandbox.app.play.response_curve import response, rest_tick
 from sandbox.physics.analysis.coefficient_zones import coefficient_zones
-from sandbox.physics.equation import frequency_from_coefficients
+from sandbox.physics.analysis.spring_motion import errors_of, motion_of, swings_back
+from sandbox.physics.equation import frequency_from_coefficients, spring_impulse
 from sandbox.session.commands import SetCoefficients
 from sandbox.session.session import Session
 from tests.app.conftest import small_level
@@ -20,6 +19,14 @@ def padded(open_app):
     driver.click_widget(driver.panel.ways.buttons["pad"])
     driver.frames(2)
     return driver
+
+
+@pytest.fixture
+def unfolded(padded):
+    """The same with the section for engineers open."""
+    padded.app.play.fold("engineers")
+    padded.frames(2)
+    return padded
 
 
 def pair(driver, name="rope:0"):
@@ -60,11 +67,11 @@ def test_arrow_keys_move_the_focused_pad_along_one_axis_alone(padded):
     padded.key(pygame.K_LEFT, pygame.KMOD_SHIFT)
     assert 0.25 < pair(padded)[0] < 0.3 and pair(padded)[1] == damping
     padded.key(pygame.K_HOME)
-    assert pair(padded) == (1e-5, damping)
+    assert pair(padded) == (padded.panel.pad.state.scale.lowest, damping)
 
 
-def test_numbers_hz_and_pad_show_the_same_pair(padded):
-    panel = padded.panel
+def test_numbers_hz_and_pad_show_the_same_pair(unfolded):
+    padded, panel = unfolded, unfolded.panel
     padded.fill(panel.frequency, "3")
     padded.fill(panel.ratio, "0.5")
     assert (panel.pad.state.stiffness, panel.pad.state.damping) == pair(padded)
@@ -91,11 +98,11 @@ def test_the_pad_is_whole_in_the_smallest_window_and_the_world_folds(padded):
         padded.app.act("panel")
         padded.frames(2)
     panel = padded.panel
-    assert panel.is_folded and not panel.solver.buttons["direct"].visible
+    assert not panel.is_open("engineers") and not panel.solving.solver.buttons["direct"].visible
     assert panel.area.view.rect.contains(panel.pad.rect)
-    padded.app.play._fold("open")
+    padded.app.play.fold("engineers")
     padded.frames(2)
-    assert padded.panel.solver.buttons["direct"].visible
+    assert padded.panel.solving.solver.buttons["direct"].visible
 
 
 def test_who_chose_the_pad_finds_it_in_the_next_run(padded):
@@ -124,14 +131,25 @@ def test_with_substeps_a_tick_may_have_more_and_the_direct_solver_bounds_everyth
     assert not zones(solver="iterative").holds
 
 
-def test_one_spring_swings_on_one_side_of_the_critical_line_and_not_on_the_other():
-    for damping in (0.05, 0.4, 0.9):
-        critical = float(critical_stiffness(np.array(damping)))
-        assert response(0.98 * critical, damping).min() > -1e-9
-        assert response(1.05 * critical, damping).min() < 0.0
-        assert frequency_from_coefficients(critical, damping, 1.0)[1] == pytest.approx(1.0, abs=1e-6)
+def test_a_spring_swings_just_where_its_errors_change_sign():
+    for stiffness in (0.001, 0.05, 0.3, 0.9):
+        for damping in (0.01, 0.2, 0.6, 0.95, 1.0):
+            swings = bool(swings_back(np.array(stiffness), np.array(damping)))
+            assert swings == bool(errors_of(stiffness, damping, 4000).min() < -1e-12), (stiffness, damping)
 
 
-def test_the_curve_ends_where_the_spring_rests():
-    assert response(1.0, 1.0).tolist()[:3] == [1.0, 0.0, 0.0] and rest_tick(response(1.0, 1.0)) == 1
-    assert rest_tick(response(1e-5, 0.0)) is None
+@pytest.mark.parametrize("stiffness", [1e-5, 0.001, 0.1, 0.5, 0.9, 1.0])
+@pytest.mark.parametrize("damping", [0.01, 0.3, 0.9, 0.99, 1.0])
+def test_what_is_said_of_a_spring_is_what_a_run_of_it_does(stiffness, damping):
+    error, speed, errors = 1.0, 0.0, [1.0]
+    for _ in range(60_000):
+        speed += spring_impulse(stiffness, damping, error, speed, 1.0, 1.0)
+        error += speed
+        errors.append(error)
+    errors = np.array(errors)
+    assert errors_of(stiffness, damping, 200) == pytest.approx(errors[:201], abs=1e-9)
+    motion = motion_of(stiffness, damping, 0.5)
+    for share, said in ((0.5, motion.half), (0.02, motion.rest)):
+        above = np.flatnonzero(np.abs(errors) > share)[-1] + 1
+        assert said == 0.5 * above if above < 60_000 else said > 29_000.0
+    assert motion.swings == bool(errors.min() < -1e-9)

@@ -14,11 +14,19 @@ BOX = {"shape": {"box": [1, 1]}, "position": [0, 1], "spacing": 0.25}
 @pytest.fixture
 def jelly(open_app):
     """The app on a jelly box of 1 m that sags by a tenth."""
-    return open_app(parse_level(firm_level({"sag": 0.1}, floor=True, **BOX), "jelly"))
+    return unfolded(open_app(parse_level(firm_level({"sag": 0.1}, floor=True, **BOX), "jelly")))
+
+
+def unfolded(driver):
+    """The app with all of the panel's numbers in sight."""
+    driver.app.play.fold("engineers")
+    driver.frames(2)
+    return driver
 
 
 def texts(driver):
-    return [field.text for field in driver.panel.firmness.fields]
+    rows = driver.panel.firmness
+    return [field.text for field in (rows.sag, rows.frequency, rows.ratio)]
 
 
 def test_the_rows_show_the_firmness_of_the_level_in_words_and_numbers(jelly):
@@ -40,17 +48,17 @@ def test_a_word_makes_the_body_so_and_is_undone(jelly):
 
 def test_typed_numbers_are_taken_and_those_out_of_reach_become_the_nearest(jelly):
     rows = jelly.panel.firmness
-    jelly.fill(rows.fields[0], "25 %")
+    jelly.fill(rows.sag, "25 %")
     jelly.frames(2)
     assert texts(jelly)[0] == "25" and rows.words.chosen == "jelly"
-    jelly.fill(rows.fields[1], "3")
+    jelly.fill(rows.frequency, "3")
     jelly.frames(2)
     assert texts(jelly)[1:] == ["3", "0.156"]
-    jelly.fill(rows.fields[2], "0.1")
+    jelly.fill(rows.ratio, "0.1")
     jelly.frames(2)
     assert texts(jelly)[1:] == ["3", "0.156"]
     assert "body: 3 Hz at ratio 0.1 is out of reach; it has the nearest now, 3 Hz at ratio 0.156." in jelly.notices
-    jelly.fill(rows.fields[0], "90")
+    jelly.fill(rows.sag, "90")
     jelly.frames(2)
     assert any(text.startswith("Sag: 90 is outside 0 to 40") for text in jelly.notices)
 
@@ -75,7 +83,7 @@ def test_all_bodies_are_set_in_one_gesture_and_one_alone_where_it_is_chosen(open
     data = json.loads(firm_level({"sag": 0.1}, floor=True, **BOX))
     data["bodies"].append({**data["bodies"][0], "id": "other", "position": [3, 1], "firmness": {"sag": 0.02}})
     data["bodies"].append({"type": "rope", "id": "rope", "start": [5, 3], "end": [7, 3], "segments": 4})
-    driver = open_app(parse_level(json.dumps(data).encode(), "two"))
+    driver = unfolded(open_app(parse_level(json.dumps(data).encode(), "two")))
     rows = driver.panel.firmness
     assert rows.bodies == ["body", "other"] and texts(driver) == ["mixed"] * 3
     driver.click_widget(rows.words.buttons["hard"])
@@ -83,7 +91,7 @@ def test_all_bodies_are_set_in_one_gesture_and_one_alone_where_it_is_chosen(open
     assert texts(driver)[0] == "0.3"
     entries = driver.playback.session._log
     assert len(entries) == 2 and len({entry.gesture for entry in entries}) == 1
-    rows.choose_body("other")
+    driver.panel.choose_body("other")
     driver.click_widget(rows.words.buttons["jelly"])
     driver.frames(2)
     assert (
@@ -117,7 +125,7 @@ def test_the_menus_follow_bodies_that_join_a_run_and_are_taken_back(jelly):
     session.submit(AddBody(definition, materials={"dough": {"stiffness": 0.4, "damping": 0.9}}))
     jelly.frames(10)
     assert offered(panel.firmness.menu) == [*bodies, "+1"] and len(offered(panel.menu)) == len(materials) + 1
-    panel.firmness.choose_body("+1")
+    panel.choose_body("+1")
     panel.choose_material(len(materials) - 1)
     jelly.playback.session.undo()
     jelly.frames(20)

@@ -161,7 +161,7 @@ def test_keys_and_buttons_show_overlays_with_their_legend_and_take_them_away(dri
         driver.key(key)
         driver.frames(1)
         assert shown == {name}
-        driver.click_widget(driver.panel.views.buttons[name])
+        driver.click_widget(driver.panel.world.views.buttons[name])
         driver.frames(1)
         assert shown == set()
     before = pygame.surfarray.array3d(driver.app.display.surface).astype(int)

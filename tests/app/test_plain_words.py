@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from sandbox.app.panel.panel import ALL_MATERIALS
 from sandbox.app.play.breaks import QUIET, Breaks
-from sandbox.app.play.panel import ALL_MATERIALS
 from sandbox.app.screen import Figures
 from sandbox.level.format.files import load_level
 from sandbox.session.session import Session

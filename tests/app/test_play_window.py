@@ -106,13 +106,14 @@ def test_the_panel_folds_in_a_narrow_window_comes_back_with_room_and_obeys_the_p
 
 def test_what_the_panel_has_no_room_for_is_scrolled_to_by_the_keyboard(driver):
     driver.app.display.window.size = (900, 480)
+    driver.app.play.fold("world")
     driver.frames(2)
     area = driver.panel.area
     assert area.bar.needed
-    driver.app.ui.focus_on(driver.panel.hand.buttons["strong"])
+    driver.app.ui.focus_on(driver.panel.world.hand.buttons["strong"])
     driver.frames(2)
     view = area.view.rect
-    assert view.contains(driver.panel.hand.buttons["strong"].rect)
+    assert view.contains(driver.panel.world.hand.buttons["strong"].rect)
 
 
 def test_arrow_keys_of_a_level_win_are_shown_and_with_shift_move_the_cursor(open_app):

@@ -23,7 +23,8 @@ def show_panel(app):
 PLAYED = {
     "pad": lambda app: (show_panel(app), app.play._set_by("pad")),
     "sliders": lambda app: app.play._set_by("sliders"),
-    "world": lambda app: app.play._fold("open"),
+    "engineers": lambda app: app.play.fold("engineers"),
+    "world": lambda app: app.play.fold("world"),
     "everything": lambda app: [app.act(name) for name in ("graphs", "timeline", "palette")],
     "catalogue": lambda app: app.act("catalogue"),
     "compare": lambda app: app.act("compare"),

@@ -37,7 +37,7 @@ def fault(firmness, **body):
         ("soft", 'firmness: "soft" is text, not an object {...}'),
         ({"hz": 10.0, "ratio": 0.15},
          "firmness: 10 Hz at ratio 0.15 is out of reach at 60 ticks a second; the nearest is 10 Hz at ratio 0.479"),
-        ({"sag": 1e-7}, "firmness: sag 1e-07 is out of reach at 60 ticks a second; the nearest is sag"),
+        ({"sag": 1e-9}, "firmness: sag 1e-09 is out of reach at 60 ticks a second; the nearest is sag"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_had_is_a_fault_that_says_what_can(firmness, text):

@@ -133,7 +133,8 @@ def test_the_least_damping_ratio_is_that_at_which_nothing_gains_energy(ratio, hi
 def test_the_reading_of_a_body_is_what_was_asked_of_it(hz):
     reach = Reach(0.01, 2.0, 9.81, TICK)
     asked = reach.nearest(Firmness(hz=hz, ratio=0.2))
-    assert reach.reading(*reach.coefficients(asked)) == pytest.approx((reach.sag_of(hz), hz, asked.ratio), rel=1e-6)
+    pair = reach.coefficients(asked)
+    assert reach.reading(*pair) == pytest.approx((reach.sag_of(*pair), hz, asked.ratio), rel=1e-6)
     for sag in list(WORDS.values())[:-1]:
         assert reach.reading(*reach.coefficients(Firmness(sag=sag)))[0] == pytest.approx(sag, rel=1e-6)
 

@@ -11,10 +11,11 @@ from sandbox.app.application import Application
 from sandbox.app.compare.difference import Difference, draw_chip, draw_pill
 from sandbox.app.compare.twin import TwinPlayback, coefficients_of
 from sandbox.app.draw.colours import LINE, TEXT
-from sandbox.app.play.panel import SOLVER_LABELS, Panel
+from sandbox.app.panel.panel import Panel
+from sandbox.app.panel.side_panel import SidePanel
+from sandbox.app.panel.solver_rows import SOLVER_LABELS
 from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.playback import Playback
-from sandbox.app.play.side_panel import SidePanel
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.profile import Profile

@@ -11,7 +11,7 @@ from sandbox.app.compare.difference import draw_card_of_words
 from sandbox.app.compare.hooke_level import CD, C, SpringTrial, lesson_level
 from sandbox.app.compare.lesson_panel import LessonPanel
 from sandbox.app.compare.twin import TwinPlayback
-from sandbox.app.play.side_panel import SidePanel
+from sandbox.app.panel.side_panel import SidePanel
 from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Pixel

@@ -24,7 +24,7 @@ from sandbox.app.edit.editing import PointerTool
 from sandbox.app.edit.side.options import OPTIONS_HEIGHT, OptionsRow
 from sandbox.app.edit.side.side import Side
 from sandbox.app.edit.watch import Watch
-from sandbox.app.play.side_panel import ROOM_FOR_PANEL
+from sandbox.app.panel.side_panel import ROOM_FOR_PANEL
 from sandbox.app.play.stage import PICK_RADIUS
 from sandbox.app.play.status import STATUS_HEIGHT, counted_parts
 from sandbox.app.play.toolbar import BAR_HEIGHT

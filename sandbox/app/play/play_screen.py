@@ -16,6 +16,9 @@ from sandbox.app.edit.bake_choice import ask_to_keep
 from sandbox.app.edit.rate_choice import ask_for_pace
 from sandbox.app.graphs.graph_dock import GraphDock
 from sandbox.app.loop import SPEEDS
+from sandbox.app.panel.panel import Panel, PanelShape
+from sandbox.app.panel.panel_rows import PANEL_WIDTH
+from sandbox.app.panel.side_panel import ROOM_FOR_PANEL, SidePanel
 from sandbox.app.parts.part_page import PartPage
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.hand_labels import draw_labels
@@ -24,9 +27,7 @@ from sandbox.app.play.legend import Legend
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.out_of_view import OutOfView
 from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
-from sandbox.app.play.panel import PANEL_WIDTH, Panel, PanelShape
 from sandbox.app.play.playback import Playback
-from sandbox.app.play.side_panel import ROOM_FOR_PANEL, SidePanel
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
@@ -58,6 +59,8 @@ ROOM_BESIDE_PANEL = 340.0
 HAND = "hand"
 # And how springs are set: "pad" or "sliders".
 SPRINGS = "springs"
+# And, with the name of a section of the panel behind it, whether that is open.
+FOLD = "open_"
 
 
 class PlayScreen:
@@ -92,6 +95,10 @@ class PlayScreen:
         self.stage.place(self.viewport, app.ui.scale)
         kept = preference(SPRINGS)
         self.shape = PanelShape(kept if kept in ("pad", "sliders") else None)
+        for section in ("engineers", "world"):
+            is_open = preference(f"{FOLD}{section}")
+            if isinstance(is_open, bool):
+                self.shape.open[section] = is_open
         kept = preference(HAND)
         if isinstance(kept, str) and kept in STRENGTHS:
             self.stage.drag.strength = kept
@@ -196,7 +203,7 @@ class PlayScreen:
         if self.show_panel:
             height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT - below_panel
             choices: dict[str, Callable[[str], None]] = {
-                "hand": self.choose_strength, "view": self._app.act, "springs": self._set_by, "fold": self._fold,
+                "hand": self.choose_strength, "view": self._app.act, "springs": self._set_by, "fold": self.fold,
                 "rate": self._ask_rate,
             }  # fmt: skip
             self.panel = self._make_panel(ui, choices, height)
@@ -229,9 +236,12 @@ class PlayScreen:
         else:
             ask_for_pace(self._app, self.playback, int(typed))
 
-    def _fold(self, how: str) -> None:
-        self.shape.world = how == "open"
-        self._app.rebuild()
+    def fold(self, section: str) -> None:
+        """Open a section of the panel, or fold it, here and in later runs."""
+        if isinstance(self.panel, Panel):
+            self.shape.open[section] = not self.panel.is_open(section)
+            set_preference(f"{FOLD}{section}", self.shape.open[section])
+            self._app.rebuild()
 
     # Actions.
 

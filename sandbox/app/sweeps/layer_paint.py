@@ -7,6 +7,7 @@ import pygame
 
 from sandbox.app.draw.colours import DECADE, MUTED, TEXT
 from sandbox.app.sweeps.sweep_layer import BLOWN, SweepLayer
+from sandbox.app.widgets.coefficient_scale import CoefficientScale
 from sandbox.app.widgets.layout import WindowLayout
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones
 
@@ -19,12 +20,10 @@ Point = tuple[float, float]
 
 
 def paint_cells(
-    surface: pygame.Surface, inside: pygame.Rect, layer: SweepLayer, ends: tuple[float, float], ui: WindowLayout
+    surface: pygame.Surface, inside: pygame.Rect, layer: SweepLayer, scale: CoefficientScale, ui: WindowLayout
 ) -> None:
-    """Fill a map whose axes go from one power of ten to another."""
-    across = 10.0 ** np.linspace(*ends, inside.width)
-    up = 10.0 ** np.linspace(*ends[::-1], inside.height)
-    pixels = layer.pixels(across, up, _hatch(inside.size, ui))
+    """Fill a map both of whose axes are of a scale."""
+    pixels = layer.pixels(scale.values(inside.width), scale.values(inside.height)[::-1], _hatch(inside.size, ui))
     surface.blit(pygame.surfarray.make_surface(pixels), inside)
 
 

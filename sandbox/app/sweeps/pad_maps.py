@@ -4,7 +4,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.play.coefficient_pad import CoefficientPad
+from sandbox.app.panel.coefficient_pad import CoefficientPad
 from sandbox.app.play.playback import Playback
 from sandbox.app.sweeps.pad_sweeps import PadSweeps, measures_of
 from sandbox.app.widgets.painted import wrapped

@@ -8,13 +8,12 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
 import platformdirs
 
 from sandbox.app.compiling import usual_processes
 from sandbox.app.sweeps.sweep_layer import SweepLayer
 from sandbox.app.sweeps.sweep_measures import measure_of
-from sandbox.app.widgets.sliders import HIGHEST, LOWEST
+from sandbox.app.widgets.coefficient_scale import PLAIN
 from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format.model import Level
 from sandbox.physics.settings import WorldSettings
@@ -154,7 +153,7 @@ def _find(file: Path | None, level: Level, settings: WorldSettings, material: st
             grid, rows = read_table(file, level, (material,))
             _place_in(grid, settings)
             return _Found(file, grid, None, rows)
-    values = tuple(float(f"{each:.9g}") for each in 10.0 ** np.linspace(LOWEST, HIGHEST, SIDE))
+    values = tuple(float(f"{each:.9g}") for each in PLAIN.values(SIDE))
     grid = SweepGrid(level, {CS: values, CD: values}, round(SECONDS * level.settings.tick_rate), material)
     table = _kept_table(grid)
     with contextlib.suppress(SweepError, OSError, UnicodeDecodeError):

@@ -7,12 +7,16 @@ from pygame_gui.elements import UITextEntryLine
 
 from sandbox.app.widgets.button import Button
 
+# What stands in the place of a number where there is none, and where things differ in it.
+DASH, MIXED = "\u2013", "mixed"
+
 
 @dataclass
 class Field:
     """A line to type into; commit gets the text and says whether it is taken, else the old text comes back.
 
-    turn: what a notch of the wheel over it does, and an arrow key in it, +1 or -1; None = nothing.
+    turn: what a notch of the wheel over it does, and an arrow key in it, +1 or -1; None = nothing. is_begun: it has
+    just been entered.
     """
 
     entry: UITextEntryLine
@@ -21,6 +25,16 @@ class Field:
     focused: bool = False
     enter: Callable[[str], object] | None = None
     turn: Callable[[int], object] | None = None
+    is_begun: bool = False
+
+    @property
+    def is_number(self) -> bool:
+        """Whether it shows a number, or a word in the place of one."""
+        try:
+            float(self.text)
+        except ValueError:
+            return self.text in (DASH, MIXED)
+        return True
 
     def show(self, text: str) -> None:
         """Show a value, unless the person is typing one."""

@@ -47,7 +47,7 @@ class SafeFont(pygame.font.Font):
                 return super().render(text, *arguments, **named)
             pieces = self._pieces(text)
             if len(pieces) == 1 and pieces[0][1].share == 1.0:
-                return pieces[0][1].font.render(pieces[0][0], *arguments, **named)
+                return pygame.font.Font.render(pieces[0][1].font, pieces[0][0], *arguments, **named)
             return _side_by_side(pieces, *arguments[:2])
         except pygame.error:  # nothing but characters without a width
             return super().render("", *arguments, **named)

@@ -38,6 +38,10 @@ class Painted(UIElement):
         """React to a key while focused; True where the key is used."""
         return False
 
+    def turn(self, notches: float) -> bool:
+        """React to the wheel after a click on the widget; True where it is used."""
+        return False
+
     def is_press(self, event: pygame.event.Event) -> bool:
         """Whether an event is a press of the left button on the widget."""
         if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1:

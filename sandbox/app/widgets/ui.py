@@ -293,23 +293,41 @@ class Ui(WindowLayout):
             return True
         if event.type == pygame.KEYDOWN and self._press_key(event):
             return True
-        if event.type == pygame.MOUSEWHEEL and self._turn_field(event.precise_y or event.y):
+        if event.type == pygame.MOUSEWHEEL and self._turn(event.precise_y or event.y):
             return True
         if event.type == pygame.MOUSEBUTTONDOWN:
-            self._focus = self._left = None
+            # Tab goes on from what was clicked.
+            self._focus, self._left = None, self._under_mouse()
         used = bool(self.manager.process_events(event))
         self._finish_left_fields()
+        if event.type == pygame.MOUSEBUTTONUP and event.button == 1:
+            self._select_number()
         # What a widget answers comes before what the person did next, which may be in the queue already.
         for answer in pygame.event.get(ANSWERS, pump=False):
             self.process(answer)
         return used
 
-    def _turn_field(self, notches: float) -> bool:
-        """Step the value of the line under the mouse, where it has steps."""
+    def _under_mouse(self) -> UIElement | None:
         at = self.manager.get_mouse_position()
-        under = (self._fields[widget] for widget in self._ring() if widget in self._fields and widget.hover_point(*at))
-        field = next(under, None)
+        return next((widget for widget in reversed(self._ring()) if widget.hover_point(*at)), None)
+
+    def _turn(self, notches: float) -> bool:
+        """Step the value of the line under the mouse, or of the painted widget that was clicked, where it has steps."""
+        under, here = self._under_mouse(), self._focus or self._left
+        if isinstance(under, Painted):
+            return under is here and under.turn(notches)
+        field = self._fields.get(under) if under is not None else None
         return field is not None and field.step(1 if notches > 0.0 else -1)
+
+    def _select_number(self) -> None:
+        """Select the number in a line that a click has begun to edit, so that what is typed replaces it."""
+        field = self._fields.get(self._left) if self._left is not None else None
+        if field is None or not field.entry.is_focused or not field.is_begun:
+            return
+        field.is_begun = False
+        first, last = field.entry.select_range
+        if first == last and field.is_number:
+            field.entry.select_range = [0, len(field.entry.get_text())]
 
     def _finish_left_fields(self) -> None:
         for field in list(self._fields.values()):
@@ -317,6 +335,8 @@ class Ui(WindowLayout):
                 field.finish()
                 # A line of text that is left turns the repetition of keys off.
                 pygame.key.set_repeat(*KEY_REPEAT)
+            elif field.entry.is_focused and not field.focused:
+                field.is_begun = True
             field.focused = field.entry.is_focused
 
     def _press_key(self, event: pygame.event.Event) -> bool:

@@ -14,9 +14,10 @@ from sandbox.app.edit.side.boxes import Scrub
 from sandbox.app.edit.side.form import GAP, ROW
 from sandbox.app.edit.side.list_head import HeadButton, ListHead
 from sandbox.app.edit.side.rows import Row
+from sandbox.app.panel.readings import number
 from sandbox.app.sentences import sentence
 from sandbox.app.widgets.fields import Field
-from sandbox.app.widgets.sliders import LogSlider
+from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.materials import add_material, assign, delete_material, rename_material, set_material
 from sandbox.editor.panel.field_info import FieldInfo, abouts
@@ -46,7 +47,7 @@ class MaterialsPage:
         self._screen, self._ui = screen, screen.ui
         self.chosen = _of_selection(screen.document)
         self.fields: dict[str, Field] = {}
-        self.sliders: dict[str, LogSlider] = {}
+        self.sliders: dict[str, Slider] = {}
         self._made_for: tuple[object, ...] = ()
         self._shown: tuple[object, ...] = ()
         self._slid: tuple[str, float] | None = None
@@ -113,7 +114,7 @@ class MaterialsPage:
             return
         place = self._ui.rect(-4, self._y - 4, self._inside + 8, ROW)
         slide = partial(self._slide, name)
-        self.sliders[name] = LogSlider(self._ui, place, slide, self._end_slide, self.area.content)
+        self.sliders[name] = Slider(self._ui, place, slide, self._end_slide, self.area.content)
         self._widgets.append(self.sliders[name])
         self._y += ROW - 2
 
@@ -168,11 +169,11 @@ class MaterialsPage:
             value = getattr(material, name)
             self.fields[name].show("" if value is None else number_text(value))
         for name, slider in self.sliders.items():
-            slider.show_value(getattr(material, name), None, False, True)
+            slider.show_state(SliderState(getattr(material, name)))
         if isinstance(material, NissenMaterial):
             reading = frequency_from_coefficients(material.stiffness, material.damping, 1.0 / level.settings.tick_rate)
             for name, value in zip(("frequency", "ratio"), reading, strict=True):
-                self.fields[name].show("infinite" if math.isinf(value) else f"{value:.4g}")
+                self.fields[name].show(number(value))
 
     def _used(self, level: Level) -> tuple[Counter[str], Counter[str]]:
         """How many bodies and loose springs are of each material, counted anew only where these have changed."""

@@ -3,7 +3,7 @@
 from collections.abc import Set
 from typing import Protocol
 
-from sandbox.app.play.coefficient_pad import CoefficientPad
+from sandbox.app.panel.coefficient_pad import CoefficientPad
 from sandbox.app.play.playback import Playback
 
 # Narrower windows begin without a panel at their side [layout units].

@@ -1,71 +1,61 @@
-"""Panel: Cs and Cd by a pad or by sliders, with their Hz reading and what is proven; gravity, solver and settings."""
+"""Panel: how firm bodies are, Cs and Cd by a pad or sliders and what is proven of them; solver, gravity, settings."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence, Set
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Set
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
-import pygame
 
-from sandbox.app.draw.colours import WARNING
+from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.edit.side.scroll import ScrollArea
-from sandbox.app.play.coefficient_pad import STIFFNESSES, CoefficientPad, PadState
-from sandbox.app.play.firmness_rows import ALL_BODIES, FirmnessRows
+from sandbox.app.panel.coefficient_pad import STIFFNESSES, CoefficientPad, PadState
+from sandbox.app.panel.firmness_rows import ALL_BODIES, FirmnessRows
+from sandbox.app.panel.panel_rows import ENTRY_WIDTH, INSIDE, MARGIN, PANEL_WIDTH, ROW, PanelRows
+from sandbox.app.panel.readings import number, stability_words
+from sandbox.app.panel.response_curve import ResponseCurve
+from sandbox.app.panel.solver_rows import SolverRows
+from sandbox.app.panel.world_rows import WorldRows
 from sandbox.app.play.playback import Playback
-from sandbox.app.play.response_curve import ResponseCurve
-from sandbox.app.play.view_row import ViewRow
 from sandbox.app.sentences import sentence
 from sandbox.app.sweeps.pad_maps import PadMaps
 from sandbox.app.sweeps.pad_sweeps import PadSweeps
-from sandbox.app.widgets.fields import Field, typed_number
-from sandbox.app.widgets.fold import FoldHeading
+from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale, scale_for
+from sandbox.app.widgets.fields import DASH, MIXED, typed_number
 from sandbox.app.widgets.painted import TextBlock
-from sandbox.app.widgets.sliders import LogSlider
+from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.app.widgets.ui import Ui
-from sandbox.level.format.limits import GRAVITY_LIMIT, SUBSTEPS
+from sandbox.level.format.model import NissenMaterial
+from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
-from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
 from sandbox.physics.firmness import WORDS
-from sandbox.physics.settings import AUTO
-from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.stability import CoefficientLimits, coefficient_limits
-from sandbox.physics.world import LAW_HOOKE
-from sandbox.session.commands import Command, SetCoefficients, SetGravity, SetSolver
-from sandbox.tools.drag import STRENGTHS
+from sandbox.physics.world import LAW_HOOKE, Floats
+from sandbox.session.commands import Command, SetCoefficients
 
 # Sizes in layout units.
-PANEL_WIDTH = 292.0
-MARGIN = 18.0
-INSIDE = PANEL_WIDTH - 2 * MARGIN
-ROW = 28.0
-ENTRY_WIDTH = 82.0
-HAND_LABEL = 46.0
-# Height that everything takes; in a lower window rows and gaps shrink by the same part.
-FULL_HEIGHT = 636.0
-# Rows shrink to no less than this part of their height: text would be cut.
-TIGHTEST = 0.94
-# What is added where there are bodies whose firmness can be set; by the pad, in place of sliders; and what of the full
-# height the section of the world takes, which is folded where the pad leaves it no room.
-FIRMNESS_HEIGHT = 118.0
-PAD_HEIGHT, CURVE_HEIGHT = 208.0, 84.0
-PAD_MORE = PAD_HEIGHT + CURVE_HEIGHT - 68.0
-WORLD_HEIGHT = 300.0
+# From this height of the panel on Cs and Cd are set by the pad, and from this on the world is open.
+PAD_FROM, WORLD_FROM = 470.0, 840.0
+PAD_HEIGHT, CURVE_HEIGHT = 214.0, 84.0
 SPRINGS_CHOICE = 118.0
 SIDES_HEIGHT = 38.0
 # Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
 LOOK_EVERY = 15
 ALL_MATERIALS = "All springs"
-DASH = "–"
-SOLVER_LABELS = {"single_pass": "Single pass", "iterative": "Iterative", "direct": "Direct"}
+CS_TIP = "Cs: part of its error that a spring takes back in a tick; more is stiffer. 0 to 1"
+CD_TIP = "Cd: part of its speed that a spring takes away in a tick; more is calmer. 0 to 1"
 
 
 @dataclass
 class PanelShape:
-    """How a person has the panel: springs by "pad" or "sliders", the world open or not; None: as room allows."""
+    """How a person has the panel: springs by "pad" or "sliders", None: as room allows; which sections are open.
+
+    open: by name; those that are not in it are as room allows.
+    """
 
     springs: str | None = None
-    world: bool | None = None
+    open: dict[str, bool] = field(default_factory=dict)
     # Of two runs the one that it shows: "A" or "B".
     side: str | None = None
     # What is measured of the level for the pad.
@@ -76,8 +66,8 @@ class Panel:
     """The panel at the right of a window; `say` shows a line to the person.
 
     choose: what is done with a strength of the "hand", with a "view" that is shown or no longer, with how "springs" are
-    set ("pad" or "sliders"), the "fold" of the world ("open" or "folded"), another tick "rate" [1/s], and of two runs
-    the "side" to show.
+    set ("pad" or "sliders"), the section whose "fold" changes, another tick "rate" [1/s], and of two runs the "side"
+    to show.
     """
 
     def __init__(
@@ -97,166 +87,131 @@ class Panel:
         self._limits_of: tuple[object, ...] = ()
         self._refreshes = -1
         self._refreshed_at: tuple[object, ...] = ()
-        self._y = 0.0
         self.firmness = FirmnessRows(playback, say)
+        self.solving = SolverRows(playback, say, choose["rate"])
+        self.world = WorldRows(playback, say, choose)
         self._offered = self._present()
-        full = FULL_HEIGHT + (FIRMNESS_HEIGHT if self.firmness.shown else 0.0)
-        # With the world folded, if need be.
-        least = TIGHTEST * (full + PAD_MORE - WORLD_HEIGHT)
-        self.by_pad = height >= least if shape.springs is None else shape.springs == "pad"
-        full += (PAD_MORE if self.by_pad else 0.0) + (0.0 if shape.side is None else SIDES_HEIGHT)
-        self.is_folded = (self.by_pad and height < TIGHTEST * full) if shape.world is None else not shape.world
-        full -= WORLD_HEIGHT if self.is_folded else 0.0
-        self._tight = min(1.0, max(height / full, TIGHTEST))
+        self._scale_of: tuple[object, ...] = ()
+        self._scale: CoefficientScale = PLAIN
+        self._body: BodyMotion | None = None
+        self.by_pad = height >= PAD_FROM if shape.springs is None else shape.springs == "pad"
+        self._open = {"engineers": False, "world": height >= WORLD_FROM, **shape.open}
         background = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
         # What does not fit is scrolled to.
         self.area = ScrollArea(ui, ui.rect(0, 0, PANEL_WIDTH, height), background)
-        self.back = self.area.content
+        self.rows = rows = PanelRows(ui, self.area.content)
         if shape.side is not None:
             self._build_sides(shape.side)
-        self._build_springs()
         if self.firmness.shown:
             self._build_firmness()
-        self._build_world()
-        self.area.set_height(ui.px(full * self._tight))
+        self._build_springs()
+        for name, title, build in (
+            ("engineers", "For engineers", self._build_engineers), ("world", "World", partial(self.world.build, rows)),
+        ):  # fmt: skip
+            rows.section(title, self._open[name], partial(choose["fold"], name), build)
+        self.area.set_height(ui.px(rows.y))
         self.refresh()
 
     # Building.
 
-    def _row(self, height: float, gap: float = 0.0, x: float = MARGIN, width: float = INSIDE) -> pygame.Rect:
-        """The next row, and the gap after it."""
-        place = self._place(x, 0.0, width, height)
-        self._y += (height + gap) * self._tight
-        return place
-
-    def _place(self, x: float, below: float, width: float, height: float) -> pygame.Rect:
-        return self._ui.rect(x, 14 + self._y + below * self._tight, width, height * self._tight)
-
-    def _named_field(self, text: str, commit: Callable[[str], bool]) -> Field:
-        """A label at the left and a line to type into at the right, on a row of their own."""
-        self._ui.label(self._place(MARGIN, 0, INSIDE - ENTRY_WIDTH - 8, ROW), text, self.back)
-        return self._ui.field(self._row(ROW, 4, MARGIN + INSIDE - ENTRY_WIDTH, ENTRY_WIDTH), "", commit, self.back, 24)
-
-    def _beside(self, titles: Sequence[str], commits: Sequence[Callable[[str], bool]]) -> list[Field]:
-        """Labelled lines to type into, side by side."""
-        width, fields = (INSIDE - 12 * (len(titles) - 1)) / len(titles), []
-        for index, (text, commit) in enumerate(zip(titles, commits, strict=True)):
-            x = MARGIN + index * (width + 12)
-            self._ui.label(self._place(x, 0, width, 18), text, self.back, "@muted")
-            fields.append(self._ui.field(self._place(x, 19, width, ROW), "", commit, self.back, 24))
-        self._row(19 + ROW, 6)
-        return fields
+    def is_open(self, name: str) -> bool:
+        """Whether a section, "engineers" or "world", is unfolded."""
+        return self._open[name]
 
     def _build_sides(self, side: str) -> None:
         """Which of two runs all below is of."""
+        rows = self.rows
         options = [(name, name, f"Show and set the springs and the solver of {name}") for name in ("A", "B")]
-        self.sides = self._ui.choice(self._row(SIDES_HEIGHT - 8, 8), options, self._choose["side"], self.back)
+        self.sides = self._ui.choice(rows.row(SIDES_HEIGHT - 8, 8), options, self._choose["side"], rows.back)
         self.sides.show(side)
 
     def follow(self, playback: Playback) -> None:
         """Show and change another run of the same level."""
-        self.playback = self.firmness.playback = playback
+        self.playback = self.firmness.playback = self.solving.playback = self.world.playback = playback
+
+    def _build_firmness(self) -> None:
+        ui, rows, firmness = self._ui, self.rows, self.firmness
+        ui.label(rows.place(MARGIN, 4, 90, 18), "FIRMNESS", rows.back, "@heading")
+        names = [ALL_BODIES, *firmness.bodies]
+        place = rows.row(ROW, 6, MARGIN + 90, INSIDE - 90)
+        firmness.menu = ui.menu(place, names, ALL_BODIES, self.choose_body, rows.back)
+        words = [(word, word.capitalize(), _word_tip(sag)) for word, sag in WORDS.items()]
+        firmness.words = ui.choice(rows.row(ROW + 4, 6), words, firmness.choose_word, rows.back)
+        width = ENTRY_WIDTH - 20
+        firmness.text = TextBlock(ui, rows.place(MARGIN, 0, INSIDE - width - 12, 42), "", rows.back, 13.0, TEXT)
+        x = MARGIN + INSIDE - width
+        ui.label(rows.place(x, -2, width, 15), "Sag [%]", rows.back, "@muted")
+        firmness.sag = ui.field(rows.place(x, 14, width, ROW - 2), "", firmness.type_sag, rows.back, 24)
+        firmness.sag.entry.set_tooltip("Part of its height by which the body sags where it stands; 0 is rigid")
+        rows.row(42, 8)
 
     def _build_springs(self) -> None:
-        ui = self._ui
-        ui.label(self._place(MARGIN, 2, INSIDE - SPRINGS_CHOICE, 18), "SPRINGS", self.back, "@heading")
+        ui, rows = self._ui, self.rows
+        ui.label(rows.place(MARGIN, 2, INSIDE - SPRINGS_CHOICE, 18), "SPRINGS", rows.back, "@heading")
         ways = [("pad", "Pad", "Cs and Cd on a map of what they do"), ("sliders", "Sliders", "Cs and Cd one by one")]
-        place = self._row(22, 6, MARGIN + INSIDE - SPRINGS_CHOICE, SPRINGS_CHOICE)
-        self.ways = ui.choice(place, ways, self._choose["springs"], self.back)
+        place = rows.row(22, 6, MARGIN + INSIDE - SPRINGS_CHOICE, SPRINGS_CHOICE)
+        self.ways = ui.choice(place, ways, self._choose["springs"], rows.back)
         self.ways.show("pad" if self.by_pad else "sliders")
         names = [ALL_MATERIALS, *self._material_names()]
         chosen = ALL_MATERIALS if self.material is None else self._material_names()[self.material]
         width = INSIDE / 2 - 4 if self.by_pad else INSIDE
         if self.by_pad:
-            place = self._place(MARGIN + INSIDE - width, 0, width, 30)
-        self.menu = ui.menu(self._row(30, 10, width=width), names, chosen, self._choose_material, self.back)
+            place = rows.place(MARGIN + INSIDE - width, 0, width, 30)
+        self.menu = ui.menu(rows.row(30, 10, width=width), names, chosen, self._choose_material, rows.back)
         if self.by_pad:
-            self.maps = PadMaps(ui, place, self.playback, self._sweeps, self.back)
+            self.maps = PadMaps(ui, place, self.playback, self._sweeps, rows.back)
             self._build_pad()
         else:
             self._build_sliders()
-        self.frequency, self.ratio = self._beside(
-            ("Frequency [Hz]", "Damping ratio"), (self._type_frequency, self._type_ratio)
-        )
-        self.note = TextBlock(ui, self._row(45, 8), "", self.back)
+        self.note = TextBlock(ui, rows.row(32, 8), "", rows.back)
 
     def _build_sliders(self) -> None:
+        rows = self.rows
         self.stiffness_limit = self._limit_label()
-        self.stiffness_field = self._named_field("Cs  stiffness", lambda text: self._type_coefficient(text, True))
-        self.stiffness = self._slider(lambda value: self._slide(value, True))
+        self.stiffness_field = rows.named_field(
+            "Cs  stiffness", CS_TIP, lambda text: self._type_coefficient(text, True)
+        )
+        self.stiffness = self._slider(CS_TIP, lambda value: self._slide(value, True))
         self.damping_limit = self._limit_label()
-        self.damping_field = self._named_field("Cd  damping", lambda text: self._type_coefficient(text, False))
-        self.damping = self._slider(lambda value: self._slide(value, False))
+        self.damping_field = rows.named_field("Cd  damping", CD_TIP, lambda text: self._type_coefficient(text, False))
+        self.damping = self._slider(CD_TIP, lambda value: self._slide(value, False))
 
     def _build_pad(self) -> None:
-        place = self._row(PAD_HEIGHT - 6, 6, MARGIN - 8, INSIDE + 12)
-        self.pad = CoefficientPad(self._ui, place, self._move, self._end_gesture, self.back)
-        self.curve = ResponseCurve(self._ui, self._row(CURVE_HEIGHT - 6, 6), self.back)
-        self.stiffness_field, self.damping_field = self._beside(
-            ("Cs  stiffness", "Cd  damping"),
-            (lambda text: self._type_coefficient(text, True), lambda text: self._type_coefficient(text, False)),
+        rows = self.rows
+        place = rows.row(PAD_HEIGHT - 6, 6, MARGIN - 8, INSIDE + 12)
+        self.pad = CoefficientPad(self._ui, place, self._move, self._end_gesture, rows.back)
+        self.curve = ResponseCurve(self._ui, rows.row(CURVE_HEIGHT - 6, 6), rows.back)
+        self.stiffness_field, self.damping_field = rows.beside(
+            ("Cs  stiffness", CS_TIP, lambda text: self._type_coefficient(text, True)),
+            ("Cd  damping", CD_TIP, lambda text: self._type_coefficient(text, False)),
         )
 
     def _limit_label(self) -> TextBlock:
         """Room for a coefficient's proven limit, on its row."""
-        place = self._place(MARGIN + 96, 6, INSIDE - ENTRY_WIDTH - 104, ROW - 8)
-        return TextBlock(self._ui, place, "", self.back, 11.0, WARNING)
+        rows = self.rows
+        place = rows.place(MARGIN + 96, 6, INSIDE - ENTRY_WIDTH - 104, ROW - 8)
+        return TextBlock(self._ui, place, "", rows.back, 11.0, WARNING)
 
-    def _slider(self, changed: Callable[[float], None]) -> LogSlider:
-        return LogSlider(self._ui, self._row(28, 2, MARGIN - 8, INSIDE + 16), changed, self._end_gesture, self.back)
+    def _slider(self, tip: str, changed: Callable[[float], None]) -> Slider:
+        rows = self.rows
+        made = Slider(self._ui, rows.row(28, 2, MARGIN - 8, INSIDE + 16), changed, self._end_gesture, rows.back)
+        made.set_tooltip(tip)
+        return made
 
-    def _build_firmness(self) -> None:
-        ui, rows = self._ui, self.firmness
-        ui.label(self._place(MARGIN, 0, 84, ROW), "Firmness", self.back)
-        names = [ALL_BODIES, *rows.bodies]
-        rows.menu = ui.menu(self._row(ROW, 5, MARGIN + 84, INSIDE - 84), names, ALL_BODIES, rows.choose_body, self.back)
-        tips = {
-            word: f"Sags by {100 * sag:g} % of its height" if sag else "Gives way to nothing"
-            for word, sag in WORDS.items()
-        }
-        words = [(word, word.capitalize(), tips[word]) for word in WORDS]
-        rows.words = ui.choice(self._row(ROW - 2, 6), words, rows.choose_word, self.back)
-        rows.fields = self._beside(
-            ("Sag [%]", "Wobble [Hz]", "Ratio"), (rows.type_sag, rows.type_frequency, rows.type_ratio)
+    def _build_engineers(self) -> None:
+        ui, rows, firmness = self._ui, self.rows, self.firmness
+        if firmness.shown:
+            ui.label(rows.row(16, 2), "Of the body", rows.back)
+            firmness.frequency, firmness.ratio = rows.beside(
+                ("Wobble [Hz]", "Swings a second of the body's slowest wobble, undamped", firmness.type_frequency),
+                ("Damping ratio", "Below 1 the body swings, above 1 it creeps back", firmness.type_ratio),
+            )
+        ui.label(rows.row(16, 2), "Of one spring, alone", rows.back)
+        self.frequency, self.ratio = rows.beside(
+            ("Frequency [Hz]", "Swings a second of one spring, undamped", self._type_frequency),
+            ("Damping ratio", "Below 1 one spring swings, above 1 it creeps back", self._type_ratio),
         )
-
-    def _build_world(self) -> None:
-        ui = self._ui
-        FoldHeading(ui, self._row(18, 6), "World", self.is_folded, self._toggle_fold, self.back)
-        before = len(self.back.elements)
-        self.gravity_x, self.gravity_y = self._beside(
-            ("Gravity x [m/s²]", "Gravity y [m/s²]"),
-            (lambda text: self._type_gravity(text, 0), lambda text: self._type_gravity(text, 1)),
-        )
-        options = [(name, SOLVER_LABELS.get(name, name), "Solver") for name in SOLVERS]
-        self.solver = ui.choice(self._row(ROW, 8), options, self._choose_solver, self.back)
-        ui.label(self._row(18, 2), "Substeps", self.back, "@muted")
-        counts = [(str(count), str(count), "Springs move per second as they did") for count in SUBSTEPS]
-        counts.insert(0, (AUTO, "Auto", "Every tick takes as many as it needs, 1 to 8"))
-        self.substeps = ui.choice(self._row(ROW - 2, 6), counts, self._choose_substeps, self.back)
-        self.iterations, self.warm_start, self.rate = self._beside(
-            ("Iterations", "Warm start", "Ticks/s"),
-            (self._type_iterations, self._type_warm_start, self._type_rate),
-        )
-        self.warm_start.entry.set_tooltip("0 to 1")
-        self.rate.entry.set_tooltip("Ticks a second; the run begins anew with another number of them")
-        ui.label(self._place(MARGIN, 0, HAND_LABEL, ROW - 2), "Hand", self.back, "@muted")
-        options = [(name, name.capitalize(), _strength_tip(strength)) for name, strength in STRENGTHS.items()]
-        place = self._row(ROW - 2, 8, MARGIN + HAND_LABEL, INSIDE - HAND_LABEL)
-        self.hand = ui.choice(place, options, self._choose["hand"], self.back)
-        ui.label(self._place(MARGIN, 0, HAND_LABEL, ROW - 2), "Show", self.back, "@muted")
-        self.views = ViewRow(
-            ui, self._row(ROW - 2, 8, MARGIN + HAND_LABEL, INSIDE - HAND_LABEL), self._choose["view"], self.back
-        )
-        columns = (self._place(MARGIN, 0, INSIDE / 2, 34), self._place(MARGIN + INSIDE / 2, 0, INSIDE / 2, 34))
-        self.energies = [TextBlock(ui, place, "", self.back) for place in columns]
-        self._row(40)
-        if self.is_folded:
-            for element in self.back.elements[before:]:
-                element.hide()
-
-    def _toggle_fold(self) -> None:
-        self._choose["fold"]("open" if self.is_folded else "folded")
+        self.solving.build(rows)
 
     def _first_material(self) -> int | None:
         """The material of the most springs, so that a slider does not change all at once; None: there is none."""
@@ -274,15 +229,8 @@ class Panel:
         world = self.playback.session.world
         settings = world.settings
         self._follow_what_joins()
-        self.gravity_x.show(f"{settings.gravity[0]:g}")
-        self.gravity_y.show(f"{settings.gravity[1]:g}")
-        self.solver.show(settings.solver)
-        self.substeps.show(str(settings.substeps))
-        self.iterations.show(str(settings.iterations))
-        self.warm_start.show(f"{settings.warm_start:g}")
-        self.rate.show(f"{settings.tick_rate:g}")
-        if self._refreshes % LOOK_EVERY == 0 or self.playback.clock.paused:
-            self._show_energy()
+        self.solving.refresh()
+        self.world.refresh(self._refreshes % LOOK_EVERY == 0 or self.playback.clock.paused)
         self._refreshes += 1
         if self.maps is not None and self.pad is not None:
             self.maps.refresh(self.playback, self.material, self.pad)
@@ -292,24 +240,17 @@ class Panel:
             return
         self._refreshed_at = fresh
         inputs = (world.stiffness, world.damping, world.spring_active, world.inverse_mass)
-        key = (settings, self.material, *(array.tobytes() for array in inputs))
+        key = (settings, self.material, self.firmness.body, *(array.tobytes() for array in inputs))
         if key != self._limits_of:
             self._limits_of = key
             self._limits = coefficient_limits(world, self.material)
+            self._find_scale()
             self._find_zones()
             self._show_springs()
 
     def show_choices(self, strength: str, views: Set[str]) -> None:
         """Show the strength of the hand, and which overlays are seen."""
-        self.hand.show(strength)
-        self.views.show(views)
-
-    def _show_energy(self) -> None:
-        world = self.playback.session.world
-        kinetic, springs, gravity = kinetic_energy(world), spring_energy(world), gravity_energy(world)
-        dissipated = self.playback.dissipation.energy
-        self.energies[0].show_text(f"kinetic {kinetic:.4g} J\nsprings {springs:.4g} J")
-        self.energies[1].show_text(f"gravity {gravity:.4g} J\ndissipated {dissipated:.4g} J")
+        self.world.show_choices(strength, views)
 
     def _chosen(self) -> np.ndarray:
         world = self.playback.session.world
@@ -325,14 +266,14 @@ class Panel:
         else:
             self._show_on_sliders(stiffness, damping, limits)
         for values, entry in ((stiffness, self.stiffness_field), (damping, self.damping_field)):
-            entry.show(DASH if not len(values) else "mixed" if values.min() != values.max() else f"{values[0]:.6g}")
+            entry.show(DASH if not len(values) else MIXED if values.min() != values.max() else f"{values[0]:.6g}")
         if not len(chosen):
             self.frequency.show(DASH)
             self.ratio.show(DASH)
             self.note.show_text(self._no_spring_note())
             return
         self._show_reading(stiffness, damping)
-        self.note.show_text(sentence(limits.reason))
+        self.note.show_text(stability_words(world.settings.solver, limits, stiffness, damping))
 
     def _show_on_sliders(self, stiffness: np.ndarray, damping: np.ndarray, limits: CoefficientLimits) -> None:
         for values, slider, limit, label in (
@@ -341,10 +282,33 @@ class Panel:
         ):
             if not len(values):
                 label.show_text("")
-                slider.show_value(slider.value, None, False, False)
+                slider.show_state(replace(slider.state, enabled=False))
                 continue
-            label.show_text(f"limit {limit:.3g}" if limit is not None and limit < 1.0 else "")
-            slider.show_value(float(np.median(values)), limit, bool(values.min() != values.max()), True)
+            label.show_text(f"limit {number(limit)}" if limit is not None and limit < 1.0 else "")
+            own = self._own()
+            of_level = None if own is None else own[slider is self.damping]
+            is_mixed = bool(values.min() != values.max())
+            slider.show_state(SliderState(float(np.median(values)), limit, of_level, is_mixed, True, self._scale))
+
+    def _own(self) -> tuple[float, float] | None:
+        """Cs and Cd that the level itself gives the material."""
+        if self.material is None:
+            return None
+        own = self.playback.level.materials.get(self._material_names()[self.material])
+        return (own.stiffness, own.damping) if isinstance(own, NissenMaterial) else None
+
+    def _find_scale(self) -> None:
+        """Find the axes on which most is seen of the body that is spoken of; they stay while something is dragged."""
+        world, slot = self.playback.session.world, self.firmness.body_of(self.material)
+        key = (world.forms, world.settings, slot, self.material)
+        if self._gesture is not None or key == self._scale_of:
+            return
+        self._scale_of = key
+        self._body = body = None if slot is None else self.firmness.motion_of(slot)
+        self._scale = PLAIN
+        if body is not None and body.solver != "iterative":
+            own = self._own() or ()
+            self._scale = scale_for(lambda cs, cd: _sag(body, cs, cd), own)
 
     def _find_zones(self) -> None:
         """Find the pad's zones anew, where what they depend on has changed: not the chosen springs' own Cs and Cd."""
@@ -365,7 +329,7 @@ class Panel:
             return
         is_mixed = bool(stiffness.min() != stiffness.max() or damping.min() != damping.max())
         pair = float(np.median(stiffness)), float(np.median(damping))
-        self.pad.show_state(PadState(*pair, is_mixed, True), self._zones)
+        self.pad.show_state(PadState(*pair, is_mixed, True, self._own(), self._scale, self._body), self._zones)
         if is_mixed:
             self.curve.show_none("One spring: the chosen ones differ")
         else:
@@ -373,12 +337,12 @@ class Panel:
 
     def _show_reading(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
         if stiffness.min() != stiffness.max() or damping.min() != damping.max():
-            self.frequency.show("mixed")
-            self.ratio.show("mixed")
+            self.frequency.show(MIXED)
+            self.ratio.show(MIXED)
             return
         frequency, ratio = frequency_from_coefficients(float(stiffness[0]), float(damping[0]), self._tick_time())
-        self.frequency.show(_reading(frequency))
-        self.ratio.show(_reading(ratio))
+        self.frequency.show(number(frequency))
+        self.ratio.show(number(ratio))
 
     def _no_spring_note(self) -> str:
         world = self.playback.session.world
@@ -415,16 +379,23 @@ class Panel:
     def choose_material(self, material: int | None) -> None:
         """Show and change the springs of a material (index); None = all."""
         self.material = material
+        if self.firmness.body != ALL_BODIES and material != self.firmness.material_of(self.firmness.body):
+            self.firmness.choose_body(ALL_BODIES)
+            self._ui.replace_menu(self.firmness.menu, ALL_BODIES)
         self._ui.replace_menu(self.menu, ALL_MATERIALS if material is None else self._material_names()[material])
+
+    def choose_body(self, name: str) -> None:
+        """Show and change a body, by its name, or all, and the springs that it is made of."""
+        if not self.firmness.shown or name not in (ALL_BODIES, *self.firmness.bodies):
+            return
+        self.firmness.choose_body(name)
+        self._ui.replace_menu(self.firmness.menu, name)
+        material = self.firmness.material_of(name)
+        if material is not None:
+            self.choose_material(material)
 
     def _choose_material(self, name: str) -> None:
         self.choose_material(None if name == ALL_MATERIALS else self._material_names().index(name))
-
-    def _choose_solver(self, name: str) -> None:
-        self._submit(SetSolver(solver=name))
-
-    def _choose_substeps(self, count: str) -> None:
-        self._submit(SetSolver(substeps=AUTO if count == AUTO else int(count)))
 
     def _slide(self, value: float, is_stiffness: bool) -> None:
         if self._gesture is None:
@@ -475,7 +446,7 @@ class Panel:
             return False
         ratio = _typed_or_none(self.ratio.text)
         if ratio is None:
-            self._say("There was no single damping ratio to keep: it is 1 now.")
+            self._say("The springs had different damping ratios; all are now 1.")
         return self._set_frequency(frequency, 1.0 if ratio is None else ratio)
 
     def _type_ratio(self, text: str) -> bool:
@@ -484,7 +455,7 @@ class Panel:
             return False
         frequency = _typed_or_none(self.frequency.text)
         if frequency is None:
-            self._say("There is no single frequency to keep: type the frequency first.")
+            self._say("These springs differ in frequency. Set the frequency first.")
             return False
         return self._set_frequency(frequency, ratio)
 
@@ -499,45 +470,15 @@ class Panel:
         self._submit(SetCoefficients(stiffness=stiffness, damping=damping, material=self.material))
         return True
 
-    def _type_gravity(self, text: str, axis: int) -> bool:
-        value = typed_number(self._say, text, "Gravity", -GRAVITY_LIMIT, GRAVITY_LIMIT)
-        if value is None:
-            return False
-        x, y = self.playback.session.world.settings.gravity
-        self._submit(SetGravity((value, y) if axis == 0 else (x, value)))
-        return True
 
-    def _type_iterations(self, text: str) -> bool:
-        value = typed_number(self._say, text, "Iterations", 1, 1000)
-        if value is None or value != int(value):
-            if value is not None:
-                self._say(f"Iterations: {value:g} is not a whole number.")
-            return False
-        self._submit(SetSolver(iterations=int(value)))
-        return True
-
-    def _type_rate(self, text: str) -> bool:
-        """Ask how to go on at another tick rate; the run has the old one until it begins anew."""
-        if not text.strip().isdecimal():
-            self._say(f"Ticks a second: {text.strip() or 'nothing'!r} is not a whole number.")
-        elif int(text) != self.playback.session.world.settings.tick_rate:
-            self._choose["rate"](text)
-        return False
-
-    def _type_warm_start(self, text: str) -> bool:
-        value = typed_number(self._say, text, "Warm start", 0.0, 1.0)
-        if value is None:
-            return False
-        self._submit(SetSolver(warm_start=value))
-        return True
+def _sag(body: BodyMotion, stiffness: Floats, damping: Floats) -> Floats:
+    sag = body.sag(*body.of_substep(stiffness, damping))
+    assert sag is not None
+    return sag
 
 
-def _strength_tip(strength: float) -> str:
-    return f"Pulls with at most {strength:g} N for each kg of what it holds, from the next hold on"
-
-
-def _reading(value: float) -> str:
-    return "infinite" if math.isinf(value) else f"{value:.4g}"
+def _word_tip(sag: float) -> str:
+    return f"Sags by {100.0 * sag:g} % of its height" if sag else "Perfectly rigid: it gives way to nothing"
 
 
 def _typed_or_none(text: str) -> float | None:

@@ -1,4 +1,4 @@
-"""CoefficientPad: Cs across and Cd up, both logarithmic, on a map of what theory says of every pair of them."""
+"""CoefficientPad: Cs across and Cd up, on a map of what theory says of every pair of them, and of what one sees."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -10,40 +10,44 @@ from numpy.typing import NDArray
 from sandbox.app.draw.colours import ACCENT, DANGER, DECADE, FIELD, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
 from sandbox.app.sweeps.layer_paint import limits_of, paint_cells, paint_line, paint_scale
 from sandbox.app.sweeps.sweep_layer import SweepLayer
+from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale
 from sandbox.app.widgets.painted import Draggable, wrapped
-from sandbox.app.widgets.sliders import FINE_KEY_STEP, HIGHEST, KEY_STEP, LOWEST, fraction_of, value_at
+from sandbox.app.widgets.slider import FINE_KEY_STEP, KEY_STEP
 from sandbox.app.widgets.ui import Ui
+from sandbox.physics.analysis.body_motion import BodyMotion, word_edges
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones
+from sandbox.physics.analysis.spring_motion import swings_back
+from sandbox.physics.world import Floats
 
 # Sizes in layout units: what stands around the map, and of what is on it.
-LEFT, RIGHT, TOP, BOTTOM = 38.0, 8.0, 18.0, 40.0
-NUMBER_SIZE, WORD_SIZE, LABEL_SIZE = 10.5, 12.5, 10.5
-KNOB = 7.0
+LEFT, RIGHT, TOP, BOTTOM = 38.0, 8.0, 18.0, 34.0
+NUMBER_SIZE, WORD_SIZE, LABEL_SIZE = 10.5, 13.0, 10.5
+KNOB, OWN = 7.0, 4.0
 HATCH = 7.0
-UP_NAME = "Cd  damping"
-DECADES = tuple(range(int(LOWEST), int(HIGHEST) + 1))
-# What values of Cs are called, from the lowest on (Nissen 2019, re-introducing coefficients).
-STIFFNESS_WORDS = (("soft", 1e-5, 1e-3), ("firm", 1e-3, 1e-2), ("rigid", 1e-2, 1.0))
+UP_NAME, ACROSS_NAME = "Cd  damping", "Cs  stiffness"
+# Numbers of an axis are at least so far apart.
+NUMBER_GAP = 6.0
+# A word is written where it has at least this share of the map.
+WORD_SHARE = 0.015
 # Values of Cs that zones are worked out for.
-COLUMNS = 61
-STIFFNESSES = 10.0 ** np.linspace(LOWEST, HIGHEST, COLUMNS)
+STIFFNESSES = CoefficientScale(1e-5, 0.003).values(81)
 
 Mask = NDArray[np.bool_]
 
 
 class PadState(NamedTuple):
-    """What the pad shows: Cs and Cd, whether springs differ in them, and whether there are any."""
+    """What the pad shows: Cs and Cd, whether springs differ in them, and whether there are any.
+
+    own: what the level itself has; scale: of both axes; body: that of which words are.
+    """
 
     stiffness: float
     damping: float
     is_mixed: bool
     enabled: bool
-
-
-def critical_stiffness(damping: np.ndarray) -> np.ndarray:
-    """The Cs (k,) at which one spring of each Cd (k,) has damping ratio 1: with more it swings."""
-    # Equal roots: (2 - Cs - Cd)^2 = 4 (1 - Cd).
-    return np.asarray((1.0 - np.sqrt(1.0 - damping)) ** 2)
+    own: tuple[float, float] | None = None
+    scale: CoefficientScale = PLAIN
+    body: BodyMotion | None = None
 
 
 class CoefficientPad(Draggable):
@@ -78,7 +82,9 @@ class CoefficientPad(Draggable):
 
     def show_state(self, state: PadState, zones: CoefficientZones | None) -> None:
         """Show values on zones (None: nothing is known of them)."""
-        if zones is not self.zones:
+        if zones is not self.zones or (state.scale, state.body, state.enabled) != (
+            self.state.scale, self.state.body, self.state.enabled,
+        ):  # fmt: skip
             self.zones, self._map = zones, None
         elif state == self.state:
             return
@@ -106,8 +112,8 @@ class CoefficientPad(Draggable):
     def _at(self, stiffness: float, damping: float) -> tuple[float, float]:
         inside = self._inside
         return (
-            inside.left + fraction_of(stiffness) * (inside.width - 1),
-            inside.bottom - 1 - fraction_of(damping) * (inside.height - 1),
+            inside.left + self.state.scale.place_of(stiffness) * (inside.width - 1),
+            inside.bottom - 1 - self.state.scale.place_of(damping) * (inside.height - 1),
         )
 
     # Mouse and keys.
@@ -123,25 +129,30 @@ class CoefficientPad(Draggable):
     def press_key(self, event: pygame.event.Event) -> bool:
         """Arrows move by a step, with Shift by a fine one; Home and End go to the softest and the most rigid."""
         step = FINE_KEY_STEP if event.mod & pygame.KMOD_SHIFT else KEY_STEP
-        across, up = fraction_of(self.state.stiffness), fraction_of(self.state.damping)
         moves = {
-            pygame.K_LEFT: (across - step, up),
-            pygame.K_RIGHT: (across + step, up),
-            pygame.K_DOWN: (across, up - step),
-            pygame.K_UP: (across, up + step),
-            pygame.K_HOME: (0.0, up),
-            pygame.K_END: (1.0, up),
-        }
+            pygame.K_LEFT: (-step, 0.0), pygame.K_RIGHT: (step, 0.0), pygame.K_DOWN: (0.0, -step),
+            pygame.K_UP: (0.0, step), pygame.K_HOME: (-1.0, 0.0), pygame.K_END: (1.0, 0.0),
+        }  # fmt: skip
         if event.key not in moves or not self.state.enabled:
             return False
-        new = moves[event.key]
-        # What is not moved keeps all its digits.
-        self._changed(
-            self.state.stiffness if new[0] == across else value_at(new[0]),
-            self.state.damping if new[1] == up else value_at(new[1]),
-        )
-        self._done()
+        self._step(*moves[event.key])
         return True
+
+    def turn(self, notches: float) -> bool:
+        """Move Cs by a fine step a notch; with Shift, Cd."""
+        by = FINE_KEY_STEP * notches
+        if self.state.enabled:
+            self._step(*((0.0, by) if pygame.key.get_mods() & pygame.KMOD_SHIFT else (by, 0.0)))
+        return self.state.enabled
+
+    def _step(self, across: float, up: float) -> None:
+        def moved(value: float, by: float) -> float:
+            # What is not moved keeps all its digits.
+            scale = self.state.scale
+            return value if by == 0.0 else scale.value_at(min(max(scale.place_of(value) + by, 0.0), 1.0))
+
+        self._changed(moved(self.state.stiffness, across), moved(self.state.damping, up))
+        self._done()
 
     def process_event(self, event: pygame.event.Event) -> bool:
         """Follow the mouse, and tell the number under it."""
@@ -162,7 +173,7 @@ class CoefficientPad(Draggable):
         inside = self._inside
         across = (x - self.rect.left - inside.left) / max(1, inside.width - 1)
         up = (inside.bottom - 1 - (y - self.rect.top)) / max(1, inside.height - 1)
-        return value_at(across), value_at(up)
+        return self.state.scale.value_at(across), self.state.scale.value_at(up)
 
     # Painting.
 
@@ -180,6 +191,10 @@ class CoefficientPad(Draggable):
             pygame.draw.aacircle(surface, SURFACE, there, px(KNOB) + max(1, px(1.5)))
             pygame.draw.aacircle(surface, MUTED, there, px(KNOB), max(2, px(2)))
             self._paint_name(surface, self._ghost[0], there, MUTED)
+        if self.state.own is not None:
+            there = self._at(*self.state.own)
+            pygame.draw.aacircle(surface, SURFACE, there, px(OWN) + max(1, px(1.5)))
+            pygame.draw.aacircle(surface, TEXT, there, px(OWN), max(1, px(1.5)))
         x, y = self._at(self.state.stiffness, self.state.damping)
         guide = mixed(FIELD, TEXT, 0.45)
         pygame.draw.line(surface, guide, (inside.left, y), (x, y))
@@ -203,7 +218,7 @@ class CoefficientPad(Draggable):
         zones = self.zones
         if zones is None or zones.proven is None or not zones.holds:
             return ACCENT
-        column = int(np.argmin(np.abs(np.log(zones.stiffness) - np.log(max(self.state.stiffness, 10.0**LOWEST)))))
+        column = int(np.argmin(np.abs(np.log(zones.stiffness) - np.log(max(self.state.stiffness, zones.stiffness[0])))))
         if zones.estimated is not None and self.state.damping > zones.estimated[column]:
             return DANGER
         return ACCENT if self.state.damping < zones.proven[column] else WARNING
@@ -217,8 +232,8 @@ class CoefficientPad(Draggable):
             return surface
         self._paint_zones(surface, inside)
         self._paint_axes(surface, inside)
-        self._paint_stiffness_words(surface, inside)
-        self._paint_critical(surface, inside)
+        self._paint_body(surface, inside)
+        self._paint_article(surface, inside)
         pygame.draw.rect(surface, DECADE, inside, 1)
         self._paint_words(surface, inside)
         return surface
@@ -226,13 +241,12 @@ class CoefficientPad(Draggable):
     def _paint_layer(self, surface: pygame.Surface, inside: pygame.Rect, layer: SweepLayer) -> None:
         """What a sweep has measured, with its scale and with the lines up to which a single pass is proven stable."""
         px = self.ui.px
-        paint_cells(surface, inside, layer, (LOWEST, HIGHEST), self.ui)
+        paint_cells(surface, inside, layer, self.state.scale, self.ui)
         surface.set_clip(inside)
         for line in limits_of(self.zones) if self.zones is not None else []:
             paint_line(surface, [self._at(cs, cd) for cs, cd in line], max(1, px(1)))
         surface.set_clip(None)
         self._paint_axes(surface, inside)
-        self._paint_stiffness_name(surface, inside)
         place = pygame.Rect(inside.left, inside.bottom + px(18), inside.width, px(BOTTOM - 18))
         paint_scale(surface, layer, place, self.ui)
 
@@ -251,9 +265,7 @@ class CoefficientPad(Draggable):
 
     def _paint_zones(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
         """Fill each zone in its tone; what is not proven is hatched as well, since colour alone tells nobody enough."""
-        across = np.linspace(LOWEST, HIGHEST, inside.width)
-        up = np.linspace(HIGHEST, LOWEST, inside.height)
-        damping, stiffness = 10.0 ** up[None, :], 10.0 ** across[:, None]
+        stiffness, damping = self._grid(inside)
         pixels = np.empty((inside.width, inside.height, 3), dtype=np.uint8)
         pixels[:] = mixed(FIELD, ACCENT, 0.10)
         x, y = np.ogrid[: inside.width, : inside.height]
@@ -264,15 +276,17 @@ class CoefficientPad(Draggable):
         if zones is None or not self.state.enabled:
             pixels[:] = FIELD
         elif zones.bounded:
-            self._fill(pixels, np.broadcast_to(stiffness > damping, pixels.shape[:2]), MUTED, 0.08, rising, 0.16)
+            self._fill(pixels, stiffness > damping, MUTED, 0.08, rising, 0.16)
         elif zones.proven is not None:
-            beyond = damping > self._edge(zones.proven, across)
+            beyond = damping > self._edge(zones.proven, stiffness)
             if zones.holds:
                 self._fill(pixels, beyond, WARNING, 0.16, rising, 0.34)
             else:
                 pixels[:] = mixed(FIELD, MUTED, 0.06)
             if zones.estimated is not None and zones.holds:
-                self._fill(pixels, damping > self._edge(zones.estimated, across), DANGER, 0.28, rising | falling, 0.5)
+                self._fill(
+                    pixels, damping > self._edge(zones.estimated, stiffness), DANGER, 0.28, rising | falling, 0.5
+                )
         surface.blit(pygame.surfarray.make_surface(pixels), inside)
 
     @staticmethod
@@ -280,105 +294,149 @@ class CoefficientPad(Draggable):
         pixels[where] = mixed(FIELD, colour, share)
         pixels[where & hatch] = mixed(FIELD, colour, hatched)
 
-    def _edge(self, highest: np.ndarray, across: np.ndarray) -> np.ndarray:
-        """The highest Cd of a zone (w, 1) at places across [exponents]; below the map where nothing is inside."""
-        known = np.where(highest > 0.0, np.log10(np.maximum(highest, 1e-9)), LOWEST - 1.0)
-        return np.asarray(10.0 ** np.interp(across, np.linspace(LOWEST, HIGHEST, len(known)), known)[:, None])
+    def _edge(self, highest: Floats, stiffness: Floats) -> Floats:
+        """The highest Cd of a zone at each Cs; 0 where nothing is inside."""
+        assert self.zones is not None
+        return np.interp(np.log(stiffness), np.log(self.zones.stiffness), np.maximum(highest, 0.0))
+
+    def _grid(self, inside: pygame.Rect) -> tuple[Floats, Floats]:
+        """Cs and Cd of every pixel of the map (w, h)."""
+        scale = self.state.scale
+        across, up = scale.values(inside.width), scale.values(inside.height)[::-1]
+        stiffness, damping = np.meshgrid(across, up, indexing="ij")
+        return stiffness, damping
 
     def _paint_axes(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
-        """Lines at the decades, numbers beside them, and what lies across and up."""
+        """Lines at round values, numbers beside them where there is room, and what lies across and up."""
         font, px = self.ui.font(NUMBER_SIZE), self.ui.px
-        for exponent in DECADES:
-            x, y = self._at(10.0**exponent, 10.0**exponent)
-            text = f"{10.0**exponent:g}" if exponent >= -3 else f"1e{exponent}"
-            if LOWEST < exponent < HIGHEST:
-                grid = pygame.Surface(inside.size, pygame.SRCALPHA)
-                pygame.draw.line(grid, (*DECADE, 90), (x - inside.left, 0), (x - inside.left, inside.height))
-                pygame.draw.line(grid, (*DECADE, 90), (0, y - inside.top), (inside.width, y - inside.top))
-                surface.blit(grid, inside)
-            number = font.render(text, True, MUTED)
-            place = number.get_rect(midtop=(x, inside.bottom + px(2)))
-            surface.blit(number, place.clamp(surface.get_rect()))
-            place = number.get_rect(midright=(inside.left - px(4), y))
-            surface.blit(number, place.clamp(surface.get_rect()))
-        name = self.ui.font(NUMBER_SIZE, True).render(UP_NAME, True, TEXT)
-        surface.blit(name, (inside.left, 0))
+        gap, right, top = px(NUMBER_GAP), -inside.width, surface.get_height()
+        grid = pygame.Surface(inside.size, pygame.SRCALPHA)
+        for value in self.state.scale.numbers():
+            x, y = self._at(value, value)
+            pygame.draw.line(grid, (*DECADE, 90), (x - inside.left, 0), (x - inside.left, inside.height))
+            pygame.draw.line(grid, (*DECADE, 90), (0, y - inside.top), (inside.width, y - inside.top))
+            number = font.render(f"{value:g}", True, MUTED)
+            place = number.get_rect(midtop=(x, inside.bottom + px(2))).clamp(surface.get_rect())
+            is_last = value == 1.0
+            if place.left >= right + gap and (is_last or place.right + gap < inside.right - px(4)):
+                surface.blit(number, place)
+                right = place.right
+            place = number.get_rect(midright=(inside.left - px(4), y)).clamp(surface.get_rect())
+            if place.bottom <= top and (is_last or place.top > inside.top + px(7)):
+                surface.blit(number, place)
+                top = place.top
+        surface.blit(grid, inside)
+        bold = self.ui.font(NUMBER_SIZE, True)
+        surface.blit(bold.render(UP_NAME, True, TEXT), (inside.left, 0))
+        name = bold.render(ACROSS_NAME, True, TEXT)
+        surface.blit(name, name.get_rect(topright=(inside.right, inside.bottom + px(17))))
 
-    def _paint_stiffness_words(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
-        """What values of Cs are called, each over its part of the axis."""
-        font, px = self.ui.font(WORD_SIZE), self.ui.px
-        y = inside.bottom + px(18)
-        self._paint_stiffness_name(surface, inside)
-        for word, low, high in STIFFNESS_WORDS:
-            start, end = self._at(low, 1.0)[0], self._at(high, 1.0)[0]
-            pygame.draw.line(surface, DECADE, (start + px(2), y), (end - px(2), y), max(1, px(1.5)))
-            text = font.render(word, True, TEXT)
-            surface.blit(text, text.get_rect(midtop=((start + end) / 2, y + px(2))))
+    def _paint_body(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
+        """Lines between the words for how far the body sags, the words, and where its wobble begins to swing."""
+        body = self.state.body
+        pixels = pygame.Surface(inside.size, pygame.SRCALPHA)
+        stiffness, damping = self._grid(inside)
+        if body is None:
+            swings: Mask = swings_back(stiffness, damping)
+        else:
+            pair = body.of_substep(stiffness.reshape(-1), damping.reshape(-1))
+            swings = swings_back(*body.whole(*pair)).reshape(stiffness.shape)
+            sag = body.sag(*pair)
+            if sag is not None:
+                self._paint_sags(pixels, sag.reshape(stiffness.shape))
+        x, y = np.nonzero(_border(swings))
+        dashed = (x + y) // max(2, self.ui.px(4)) % 2 == 0
+        alpha = pygame.surfarray.pixels_alpha(pixels)
+        alpha[x[dashed], y[dashed]] = 255
+        del alpha
+        colours = pygame.surfarray.pixels3d(pixels)
+        colours[x[dashed], y[dashed]] = TEXT
+        del colours
+        surface.blit(pixels, inside)
+        if self.state.enabled:
+            for words, mask in (("swings", swings), ("creeps back", ~swings)):
+                self._paint_in(surface, inside, mask, words, self.ui.font(LABEL_SIZE), MUTED, 0.72)
 
-    def _paint_stiffness_name(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
-        px, name = self.ui.px, self.ui.font(NUMBER_SIZE, True).render("Cs", True, TEXT)
-        surface.blit(name, name.get_rect(topright=(inside.left - px(4), inside.bottom + px(19))))
+    def _paint_sags(self, pixels: pygame.Surface, sag: Floats) -> None:
+        words, edges = word_edges()
+        number = np.searchsorted(-np.array(edges), -sag)
+        border = np.zeros(sag.shape, np.bool_)
+        for k in range(len(words)):
+            border |= _border(number == k)
+        alpha = pygame.surfarray.pixels_alpha(pixels)
+        alpha[border] = 110
+        del alpha
+        colours = pygame.surfarray.pixels3d(pixels)
+        colours[border] = ACCENT
+        del colours
+        if self.state.enabled:
+            for k, word in enumerate(words):
+                self._paint_in(pixels, pixels.get_rect(), number == k, word, self.ui.font(WORD_SIZE, True), TEXT, 0.34)
 
-    def _paint_critical(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
-        """Where one spring neither swings nor creeps, and what lies on either side; where 1/(n+1) ends."""
-        px = self.ui.px
-        surface.set_clip(inside)
-        damping = 10.0 ** np.linspace(LOWEST, -1e-9, 80)
-        critical = critical_stiffness(damping)
-        seen = critical >= 10.0**LOWEST
-        line = [self._at(float(cs), float(cd)) for cs, cd in zip(critical[seen], damping[seen], strict=True)]
-        _dashes(surface, TEXT, line, px(5))
+    def _paint_in(
+        self, surface: pygame.Surface, inside: pygame.Rect, mask: Mask, words: str, font: pygame.font.Font,
+        colour: Colour, down: float,
+    ) -> None:  # fmt: skip
+        """Write words in the part of the map that a mask (w, h) says, about so far down; nothing where it is small."""
+        if mask.mean() < WORD_SHARE:
+            return
+        picture = font.render(words, True, colour)
+        rows = np.flatnonzero(mask.sum(axis=0) >= min(picture.get_width(), mask.sum(axis=0).max()))
+        row = int(rows[np.argmin(np.abs(rows - down * inside.height))])
+        across = np.flatnonzero(mask[:, row])
+        at = inside.left + int(np.median(across)), inside.top + row
+        surface.blit(picture, picture.get_rect(center=at).clamp(inside.inflate(-4, -2)))
+
+    def _paint_article(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
+        """Where 1/(n+1) ends."""
         zones = self.zones
-        if zones is not None and zones.article is not None and self.state.enabled:
-            inside_it = zones.article > 0.0
-            corner = zones.stiffness[inside_it]
-            edge = [self._at(float(cs), float(cd)) for cs, cd in zip(corner, zones.article[inside_it], strict=True)]
-            if edge:
-                edge.append((edge[-1][0], inside.bottom))
-                pygame.draw.aalines(surface, ACCENT, False, edge)
+        if zones is None or zones.article is None or not self.state.enabled:
+            return
+        surface.set_clip(inside)
+        inside_it = zones.article > 0.0
+        edge = [
+            self._at(float(cs), float(cd))
+            for cs, cd in zip(zones.stiffness[inside_it], zones.article[inside_it], strict=True)
+        ]
+        if edge:
+            edge.append((edge[-1][0], inside.bottom))
+            pygame.draw.aalines(surface, ACCENT, False, edge)
         surface.set_clip(None)
 
     def _paint_words(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
-        """Words on the map: how a spring moves there, and what is proven of it."""
-        word, label = self.ui.font(WORD_SIZE), self.ui.font(LABEL_SIZE)
-        zones = self.zones
-        texts: list[tuple[pygame.font.Font, str, Colour, float, float]] = [
-            (word, "calm", TEXT, 0.2, 0.16), (word, "wobbly", TEXT, 0.72, 0.56),
-        ]  # fmt: skip
-        if zones is not None and self.state.enabled:
-            texts += [(label, *each) for each in _zone_labels(zones)]
-        for font, text, colour, across, down in texts:
-            picture = font.render(text, True, colour)
+        """Words on the map: what is proven there."""
+        label = self.ui.font(LABEL_SIZE)
+        if self.zones is None or not self.state.enabled:
+            return
+        for text, colour, across, down in _zone_labels(self.zones, self.state.scale):
+            picture = label.render(text, True, colour)
             at = inside.left + across * inside.width, inside.top + down * inside.height
-            place = picture.get_rect(center=at).clamp(inside.inflate(-4, -2))
-            surface.blit(picture, place)
+            surface.blit(picture, picture.get_rect(center=at).clamp(inside.inflate(-4, -2)))
 
 
-def _zone_labels(zones: CoefficientZones) -> list[tuple[str, Colour, float, float]]:
+def _border(mask: Mask) -> Mask:
+    # Pixels inside a mask (w, h) that touch one outside it.
+    found = np.zeros(mask.shape, np.bool_)
+    found[1:] |= mask[1:] & ~mask[:-1]
+    found[:, 1:] |= mask[:, 1:] & ~mask[:, :-1]
+    found[:, :-1] |= mask[:, :-1] & ~mask[:, 1:]
+    return found
+
+
+def _zone_labels(zones: CoefficientZones, scale: CoefficientScale) -> list[tuple[str, Colour, float, float]]:
     """What is written on the zones, in a colour, at shares of the map's width and height from its upper left corner."""
     if zones.bounded:
-        return [("energy never grows", MUTED, 0.27, 0.58), ("energy up to 4 times", MUTED, 0.7, 0.92)]
+        return [("may bounce higher, never explodes", MUTED, 0.66, 0.95)]
     if zones.proven is None or zones.article is None:
         return []
     found: list[tuple[str, Colour, float, float]] = []
     reach = float(zones.article.max())
-    if reach > 0.0:
+    if reach > scale.lowest:
         of = f"1/(n+1), n = {zones.most_springs}" if zones.holds else "1/(n+1) of a single pass"
-        found.append((of, ACCENT, fraction_of(reach) - 0.2, 0.84))
+        found.append((of, ACCENT, scale.place_of(reach) - 0.2, 0.84))
     if not zones.holds:
         return [*found, ("nothing is proven here", MUTED, 0.32, 0.94)]
     found.append(("proven stable", MUTED, 0.22, 0.94))
-    if zones.estimated is not None and zones.estimated[0] < 0.75:
-        found.append(("explodes", DANGER, 0.5, 0.5 * (1.0 - fraction_of(float(zones.estimated[0])))))
+    if zones.estimated is not None and zones.estimated[0] < 0.95:
+        found.append(("explodes", DANGER, 0.5, 0.5 * (1.0 - scale.place_of(float(zones.estimated[0])))))
     return found
-
-
-def _dashes(surface: pygame.Surface, colour: Colour, line: list[tuple[float, float]], dash: int) -> None:
-    """A line through points in dashes [pixels]."""
-    points = np.array(line)
-    if len(points) < 2:
-        return
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-    for start in np.arange(0.0, along[-1], 2 * dash):
-        first, last = ([float(np.interp(s, along, points[:, k])) for k in (0, 1)] for s in (start, start + dash))
-        pygame.draw.aaline(surface, colour, first, last)

@@ -4,39 +4,20 @@ from typing import Any
 
 import numpy as np
 import pygame
-from numpy.typing import NDArray
 
 from sandbox.app.draw.colours import ACCENT, DECADE, FIELD, MUTED, TEXT
+from sandbox.app.panel.readings import motion_words
 from sandbox.app.widgets.painted import Painted
 from sandbox.app.widgets.ui import Ui
-from sandbox.physics.equation import spring_impulse
+from sandbox.physics.analysis.spring_motion import SpringMotion, errors_of, motion_of
 
 # Longest time that is looked at, and those that the curve may show [ticks].
 LONGEST = 960
 LENGTHS = (12, 30, 60, 120, 240, 480, LONGEST)
-# It is at rest once no error above this share of the first is left.
-AT_REST = 0.02
 # Up to so many ticks each has a dot.
 MOST_DOTS = 60
 # Sizes in layout units.
 TEXT_SIZE, TOP, BOTTOM, SIDE = 10.5, 17.0, 15.0, 4.0
-
-
-def response(stiffness: float, damping: float, ticks: int = LONGEST) -> NDArray[np.float64]:
-    """Error (ticks + 1,) of one spring that is let go from an error of 1, tick by tick."""
-    error, speed, errors = 1.0, 0.0, [1.0]
-    for _ in range(ticks):
-        speed += spring_impulse(stiffness, damping, error, speed, 1.0, 1.0)
-        error += speed
-        errors.append(error)
-    return np.array(errors)
-
-
-def rest_tick(errors: NDArray[np.float64]) -> int | None:
-    """The tick from which on it is at rest; None where it is not at the end."""
-    moving = np.flatnonzero(np.abs(errors) > AT_REST)
-    last = int(moving[-1]) + 1 if len(moving) else 0
-    return last if last < len(errors) else None
 
 
 class ResponseCurve(Painted):
@@ -46,14 +27,16 @@ class ResponseCurve(Painted):
         super().__init__(ui, rect, container)
         self._of: tuple[float, float, int] | None = None
         self.words = ""
-        self.errors = response(0.0, 0.0, 1)
+        self.motion: SpringMotion | None = None
+        self.errors = errors_of(0.0, 0.0, 1)
         self.repaint()
 
     def show_spring(self, pair: tuple[float, float], tick_rate: int) -> None:
         """Show the spring of Cs and Cd."""
         of = (*pair, tick_rate)
         if of != self._of:
-            self._of, self.words, self.errors = of, "", response(*pair)
+            self._of, self.words, self.errors = of, "", errors_of(*pair, LONGEST)
+            self.motion = motion_of(*pair, 1.0 / tick_rate)
             self.repaint()
 
     def show_none(self, words: str) -> None:
@@ -62,27 +45,21 @@ class ResponseCurve(Painted):
             self._of, self.words = None, words
             self.repaint()
 
-    def _verdict(self, rest: int | None, rate: int) -> str:
-        """What becomes of it, in words."""
-        if rest is not None:
-            return f"at rest after {rest} tick{'' if rest == 1 else 's'}, {rest / rate:.2g} s"
-        return "hardly comes back" if self.errors[-1] > 0.5 and self.errors.min() > 0.0 else "swings on"
-
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """The curve, the line of rest, and when it comes there."""
         surface = pygame.Surface(size, pygame.SRCALPHA)
         px, font = self.ui.px, self.ui.font(TEXT_SIZE)
         inside = pygame.Rect(px(SIDE), px(TOP), size[0] - 2 * px(SIDE), size[1] - px(TOP + BOTTOM))
         pygame.draw.rect(surface, FIELD, inside, border_radius=px(4))
-        if self._of is None:
+        if self._of is None or self.motion is None:
             text = font.render(self.words, True, MUTED)
             surface.blit(text, text.get_rect(center=inside.center))
             return surface
-        rate, rest = self._of[2], rest_tick(self.errors)
-        shown = next((length for length in LENGTHS if rest is not None and rest <= 0.8 * length), LONGEST)
+        rate, rest = self._of[2], self.motion.rest * self._of[2]
+        shown = next((length for length in LENGTHS if rest <= 0.8 * length), LONGEST)
         title = font.render("One spring, let go", True, MUTED)
         surface.blit(title, (inside.left, 0))
-        verdict = font.render(self._verdict(rest, rate), True, TEXT)
+        verdict = font.render(motion_words(self.motion), True, TEXT)
         surface.blit(verdict, verdict.get_rect(topright=(inside.right, 0)))
         for tick, label in ((0, "0"), (shown // 2, ""), (shown, f"{shown} ticks = {shown / rate:.3g} s")):
             x = inside.left + tick / shown * (inside.width - 1)

@@ -1,0 +1,88 @@
+"""Readings in words: numbers, lengths of time, motions and sags as a person says them."""
+
+import math
+
+import numpy as np
+
+from sandbox.physics.analysis.body_motion import FLAT
+from sandbox.physics.analysis.spring_motion import SpringMotion
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.stability import CoefficientLimits
+from sandbox.physics.world import Floats
+
+# Names of powers of a thousand, the least first.
+_PREFIXES = {-9: "n", -6: "\u00b5", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+DIGITS = 3
+# A smaller share is said to be nothing.
+UNSEEN = 1e-5
+
+
+def number(value: float, digits: int = DIGITS) -> str:
+    """A number without an exponent, in so many significant digits; large ones keep all before the point."""
+    if not math.isfinite(value):
+        return "\u221e" if value > 0.0 else "\u2212\u221e" if value < 0.0 else "?"
+    if value == 0.0 or abs(value) < 1e-12:
+        return "0"
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    text = f"{value:.{min(decimals, 12)}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def with_unit(value: float, unit: str) -> str:
+    """A quantity whose unit has a prefix, as in 2.1 mJ or 13 kJ; what rounds to nothing is 0."""
+    if not math.isfinite(value):
+        return f"{number(value)} {unit}"
+    power = 0 if value == 0.0 else 3 * math.floor(math.log10(abs(value)) / 3.0)
+    if power < min(_PREFIXES):
+        return f"0 {unit}"
+    power = min(power, max(_PREFIXES))
+    text = number(value / 10.0**power)
+    if text in ("1000", "-1000") and power < max(_PREFIXES):
+        text, power = text.removesuffix("000"), power + 3
+    return f"{text} {_PREFIXES[power]}{unit}"
+
+
+def seconds(value: float) -> str:
+    """A length of time."""
+    if value >= 6000.0:
+        return "hours"
+    return f"{number(value / 60.0, 2)} min" if value >= 100.0 else f"{number(value, 2)} s"
+
+
+def per_cent(share: float, digits: int = 2) -> str:
+    """A share as a person says it."""
+    return f"{number(100.0 * share, digits)} %" if abs(share) >= UNSEEN else "0 %"
+
+
+def motion_words(motion: SpringMotion) -> str:
+    """How an error goes back, and when it is gone."""
+    if math.isinf(motion.half):
+        return "does not come back"
+    if math.isinf(motion.rest) or (motion.swings and motion.rest > 600.0):
+        return "swings on and on"
+    if motion.swings:
+        return f"swings, at rest after {seconds(motion.rest)}"
+    return f"creeps back, half in {seconds(motion.half)}"
+
+
+def sag_words(least: float, most: float) -> str:
+    """How far what stands sags, from the least to the most of several bodies."""
+    if least >= FLAT:
+        return "Lies flat under its own weight"
+    if per_cent(least) == per_cent(most):
+        return f"Sags by {per_cent(most)} of its height"
+    return f"They sag by {per_cent(least)} to {'more than half' if most > FLAT else per_cent(most)} of their heights"
+
+
+def stability_words(solver: str, limits: CoefficientLimits, stiffness: Floats, damping: Floats) -> str:
+    """Whether springs of these Cs and Cd (k,) may explode in a solver, in a sentence."""
+    if SOLVERS[solver].bounded:
+        if np.any(stiffness > damping):
+            return "Cs is above Cd: it may bounce up to four times as high, but never explodes."
+        return "Stable: it can only lose energy."
+    if limits.stiffness is None or limits.damping is None:
+        return "Nothing is proven of this solver: stiff things may explode."
+    for name, values, limit in (("Cs", stiffness, limits.stiffness), ("Cd", damping, limits.damping)):
+        if np.any(values >= limit) and limit < 1.0:
+            return f"May explode: {name} is too high for a single pass (limit {number(limit, 2)} here)."
+    return "Stable: proven for a single pass."

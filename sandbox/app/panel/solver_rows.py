@@ -1,0 +1,88 @@
+"""Rows of the panel that say how ticks are solved: solver, substeps, iterations, warm start, ticks a second."""
+
+from collections.abc import Callable
+
+from sandbox.app.panel.panel_rows import ROW, PanelRows
+from sandbox.app.play.playback import Playback
+from sandbox.app.widgets.fields import typed_number
+from sandbox.level.format.limits import SUBSTEPS
+from sandbox.physics.settings import AUTO
+from sandbox.physics.solvers import SOLVERS
+from sandbox.session.commands import SetSolver
+
+SOLVER_TIPS = {
+    "single_pass": "The article's loop: each spring once a tick; soft things hold, stiff ones explode",
+    "iterative": "Each spring several times a tick: firmer, the more iterations there are",
+    "direct": "All springs at once: stiff things stay stiff, and nothing explodes",
+}
+SOLVER_LABELS = {"single_pass": "Single pass", "iterative": "Iterative", "direct": "Direct"}
+
+
+class SolverRows:
+    """What the rows show and do; ask_rate: what is done with another tick rate that was typed."""
+
+    def __init__(self, playback: Playback, say: Callable[[str], None], ask_rate: Callable[[str], None]) -> None:
+        self.playback, self._say, self._ask_rate = playback, say, ask_rate
+
+    def build(self, rows: PanelRows) -> None:
+        """Make the widgets."""
+        ui, back = rows.ui, rows.back
+        options = [(name, SOLVER_LABELS.get(name, name), SOLVER_TIPS.get(name, name)) for name in SOLVERS]
+        ui.label(rows.row(18, 2), "Solver", back, "@muted")
+        self.solver = ui.choice(rows.row(ROW, 8), options, self._choose_solver, back)
+        ui.label(rows.row(18, 2), "Substeps", back, "@muted")
+        several = "things stay as stiff per second and hold better"
+        counts = [(str(count), str(count), f"A tick in {count}: {several}" if count > 1 else "A tick in one")
+                  for count in SUBSTEPS]  # fmt: skip
+        counts.insert(0, (AUTO, "Auto", "Every tick takes as many as it needs, 1 to 8"))
+        self.substeps = ui.choice(rows.row(ROW - 2, 6), counts, self._choose_substeps, back)
+        self.iterations, self.warm_start, self.rate = rows.beside(
+            ("Iterations", "Rounds of the iterative solver: fewer are softer", self._type_iterations),
+            (
+                "Warm start",
+                "Part of the last pull that the iterative solver begins with, 0 to 1",
+                self._type_warm_start,
+            ),
+            ("Ticks/s", "Ticks a second; the run begins anew with another number of them", self._type_rate),
+        )
+
+    def refresh(self) -> None:
+        """Show what the world has now."""
+        settings = self.playback.session.world.settings
+        self.solver.show(settings.solver)
+        self.substeps.show(str(settings.substeps))
+        self.iterations.show(str(settings.iterations))
+        self.warm_start.show(f"{settings.warm_start:g}")
+        self.rate.show(f"{settings.tick_rate:g}")
+
+    def _choose_solver(self, name: str) -> None:
+        self.playback.submit(SetSolver(solver=name))
+
+    def _choose_substeps(self, count: str) -> None:
+        self.playback.submit(SetSolver(substeps=AUTO if count == AUTO else int(count)))
+
+    def _type_iterations(self, text: str) -> bool:
+        value = typed_number(self._say, text, "Iterations", 1, 1000)
+        if value is None or value != int(value):
+            if value is not None:
+                self._say(f"Iterations: {value:g} is not a whole number.")
+            return False
+        return self._submit(SetSolver(iterations=int(value)))
+
+    def _type_rate(self, text: str) -> bool:
+        """Ask how to go on at another tick rate; the run has the old one until it begins anew."""
+        if not text.strip().isdecimal():
+            self._say(f"Ticks a second: {text.strip() or 'nothing'!r} is not a whole number.")
+        elif int(text) != self.playback.session.world.settings.tick_rate:
+            self._ask_rate(text)
+        return False
+
+    def _type_warm_start(self, text: str) -> bool:
+        value = typed_number(self._say, text, "Warm start", 0.0, 1.0)
+        return value is not None and self._submit(SetSolver(warm_start=value))
+
+    def _submit(self, command: SetSolver) -> bool:
+        self.playback.submit(command)
+        if self.playback.session.world.settings.solver != "iterative":
+            self._say("It counts in the iterative solver alone.")
+        return True

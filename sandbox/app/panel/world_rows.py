@@ -1,0 +1,74 @@
+"""Rows of the panel for the world as a whole: gravity, the hand, overlays, and where its energy is."""
+
+from collections.abc import Callable, Mapping, Set
+
+from sandbox.app.panel.panel_rows import INSIDE, MARGIN, ROW, PanelRows
+from sandbox.app.panel.readings import with_unit
+from sandbox.app.panel.view_row import ViewRow
+from sandbox.app.play.playback import Playback
+from sandbox.app.widgets.fields import typed_number
+from sandbox.app.widgets.painted import TextBlock
+from sandbox.level.format.limits import GRAVITY_LIMIT
+from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
+from sandbox.session.commands import SetGravity
+from sandbox.tools.drag import STRENGTHS
+
+LABEL = 46.0
+GRAVITY_TIP = "Acceleration of what falls; -9.81 downwards is that of the Earth, 0 floats"
+
+
+class WorldRows:
+    """What the rows show and do; choose: what is done with a strength of the "hand" and with a "view"."""
+
+    def __init__(
+        self, playback: Playback, say: Callable[[str], None], choose: Mapping[str, Callable[[str], None]]
+    ) -> None:
+        self.playback, self._say, self._choose = playback, say, choose
+
+    def build(self, rows: PanelRows) -> None:
+        """Make the widgets."""
+        ui, back = rows.ui, rows.back
+        self.gravity_x, self.gravity_y = rows.beside(
+            ("Gravity x [m/s\u00b2]", GRAVITY_TIP, lambda text: self._type_gravity(text, 0)),
+            ("Gravity y [m/s\u00b2]", GRAVITY_TIP, lambda text: self._type_gravity(text, 1)),
+        )
+        ui.label(rows.place(MARGIN, 0, LABEL, ROW - 2), "Hand", back, "@muted")
+        options = [(name, name.capitalize(), _strength_tip(strength)) for name, strength in STRENGTHS.items()]
+        self.hand = ui.choice(rows.row(ROW - 2, 8, MARGIN + LABEL, INSIDE - LABEL), options, self._choose["hand"], back)
+        ui.label(rows.place(MARGIN, 0, LABEL, ROW - 2), "Show", back, "@muted")
+        self.views = ViewRow(ui, rows.row(ROW - 2, 8, MARGIN + LABEL, INSIDE - LABEL), self._choose["view"], back)
+        columns = (rows.place(MARGIN, 0, INSIDE / 2, 34), rows.place(MARGIN + INSIDE / 2, 0, INSIDE / 2, 34))
+        self.energies = [TextBlock(ui, place, "", back) for place in columns]
+        rows.row(40)
+
+    def refresh(self, energies: bool) -> None:
+        """Show what the world has now, and its energies if asked to."""
+        gravity = self.playback.session.world.settings.gravity
+        self.gravity_x.show(f"{gravity[0]:g}")
+        self.gravity_y.show(f"{gravity[1]:g}")
+        if energies:
+            self._show_energies()
+
+    def show_choices(self, strength: str, views: Set[str]) -> None:
+        """Show the strength of the hand, and which overlays are seen."""
+        self.hand.show(strength)
+        self.views.show(views)
+
+    def _show_energies(self) -> None:
+        world = self.playback.session.world
+        found = kinetic_energy(world), spring_energy(world), gravity_energy(world), self.playback.dissipation.energy
+        kinetic, springs, height, lost = (with_unit(value, "J") for value in found)
+        self.energies[0].show_text(f"moving {kinetic}\nin springs {springs}")
+        self.energies[1].show_text(f"in height {height}\nlost {lost}")
+
+    def _type_gravity(self, text: str, axis: int) -> bool:
+        value = typed_number(self._say, text, "Gravity", -GRAVITY_LIMIT, GRAVITY_LIMIT)
+        if value is None:
+            return False
+        x, y = self.playback.session.world.settings.gravity
+        self.playback.submit(SetGravity((value, y) if axis == 0 else (x, value)))
+        return True
+
+
+def _strength_tip(strength: float) -> str:
+    return f"Pulls with at most {strength:g} N for each kg of what it holds, from the next hold on"

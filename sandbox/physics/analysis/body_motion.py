@@ -1,0 +1,148 @@
+"""BodyMotion: what Cs and Cd of a body's springs make of the body as a whole, in each solver.
+
+How far it sags where it stands, and how its slowest wobble goes on: see firmness.py for both.
+"""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from sandbox.physics.analysis.spring_motion import SpringMotion, motion_of
+from sandbox.physics.equation import HIGHEST_COEFFICIENT
+from sandbox.physics.firmness import STANDING, WORDS, lowest_mode_of
+from sandbox.physics.forms import StiffForm, strength_of
+from sandbox.physics.settings import AUTO, WorldSettings
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.substeps import divide, halve, substep_coefficients, substep_time
+from sandbox.physics.world import Floats, World
+
+# Beyond this share of its height a body lies flat, and a sag says little.
+FLAT = 0.5
+# A body is called rigid where its springs take back all of their errors at once, and it sags by no more than this.
+UNSEEN_SAG = 5e-4
+_RANKED = sorted(WORDS.items(), key=lambda item: -item[1])
+
+
+@dataclass(frozen=True)
+class BodyMotion:
+    """A form by its lowest mode and height [m], under gravity [m/s^2], in steps of h [s], some a tick, by a solver.
+
+    iterations: of the iterative solver.
+    """
+
+    lowest_mode: float
+    height: float
+    gravity: float
+    h: float
+    parts: int
+    solver: str
+    iterations: int
+
+    @classmethod
+    def of(cls, shape: StiffForm, settings: WorldSettings, lowest_mode: float | None = None) -> "BodyMotion":
+        """That of a form; lowest_mode: where it is known."""
+        mode = lowest_mode_of(shape) if lowest_mode is None else lowest_mode
+        height, gravity = shape.height(settings.gravity), strength_of(settings.gravity)
+        parts = settings.fewest_substeps
+        return cls(mode, height, gravity, substep_time(settings), parts, settings.solver, settings.iterations)
+
+    def of_substep(self, stiffness: Floats, damping: Floats) -> tuple[Floats, Floats]:
+        """Cs and Cd (k,) of a substep from those of a tick, as springs get them that have no firmness."""
+        pair, none = (np.array(stiffness, np.float64), np.array(damping, np.float64)), np.zeros(len(stiffness))
+        if self.solver == "direct":
+            divide(*pair, none, self.parts, True)
+        else:
+            halve(*pair, none, self.parts)
+        return pair
+
+    def whole(self, stiffness: Floats, damping: Floats) -> tuple[Floats, Floats]:
+        """Cs and Cd (k,) of the body's slowest wobble in a substep, from those of its springs in one."""
+        a = self.lowest_mode
+        if self.solver == "single_pass":
+            return a * stiffness, a * damping
+        if self.solver == "iterative":
+            # What so many rounds of Gauss-Seidel have made of it.
+            share = 1.0 - max(0.0, 1.0 - a) ** (2 * self.iterations)
+            return share * stiffness, share * damping
+        capped = np.minimum(damping, HIGHEST_COEFFICIENT)
+        shares = a / (a * capped + (1.0 - capped))
+        held = np.where(damping > HIGHEST_COEFFICIENT, np.minimum(stiffness, HIGHEST_COEFFICIENT), stiffness)
+        return held * shares, capped * shares
+
+    def sag(self, stiffness: Floats, damping: Floats) -> Floats | None:
+        """Part of its height by which it sags where it stands (k,), from Cs and Cd of its springs in a substep.
+
+        None: only a run can tell, in the iterative solver.
+        """
+        if self.solver == "iterative":
+            return None
+        whole, damp = self.whole(stiffness, damping)
+        # k / m of the wobble [1/s^2]: Cs_a / ((1 - Cd_a) h^2), in a single pass Cs_a / h^2
+        rate = whole / (self.h * self.h) / (1.0 - damp if SOLVERS[self.solver].bounded else 1.0)
+        square = rate / (4.0 * math.pi * math.pi) * self.height
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.where(square > 0.0, STANDING * self.gravity / square, np.inf))
+
+    def motion(self, stiffness: float, damping: float) -> SpringMotion:
+        """How its slowest wobble goes on, from Cs and Cd of its springs in a substep."""
+        whole, damp = self.whole(np.array([stiffness]), np.array([damping]))
+        return motion_of(float(whole[0]), float(damp[0]), self.h)
+
+
+@dataclass(frozen=True)
+class BodyReading:
+    """What a body of a world shows: its sag as a share (None: not known), its slowest wobble, whether it is rigid.
+
+    Rigid: its springs take back all of their errors, and keep none of their speed.
+    """
+
+    sag: float | None
+    motion: SpringMotion
+    is_rigid: bool
+
+
+def present_coefficients(world: World) -> tuple[Floats, Floats]:
+    """Cs and Cd (m,) of a substep that springs of a world have now."""
+    solver = SOLVERS[world.settings.solver]
+    keeps = solver.bounded and world.settings.substeps == AUTO
+    return substep_coefficients(world, keeps_constant=keeps, highest=solver.highest)
+
+
+def read_body(
+    world: World, slot: int, lowest_mode: float, present: tuple[Floats, Floats] | None = None
+) -> BodyReading | None:
+    """What a body shows, by its place in the world's `forms`; None where its springs have several Cs or Cd.
+
+    lowest_mode: that of its form; none is shown where it is 0. present: see present_coefficients, None: found anew.
+    """
+    body = world.forms[slot]
+    springs = body.springs[world.spring_active[body.springs]]
+    differ = not len(springs) or np.ptp(world.stiffness[springs]) or np.ptp(world.damping[springs])
+    if differ or not lowest_mode > 0.0:
+        return None
+    pair = [each[springs[:1]] for each in present or present_coefficients(world)]
+    view = BodyMotion.of(body.shape, world.settings, lowest_mode)
+    sag = view.sag(*pair)
+    rigid = bool(world.stiffness[springs[0]] == world.damping[springs[0]] == 1.0)
+    return BodyReading(None if sag is None else float(sag[0]), view.motion(float(pair[0][0]), float(pair[1][0])), rigid)
+
+
+def word_edges() -> tuple[list[str], list[float]]:
+    """Words from soft to hard, but for rigid, and the sags (one less) at which one becomes the next."""
+    named = [(word, value) for word, value in _RANKED if value > 0.0]
+    return [word for word, _ in named], [
+        math.sqrt(first * second) for (_, first), (_, second) in itertools.pairwise(named)
+    ]
+
+
+def word_for(sag: float, is_rigid: bool) -> str:
+    """What a body is called that sags by this share of its height: the nearest of WORDS, by ratio.
+
+    Rigid is only what is so (`BodyReading`), and is seen to sag by nothing.
+    """
+    if is_rigid and sag <= UNSEEN_SAG:
+        return "rigid"
+    words, edges = word_edges()
+    return words[sum(sag < edge for edge in edges)]
