@@ -48,6 +48,14 @@ def label_joined(world: StateArrays, springs: Flags, particles: Flags) -> Slots:
     return label
 
 
+def body_of(world: StateArrays, particle: int) -> Slots:
+    """The particles that springs join to one, itself included, also by way of pinned ones; ascending."""
+    joined = np.flatnonzero(world.spring_active & (world.material >= 0))
+    label = np.arange(len(world.particle_active))
+    label_bodies(world.particle_a[joined].astype(np.int64), world.particle_b[joined].astype(np.int64), label)
+    return np.flatnonzero((label == label[particle]) & world.particle_active)
+
+
 @inner_kernel
 def root_of(label: Slots, node: int) -> int:
     """The label of the set that a node is in."""

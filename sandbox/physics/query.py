@@ -44,6 +44,36 @@ def nearest_particle(state: World | Snapshot, point: Point, within: float) -> in
     return _nearest(distance, shown_particles(state), within)
 
 
+@_far_away
+def free_particle_at(state: World | Snapshot, point: Point, within: float) -> int | None:
+    """Slot of the free particle that a press at point [m] takes: one at most `within` [m] away, else the nearest one of
+    the body whose springs are around the point.
+    """
+    pressed = nearest_particle(state, point, within)
+    if pressed is not None and state.inverse_mass[pressed] > 0.0:
+        return pressed
+    around = np.isin(state.owner, _bodies_around(state, point))
+    taken = shown_particles(state) & (state.inverse_mass > 0.0) & around
+    separation = state.position - np.asarray(point)
+    distance = np.sqrt(np.sum(separation * separation, axis=1))
+    return _nearest(distance, taken, np.inf) if taken.any() else None
+
+
+def _bodies_around(state: World | Snapshot, point: Point) -> NDArray[np.integer]:
+    # Bodies that have springs to the left and right of a point, above and below.
+    shown = np.flatnonzero(state.spring_active & (state.material >= 0))
+    a, b = state.position[state.particle_a[shown]], state.position[state.particle_b[shown]]
+    owner = state.owner[state.particle_a[shown]]
+    found = np.unique(owner)
+    for u, v in ((0, 1), (1, 0)):
+        crossing = np.flatnonzero((a[:, u] <= point[u]) != (b[:, u] <= point[u]))
+        start, end = a[crossing], b[crossing]
+        at = start[:, v] + (end[:, v] - start[:, v]) * ((point[u] - start[:, u]) / (end[:, u] - start[:, u]))
+        for beyond in (at <= point[v], at >= point[v]):
+            found = np.intersect1d(found, owner[crossing[beyond]])
+    return found
+
+
 def grip_radius(state: World | Snapshot, particle: int) -> float:
     """How far [m] a hand reaches into the body of a particle that it takes: 0 where it is not soft.
 

@@ -1,12 +1,12 @@
-"""DragTool: hold particles and move them; several at once with Shift."""
+"""DragTool: hold particles and move them, several at once with Shift; while time stands, put things elsewhere."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from sandbox.physics.query import grip_radius, nearest_particle
+from sandbox.physics.query import free_particle_at, grip_radius, nearest_particle
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import GRAB_COUNT, HAND_STRENGTH
-from sandbox.session.commands import Grab, MoveGrab, Release
+from sandbox.session.commands import Grab, MoveBody, MoveGrab, Release
 from sandbox.tools.tool import NOTHING, Point, PointerEvent, Response, Submission
 
 # A press that moves less than this part of the pick radius is a click. Larger: short drags turn into clicks.
@@ -18,10 +18,23 @@ STRENGTHS = {"gentle": 30.0, "normal": HAND_STRENGTH, "strong": 300.0}
 
 @dataclass
 class Hold:
-    """A particle in a hand, and the gesture that the whole drag belongs to."""
+    """A particle in a hand, and the gesture that the whole drag belongs to.
+
+    beside: how far [m] what the hand pulls it to is from the pointer, which may be well inside a body.
+    """
 
     particle: int
     gesture: int
+    beside: Point = (0.0, 0.0)
+
+
+@dataclass
+class Carried:
+    """A particle whose body is being put elsewhere, the gesture that this belongs to, and where the pointer was."""
+
+    particle: int
+    gesture: int
+    at: Point
 
 
 class DragTool:
@@ -36,6 +49,7 @@ class DragTool:
         self.strength = strength
         self._new_gesture = new_gesture
         self._dragged: int | None = None
+        self._carried: Carried | None = None
         self._pressed_at: Point = (0.0, 0.0)
         self._moved = False
         self._held_before = False
@@ -43,12 +57,14 @@ class DragTool:
     @property
     def dragging(self) -> bool:
         """Whether a pressed pointer moves a particle right now."""
-        return self._dragged is not None
+        return self._dragged is not None or self._carried is not None
 
     def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
         """Grab, move or release."""
         if event.kind == "down" and event.button == 1:
             return self._press(event, snapshot)
+        if self._carried is not None:
+            return self._carry(event, self._carried)
         if self._dragged is None:
             return NOTHING
         if event.kind == "move":
@@ -59,7 +75,7 @@ class DragTool:
         """Let go of every particle."""
         submissions = tuple(Submission(Release(hand), hold.gesture) for hand, hold in self.holds.items())
         self.holds.clear()
-        self._dragged = None
+        self._dragged = self._carried = None
         return Response(submissions)
 
     def reconcile(self, snapshot: Snapshot) -> None:
@@ -72,24 +88,32 @@ class DragTool:
                     self._dragged = None
 
     def _press(self, event: PointerEvent, snapshot: Snapshot) -> Response:
-        particle = nearest_particle(snapshot, event.position, event.pick_radius)
-        if particle is None:
+        particle = free_particle_at(snapshot, event.position, event.pick_radius)
+        if event.paused and not event.shift:
+            # What is pinned can be put elsewhere too.
+            carried = nearest_particle(snapshot, event.position, event.pick_radius)
+            carried = particle if carried is None else carried
+            if carried is not None:
+                self._carried = Carried(carried, self._new_gesture(), event.position)
             return NOTHING
+        if particle is None:
+            pinned = nearest_particle(snapshot, event.position, event.pick_radius) is not None
+            said = "This particle is pinned. Unpin it with the pin tool (P) to drag it."
+            return Response(message=said) if pinned else NOTHING
         self._pressed_at, self._moved = event.position, False
         held = next((hand for hand, hold in self.holds.items() if hold.particle == particle), None)
         self._held_before = held is not None
         if held is not None:
             self._dragged = held
             return NOTHING
-        if snapshot.inverse_mass[particle] == 0.0:
-            return Response(message="This particle is pinned. Unpin it with the pin tool (P) to drag it.")
         hand = next((number for number in range(GRAB_COUNT) if number not in self.holds), None)
         if hand is None:
             return Response(message=f"All {GRAB_COUNT} hands are full. Escape lets go of everything.")
-        hold = Hold(particle, self._new_gesture())
+        hold = Hold(particle, self._new_gesture(), _beside(snapshot, particle, event))
         self.holds[hand] = hold
         self._dragged = hand
-        grab = Grab(hand, particle, event.position, STRENGTHS[self.strength], grip_radius(snapshot, particle))
+        target, strength = _shifted(event.position, hold.beside), STRENGTHS[self.strength]
+        grab = Grab(hand, particle, target, strength, grip_radius(snapshot, particle))
         return Response((Submission(grab, hold.gesture),))
 
     def _move(self, event: PointerEvent) -> Response:
@@ -98,7 +122,16 @@ class DragTool:
         if dx * dx + dy * dy > (CLICK_SHARE * event.pick_radius) ** 2:
             self._moved = True
         hold = self.holds[self._dragged]
-        return Response((Submission(MoveGrab(self._dragged, event.position), hold.gesture),))
+        return Response((Submission(MoveGrab(self._dragged, _shifted(event.position, hold.beside)), hold.gesture),))
+
+    def _carry(self, event: PointerEvent, carried: Carried) -> Response:
+        if event.kind == "up" and event.button == 1:
+            self._carried = None
+        by = event.position[0] - carried.at[0], event.position[1] - carried.at[1]
+        if event.kind == "down" or by == (0.0, 0.0):
+            return NOTHING
+        carried.at = event.position
+        return Response((Submission(MoveBody(carried.particle, by), carried.gesture),))
 
     def _release(self, event: PointerEvent) -> Response:
         assert self._dragged is not None
@@ -107,3 +140,15 @@ class DragTool:
         if keeps_hold:
             return NOTHING
         return Response((Submission(Release(hand), self.holds.pop(hand).gesture),))
+
+
+def _shifted(place: Point, by: Point) -> Point:
+    return place[0] + by[0], place[1] + by[1]
+
+
+def _beside(snapshot: Snapshot, particle: int, event: PointerEvent) -> Point:
+    # A particle at the pointer goes to it; one that is farther off keeps its distance, so that nothing jumps.
+    x, y = snapshot.position[particle].tolist()
+    dx, dy = x - event.position[0], y - event.position[1]
+    near = event.pick_radius + float(snapshot.radius[particle])
+    return (0.0, 0.0) if dx * dx + dy * dy <= near * near else (dx, dy)

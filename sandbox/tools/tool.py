@@ -16,7 +16,7 @@ CLICK_SHARE = 0.35
 class PointerEvent:
     """A pointer pressed, moved or released at position [m]; pick_radius [m]: how far off still counts as a hit.
 
-    seconds: when, by any clock.
+    seconds: when, by any clock. paused: whether time stands.
     """
 
     kind: Literal["down", "move", "up"]
@@ -26,6 +26,7 @@ class PointerEvent:
     shift: bool = False
     ctrl: bool = False
     seconds: float = 0.0
+    paused: bool = False
 
 
 class Submission(NamedTuple):

@@ -19,7 +19,7 @@ from sandbox.editor.edits.joining import joining_commands
 from sandbox.editor.edits.sizing import sized
 from sandbox.level.format.model import Level
 from sandbox.physics.joints.pulls import Pull, pulls_of
-from sandbox.physics.query import nearest_particle, shown_particles
+from sandbox.physics.query import free_particle_at, nearest_particle, shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command
 from sandbox.session.session import Session
@@ -205,6 +205,7 @@ class Stage:
             bool(modifiers & pygame.KMOD_SHIFT),
             bool(modifiers & pygame.KMOD_CTRL),
             pygame.time.get_ticks() / 1000.0,
+            self.playback.clock.paused,
         )
         self.playback.respond(self.tool.handle(event, self.playback.current if among is None else among))
 
@@ -302,7 +303,9 @@ class Stage:
             tool.place = at
         elif pointer is not None and self.tool_name not in ("cut", "wind") and not self.drag.dragging:
             within = PICK_RADIUS * self.renderer.scale / self.camera.zoom
-            self._hovered = nearest_particle(self.playback.current, self.camera.to_world(pointer), within)
+            # What a press there would take.
+            take = free_particle_at if self.tool is self.drag else nearest_particle
+            self._hovered = take(self.playback.current, self.camera.to_world(pointer), within)
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw the world into the viewport."""

@@ -6,7 +6,8 @@ import pygame
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import WARNING
 from sandbox.app.widgets.ui import Ui
-from sandbox.physics.changing.freeing import body_of, overlapping
+from sandbox.physics.changing.freeing import overlapping
+from sandbox.physics.components import body_of
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import World
 

@@ -22,7 +22,7 @@ from sandbox.app.toy.rest import Rest
 from sandbox.app.toy.toy_window import ToyWindow
 from sandbox.app.widgets.fonts import plain_font
 from sandbox.level.format.model import Level
-from sandbox.physics.query import nearest_particle, shown_particles
+from sandbox.physics.query import free_particle_at, shown_particles
 from sandbox.session.commands import Shake
 
 # Frames a second: while somebody plays or something moves fast, and while it comes to rest. Looks for events while it
@@ -271,7 +271,7 @@ class Toy:
 
     def _can_hold(self, pixel: tuple[float, float]) -> bool:
         within = REACH * self.window.scale / self.camera.zoom
-        return nearest_particle(self.playback.current, self.camera.to_world(pixel), within) is not None
+        return free_particle_at(self.playback.current, self.camera.to_world(pixel), within) is not None
 
     def _move(self, event: pygame.event.Event) -> None:
         self.hovered = True

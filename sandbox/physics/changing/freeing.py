@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.collision.collide import collisions_of
 from sandbox.physics.collision.outline import Outline, outline_of
-from sandbox.physics.components import label_bodies
+from sandbox.physics.components import body_of
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.world import BANK_UNOPENED, World
 
@@ -42,14 +42,6 @@ def overlapping(world: World) -> list[tuple[int, int]]:
     first = outline.member[outline.member_start[:-1]]
     is_solid = outline.solid_of >= 0
     return [(int(first[s]), int(first[t])) for s, t in shapes.tolist() if is_solid[s] or is_solid[t]]
-
-
-def body_of(world: World, particle: int) -> Slots:
-    """The particles that springs join to one, itself included, also by way of pinned ones; ascending."""
-    joined = np.flatnonzero(world.spring_active & (world.material >= 0))
-    label = np.arange(world.particle_count)
-    label_bodies(world.particle_a[joined].astype(np.int64), world.particle_b[joined].astype(np.int64), label)
-    return np.flatnonzero((label == label[particle]) & world.particle_active)
 
 
 def free_body(world: World, particle: int) -> None:

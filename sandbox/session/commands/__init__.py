@@ -18,6 +18,7 @@ from sandbox.session.commands.history import Redo, Undo
 from sandbox.session.commands.inflation import SetInflation
 from sandbox.session.commands.joining import AddBody
 from sandbox.session.commands.materials import SetCoefficients
+from sandbox.session.commands.moving import MoveBody
 from sandbox.session.commands.pinning import Pin, Unpin
 from sandbox.session.commands.pushing import Push
 from sandbox.session.commands.removing import Remove
@@ -34,6 +35,7 @@ __all__ = [
     "CutSprings",
     "Free",
     "Grab",
+    "MoveBody",
     "MoveGrab",
     "Pin",
     "Push",

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from sandbox.physics.components import body_of
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot, particle_of
@@ -22,7 +23,7 @@ class Free(Command):
         if not world.has_contacts:
             raise CommandError("nothing touches anything here: there is nothing to free")
         # What finds contacts, which a run in which nothing touches does without.
-        from sandbox.physics.changing.freeing import NothingFree, body_of, free_body
+        from sandbox.physics.changing.freeing import NothingFree, free_body
 
         if (world.inverse_mass[body_of(world, self.particle)] == 0.0).any():
             raise CommandError(f"the body of {name} is pinned: unpin it to free it")

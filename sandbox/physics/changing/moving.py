@@ -1,0 +1,18 @@
+"""Moving: what hangs together is put somewhere else at once. Not part of a tick: it is a deed of a person's."""
+
+import numpy as np
+
+from sandbox.physics.components import body_of
+from sandbox.physics.world import BANK_UNOPENED, World
+
+
+def move_body(world: World, particle: int, by: tuple[float, float], limit: float) -> bool:
+    """Move all that springs join to a particle by a way [m]; False, and nothing is moved, where it ends beyond limit
+    [m]."""
+    body = body_of(world, particle)
+    places = world.position[body] + np.array(by)
+    if not (np.abs(places) <= limit).all():
+        return False
+    world.change("position", places, body)
+    world.energy_bank[body] = BANK_UNOPENED
+    return True

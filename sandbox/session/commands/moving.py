@@ -1,0 +1,29 @@
+"""Things are moved to another place, as with a hand while time stands."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from pydantic import Field
+
+from sandbox.level.format.limits import COORDINATE_LIMIT
+from sandbox.level.format.quantities import unit
+from sandbox.physics.changing.moving import move_body
+from sandbox.physics.world import World
+from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.named import ParticleSlot, particle_of
+
+Way = Annotated[float, Field(ge=-COORDINATE_LIMIT, le=COORDINATE_LIMIT, json_schema_extra=unit("m"))]
+
+
+@dataclass(frozen=True)
+class MoveBody(Command):
+    """Move all that hangs together with a particle, its pins too, by a way [m], at once; its velocity stays."""
+
+    type = "move_body"
+    particle: ParticleSlot
+    by: tuple[Way, Way]
+
+    def carry_out(self, world: World) -> None:
+        name = particle_of(world, self.particle)
+        if not move_body(world, self.particle, self.by, COORDINATE_LIMIT):
+            raise CommandError(f"what hangs on {name} would be beyond {COORDINATE_LIMIT:g} m")
