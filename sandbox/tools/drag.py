@@ -53,6 +53,8 @@ class DragTool:
         self._pressed_at: Point = (0.0, 0.0)
         self._moved = False
         self._held_before = False
+        # The particle of the last press, if it was a click: `take_click`.
+        self._clicked: int | None = None
 
     @property
     def dragging(self) -> bool:
@@ -70,6 +72,11 @@ class DragTool:
         if event.kind == "move":
             return self._move(event)
         return self._release(event) if event.kind == "up" and event.button == 1 else NOTHING
+
+    def take_click(self) -> int | None:
+        """The particle that was clicked since this was asked last; None: none was."""
+        clicked, self._clicked = self._clicked, None
+        return clicked
 
     def cancel(self) -> Response:
         """Let go of every particle."""
@@ -95,6 +102,7 @@ class DragTool:
             carried = particle if carried is None else carried
             if carried is not None:
                 self._carried = Carried(carried, self._new_gesture(), event.position)
+                self._clicked = carried
             return NOTHING
         if particle is None:
             pinned = nearest_particle(snapshot, event.position, event.pick_radius) is not None
@@ -130,12 +138,13 @@ class DragTool:
         by = event.position[0] - carried.at[0], event.position[1] - carried.at[1]
         if event.kind == "down" or by == (0.0, 0.0):
             return NOTHING
-        carried.at = event.position
+        carried.at, self._clicked = event.position, None
         return Response((Submission(MoveBody(carried.particle, by), carried.gesture),))
 
     def _release(self, event: PointerEvent) -> Response:
         assert self._dragged is not None
         hand, self._dragged = self._dragged, None
+        self._clicked = None if self._moved else self.holds[hand].particle
         keeps_hold = self._moved if self._held_before else event.shift
         if keeps_hold:
             return NOTHING

@@ -59,7 +59,7 @@ class Driver:
 
     @property
     def panel(self):
-        return self.app.panel.panel
+        return self.app.play.panel
 
     @property
     def editor(self):

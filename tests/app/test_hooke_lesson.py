@@ -85,7 +85,7 @@ def test_stiffer_again_and_again_ends_in_words_and_a_button_and_harms_nothing(le
 
 
 def test_a_button_that_can_do_no_more_is_not_offered(lesson):
-    panel = lesson.app.panel.panel
+    panel = lesson.app.play.panel
     assert panel.stiffer.is_enabled and not panel.softer.is_enabled
     lesson.click_widget(panel.stiffer)
     assert panel.softer.is_enabled
@@ -96,7 +96,7 @@ def test_a_button_that_can_do_no_more_is_not_offered(lesson):
 
 
 def test_another_weight_or_rate_begins_anew_with_another_limit(lesson):
-    panel = lesson.app.panel.panel
+    panel = lesson.app.play.panel
     limit = lesson.app.play.trial.highest_k
     lesson.click_widget(panel.masses.buttons["10"])
     assert lesson.app.play.trial.highest_k == pytest.approx(10.0 * limit, rel=0.1)

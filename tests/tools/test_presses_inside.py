@@ -76,7 +76,7 @@ def test_a_paused_drag_moves_the_thing_there_is_undone_at_once_and_verifies(name
     if found is None:
         free = np.flatnonzero(shown_particles(session.world) & (session.world.inverse_mass > 0.0))
         found = tuple(session.world.position[free[0]].tolist()), (int(free[0]),)
-    place, corners = found
+    place, _ = found
     before = session.world.position.copy()
     for kind, by in (("down", 0.0), ("move", 0.3), ("move", 0.5), ("up", 0.7)):
         event = PointerEvent(kind, (place[0] + by, place[1] - by), 0.05, paused=True)

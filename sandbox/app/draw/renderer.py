@@ -47,6 +47,8 @@ LATTICE_HALF, LATTICE_MORE, MOST_SMOOTH = 0.65, 1.0, 6_000
 NODE = 2.2
 # What things fade behind, and by how much: springs that are drawn by their force would be lost on their colours.
 VEILING, VEIL = frozenset({"forces", "stability"}), 0.55
+# Width of springs that are pointed at in a panel [layout units].
+LIT_WIDTH = 2.6
 # Overlays that may change while nothing moves.
 CHANGING = frozenset({"contacts", "forces", "velocities", "stability"})
 
@@ -56,6 +58,7 @@ class Overlay:
     """What a person is doing, drawn over the world: the particle under the pointer, a cut [m], a cursor [m], pulls.
 
     ghost: lines [m] of what a click would do.
+    lit (m,): springs that are pointed at in a panel.
     stability (m,): how near springs are to the limit of what is proven stable, 1 = at it; None = not known.
     """
 
@@ -67,6 +70,7 @@ class Overlay:
     # And a picture of it, with the place of its middle [m].
     ghost_picture: tuple[pygame.Surface, tuple[float, float]] | None = None
     stability: NDArray[np.float64] | None = None
+    lit: NDArray[np.bool_] | None = None
 
 
 class Renderer:
@@ -181,6 +185,8 @@ class Renderer:
                 layer = MarkList()
                 self.overlays.mark(layer, frame, current, camera, particles, springs, overlay.stability)
                 painter.marks(layer, frame.tiles.array)
+        if overlay.lit is not None:
+            self._draw_lit(Canvas(surface, self.compiled), pixels, current, overlay.lit)
         self._draw_overlay(Canvas(surface, self.compiled), camera, pixels, overlay)
         self._still.keep(surface, place)
 
@@ -193,7 +199,8 @@ class Renderer:
             (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail,
              self.has_effects, self.asleep, self.pointer),
             (overlay.hovered, tuple(overlay.trail), overlay.cursor, tuple(map(tuple, overlay.ghost)),
-             None if overlay.ghost_picture is None else (id(overlay.ghost_picture[0]), overlay.ghost_picture[1])),
+             None if overlay.ghost_picture is None else (id(overlay.ghost_picture[0]), overlay.ghost_picture[1]),
+             b"" if overlay.lit is None else overlay.lit.tobytes()),
             tuple(pull.cursor for pull in overlay.pulls if pull.at_limit), frozenset(shown),
             self._grounds, (frame.seconds if moves else 0.0), (current.tick if shown & CHANGING else 0),
             current.particle_active.tobytes(), current.spring_active.tobytes(), (current.inverse_mass == 0.0).tobytes(),
@@ -297,6 +304,11 @@ class Renderer:
             for radius, colour in ((8.0, colours), (6.4, packed(self.theme.card)), (4.2, colours)):
                 layer.discs(frame.at[pairs[:, 1]], radius * self.scale, colour)
         self._painter.marks(layer, frame.tiles.array)
+
+    def _draw_lit(self, canvas: Canvas, pixels: NDArray[np.float64], current: Snapshot, lit: NDArray[np.bool_]) -> None:
+        springs = np.flatnonzero(lit & current.spring_active)
+        ends = np.concatenate([pixels[current.particle_a[springs]], pixels[current.particle_b[springs]]], axis=1)
+        canvas.lines(np.ascontiguousarray(ends), np.full(len(ends), packed(ACCENT)), LIT_WIDTH * self.scale)
 
     def _draw_overlay(self, canvas: Canvas, camera: Camera, pixels: NDArray[np.float64], overlay: Overlay) -> None:
         surface, scale = canvas.surface, self.scale

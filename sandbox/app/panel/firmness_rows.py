@@ -5,6 +5,9 @@ from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sandbox.app.panel.readings import DIGITS, motion_words, number, per_cent, sag_words
 from sandbox.app.play.playback import Playback
 from sandbox.app.widgets.fields import DASH, MIXED, Choice, Field, typed_number
@@ -73,6 +76,23 @@ class FirmnessRows:
         slot = self._slots.get(name)
         world = self.playback.session.world
         return None if slot is None else int(world.material[world.forms[slot].springs[0]])
+
+    def body_at(self, particle: int) -> str | None:
+        """The name of the body of which a particle is; None: of none that is offered."""
+        world = self.playback.session.world
+        for name, slot in self._slots.items():
+            springs = world.forms[slot].springs
+            if particle in world.particle_a[springs] or particle in world.particle_b[springs]:
+                return name
+        return None
+
+    def springs_of(self, name: str) -> NDArray[np.bool_]:
+        """The springs (m,) of a body, or of all."""
+        world = self.playback.session.world
+        chosen = np.zeros(world.spring_count, np.bool_)
+        for slot in self._slots.values() if name == ALL_BODIES else [self._slots[name]]:
+            chosen[world.forms[slot].springs] = True
+        return chosen
 
     def body_of(self, material: int | None) -> int | None:
         """The body of which what is said of a material is said: the chosen one, else the largest of the material."""

@@ -394,6 +394,27 @@ class Panel:
         if material is not None:
             self.choose_material(material)
 
+    def choose_particle(self, particle: int) -> None:
+        """Show and change the body of a particle, or what it hangs on, where that is nothing that stands by itself."""
+        world = self.playback.session.world
+        name = self.firmness.body_at(particle)
+        if name is not None:
+            self.choose_body(name)
+            return
+        holds = world.spring_active & (world.material >= 0)
+        springs = np.flatnonzero(holds & ((world.particle_a == particle) | (world.particle_b == particle)))
+        if len(springs):
+            self.choose_material(int(world.material[springs[0]]))
+
+    def pointed_springs(self) -> np.ndarray | None:
+        """The springs (m,) of the material or body that the mouse points at in a menu; None: it points at none."""
+        world, name = self.playback.session.world, self._ui.pointed_option(self.menu)
+        if name is not None:
+            of_material = world.material >= 0
+            return of_material if name == ALL_MATERIALS else world.material == self._material_names().index(name)
+        name = self._ui.pointed_option(self.firmness.menu) if self.firmness.shown else None
+        return None if name is None else self.firmness.springs_of(name)
+
     def _choose_material(self, name: str) -> None:
         self.choose_material(None if name == ALL_MATERIALS else self._material_names().index(name))
 

@@ -410,6 +410,9 @@ class PlayScreen:
         if kind == "down":
             self.stage.cursor = None
         self.stage.point(kind, pixel, modifiers)
+        clicked = self.stage.drag.take_click() if kind == "up" else None
+        if clicked is not None and isinstance(self.panel, Panel):
+            self.panel.choose_particle(clicked)
 
     def press_key(self, key: int, modifiers: int) -> bool:
         """Drive what the level lets a key drive."""
@@ -442,6 +445,7 @@ class PlayScreen:
         if self.panel is not None and ready:
             self.panel.refresh()
             self.panel.show_choices(self.stage.drag.strength, self.stage.renderer.overlays.shown)
+        self.stage.lit = self.panel.pointed_springs() if isinstance(self.panel, Panel) else None
         self.time.show()
         if self.part_page is not None:
             self.part_page.update()

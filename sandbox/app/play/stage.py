@@ -5,6 +5,7 @@ from typing import Literal
 
 import numpy as np
 import pygame
+from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Box, Camera, bounds
 from sandbox.app.draw.detail import Detail
@@ -58,6 +59,8 @@ class Stage:
         self.cursor: tuple[float, float] | None = None
         self.pressed_by_key = False
         self._hovered: int | None = None
+        # Springs (m,) that are pointed at in a panel; None: nothing is.
+        self.lit: NDArray[np.bool_] | None = None
         # What the wheel made of the parts and the ring [m]; 0: nothing yet.
         self.size = 0.0
         # The part of the catalogue that is in hand, or was last.
@@ -311,7 +314,7 @@ class Stage:
         """Draw the world into the viewport."""
         surface.set_clip(self.camera.viewport)
         playback = self.playback
-        overlay = Overlay(self._hovered, self.cut.trail, self.cursor, self.pulls())
+        overlay = Overlay(self._hovered, self.cut.trail, self.cursor, self.pulls(), lit=self.lit)
         overlay.ghost = getattr(self.tool, "ghost", [])
         if isinstance(self.tool, DropTool) and self.tool.place is not None:
             part, size, colour = self.tool.part.name, self.tool.size, self.tool.colour

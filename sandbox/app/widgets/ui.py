@@ -162,6 +162,18 @@ class Ui(WindowLayout):
             menu.add_options(list(options))
         self.replace_menu(menu, chosen)
 
+    def pointed_option(self, menu: UIDropDownMenu) -> str | None:
+        """The option under the mouse, in the list of an open menu, or what a closed one shows; None: none is."""
+        state: Any = menu.current_state
+        options = getattr(state, "options_selection_list", None)
+        if options is None:
+            return str(menu.selected_option[0]) if menu.hover_point(*self.manager.get_mouse_position()) else None
+        for option in options.item_list:
+            button = option["button_element"]
+            if button is not None and button.hovered:
+                return str(option["text"])
+        return None
+
     def add(self, widget: Painted) -> None:
         """Let a painted widget be reached by Tab."""
         self._add_focusable(widget)
