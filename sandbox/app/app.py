@@ -20,10 +20,12 @@ from sandbox.app.edit.documents import DocumentActions
 from sandbox.app.edit.tour import Guide
 from sandbox.app.files import FileActions
 from sandbox.app.gallery.gallery import Gallery
+from sandbox.app.gallery.sections import FIRST
 from sandbox.app.help import show_help
 from sandbox.app.idle import IdleCollector
 from sandbox.app.input import Input
 from sandbox.app.loop import FRAME_RATE
+from sandbox.app.play.melt_lesson import MeltLesson
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.playback import Playback
@@ -43,7 +45,7 @@ from sandbox.app.start_request import StartRequest
 from sandbox.app.toy.toy_start import ToyStarter
 from sandbox.app.widgets.dialogs import show_lines
 from sandbox.app.widgets.ui import Ui
-from sandbox.level.format.files import read_level
+from sandbox.level.format.files import load_level, read_level
 
 # How often the status figures and the window title change [s].
 FIGURES_EVERY = 0.5
@@ -234,6 +236,11 @@ class App:
     def start_lesson(self) -> None:
         """Begin the lesson on Hooke's spring and the article's."""
         self.show_screen(HookeLesson(self))
+
+    def start_melt(self) -> None:
+        """Begin the lesson on springs that are solved one by one."""
+        self.show_screen(MeltLesson(self, Playback(load_level(FIRST))))
+        self.say(MeltLesson.welcome)
 
     def start_pair(self, path: Path) -> None:
         """Play the level of a file twice side by side, with the pad in the panel."""

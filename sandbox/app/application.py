@@ -226,6 +226,10 @@ class Application(Protocol):
         """Play the level of a file twice side by side, with the pad in the panel."""
         ...
 
+    def start_melt(self) -> None:
+        """Begin the lesson on springs that are solved one by one."""
+        ...
+
     def start_lesson(self) -> None:
         """Begin the lesson on Hooke's spring and the article's."""
         ...

@@ -45,11 +45,18 @@ class Input:
         self._space_down: int | None = None
         self._space_used = False
         self._held_keys: set[int] = set()
+        self._is_repeated = False
         self._last_press: tuple[int, Pixel] | None = None
 
     def process(self, events: list[pygame.event.Event]) -> None:
         """Hand out the events of a frame."""
         for event in events:
+            if event.type == pygame.KEYDOWN:
+                # What a widget takes is held all the same: what it opens does not have the key again.
+                self._is_repeated = event.key in self._held_keys
+                self._held_keys.add(event.key)
+            elif event.type == pygame.KEYUP:
+                self._held_keys.discard(event.key)
             if event.type == pygame.QUIT or event.type == pygame.WINDOWCLOSE:
                 self.app.quit()
             elif event.type == pygame.DROPFILE:
@@ -82,10 +89,8 @@ class Input:
         return event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONUP) and (self._pressed or self._panning)
 
     def _to_world(self, event: pygame.event.Event) -> None:
-        if event.type == pygame.KEYUP:
-            self._held_keys.discard(event.key)
-            if self.app.screen is not None:
-                self.app.screen.release_key(event.key)
+        if event.type == pygame.KEYUP and self.app.screen is not None:
+            self.app.screen.release_key(event.key)
         if event.type == pygame.KEYDOWN:
             self._key(event)
         elif event.type == pygame.KEYUP and event.key == pygame.K_SPACE:
@@ -121,9 +126,7 @@ class Input:
                 self._space_down, self._space_used = pygame.time.get_ticks(), False
             return
         action = action_of(event.key, event.mod, app.mode)
-        is_repeated = event.key in self._held_keys
-        self._held_keys.add(event.key)
-        if is_repeated and action not in REPEATED:
+        if self._is_repeated and action not in REPEATED:
             return
         if action is None or (app.ui.has_sheet and not self._works_over_pages(action)):
             return

@@ -126,7 +126,7 @@ def test_the_size_of_widgets_goes_by_steps_and_back_to_automatic_by_the_keyboard
     assert page.app.scale == page.app.chosen["scale"] == 1.25
     assert page.app.ui.focus.text == "+"
     page.choose("Automatic")
-    page.choose("Usual values")
+    page.choose("Defaults")
     assert page.app.scale == 1.0 and preference("scale") is None
 
 
@@ -154,7 +154,7 @@ def test_an_action_takes_another_key_from_the_one_that_had_it_and_it_is_said(pag
     assert entry("slow").keys == ()
     texts = [sprite.text for sprite in page.app.ui.manager.get_sprite_group().sprites() if hasattr(sprite, "show_text")]
     assert any("has none now" in text for text in texts)
-    page.choose("Usual values")
+    page.choose("Defaults")
     assert action_of(pygame.K_s, 0) == "slow" and action_of(pygame.K_r, 0) == "reset"
 
 

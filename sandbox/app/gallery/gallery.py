@@ -18,7 +18,7 @@ from sandbox.app.gallery.card import PICTURE_RATIO, TEXT_HEIGHT, Card, draw_shad
 from sandbox.app.gallery.header import Header
 from sandbox.app.gallery.preview import Preview
 from sandbox.app.gallery.replay_card import date_of, fill_replay
-from sandbox.app.gallery.sections import FIRST, LIGHT_LEVELS, in_sections, is_found
+from sandbox.app.gallery.sections import FIRST, LIGHT_LEVELS, in_sections, is_found, search_rank
 from sandbox.app.picture_cache import (
     SECONDS,
     draw_in_slices,
@@ -136,7 +136,7 @@ class Gallery:
 
     def _add_shipped(self) -> None:
         played = played_levels()
-        shortcuts = self._group("Played lately", is_shortcut=True)
+        shortcuts = self._group("Recently played", is_shortcut=True)
         if not jit.COMPILED and not is_prepared():
             shortcuts.title, shortcuts.line = "Ready at once", "The first start prepares the physics of the others."
             light = [shipped_folder("levels") / f"{name}.json" for name in LIGHT_LEVELS]
@@ -161,6 +161,13 @@ class Gallery:
         card = self._add_card(group, name, text, self._app.start_lesson)
         card.line, card.tags = "Find where Hooke's breaks", ("lesson", "article", "hooke")
         card.show_picture(lesson_picture(card.picture_size, shown_theme()))
+        text = "The same numbers, solved one by one: jellies melt. Solved all at once, they are whole again."
+        card = self._add_card(group, "Melt the jellies", text, self._app.start_melt)
+        card.line, card.tags = "One button: melt, and whole again", ("lesson", "solver", "article", "jelly")
+        first = shipped_folder("levels") / f"{FIRST}.json"
+        picture = find_picture(first, picture_key(first.read_bytes()), card.picture_size, shown_theme())
+        if picture is not None:
+            card.show_picture(picture)
         path = shipped_folder("levels") / f"{COMPARED}.json"
         if path.is_file():
             text = (
@@ -260,7 +267,7 @@ class Gallery:
 
     def _words_for_nothing(self) -> str:
         if self.query:
-            return f"Nothing here has “{self.query}” in its name, its tags or its text. Escape shows everything again."
+            return f"No level matches “{self.query}”. Escape shows everything again."
         return NO_REPLAYS if self.section == "recordings" else NO_LEVELS
 
     def _fits(self, group: Group, card: Card) -> bool:
@@ -307,6 +314,8 @@ class Gallery:
         line = self.area.offset + self._ui.px(HEADING)
         groups = [group for group in self.groups if group.cards and not group.is_shortcut]
         reached = [group.title for group in groups if group.top <= line] or [group.title for group in groups[:1]]
+        if groups and self.area.is_at_end:
+            reached = [groups[-1].title]
         self.header.mark(reached[-1] if reached and not self.query else "")
 
     def _search(self, query: str) -> None:
@@ -354,7 +363,7 @@ class Gallery:
     def _open_first(self) -> None:
         found = self._shown()
         if self.query and found:
-            found[0].press()
+            min(found, key=lambda card: search_rank(self.query, card.name)).press()
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """Go from card to card with the arrow keys; a letter begins a search."""

@@ -79,3 +79,10 @@ def is_found(query: str, *texts: str) -> bool:
     """Whether every word of a query stands in one of the texts, wherever in it and however written."""
     low = [text.casefold() for text in texts]
     return all(any(word in text for text in low) for word in query.casefold().split())
+
+
+def search_rank(query: str, name: str) -> int:
+    """How well a name fits a query, 0 best: it is the query, begins with it, has all of its words, or none of these."""
+    wanted, found = " ".join(query.casefold().split()), name.casefold()
+    fits = found == wanted, found.startswith(wanted), all(word in found for word in wanted.split())
+    return fits.index(True) if True in fits else len(fits)

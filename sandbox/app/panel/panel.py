@@ -18,6 +18,7 @@ from sandbox.app.panel.solver_rows import SolverRows
 from sandbox.app.panel.world_rows import WorldRows
 from sandbox.app.play.playback import Playback
 from sandbox.app.sentences import sentence
+from sandbox.app.shortcuts import tip_of
 from sandbox.app.sweeps.pad_maps import PadMaps
 from sandbox.app.sweeps.pad_sweeps import PadSweeps
 from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale, scale_for
@@ -38,7 +39,7 @@ from sandbox.session.commands import Command, SetCoefficients
 # From this height of the panel on Cs and Cd are set by the pad, and from this on the world is open.
 PAD_FROM, WORLD_FROM = 470.0, 840.0
 PAD_HEIGHT, CURVE_HEIGHT = 214.0, 84.0
-SPRINGS_CHOICE = 118.0
+SPRINGS_CHOICE, MELT_WIDTH = 118.0, 84.0
 SIDES_HEIGHT = 38.0
 # Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
 LOOK_EVERY = 15
@@ -66,8 +67,8 @@ class Panel:
     """The panel at the right of a window; `say` shows a line to the person.
 
     choose: what is done with a strength of the "hand", with a "view" that is shown or no longer, with how "springs" are
-    set ("pad" or "sliders"), the section whose "fold" changes, another tick "rate" [1/s], and of two runs the "side"
-    to show.
+    set ("pad" or "sliders"), that they are to "melt", the section whose "fold" changes, another tick "rate" [1/s], and
+    of two runs the "side" to show.
     """
 
     def __init__(
@@ -163,7 +164,10 @@ class Panel:
             self._build_pad()
         else:
             self._build_sliders()
-        self.note = TextBlock(ui, rows.row(32, 8), "", rows.back)
+        tip = tip_of("melt", "play")
+        place = rows.place(MARGIN + INSIDE - MELT_WIDTH, 0, MELT_WIDTH, 26)
+        self.melt = ui.button(place, "Melt", lambda: self._choose["melt"](""), rows.back, tip=tip)
+        self.note = TextBlock(ui, rows.row(32, 8, MARGIN, INSIDE - MELT_WIDTH - 8), "", rows.back)
 
     def _build_sliders(self) -> None:
         rows = self.rows
@@ -230,6 +234,9 @@ class Panel:
         settings = world.settings
         self._follow_what_joins()
         self.solving.refresh()
+        words = "Make whole" if settings.solver == "single_pass" else "Melt"
+        if words != self.melt.text:
+            self.melt.set_text(words)
         self.world.refresh(self._refreshes % LOOK_EVERY == 0 or self.playback.clock.paused)
         self._refreshes += 1
         if self.maps is not None and self.pad is not None:

@@ -6,7 +6,7 @@ from sandbox.app.draw.camera import Box
 from sandbox.physics.query import shown_particles
 from sandbox.physics.world import World
 
-NOTICE = "It has left the view. Again (R) begins anew; Ctrl+Z takes the last act back."
+NOTICE = "Everything fell out of sight. R restarts; Ctrl+Z undoes."
 # A run is over once this part of the mass that moves has left; stubs may stay where something broke.
 GONE = 0.75
 # So far around what is seen at first something still counts as near, as a part of its width and height.

@@ -24,6 +24,7 @@ from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.hand_labels import draw_labels
 from sandbox.app.play.key_caps import KEYS_HEIGHT, ROOM_BESIDE, draw_key_caps
 from sandbox.app.play.legend import Legend
+from sandbox.app.play.melting import toggle_melt
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.out_of_view import OutOfView
 from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
@@ -204,7 +205,7 @@ class PlayScreen:
             height = ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT - below_panel
             choices: dict[str, Callable[[str], None]] = {
                 "hand": self.choose_strength, "view": self._app.act, "springs": self._set_by, "fold": self.fold,
-                "rate": self._ask_rate,
+                "rate": self._ask_rate, "melt": lambda _: self.toggle_melt(),
             }  # fmt: skip
             self.panel = self._make_panel(ui, choices, height)
             if before is not None and before.playback.level is self.playback.level:
@@ -228,6 +229,10 @@ class PlayScreen:
         self._app.rebuild()
         if self.panel is not None:
             self.panel.choose_material(None if material is None else names.index(material))
+
+    def toggle_melt(self) -> None:
+        """Solve springs one by one, or all at once again."""
+        self._app.say(toggle_melt(self.playback))
 
     def _ask_rate(self, typed: str) -> None:
         """Ask how to begin anew at another tick rate."""
@@ -257,6 +262,7 @@ class PlayScreen:
             "let_go": stage.let_go,
             **{name: partial(stage.toggle_view, name) for name in OVERLAYS},
             "hand": self._next_strength,
+            "melt": self.toggle_melt,
             "free": self._free,
             "undo": lambda: self.playback.submit_undo(),
             "redo": lambda: self.playback.submit_redo(),

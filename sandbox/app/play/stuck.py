@@ -14,7 +14,7 @@ from sandbox.physics.world import World
 # What overlaps for so long is stuck [s]; what parts takes less than two. For so long it may be apart in between.
 STUCK_SECONDS = 4.0
 APART_SECONDS = 0.5
-NOTICE = "Something is stuck. Free it (J) puts it into the nearest free place; Ctrl+Z takes that back."
+NOTICE = "Something is stuck inside another. J frees it; Ctrl+Z undoes that."
 # Sizes of a mark in layout units: how far from the body, and how thick.
 ROUND, THICK = 10.0, 2.0
 

@@ -63,7 +63,7 @@ SCALES = (0.5, 4.0)
 
 SETTINGS: tuple[Setting, ...] = (
     OneOf("theme", "Theme", "Look", (("dark", "Dark"), ("light", "Light"), ("system", "As the system")),
-          "A level may have a stage of its own"),
+          "Some levels set their own"),
     Amount("scale", "Size of widgets", "Look", *SCALES, 0.125, tip="Ctrl++ and Ctrl+- as well"),
     OneOf("effects", "Shadows and effects", "Look", (("auto", "Automatic"), ("on", "On"), ("off", "Off")),
           "Automatic: left out while frames come late"),

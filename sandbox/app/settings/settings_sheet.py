@@ -20,7 +20,7 @@ LABEL_SHARE = 0.42
 ROOM_BESIDE = 520.0
 BUTTON, TIP_TEXT = 34.0, 11.0
 PAGES = (("general", "General", ""), ("play", "Keys in play", ""), ("edit", "Keys in editor", ""))
-KEYS_NOTE = "Press a row, then the new keys. Delete takes keys away, Escape leaves them as they are."
+KEYS_NOTE = "Click a row, then press the new keys. Delete clears it, Escape leaves it as it is."
 
 
 class SettingsSheet:
@@ -51,7 +51,7 @@ class SettingsSheet:
         place = ui.rect(MARGIN, box_height - BOTTOM + 12, self._width - 236, BOTTOM - 18)
         self._note = TextBlock(ui, place, note or (KEYS_NOTE if page != "general" else ""), box, 12.0)
         bottom = box_height - MARGIN - 26
-        ui.button(ui.rect(box_width - MARGIN - 226, bottom, 116, BUTTON), "Usual values", self._reset, box)
+        ui.button(ui.rect(box_width - MARGIN - 226, bottom, 116, BUTTON), "Defaults", self._reset, box)
         done = ui.button(
             ui.rect(box_width - MARGIN - 100, bottom, 100, BUTTON), "Close", self.close, box, style="@primary"
         )

@@ -315,7 +315,7 @@ class Sharing:
             what = "The picture" if export.excerpt.kind == "png" else "Its last picture"
             self._tell_more(f"{what} is on the clipboard.")
         elif copy_text(str(export.path)):
-            self._tell_more("Its path is on the clipboard; there is no tool here that puts pictures there.")
+            self._tell_more("Could not copy the file; its path is copied.")
         return copied
 
     def _tell_more(self, text: str) -> None:

@@ -2,6 +2,7 @@
 
 import contextlib
 import math
+import os
 from typing import Any
 
 import pygame
@@ -24,6 +25,8 @@ class ToyWindow(Display):
     """
 
     def __init__(self, scale: float | None = None, shape: float = 1.0, level: str = "") -> None:
+        # A press counts also where it is the one that gives the window the keyboard: a toy lies on top, unfocused.
+        os.environ.setdefault("SDL_MOUSE_FOCUS_CLICKTHROUGH", "1")
         self._begin(scale)
         stretch = math.sqrt(min(max(shape, 1.0 / MOST_OBLONG), MOST_OBLONG))
         size = round(SIDE * self.scale * stretch), round(SIDE * self.scale / stretch)

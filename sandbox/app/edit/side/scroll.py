@@ -154,6 +154,11 @@ class ScrollArea:
             self.content.set_relative_position((0, -round(self.offset)))
         self.bar.show_place(self.offset, self._height, self.view.rect.height)
 
+    @property
+    def is_at_end(self) -> bool:
+        """Whether it has been scrolled as far down as it goes."""
+        return self._height > self.view.rect.height and self.offset >= self._height - self.view.rect.height - 1
+
     def turn(self, notches: float) -> None:
         """Move by notches of the wheel."""
         self.scroll_to(self.offset - notches * self._ui.px(WHEEL_STEP))

@@ -1,0 +1,19 @@
+"""The melt: the same Cs and Cd, solved one spring after another as in the article's loop, or all at once."""
+
+from sandbox.app.play.playback import Playback
+from sandbox.session.commands import SetSolver
+
+MELTED = "One spring after another, as in the article's loop: what is stiff melts or explodes."
+WHOLE = "All springs at once: it is whole again."
+
+
+def is_melted(playback: Playback) -> bool:
+    """Whether springs are solved one by one."""
+    return playback.session.world.settings.solver == "single_pass"
+
+
+def toggle_melt(playback: Playback) -> str:
+    """Solve the springs the other way from now on; what is to be said of it."""
+    before = is_melted(playback)
+    playback.submit(SetSolver(solver="direct" if before else "single_pass"))
+    return WHOLE if before else MELTED
