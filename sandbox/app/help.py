@@ -17,8 +17,8 @@ from sandbox.app.widgets.ui import Ui
 COLUMN_WIDTH = 500.0
 NARROWEST_COLUMN = 400.0
 MOST_COLUMNS = 3
-ROW = 16.0
-HEADING = 26.0
+ROW = 17.0
+HEADING = 27.0
 TOP = 56.0
 MARGIN = 28.0
 TEXT_SIZE = 12.0

@@ -66,7 +66,7 @@ SHORTCUTS = (
     Shortcut("compare", ("F9",), "Two settings side by side; or back to one", "View", "play"),
     Shortcut("let_go", ("Escape",), "Let go of everything; back to the hand", "Tools", "play"),
     Shortcut("hand", ("T",), "Hand: gentle, normal or strong", "Tools", "play"),
-    Shortcut("melt", ("Z",), "Melt: solve springs one by one; again: all at once", "Time", "play"),
+    Shortcut("melt", ("Z",), "Melt, or make whole again", "Tools", "play"),
     Shortcut("free", ("J",), "Free it: what is stuck in something", "Tools", "play"),
     Shortcut("edit", ("E",), "Edit this level; or back to the document", "Files", "play"),
     Shortcut("keep", ("Ctrl+K",), "Keep some of the run in the document", "Files", "play"),

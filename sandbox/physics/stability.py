@@ -51,11 +51,15 @@ class StabilityReport:
 
 @dataclass(frozen=True)
 class CoefficientLimits:
-    """How far each slider may go, per tick, with all else as it is; None = no limit can be proven; and why."""
+    """How far each slider may go, per tick, with all else as it is; None = no limit can be proven; and why.
+
+    both: how far Cs = Cd may go.
+    """
 
     stiffness: float | None
     damping: float | None
     reason: str
+    both: float | None = None
 
 
 def _working(world: World) -> NDArray[np.bool_]:
@@ -361,4 +365,6 @@ def coefficient_limits(world: World, material: int | None = None) -> Coefficient
     tightest = int(np.flatnonzero(chosen)[np.argmax(counts[chosen])])
     at = f"n_eff {counts[tightest]:.3g} at {_owner_name(world, tightest)}"
     reason = f"proven: Cs + 2 Cd of joined springs add up to less than {BOUND:g}, {at}"
-    return CoefficientLimits(limit("stiffness"), limit("damping"), reason)
+    demand = demand_limit(world, material)
+    both = 0.0 if demand <= 0.0 else _equal_limit(world, BOUND / demand)
+    return CoefficientLimits(limit("stiffness"), limit("damping"), reason, both)

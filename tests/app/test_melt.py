@@ -26,7 +26,7 @@ def test_jellies_melt_and_are_whole_again(open_app):
     driver.click_widget(driver.panel.melt)
     driver.frames(2)
     assert driver.world.settings.solver == "single_pass" and driver.panel.melt.text == "Make whole"
-    assert "May explode: Cs is too high for a single pass" in driver.panel.note.text
+    assert "May explode: too stiff for a single pass" in driver.panel.note.text
     run(driver, 2.0)
     assert stretched(driver) > 5.0 * whole
     driver.key(pygame.K_z)

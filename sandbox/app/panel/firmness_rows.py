@@ -19,11 +19,14 @@ from sandbox.physics.analysis.body_motion import BodyMotion, BodyReading, presen
 from sandbox.physics.analysis.standing import StandingRun
 from sandbox.physics.firmness import LARGEST_READ, WORDS, OutOfReach, Reach, lowest_mode_of
 from sandbox.physics.forms import Firmness
+from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.stability import BOUND, spring_loads
 from sandbox.session.commands import SetFirmness
 
 ALL_BODIES = "All bodies"
 # Where only a run tells how far a body sags: ticks of it in a frame, and particles of the largest body that has one.
 TICKS_A_FRAME, LARGEST_RUN = 12, 400
+TOO_STIFF = "Too stiff for a single pass: it melts or explodes."
 
 
 class FirmnessRows:
@@ -128,8 +131,17 @@ class FirmnessRows:
         self.frequency.show(self._one([number(each.motion.hz) for each in readings.values()], whole))
         self.ratio.show(self._one([number(each.motion.ratio) for each in readings.values()], whole))
         words = {word_for(sag, readings[slot].is_rigid) for slot, sag in sags.items() if sag is not None}
-        self.words.show(words.pop() if whole and len(words) == 1 else "")
-        self.text.show_text(self._text(list(readings.values()), known, whole))
+        explodes = self._may_explode()
+        self.words.show(words.pop() if whole and len(words) == 1 and not explodes else "")
+        self.text.show_text(TOO_STIFF if explodes else self._text(list(readings.values()), known, whole))
+
+    def _may_explode(self) -> bool:
+        """Whether springs of a chosen body are past what a single pass is proven to bear."""
+        world = self.playback.session.world
+        if not SOLVERS[world.settings.solver].proven_limit:
+            return False
+        loads = spring_loads(world)
+        return any(bool(np.any(loads[world.forms[slot].springs] >= BOUND)) for slot in self._chosen())
 
     def _one(self, texts: list[str], whole: bool) -> str:
         return DASH if not texts else texts[0] if whole and len(set(texts)) == 1 else MIXED

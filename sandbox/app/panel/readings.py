@@ -82,7 +82,8 @@ def stability_words(solver: str, limits: CoefficientLimits, stiffness: Floats, d
         return "Stable: it can only lose energy."
     if limits.stiffness is None or limits.damping is None:
         return "Nothing is proven of this solver: stiff things may explode."
-    for name, values, limit in (("Cs", stiffness, limits.stiffness), ("Cd", damping, limits.damping)):
+    for values, limit in ((stiffness, limits.stiffness), (damping, limits.damping)):
         if np.any(values >= limit) and limit < 1.0:
-            return f"May explode: {name} is too high for a single pass (limit {number(limit, 2)} here)."
+            both = f"Cs = Cd = {number(limits.both, 2)}" if limits.both else "nothing"
+            return f"May explode: too stiff for a single pass (limit {both} here)."
     return "Stable: proven for a single pass."
