@@ -144,6 +144,7 @@ SHORTCUTS = (
     Shortcut("zoom_in", ("+", "="), "Zoom in", "View"),
     Shortcut("zoom_out", ("-",), "Zoom out", "View"),
     Shortcut("fit", ("F", "Home"), "Fit to view; again: to everything", "View"),
+    Shortcut("follow", ("Shift+F",), "Camera goes along, or stands", "View", "play"),
     Shortcut("fullscreen", ("F11",), "Full screen", "View"),
     Shortcut("panel", ("H",), "Hide or show the panel", "View"),
     Shortcut("next_page", ("Ctrl+Tab",), "Next page of the panel", "View", "edit"),

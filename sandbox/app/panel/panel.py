@@ -218,8 +218,10 @@ class Panel:
         self.solving.build(rows)
 
     def _first_material(self) -> int | None:
-        """The material of the most springs, so that a slider does not change all at once; None: there is none."""
-        world = self.playback.session.world
+        """The material that the level's text speaks of, else that of the most springs; None: there is none."""
+        world, look = self.playback.session.world, self.playback.level.look
+        if look is not None and look.material in world.material_names:
+            return list(world.material_names).index(look.material)
         counts = np.bincount(world.material[world.spring_active & (world.material >= 0) & (world.law != LAW_HOOKE)])
         return int(np.argmax(counts)) if len(counts) else None
 

@@ -230,6 +230,9 @@ class PlayScreen:
         if self.panel is not None:
             self.panel.choose_material(None if material is None else names.index(material))
 
+    def _follow(self) -> None:
+        self._app.say(self.stage.follow(next(reversed(self.graphs.picked), None)))
+
     def toggle_melt(self) -> None:
         """Solve springs one by one, or all at once again."""
         self._app.say(toggle_melt(self.playback))
@@ -263,6 +266,7 @@ class PlayScreen:
             **{name: partial(stage.toggle_view, name) for name in OVERLAYS},
             "hand": self._next_strength,
             "melt": self.toggle_melt,
+            "follow": self._follow,
             "free": self._free,
             "undo": lambda: self.playback.submit_undo(),
             "redo": lambda: self.playback.submit_redo(),

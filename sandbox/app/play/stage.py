@@ -12,6 +12,7 @@ from sandbox.app.draw.detail import Detail
 from sandbox.app.draw.part_pictures import PartGhost, box_of
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Overlay, Renderer
+from sandbox.app.play.following import Following, driven_particle
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.stability_paint import StabilityPaint
 from sandbox.app.profile import Profile
@@ -66,12 +67,14 @@ class Stage:
         # The part of the catalogue that is in hand, or was last.
         self.part: Level | None = None
         self._paint = StabilityPaint()
+        self.following = Following()
         self._ghost = PartGhost()
         self.detail = Detail()
         self.stillness = Stillness()
         # What is drawn however long frames take; None: as `detail` has it.
         self.fixed_detail: int | None = None
         self._make_tools("normal")
+        self._follow_as_the_level_says()
         self.first_box = view_of(playback.level, playback.current)
         self._fit(self.first_box)
 
@@ -135,6 +138,25 @@ class Stage:
         if not isinstance(tool, CatalogueTool):
             self.size = tool.size
         return True
+
+    def _follow_as_the_level_says(self) -> None:
+        look, names = self.playback.level.look, self.playback.session.world.particle_names
+        if look is None or look.follow is None:
+            return
+        of_it = (k for k, name in enumerate(names) if name == look.follow or name.startswith(f"{look.follow}."))
+        self.following.begin(next(of_it, None))
+
+    def follow(self, picked: int | None) -> str:
+        """Let the camera go along with what is held, pointed at, picked or driven, or stand; what is to be said."""
+        if self.following.particle is not None:
+            self.following.begin(None)
+            return "The camera stands."
+        held = [hold.particle for hold in self.drag.holds.values()]
+        found = [*held[-1:], self.pointed, picked, driven_particle(self.playback.session.world)]
+        self.following.begin(next((particle for particle in found if particle is not None), None))
+        if self.following.particle is None:
+            return "Point at something, or hold it, and press Shift+F: the camera goes along."
+        return "The camera goes along. Shift+F lets it stand."
 
     def replace_playback(self, playback: Playback) -> None:
         """Show another run of the same level, with the same camera and tool."""
@@ -297,6 +319,9 @@ class Stage:
                 tool.reconcile(self.playback.current)
         with profile.part("ticks"):
             self.playback.advance(frame_time)
+        if not self.drag.dragging:
+            # A hand at the edge of the picture would else drag the picture along, and itself.
+            self.following.update(self.camera, self.playback.session.world, self.playback.current, frame_time)
         self.stillness.follow(self.playback.current, self.camera.zoom, frame_time + passed)
         self._hovered = None
         tool = self.tool

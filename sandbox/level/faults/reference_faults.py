@@ -16,6 +16,19 @@ def material_faults(level: Level, path: str, name: str) -> Iterator[Fault]:
         yield f"{path}.material", f"there is no material {shown(name)}" + suggestion(name, level.materials)
 
 
+def look_faults(level: Level) -> Iterator[Fault]:
+    """Whether what the look of the level names exists."""
+    look = level.look
+    if look is None:
+        return
+    if look.material is not None:
+        yield from material_faults(level, "look", look.material)
+    names = [*(body.id for body in level.bodies), *(particle.id for particle in level.particles)]
+    if look.follow is not None and look.follow not in names:
+        fault = f"there is no body or particle {shown(look.follow)}" + suggestion(look.follow, names)
+        yield "look.follow", fault
+
+
 def spring_faults(level: Level, layout: Layout) -> Iterator[Fault]:
     """Faults of the materials and ends of the loose springs."""
     for index, spring in enumerate(level.springs):

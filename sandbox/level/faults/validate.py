@@ -9,7 +9,13 @@ from sandbox.level.faults.collision_faults import collision_faults
 from sandbox.level.faults.extras_faults import extras_faults
 from sandbox.level.faults.firmness_faults import firmness_faults
 from sandbox.level.faults.level_error import Fault, LevelError, shown
-from sandbox.level.faults.reference_faults import check_faults, material_faults, spring_faults, weld_reference_faults
+from sandbox.level.faults.reference_faults import (
+    check_faults,
+    look_faults,
+    material_faults,
+    spring_faults,
+    weld_reference_faults,
+)
 from sandbox.level.faults.size_faults import size_fault
 from sandbox.level.faults.weld_faults import weld_faults
 from sandbox.level.format.model import Level
@@ -63,4 +69,5 @@ def _all_faults(level: Level, plan: Plan) -> Iterator[Fault]:
     yield from actuator_faults(level)
     yield from weld_reference_faults(level, layout)
     yield from check_faults(level, layout)
+    yield from look_faults(level)
     yield from extras_faults(level)

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from sandbox.level.format.quantities import Description, Index, Line
+from sandbox.level.format.quantities import Description, Id, Index, Line, Name
 
 # What surfaces and lines are made of, and balls and terrain. A name that is not listed falls back to automatic.
 SKINS = ("jelly", "rubber", "balloon", "wood", "stone", "brick", "cloth", "plain", "lattice")
@@ -45,6 +45,12 @@ class LevelLook(Description):
     )
     faces: bool | None = Field(
         default=None, description="Whether jellies have faces; null = where a level has at most 16 bodies."
+    )
+    material: Name | None = Field(
+        default=None, description="Material that the panel shows first; null = that of the most springs."
+    )
+    follow: Id | None = Field(
+        default=None, description="Body or loose particle that the camera goes along with; null = it stands."
     )
 
 
