@@ -1,0 +1,108 @@
+"""Take home, as text for a person: short lines, each of which stands for itself."""
+
+from sandbox.export.engines import EngineNumbers
+from sandbox.export.loops import LISTINGS, expected, listing
+from sandbox.export.numbers import percent, short
+from sandbox.export.proven import LoopPair, LoopRow
+from sandbox.export.take_home import TakeHome
+
+ENGINES = ("box2d", "unity", "godot", "rapier", "pymunk", "chipmunk")
+# What text can be had for; "all" is everything but the programs.
+TARGETS = ("all", "article", *LISTINGS, *ENGINES)
+# Lines of k and c that are shown, at most: of bodies whose particles all weigh differently there are many.
+MOST_MASSES = 6
+
+
+def as_text(take: TakeHome, to: str = "all") -> str:
+    """The text for one of TARGETS, which ends with a newline. Raises KeyError for another."""
+    lines = [*_head(take)]
+    if to in ENGINES:
+        lines += ["", *_engine(take.engines[to])]
+    else:
+        lines += ["", *_loop(take)]
+        if to == "all":
+            for name in ENGINES:
+                lines += ["", *_engine(take.engines[name])]
+            lines += ["", f"The loop as a program, and ten ticks to try it by: --to {', '.join(LISTINGS)}."]
+        else:
+            for language in LISTINGS if to == "article" else [to]:
+                lines += ["", f"---- {language}", "", *listing(take.trial, language).splitlines()]
+            lines += ["", *_trial(take)]
+    return "\n".join(lines) + "\n"
+
+
+def _head(take: TakeHome) -> list[str]:
+    title = f' of "{take.level}"' if take.level else ""
+    count = f"{take.springs} spring" + "s" * (take.springs != 1)
+    more = f"; {take.others} more have other numbers" if take.others else ""
+    rate = f"a tick of {short(1000.0 * take.h)} ms"
+    law = " (Hooke's springs, as they amount to for the lightest ends)" if take.hooke else ""
+    solver = take.solver.replace("_", " ")
+    return [
+        f'"{take.body}"{title}: {count} of {take.material}{more}.',
+        f"Here: Cs {short(take.stiffness)}, Cd {short(take.damping)} in {rate}, {solver} solver{law}.",
+        take.firmness,
+    ]
+
+
+def _loop(take: TakeHome) -> list[str]:
+    demand = f"Cs + 2 Cd below {short(take.demand)} in each step (4 / n_eff, n_eff {short(take.n_eff)})"
+    if take.holds:
+        verdict = "the level's own numbers are inside."
+    elif take.solver == "direct":
+        verdict = "the level's own hold for the direct solver alone and may explode in a single pass."
+    else:
+        verdict = "the level's own are beyond and may explode in a single pass."
+    areas = ["Areas and bends count as springs here; the loop below has springs alone."] if take.has_constraints else []
+    return [
+        "The article's loop, all springs in a single pass:",
+        f"Proven: {demand}; {verdict}",
+        *areas,
+        *(_row(row) for row in take.rows),
+    ]
+
+
+def _row(row: LoopRow) -> str:
+    steps = f"{row.substeps} substep" + "s" * (row.substeps != 1)
+    own = "" if row.own == row.equal else f"; at the level's ratio {_pair(row.own)}"
+    return f"  {steps}, h {short(1000.0 * row.h)} ms: {_pair(row.equal)}{own}"
+
+
+def _pair(pair: LoopPair) -> str:
+    numbers = f"Cs {short(pair.stiffness)}, Cd {short(pair.damping)}"
+    if pair.sag is None:
+        return f"{numbers}: one spring under the whole weight stretches by {percent(pair.stretch)}"
+    flat = " (it lies flat)" if pair.sag >= 1.0 else ""
+    return f"{numbers}: sags by {percent(pair.sag)}{flat}, {short(pair.frequency)} Hz, ratio {short(pair.damping_ratio)}"
+
+
+def _engine(numbers: EngineNumbers) -> list[str]:
+    rate = f"{short(1.0 / numbers.step)} steps a second"
+    if numbers.steps > 1:
+        rate += f", {numbers.steps} a tick"
+    if numbers.rigid:
+        advice = f"too stiff for a spring of {numbers.engine}: use a rigid joint, or a softer material"
+        return [f"{numbers.engine}: {advice}.", f"  Differs: {numbers.difference}."]
+    least = " (the least; it damps more by itself)" if numbers.negative else ""
+    lines = [
+        f"{numbers.engine}, {rate}: frequency {short(numbers.frequency)} Hz, damping ratio "
+        f"{short(numbers.damping_ratio)}{least}, for every spring whatever its masses."
+    ]
+    for mass in numbers.masses[:MOST_MASSES]:
+        count = f"{mass.springs} spring" + "s" * (mass.springs != 1)
+        lines.append(
+            f"  reduced mass {short(mass.reduced_mass)} kg ({count}): k {short(mass.k)} N/m, c {short(mass.c)} N s/m"
+        )
+    if len(numbers.masses) > MOST_MASSES:
+        first = numbers.masses[0]
+        per = f"k = {short(first.k / first.reduced_mass)} m_r, c = {short(first.c / first.reduced_mass)} m_r"
+        lines.append(f"  and {len(numbers.masses) - MOST_MASSES} heavier ones; all: {per}, m_r the reduced mass in kg")
+    return [*lines, f"  Differs: {numbers.difference}."]
+
+
+def _trial(take: TakeHome) -> list[str]:
+    return [
+        "What it prints, tick x y x y; yours should agree to nine digits.",
+        "(The sandbox gives the first tick half of gravity, so that what falls is at g t^2 / 2; this loop does not.)",
+        *("  " + line for line in expected(take.trial)),
+    ]
