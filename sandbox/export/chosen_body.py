@@ -112,8 +112,10 @@ def _described(world: World, name: str, slots: NDArray[np.int64]) -> ChosenBody:
     mode = 0.0 if form is None else lowest_mode_of(world.forms[form].shape)
     gravity, least = strength_of(settings.gravity), int(np.argmin(reduced))
     tick, h = 1.0 / settings.tick_rate, substep_time(settings)
-    # Without a wobble of its own it moves slowly as a whole, but a single spring is its own wobble.
-    eigenvalue = mode if mode > 0.0 else 1.0 if len(slots) == 1 else SLOW
+    # Without a wobble of its own it moves slowly as a whole, but springs that share nothing swing each for itself.
+    counts = _counts(world, slots, particles)
+    alone = bool(counts.max() <= 1.0)
+    eigenvalue = mode if mode > 0.0 else 1.0 if alone else SLOW
     hooke = bool(world.law[first] == LAW_HOOKE)
     if hooke:
         k, c = float(world.hooke_stiffness[first]), float(world.hooke_damping[first])
@@ -122,8 +124,7 @@ def _described(world: World, name: str, slots: NDArray[np.int64]) -> ChosenBody:
         restoring, decay = k * h * h / mass, c * h / mass
     else:
         stiffness, damping = float(world.stiffness[first]), float(world.damping[first])
-        restoring, decay = _as_in_solver(world, int(first), eigenvalue, len(slots) == 1)
-    counts = _counts(world, slots, particles)
+        restoring, decay = as_in_solver(world, int(first), eigenvalue, alone)
     free = particles[world.inverse_mass[particles] > 0.0]
     return ChosenBody(
         world, name, world.material_names[world.material[first]], springs, reduced, stiffness, damping, hooke, tick, h,
@@ -140,7 +141,7 @@ def _counts(world: World, slots: NDArray[np.int64], particles: NDArray[np.int64]
     return np.concatenate([effective_count(world)[slots], constraint_count(world)[mine]])
 
 
-def _as_in_solver(world: World, spring: int, a: float, alone: bool) -> tuple[float, float]:
+def as_in_solver(world: World, spring: int, a: float, alone: bool) -> tuple[float, float]:
     """k h^2 / m_r and c h / m_r of a spring in a substep of the world's solver.
 
     In the slowest wobble, of eigenvalue a, the network is one spring of Cs_a and Cd_a, of which a step leaves

@@ -138,7 +138,7 @@ struct Spring { int a, b; double rest; };
 int main() {
   const double h = $h, cs = $cs, cd = $cd, gravity[2] = {$gx, $gy};
   double x[2][2] = {{$ax, $ay}, {$bx, $by}}, v[2][2] = {{$au, $av}, {$bu, $bv}};  // [m], [m/s]
-  const double w[2] = {$wa, $wb};          // 1/mass, 0 = pinned
+  const double w[2] = {$wa, $wb};  // 1/mass, 0 = pinned
   const Spring springs[] = {{0, 1, $rest}};  // ends and rest length [m]
   for (int tick = 1; tick <= 10; tick++) {
     double impulse[2][2] = {};
@@ -174,7 +174,8 @@ static class Program {
         double j = -(cs * (length - rest) / h + cd * u) / (w[a] + w[b]);  // 1 / (w + w) is the reduced mass
         for (int i = 0; i < 2; i++) { impulse[a, i] -= j * n[i]; impulse[b, i] += j * n[i]; }
       }
-      for (int p = 0; p < 2; p++) for (int i = 0; i < 2; i++) { v[p, i] += impulse[p, i] * w[p]; x[p, i] += v[p, i] * h; }
+      for (int p = 0; p < 2; p++)
+        for (int i = 0; i < 2; i++) { v[p, i] += impulse[p, i] * w[p]; x[p, i] += v[p, i] * h; }
       FormattableString line = $$"{tick} {x[0, 0]:R} {x[0, 1]:R} {x[1, 0]:R} {x[1, 1]:R}";
       Console.WriteLine(FormattableString.Invariant(line));
     }

@@ -74,7 +74,9 @@ def largest_pair(stiffness: float, damping: float, n_eff: float) -> tuple[float,
 
 def _pair(body: ChosenBody, stiffness: float, damping: float, h: float) -> LoopPair:
     # Of an eigenvalue a, the network is one spring of a Cs and a Cd (docs/physics.md, section 2).
-    stretch = body.weight * h * h / (stiffness * body.least_mass * body.least_length) if stiffness > 0.0 else float("inf")
+    stretch = (
+        body.weight * h * h / (stiffness * body.least_mass * body.least_length) if stiffness > 0.0 else float("inf")
+    )
     if body.mode > 0.0:
         reach = Reach(body.mode, body.height, body.gravity, h)
         sag, hz, ratio = reach.reading(body.mode * stiffness, body.mode * damping)

@@ -11,6 +11,8 @@ ENGINES = ("box2d", "unity", "godot", "rapier", "pymunk", "chipmunk")
 TARGETS = ("all", "article", *LISTINGS, *ENGINES)
 # Lines of k and c that are shown, at most: of bodies whose particles all weigh differently there are many.
 MOST_MASSES = 6
+# Engines whose springs take frequency and damping ratio, not k and c.
+BY_FREQUENCY = ("Box2D 3", "Unity 2D")
 
 
 def as_text(take: TakeHome, to: str = "all") -> str:
@@ -73,21 +75,29 @@ def _pair(pair: LoopPair) -> str:
     if pair.sag is None:
         return f"{numbers}: one spring under the whole weight stretches by {percent(pair.stretch)}"
     flat = " (it lies flat)" if pair.sag >= 1.0 else ""
-    return f"{numbers}: sags by {percent(pair.sag)}{flat}, {short(pair.frequency)} Hz, ratio {short(pair.damping_ratio)}"
+    return (
+        f"{numbers}: sags by {percent(pair.sag)}{flat}, {short(pair.frequency)} Hz, ratio {short(pair.damping_ratio)}"
+    )
 
 
 def _engine(numbers: EngineNumbers) -> list[str]:
+    differs = f"  Differs: {numbers.difference}."
+    if numbers.rigid:
+        return [f"{numbers.engine}: too stiff for its springs; use rigid joints, or a softer material.", differs]
     rate = f"{short(1.0 / numbers.step)} steps a second"
     if numbers.steps > 1:
-        rate += f", {numbers.steps} a tick"
-    if numbers.rigid:
-        advice = f"too stiff for a spring of {numbers.engine}: use a rigid joint, or a softer material"
-        return [f"{numbers.engine}: {advice}.", f"  Differs: {numbers.difference}."]
+        rate += f" ({numbers.steps} a tick)"
     least = " (the least; it damps more by itself)" if numbers.negative else ""
-    lines = [
+    return [
         f"{numbers.engine}, {rate}: frequency {short(numbers.frequency)} Hz, damping ratio "
-        f"{short(numbers.damping_ratio)}{least}, for every spring whatever its masses."
+        f"{short(numbers.damping_ratio)}{least}, whatever the masses.",
+        *([] if numbers.engine in BY_FREQUENCY else _masses(numbers)),
+        differs,
     ]
+
+
+def _masses(numbers: EngineNumbers) -> list[str]:
+    lines = []
     for mass in numbers.masses[:MOST_MASSES]:
         count = f"{mass.springs} spring" + "s" * (mass.springs != 1)
         lines.append(
@@ -97,7 +107,7 @@ def _engine(numbers: EngineNumbers) -> list[str]:
         first = numbers.masses[0]
         per = f"k = {short(first.k / first.reduced_mass)} m_r, c = {short(first.c / first.reduced_mass)} m_r"
         lines.append(f"  and {len(numbers.masses) - MOST_MASSES} heavier ones; all: {per}, m_r the reduced mass in kg")
-    return [*lines, f"  Differs: {numbers.difference}."]
+    return lines
 
 
 def _trial(take: TakeHome) -> list[str]:
