@@ -6,8 +6,10 @@
 // What differs: discs touch terrain alone; bends, motors, hydraulics and breaking are not there.
 "use strict";
 
-// Sweeps over rods in a step: more make them stiffer.
+// Sweeps over the springs in a step: more make bodies stiffer.
 const SWEEPS = 30;
+// How fast discs leave what they are in [1/s].
+const OUTWARD = 5;
 
 class FlatLevel {
   constructor(level) {
@@ -52,31 +54,38 @@ class FlatLevel {
       v[p][0] += air * (wx - v[p][0]);
       v[p][1] += air * (wy - v[p][1]);
     });
-    // Forces k x first, of the places before the step; then dampers one by one, which can never overshoot; rods last.
-    for (const s of this.springs) if (!s.rod) this.pull(s, ([length]) => -s.k * (length - s.rest_length) * h);
-    for (const s of this.springs)
-      if (!s.rod) this.pull(s, ([, u, mass]) => -u * mass * (1 - Math.exp((-s.c * h) / mass)));
+    // J = -K (u' + b), K = h (c + h k) and b = k x / (c + h k), as many springs agree on it after some sweeps.
+    const rows = this.springs.map((s) => this.row(s)).filter((row) => row !== null);
+    const touches = level.particles.flatMap((part, p) => this.touching(p, part, level.surfaces[part.surface]));
+    for (let sweep = 0; sweep < SWEEPS; sweep++) {
+      for (const row of rows) this.pull(row);
+      for (const touch of touches) this.push(touch);
+    }
     for (const area of level.areas || []) this.keepArea(area);
-    for (let sweep = 0; sweep < SWEEPS; sweep++)
-      for (const s of this.springs)
-        if (s.rod) this.pull(s, ([length, u, mass]) => -((length - s.rest_length) / h + u) * mass);
-    level.particles.forEach((part, p) => {
-      if (w[p] > 0) this.touch(p, part, level.surfaces[part.surface]);
-      x[p][0] += v[p][0] * h;
-      x[p][1] += v[p][1] * h;
-    });
+    x.forEach((place, p) => [0, 1].forEach((i) => (place[i] += v[p][i] * h)));
   }
 
-  pull(s, impulse) {
-    const { x, v, w } = this, weight = w[s.a] + w[s.b];
+  // Direction n, softness 1 / K and bias b of a spring in this step; a rod's softness is 0.
+  row(s) {
+    const { x, w, h } = this, weight = w[s.a] + w[s.b];
     const d = [x[s.b][0] - x[s.a][0], x[s.b][1] - x[s.a][1]], length = Math.hypot(...d);
-    if (weight === 0 || length === 0) return;
-    const n = [d[0] / length, d[1] / length];
-    const u = n[0] * (v[s.b][0] - v[s.a][0]) + n[1] * (v[s.b][1] - v[s.a][1]);
-    const j = impulse([length, u, 1 / weight]);
+    if (weight === 0 || length === 0) return null;
+    // The step damps as k h by itself.
+    const error = length - s.rest_length, c = Math.max(s.c - s.k * h, 0) + s.k * h;
+    const n = [d[0] / length, d[1] / length], row = { a: s.a, b: s.b, n, j: 0 };
+    if (s.rod) return { ...row, softness: 0, bias: error / h, response: weight };
+    if (c === 0) return null;
+    return { ...row, softness: 1 / (h * c), bias: (s.k * error) / c, response: weight + 1 / (h * c) };
+  }
+
+  pull(row) {
+    const { v, w } = this, { a, b, n } = row;
+    const u = n[0] * (v[b][0] - v[a][0]) + n[1] * (v[b][1] - v[a][1]);
+    const j = -(u + row.bias + row.softness * row.j) / row.response;
+    row.j += j;
     for (const i of [0, 1]) {
-      v[s.a][i] -= j * n[i] * w[s.a];
-      v[s.b][i] += j * n[i] * w[s.b];
+      v[a][i] -= j * n[i] * w[a];
+      v[b][i] += j * n[i] * w[b];
     }
   }
 
@@ -97,24 +106,31 @@ class FlatLevel {
     particles.forEach((p, k) => [0, 1].forEach((i) => (v[p][i] += j * slopes[k][i] * w[p])));
   }
 
-  // A disc that would be in an edge after the step stops there; friction takes what is along it, no more.
-  touch(p, part, surface) {
-    if (!surface.touches.includes(0)) return;
-    const { x, v, h } = this;
+  // Edges that a disc may reach in this step: direction out, gap, friction; what they have pushed and rubbed so far.
+  touching(p, part, surface) {
+    const { x, v, h } = this, found = [];
+    if (this.w[p] === 0 || !surface.touches.includes(0)) return found;
     for (const [a, b, piece] of this.edges) {
       const along = [b[0] - a[0], b[1] - a[1]], from = [x[p][0] - a[0], x[p][1] - a[1]];
       const share = (along[0] * from[0] + along[1] * from[1]) / (along[0] ** 2 + along[1] ** 2);
-      const t = Math.min(1, Math.max(0, share)), gap = [from[0] - t * along[0], from[1] - t * along[1]];
-      const distance = Math.hypot(...gap);
-      if (distance === 0) continue;
-      const n = [gap[0] / distance, gap[1] / distance], u = n[0] * v[p][0] + n[1] * v[p][1];
-      const push = Math.max(0, -u - Math.max(distance - part.radius, -0.01) / h);
-      if (push === 0) continue;
-      const tangent = [-n[1], n[0]], slide = tangent[0] * v[p][0] + tangent[1] * v[p][1];
-      const most = push * Math.sqrt(surface.friction * piece.friction);
-      const rub = Math.min(most, Math.max(-most, -slide));
-      for (const i of [0, 1]) v[p][i] += push * n[i] + rub * tangent[i];
+      const t = Math.min(1, Math.max(0, share)), away = [from[0] - t * along[0], from[1] - t * along[1]];
+      const distance = Math.hypot(...away), gap = distance - part.radius;
+      if (distance === 0 || gap > 2 * h * (1 + Math.hypot(...v[p]))) continue;
+      const friction = Math.sqrt(surface.friction * piece.friction);
+      // What is inside comes out slowly.
+      const speed = gap > 0 ? -gap / h : Math.min(-gap * OUTWARD, 1);
+      found.push({ p, n: away.map((each) => each / distance), speed, friction, pushed: 0, rubbed: 0 });
     }
+    return found;
+  }
+
+  push(touch) {
+    const { v } = this, { p, n, speed, friction } = touch, tangent = [-n[1], n[0]];
+    const pushed = Math.max(0, touch.pushed + speed - n[0] * v[p][0] - n[1] * v[p][1]), most = friction * pushed;
+    const slide = tangent[0] * v[p][0] + tangent[1] * v[p][1];
+    const rubbed = Math.min(most, Math.max(-most, touch.rubbed - slide));
+    for (const i of [0, 1]) v[p][i] += (pushed - touch.pushed) * n[i] + (rubbed - touch.rubbed) * tangent[i];
+    [touch.pushed, touch.rubbed] = [pushed, rubbed];
   }
 }
 

@@ -28,12 +28,16 @@ def flat_springs(world: World, level: Level) -> tuple[int, tuple[FlatSpring, ...
     rods = nissen & ((steps > MOST_STEPS) | (world.damping[:count] > HIGHEST_COEFFICIENT))
     loose = {f":{number}": spring.extras for number, spring in enumerate(level.springs)}
     edges = world.edge[:count] != NO_EDGE if level.has_contacts else np.zeros(count, dtype=np.bool_)
+    # That of a muscle is where its wave has put it already.
+    lengths = world.rest_length[:count].copy()
+    muscles = world.actuators.muscles.spring
+    lengths[muscles] = world.natural_length[muscles]
     springs = tuple(
         FlatSpring(
             name=name,
             a=int(world.particle_a[slot]),
             b=int(world.particle_b[slot]),
-            rest_length=float(world.rest_length[slot]),
+            rest_length=float(lengths[slot]),
             Cs=float(world.stiffness[slot]) if nissen[slot] else None,
             Cd=float(world.damping[slot]) if nissen[slot] else None,
             k=_rounded(k[slot]),
