@@ -16,10 +16,14 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "sandbox"
 # What users import: modules that only pass names on. They stand above the rooms that they take those from.
 PUBLIC = ("commands", "replay", "bodies")
-ROOMS = ("physics", "level", "session", *PUBLIC, "tools", "editor", "app", "testing", "terminal", "cli", "__main__")
+ROOMS = (
+    "physics", "level", "export", "session", *PUBLIC, "tools", "editor", "app", "testing", "terminal", "cli",
+    "__main__",
+)  # fmt: skip
 LIBRARIES = {
     "physics": {"numpy", "numba", "llvmlite"},
     "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},
+    "export": {"numpy", "pydantic"},
     "session": {"numpy", "pydantic", "filelock", "distributed"},
     **{name: set() for name in PUBLIC},
     "tools": {"numpy"},

@@ -117,7 +117,8 @@ func add_touches(touches, p):
 			continue
 		var speed = -gap / h if gap > 0.0 else minf(-gap * OUTWARD, 1.0)
 		var friction = sqrt(surface_of(p).friction * edge[2])
-		touches.append({"p": p, "n": away.normalized(), "speed": speed, "friction": friction, "pushed": 0.0, "rubbed": 0.0})
+		var n = away.normalized()
+		touches.append({"p": p, "n": n, "speed": speed, "friction": friction, "pushed": 0.0, "rubbed": 0.0})
 
 
 func push(touch):

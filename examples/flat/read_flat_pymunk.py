@@ -10,6 +10,8 @@ and breaking are not there, which is said.
 import json
 import math
 import sys
+from itertools import pairwise
+from pathlib import Path
 
 import pymunk
 
@@ -85,7 +87,7 @@ def terrain(level, space):
     """Segments of lines and polygons."""
     for piece in level.get("terrain", []):
         corners = piece["corners"] + (piece["corners"][:1] if piece["kind"] != "line" else [])
-        for start, end in zip(corners, corners[1:]):
+        for start, end in pairwise(corners):
             shape = pymunk.Segment(space.static_body, start, end, 0)
             shape.friction, shape.elasticity = math.sqrt(piece["friction"]), piece["restitution"]
             shape.filter = pymunk.ShapeFilter(categories=1)
@@ -119,7 +121,7 @@ def run(level, seconds):
 
 
 def main(arguments):
-    level = DATA or json.load(open(arguments.pop(0), encoding="utf-8"))
+    level = DATA or json.loads(Path(arguments.pop(0)).read_text(encoding="utf-8"))
     missing = [f"{len(level[key])} {key}" for key in MISSING if level.get(key)]
     if missing:
         print(f"not here: {', '.join(missing)}", file=sys.stderr)

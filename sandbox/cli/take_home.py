@@ -24,8 +24,7 @@ def add(commands: Commands) -> None:
 def take_home(options: argparse.Namespace) -> int:
     """Print what a body takes home. Raises Refused."""
     from sandbox.export.chosen_body import NoSuchBody
-    from sandbox.export.take_home import take_home as taken
-    from sandbox.export.take_home_text import TARGETS, as_text
+    from sandbox.export.take_home_text import TARGETS, take_home_text
     from sandbox.level.faults.level_error import shown, suggestion
 
     if options.to not in TARGETS:
@@ -33,7 +32,7 @@ def take_home(options: argparse.Namespace) -> int:
         raise Refused(f"--to {options.to}: there is nothing called {shown(options.to)}{hint}")
     level = level_of(options.level)
     try:
-        print(as_text(taken(level, options.body), options.to), end="")
+        print(take_home_text(level, options.body, options.to), end="")
     except NoSuchBody as error:
         raise Refused(f"{options.level}: {error}") from None
     return EXIT_OK

@@ -101,7 +101,8 @@ def _numbers(
     h, least = body.tick / steps, max(damping, 0.0)
     ratio = 0.5 * least / math.sqrt(restoring) if restoring > 0.0 else 0.0
     masses = tuple(
-        MassLine(mass, count, body.restoring * mass / body.h**2, least * mass / h / times) for mass, count in _masses(body)
+        MassLine(mass, count, body.restoring * mass / body.h**2, least * mass / h / times)
+        for mass, count in _masses(body)
     )
     hertz = math.sqrt(restoring) / h / (2.0 * math.pi)
     return EngineNumbers(engine, steps, h, hertz, ratio, masses, rigid, damping < 0.0, difference)
@@ -114,24 +115,24 @@ def _masses(body: ChosenBody) -> list[tuple[float, int]]:
 
 
 BOX2D = (
-    "springs of a body are solved one after another, not together: sags are those of here, but what swings in less than "
-    "20 ticks is up to 4 % quicker, and very stiff bodies come out softer. The clamp to a quarter of the substep rate is "
-    "that of contacts and rigid joints, not of springs"
+    "springs of a body are solved one after another, not together: sags are those of here, but what swings in less "
+    "than 20 ticks is up to 4 % quicker, and very stiff bodies come out softer. Only contacts and rigid joints are "
+    "clamped to a quarter of the substep rate, springs are not"
 )
 UNITY = (
-    "SpringJoint2D is Box2D 2: one step of Time.fixedDeltaTime without substeps, so set that to the step above. From its "
-    "equation, not tried here"
+    "SpringJoint2D is Box2D 2: one step of Time.fixedDeltaTime without substeps, so set that to the step above. From "
+    "its equation, not tried here"
 )
 GODOT = (
-    "DampedSpringJoint2D adds each spring by itself, and damps in every second of its 16 solver iterations, so its c is "
-    "an eighth of pymunk's. Set linear_damp to 0. In pixels k and c are the same. From its source, not tried here"
+    "DampedSpringJoint2D adds each spring by itself, and damps in every second of its 16 solver iterations, so its c "
+    "is an eighth of pymunk's. Set linear_damp to 0. In pixels k and c are the same. From its source, not tried here"
 )
 RAPIER = (
-    "JointData.spring takes this k and c. Springs of a body are solved one after another, not together; what swings in "
-    "less than 20 ticks is up to 4 % quicker"
+    "JointData.spring takes this k and c. Springs of a body are solved one after another, not together; what swings "
+    "in less than 20 ticks is up to 4 % quicker"
 )
 CHIPMUNK = (
-    "each spring is added by itself, so a stiffer body needs more steps a tick (those above are proven enough). Areas and "
-    "bends do not exist. Set the space's damping to 1, or everything is slowed down"
+    "each spring is added by itself, so a stiffer body needs more steps a tick (those above are proven enough for k). "
+    "Areas and bends do not exist. Set the space's damping to 1, or everything is slowed down"
 )
 PYMUNK = CHIPMUNK

@@ -94,7 +94,9 @@ def _discs(level: FlatLevel, hair: float) -> Iterable[str]:
             x, y = part.position
             look = part.look
             colour = colour_of(look.colour) if look is not None and look.colour is not None else None
-            fill = PIN if part.pinned else f"#{PALETTE[COLOURS[number % len(COLOURS)]] if colour is None else colour:06x}"
+            fill = (
+                PIN if part.pinned else f"#{PALETTE[COLOURS[number % len(COLOURS)]] if colour is None else colour:06x}"
+            )
             radius = min(part.radius, 4 * hair) if part.pinned else part.radius
             yield f'<circle cx="{_n(x)}" cy="{_n(y)}" r="{_n(radius)}" fill="{fill}" stroke="{LINE}"/>'
 

@@ -4,7 +4,9 @@ from sandbox.export.engines import EngineNumbers
 from sandbox.export.loops import LISTINGS, expected, listing
 from sandbox.export.numbers import percent, short
 from sandbox.export.proven import LoopPair, LoopRow
-from sandbox.export.take_home import TakeHome
+from sandbox.export.take_home import TakeHome, take_home
+from sandbox.level.format.model import Level
+from sandbox.physics.world import World
 
 ENGINES = ("box2d", "unity", "godot", "rapier", "pymunk", "chipmunk")
 # What text can be had for; "all" is everything but the programs.
@@ -13,6 +15,14 @@ TARGETS = ("all", "article", *LISTINGS, *ENGINES)
 MOST_MASSES = 6
 # Engines whose springs take frequency and damping ratio, not k and c.
 BY_FREQUENCY = ("Box2D 3", "Unity 2D")
+
+
+def take_home_text(source: Level | World, body: str | None = None, to: str = "all") -> str:
+    """What a body takes home, as text: for a button, from a running world, or from a level; see `take_home`.
+
+    Raises NoSuchBody, LevelError, and KeyError for a name that is none of TARGETS.
+    """
+    return as_text(take_home(source, body), to)
 
 
 def as_text(take: TakeHome, to: str = "all") -> str:
@@ -55,11 +65,11 @@ def _loop(take: TakeHome) -> list[str]:
         verdict = "the level's own hold for the direct solver alone and may explode in a single pass."
     else:
         verdict = "the level's own are beyond and may explode in a single pass."
-    areas = ["Areas and bends count as springs here; the loop below has springs alone."] if take.has_constraints else []
+    areas = "Its areas and bends count as springs here; the programs have springs alone, and are softer without them."
     return [
         "The article's loop, all springs in a single pass:",
         f"Proven: {demand}; {verdict}",
-        *areas,
+        *([areas] if take.has_constraints else []),
         *(_row(row) for row in take.rows),
     ]
 

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -58,7 +59,7 @@ def swing(heights: list[float], h: float) -> Swing:
     rest = float(y[-len(y) // 4 :].mean())
     d = y - rest
     turns = [i + d[i] / (d[i] - d[i + 1]) for i in range(len(d) - 1) if d[i] * d[i + 1] < 0.0][:7]
-    peaks = [np.abs(d[int(a) + 1 : int(b) + 1]).max() for a, b in zip(turns, turns[1:], strict=False)]
+    peaks = [np.abs(d[int(a) + 1 : int(b) + 1]).max() for a, b in pairwise(turns)]
     return Swing(rest, 2.0 * h * (turns[-1] - turns[0]) / (len(turns) - 1), float(peaks[2] / peaks[1]))
 
 
