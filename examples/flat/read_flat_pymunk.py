@@ -10,17 +10,21 @@ and breaking are not there, which is said.
 import json
 import math
 import sys
+from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import pymunk
+
+Level = dict[str, Any]
 
 DATA = None  # a level that this program carries with it
 # Left out of what pymunk does here, by their keys.
 MISSING = ("areas", "bends", "motors", "hydraulics")
 
 
-def particles(level, space):
+def particles(level: Level, space: pymunk.Space) -> list[pymunk.Body]:
     """A body for each particle, with its disc."""
     made = []
     held = {end for spring in level["springs"] for end in (spring["a"], spring["b"])} if "springs" in level else set()
@@ -48,12 +52,12 @@ def particles(level, space):
     return made
 
 
-def moved(level, scale):
+def moved(level: Level, scale: float) -> Callable[..., None]:
     """How gravity and the air change a velocity."""
     gx, gy = level["gravity"]
     (wind_x, wind_y), drag = level.get("wind", (0, 0)), level.get("drag", 0)
 
-    def velocity_of(body, gravity, damping, h):
+    def velocity_of(body: pymunk.Body, gravity: Any, damping: float, h: float) -> None:
         x, y = body.velocity
         share = drag * h / (1 + drag * h)
         x, y = x + gx * scale * h, y + gy * scale * h
@@ -62,12 +66,12 @@ def moved(level, scale):
     return velocity_of
 
 
-def springs(level, space, bodies):
+def springs(level: Level, space: pymunk.Space, bodies: list[pymunk.Body]) -> list[Any]:
     """A damped spring for each spring, a pin joint for each rod; None where both ends are pinned."""
     made = []
     for spring in level.get("springs", []):
         a, b = bodies[spring["a"]], bodies[spring["b"]]
-        joint = None
+        joint: Any = None
         if dynamic(a) or dynamic(b):
             if spring.get("rod", False):
                 joint = pymunk.PinJoint(a, b)
@@ -79,11 +83,11 @@ def springs(level, space, bodies):
     return made
 
 
-def dynamic(body):
-    return body.body_type == pymunk.Body.DYNAMIC
+def dynamic(body: pymunk.Body) -> bool:
+    return bool(body.body_type == pymunk.Body.DYNAMIC)
 
 
-def terrain(level, space):
+def terrain(level: Level, space: pymunk.Space) -> None:
     """Segments of lines and polygons."""
     for piece in level.get("terrain", []):
         corners = piece["corners"] + (piece["corners"][:1] if piece["kind"] != "line" else [])
@@ -94,7 +98,7 @@ def terrain(level, space):
             space.add(shape)
 
 
-def drive(level, joints, tick):
+def drive(level: Level, joints: list[Any], tick: int) -> None:
     """Rest lengths of muscles at a tick: two parabolas a period."""
     for muscle in level.get("muscles", []):
         u = (tick % muscle["period"]) / muscle["period"] + muscle["phase"]
@@ -105,7 +109,7 @@ def drive(level, joints, tick):
         setattr(joint, "distance" if isinstance(joint, pymunk.PinJoint) else "rest_length", length)
 
 
-def run(level, seconds):
+def run(level: Level, seconds: float) -> list[pymunk.Body]:
     """The bodies of the level's particles after some time."""
     space = pymunk.Space()
     space.damping = 1.0
@@ -120,7 +124,7 @@ def run(level, seconds):
     return bodies
 
 
-def main(arguments):
+def main(arguments: list[str]) -> None:
     level = DATA or json.loads(Path(arguments.pop(0)).read_text(encoding="utf-8"))
     missing = [f"{len(level[key])} {key}" for key in MISSING if level.get(key)]
     if missing:

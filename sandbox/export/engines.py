@@ -120,8 +120,8 @@ BOX2D = (
     "clamped to a quarter of the substep rate, springs are not"
 )
 UNITY = (
-    "SpringJoint2D is Box2D 2: one step of Time.fixedDeltaTime without substeps, so set that to the step above. From "
-    "its equation, not tried here"
+    "SpringJoint2D is Box2D 2: one step of Time.fixedDeltaTime without substeps, so set that to the step above. "
+    "Springs of a body are solved one after another, not together. From its equation, not tried here"
 )
 GODOT = (
     "DampedSpringJoint2D adds each spring by itself, and damps in every second of its 16 solver iterations, so its c "
@@ -133,6 +133,6 @@ RAPIER = (
 )
 CHIPMUNK = (
     "each spring is added by itself, so a stiffer body needs more steps a tick (those above are proven enough for k). "
-    "Areas and bends do not exist. Set the space's damping to 1, or everything is slowed down"
+    "Set the space's damping to 1, or everything is slowed down"
 )
 PYMUNK = CHIPMUNK

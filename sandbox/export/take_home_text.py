@@ -15,6 +15,8 @@ TARGETS = ("all", "article", *LISTINGS, *ENGINES)
 MOST_MASSES = 6
 # Engines whose springs take frequency and damping ratio, not k and c.
 BY_FREQUENCY = ("Box2D 3", "Unity 2D")
+# Engines that cut a step into substeps by themselves.
+WITH_SUBSTEPS = ("Box2D 3", "Rapier 2D")
 
 
 def take_home_text(source: Level | World, body: str | None = None, to: str = "all") -> str:
@@ -29,12 +31,12 @@ def as_text(take: TakeHome, to: str = "all") -> str:
     """The text for one of TARGETS, which ends with a newline. Raises KeyError for another."""
     lines = [*_head(take)]
     if to in ENGINES:
-        lines += ["", *_engine(take.engines[to])]
+        lines += ["", *_engine(take, to)]
     else:
         lines += ["", *_loop(take)]
         if to == "all":
             for name in ENGINES:
-                lines += ["", *_engine(take.engines[name])]
+                lines += ["", *_engine(take, name)]
             lines += ["", f"The loop as a program, and ten ticks to try it by: --to {', '.join(LISTINGS)}."]
         else:
             for language in LISTINGS if to == "article" else [to]:
@@ -47,7 +49,7 @@ def _head(take: TakeHome) -> list[str]:
     title = f' of "{take.level}"' if take.level else ""
     count = f"{take.springs} spring" + "s" * (take.springs != 1)
     more = f"; {take.others} more have other numbers" if take.others else ""
-    rate = f"a tick of {short(1000.0 * take.h)} ms"
+    rate = f"a tick of 1/{_rate(take.h)} s"
     law = " (Hooke's springs, as they amount to for the lightest ends)" if take.hooke else ""
     solver = take.solver.replace("_", " ")
     return [
@@ -77,7 +79,12 @@ def _loop(take: TakeHome) -> list[str]:
 def _row(row: LoopRow) -> str:
     steps = f"{row.substeps} substep" + "s" * (row.substeps != 1)
     own = "" if row.own == row.equal else f"; at the level's ratio {_pair(row.own)}"
-    return f"  {steps}, h {short(1000.0 * row.h)} ms: {_pair(row.equal)}{own}"
+    return f"  {steps}, h 1/{_rate(row.h)} s: {_pair(row.equal)}{own}"
+
+
+def _rate(h: float) -> str:
+    """How many steps of h [s] are in a second, which is a whole number."""
+    return str(round(1.0 / h))
 
 
 def _pair(pair: LoopPair) -> str:
@@ -90,13 +97,16 @@ def _pair(pair: LoopPair) -> str:
     )
 
 
-def _engine(numbers: EngineNumbers) -> list[str]:
-    differs = f"  Differs: {numbers.difference}."
+def _engine(take: TakeHome, name: str) -> list[str]:
+    numbers = take.engines[name]
+    softer = ". It has no areas and no bends, so this body is softer there" if take.has_constraints else ""
+    differs = f"  Differs: {numbers.difference}{softer}."
     if numbers.rigid:
         return [f"{numbers.engine}: too stiff for its springs; use rigid joints, or a softer material.", differs]
-    rate = f"{short(1.0 / numbers.step)} steps a second"
-    if numbers.steps > 1:
-        rate += f" ({numbers.steps} a tick)"
+    if numbers.engine in WITH_SUBSTEPS:
+        rate = f"{_rate(numbers.step * numbers.steps)} steps a second of {numbers.steps} substeps"
+    else:
+        rate = f"{_rate(numbers.step)} steps a second" + (f", {numbers.steps} a tick" if numbers.steps > 1 else "")
     least = " (the least; it damps more by itself)" if numbers.negative else ""
     return [
         f"{numbers.engine}, {rate}: frequency {short(numbers.frequency)} Hz, damping ratio "

@@ -4,6 +4,7 @@ import re
 import runpy
 import shutil
 import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -225,3 +226,10 @@ def test_numbers_for_a_person_have_three_digits_and_seldom_powers_of_ten():
     assert {value: short(value) for value in read} == read
     assert floored(1.0 / 3.0, lambda c: 3.0 * c < 1.0) == 0.333
     assert floored(0.25, lambda c: 4.0 * c < 1.0) == 0.249
+
+
+def test_the_page_for_designers_shows_what_is_printed():
+    page = (Path(__file__).resolve().parents[2] / "docs" / "how-to-design.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
+    printed = as_text(take_home(load_level("jelly_pile"))).splitlines()
+    assert [line for line in block.splitlines() if line not in printed] == []
