@@ -116,7 +116,7 @@ def _masses(body: ChosenBody) -> list[tuple[float, int]]:
 
 BOX2D = (
     "springs of a body are solved one after another, not together: sags are those of here, but what swings in less "
-    "than 20 ticks is up to 4 % quicker, and very stiff bodies come out softer. Only contacts and rigid joints are "
+    "than 20 ticks is up to 4 % quicker. Only contacts and rigid joints are "
     "clamped to a quarter of the substep rate, springs are not"
 )
 UNITY = (
@@ -129,7 +129,7 @@ GODOT = (
 )
 RAPIER = (
     "JointData.spring takes this k and c. Springs of a body are solved one after another, not together; what swings "
-    "in less than 20 ticks is up to 4 % quicker"
+    "in less than 20 ticks is up to 4 % quicker, and at Cs 0.9, Cd 0.95 a braced square sags half as much again"
 )
 CHIPMUNK = (
     "each spring is added by itself, so a stiffer body needs more steps a tick (those above are proven enough for k). "

@@ -24,6 +24,7 @@ from sandbox.export.outlines import outlines_of
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.model import ContactsDef, Level, NissenMaterial, ParticleDef
+from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.constraints import AREA
 from sandbox.physics.state import Floats
 from sandbox.physics.world import World
@@ -113,13 +114,14 @@ def _particle_count(world: World) -> int:
 
 def _surfaces(world: World, count: int) -> tuple[tuple[FlatSurface, ...], list[int]]:
     """The surfaces that there are, and which of them each particle has."""
-    used = sorted({1, *world.group[:count].tolist()})
+    # Numbered without gaps: other engines have bits for 32 of them.
+    used = sorted({TERRAIN_GROUP, *world.group[:count].tolist()} - {0})
     found: dict[FlatSurface, int] = {}
     numbers = []
     columns = (world.friction, world.restitution, world.group, world.collides)
     for friction, restitution, group, collides in zip(*(each[:count].tolist() for each in columns), strict=True):
-        touched = tuple(bit.bit_length() - 1 for bit in used if bit & collides)
-        number = max(group.bit_length() - 1, 0)
+        touched = tuple(number for number, bit in enumerate(used) if bit & collides)
+        number = used.index(group) if group else 0
         touch = friction + 0.0, restitution + 0.0
         surface = FlatSurface(friction=touch[0], restitution=touch[1], group=number, touches=touched)
         numbers.append(found.setdefault(surface, len(found)))

@@ -37,7 +37,7 @@ class FlatSurface(Description):
 
     friction: float = Field(description="Of two that touch the geometric mean counts.", json_schema_extra=NUMBER)
     restitution: float = Field(description="Of two that touch the larger counts.", json_schema_extra=NUMBER)
-    group: int = Field(description="Number of its group, 0..61; 0 is that of terrain.")
+    group: int = Field(description="Number of its group, from 0, which is that of terrain.")
     touches: Indices = Field(description="Numbers of the groups in this file that it touches, terrain's 0 included.")
 
 

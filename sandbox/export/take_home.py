@@ -10,6 +10,7 @@ from sandbox.export.proven import LoopRow, loop_rows
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import Level
 from sandbox.physics.firmness import Reach, coefficients_of, word_of
+from sandbox.physics.stability import BOUND
 from sandbox.physics.world import World
 
 
@@ -19,8 +20,10 @@ class TakeHome:
 
     level: its title. material: its name. springs: how many are of it. others: how many of the body's are not, as they
     have other numbers. stiffness, damping: Cs and Cd of a tick of h [s] under `solver`. hooke: whether k and c were
-    given instead. n_eff: see stability.py; the loop is proven below demand = 4 / n_eff of Cs + 2 Cd. rows: of 1, 2, 4
-    and 8 substeps. trial: two particles and ten ticks. engines: by their names. firmness: one sentence.
+    given instead. n_eff: see stability.py; the loop is proven below demand = 4 / n_eff of Cs + 2 Cd, and holds says
+    whether the level's own are. Other bodies that are joined to it must be within limits of their own. has_constraints:
+    whether areas or bends hold it too. rows: of 1, 2, 4 and 8 substeps. trial: two particles and ten ticks. engines:
+    by their names. firmness: one sentence.
     """
 
     level: str
@@ -50,7 +53,7 @@ def take_home(source: Level | World, body: str | None = None) -> TakeHome:
     """
     world = build_world(source) if isinstance(source, Level) else source
     chosen = choose_body(world, body)
-    demand = 4.0 / chosen.n_eff
+    demand = BOUND / chosen.n_eff
     rows = loop_rows(chosen)
     return TakeHome(
         level=world.source.name if isinstance(world.source, Level) else "",

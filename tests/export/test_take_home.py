@@ -14,7 +14,7 @@ from sandbox.export.loops import LISTINGS, TICKS, expected, listing
 from sandbox.export.numbers import floored, short
 from sandbox.export.proven import largest_pair
 from sandbox.export.take_home import take_home
-from sandbox.export.take_home_text import ENGINES, TARGETS, as_text
+from sandbox.export.take_home_text import ENGINES, TARGETS, as_text, take_home_text
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.files import load_level, shipped_levels
 from sandbox.level.format.parse import parse_level
@@ -22,6 +22,8 @@ from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.stability import report
 from sandbox.physics.step import step
 from sandbox.physics.world import World
+from sandbox.session.commands import SetCoefficients
+from sandbox.session.session import Session
 from tests.support.springs_elsewhere import lattice, level_of_springs, weight
 from tests.support.wobbles import firm_level, height, measured_wobble, standing_box
 
@@ -233,3 +235,14 @@ def test_the_page_for_designers_shows_what_is_printed():
     (block,) = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
     printed = as_text(take_home(load_level("jelly_pile"))).splitlines()
     assert [line for line in block.splitlines() if line not in printed] == []
+
+
+def test_a_world_in_a_run_takes_home_what_it_has_now():
+    session = Session(load_level("jelly_pile"))
+    assert take_home_text(session.world, "cube 1") == take_home_text(load_level("jelly_pile"), "cube 1")
+    soft = session.world.material_names.index("soft")
+    session.submit(SetCoefficients(stiffness=0.05, damping=0.1, material=soft))
+    for _ in range(30):
+        session.advance()
+    assert "Here: Cs 0.05, Cd 0.1 in a tick of 1/60 s, direct solver." in take_home_text(session.world, "cube 1")
+    assert "Here: Cs 0.9, Cd 0.95 in a tick" in take_home_text(session.world, "plank 7")
