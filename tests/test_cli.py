@@ -422,8 +422,9 @@ def test_prepare_that_does_not_succeed_says_so(monkeypatch, capsys):
 COMMANDS = {
     "play": ["rope"], "toy": [], "run": ["rope", "--ticks", "1"], "replay": ["x.jsonl"], "resume": ["x.jsonl"],
     "check": ["rope"], "diff": ["x.jsonl", "y.jsonl"], "bisect": ["x.json", "y.json"],
-    "sweep": ["rope", "--cs", "0.1:1:2", "-o", "x.csv"], "render": ["rope", "-o", "x.png"], "format": ["x.json"],
-    "edit": [], "prepare": [], "schema": [],
+    "sweep": ["rope", "--cs", "0.1:1:2", "-o", "x.csv"], "render": ["rope", "-o", "x.png"],
+    "take-home": ["rope"], "export": ["rope", "-o", "x.json"], "format": ["x.json"], "edit": [],
+    "prepare": [], "schema": [],
 }  # fmt: skip
 
 
@@ -431,7 +432,7 @@ def test_every_command_is_tried_in_a_folder_that_is_gone(capsys):
     with pytest.raises(SystemExit):
         main(["--help"])
     listed = capsys.readouterr().out.partition("COMMAND\n")[2]
-    assert re.findall(r"^    (\w+)", listed, re.MULTILINE) == list(COMMANDS)
+    assert re.findall(r"^    ([\w-]+)", listed, re.MULTILINE) == list(COMMANDS)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="only there a folder in use can be removed")

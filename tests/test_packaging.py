@@ -31,6 +31,8 @@ def test_an_installed_wheel_finds_its_levels_parts_and_assets_from_another_folde
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(installed)
     assert (installed / "sandbox" / "py.typed").is_file()
+    readers = {path.name for path in (installed / "sandbox" / "_shipped" / "examples" / "flat").iterdir()}
+    assert readers == {path.name for path in (ROOT / "examples" / "flat").iterdir() if path.is_file()}
     program = (
         "import sandbox; from sandbox.level.format.files import load_level, shipped_folder, shipped_levels\n"
         "assert load_level('rope').name and shipped_levels()\n"

@@ -12,6 +12,7 @@ from sandbox.cli import (
     check,
     diff,
     edit,
+    export,
     format,
     play,
     prepare,
@@ -21,13 +22,17 @@ from sandbox.cli import (
     run,
     schema,
     sweep,
+    take_home,
     toy,
 )
 from sandbox.cli.inputs import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_REFUSED, Refused
 from sandbox.terminal import give_up_output, missing_folder, prepare_streams, refusal_of, tell
 
 # In the order in which --help lists them.
-COMMANDS = (play, toy, run, replay, resume, check, diff, bisect, sweep, render, format, edit, prepare, schema)
+COMMANDS = (
+    play, toy, run, replay, resume, check, diff, bisect, sweep, render, take_home, export, format, edit, prepare,
+    schema,
+)  # fmt: skip
 # Python searches for garbage after so many new objects, in place of 700: what is imported stays, and looking through it
 # again and again was a sixth of a start. Objects that hold each other, as those do, are few in a run.
 SEARCH_AFTER = 200_000
