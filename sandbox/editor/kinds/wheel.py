@@ -36,7 +36,7 @@ class RimOptions(BodyOptions):
     particle_mass: float = mass_option(1.0)
     material: str = material_option("rubber")
     # Round under ten times its weight as well.
-    sag: float | None = sag_option(0.3)
+    sag: float | None = sag_option(0.15)
 
 
 AnyRimOptions = TypeVar("AnyRimOptions", bound=RimOptions)
