@@ -6,10 +6,12 @@ substeps the same numbers hold in each of them, and n times as many steps make t
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from sandbox.export.chosen_body import ChosenBody
 from sandbox.export.numbers import floored
+from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.equation import frequency_from_coefficients
-from sandbox.physics.firmness import Reach
 from sandbox.physics.stability import BOUND
 
 SUBSTEPS = (1, 2, 4, 8)
@@ -78,8 +80,9 @@ def _pair(body: ChosenBody, stiffness: float, damping: float, h: float) -> LoopP
         body.weight * h * h / (stiffness * body.least_mass * body.least_length) if stiffness > 0.0 else float("inf")
     )
     if body.mode > 0.0:
-        reach = Reach(body.mode, body.height, body.gravity, h)
-        sag, hz, ratio = reach.reading(body.mode * stiffness, body.mode * damping)
-        return LoopPair(stiffness, damping, hz, ratio, sag, stretch)
+        view = BodyMotion(body.mode, body.height, body.gravity, h, 1, "single_pass", 1)
+        sag, motion = view.sag(np.array([stiffness]), np.array([damping])), view.motion(stiffness, damping)
+        assert sag is not None
+        return LoopPair(stiffness, damping, motion.hz, motion.ratio, float(sag[0]), stretch)
     hz, ratio = frequency_from_coefficients(stiffness, damping, h)
     return LoopPair(stiffness, damping, hz, ratio, None, stretch)

@@ -9,7 +9,7 @@ from sandbox.export.numbers import percent, short
 from sandbox.export.proven import LoopRow, loop_rows
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import Level
-from sandbox.physics.firmness import Reach, coefficients_of, word_of
+from sandbox.physics.analysis.body_motion import read_body, word_for
 from sandbox.physics.stability import BOUND
 from sandbox.physics.world import World
 
@@ -81,16 +81,13 @@ def _firmness(body: ChosenBody) -> str:
     """How soft the body is as a whole, in the words and numbers of the panel."""
     if body.form is None or not body.mode > 0.0:
         return "Its form is not stiff without pins, so it has no firmness of its own."
-    world = body.world
-    pair = coefficients_of(world, body.form, body.mode)
-    if pair is None:
+    reading = read_body(body.world, body.form, body.mode)
+    if reading is None:
         return "Its springs have several Cs and Cd, so it has no one firmness."
-    reach = Reach.of(world.forms[body.form].shape, world.settings.gravity, world.settings.tick_rate)
-    sag, hz, ratio = reach.reading(*pair)
-    if sag == 0.0:
+    wobble = f"wobbles at {short(reading.motion.hz)} Hz with a damping ratio of {short(reading.motion.ratio)}"
+    if reading.sag is None:
+        return f"It {wobble}; how far it sags in the iterative solver only a run tells."
+    word = word_for(reading.sag, reading.is_rigid)
+    if word == "rigid":
         return "It is rigid: it does not sag."
-    word = word_of(float(f"{sag:.3g}"))
-    return (
-        f"It sags by {percent(sag)} of its height where it stands{f' ({word})' if word else ''}, and wobbles at "
-        f"{short(hz)} Hz with a damping ratio of {short(ratio)}."
-    )
+    return f"It sags by {percent(reading.sag)} of its height where it stands ({word}), and {wobble}."

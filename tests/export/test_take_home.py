@@ -64,7 +64,7 @@ def test_the_wobble_of_a_row_is_within_2_percent_of_that_which_a_single_pass_sho
     assert row.equal.damping_ratio == pytest.approx(ratio, rel=0.05)
 
 
-@pytest.mark.parametrize(("cells", "rows", "near"), [(4, (1, 2, 3), 0.02), (8, (2, 3), 0.08)])
+@pytest.mark.parametrize(("cells", "rows", "near"), [(4, (1, 2, 3), 0.06), (8, (2, 3), 0.06)])
 def test_the_sag_of_a_row_below_a_tenth_is_that_at_which_a_single_pass_stands(cells, rows, near):
     taken = take_home(standing_box(1.0, cells, {"sag": 0.1}))
     for row in (taken.rows[number] for number in rows):

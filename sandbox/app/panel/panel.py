@@ -39,7 +39,7 @@ from sandbox.session.commands import Command, SetCoefficients
 # From this height of the panel on Cs and Cd are set by the pad, and from this on the world is open.
 PAD_FROM, WORLD_FROM = 470.0, 840.0
 PAD_HEIGHT, CURVE_HEIGHT = 214.0, 84.0
-SPRINGS_CHOICE, MELT_WIDTH = 118.0, 84.0
+SPRINGS_CHOICE = 118.0
 SIDES_HEIGHT = 38.0
 # Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
 LOOK_EVERY = 15
@@ -164,10 +164,13 @@ class Panel:
             self._build_pad()
         else:
             self._build_sliders()
-        tip = tip_of("melt", "play")
-        place = rows.place(MARGIN + INSIDE - MELT_WIDTH, 0, MELT_WIDTH, 26)
+        self.note = TextBlock(ui, rows.row(30, 4), "", rows.back)
+        tip, half = tip_of("melt", "play"), (INSIDE - 8) / 2
+        place = rows.place(MARGIN, 0, half, ROW)
         self.melt = ui.button(place, "Melt", lambda: self._choose["melt"](""), rows.back, tip=tip)
-        self.note = TextBlock(ui, rows.row(32, 8, MARGIN, INSIDE - MELT_WIDTH - 8), "", rows.back)
+        tip = "What these springs are in your own loop or engine: numbers and code to copy"
+        place = rows.row(ROW, 10, MARGIN + half + 8, half)
+        self.take_home = ui.button(place, "Take home", self._take_home, rows.back, tip=tip)
 
     def _build_sliders(self) -> None:
         rows = self.rows
@@ -392,6 +395,14 @@ class Panel:
             self.firmness.choose_body(ALL_BODIES)
             self._ui.replace_menu(self.firmness.menu, ALL_BODIES)
         self._ui.replace_menu(self.menu, ALL_MATERIALS if material is None else self._material_names()[material])
+
+    def _take_home(self) -> None:
+        """Show what the body that is spoken of is in another loop or engine."""
+        # What works out the numbers of other engines, which a window does without until then.
+        from sandbox.app.panel.take_home_page import show_take_home
+
+        world, slot = self.playback.session.world, self.firmness.body_of(self.material)
+        show_take_home(self._ui, world, self._say, None if slot is None else world.forms[slot].name)
 
     def choose_body(self, name: str) -> None:
         """Show and change a body, by its name, or all, and the springs that it is made of."""
