@@ -137,11 +137,11 @@ def test_again_is_offered_once_things_have_left_the_view_and_begins_anew(open_ap
     again = driver.app.play.again
     assert not again.visible
     driver.frames(90)
-    assert again.visible and any("left the view" in text for text in driver.notices)
+    assert again.visible and any("out of sight" in text for text in driver.notices)
     driver.playback.clock.paused = True
     driver.playback.seek(1)
     driver.frames()
-    assert not again.visible and not any("left the view" in text for text in driver.notices)
+    assert not again.visible and not any("out of sight" in text for text in driver.notices)
     driver.playback.seek(90)
     driver.frames()
     driver.click_widget(again)

@@ -26,7 +26,7 @@ from sandbox.app.play.key_caps import KEYS_HEIGHT, ROOM_BESIDE, draw_key_caps
 from sandbox.app.play.legend import Legend
 from sandbox.app.play.melting import toggle_melt
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
-from sandbox.app.play.out_of_view import OutOfView
+from sandbox.app.play.out_of_view import OutOfView, bring_back
 from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.speeds import state_of
@@ -193,6 +193,10 @@ class PlayScreen:
         place = ui.rect(left, BAR_HEIGHT + self.again_top, *AGAIN_SIZE)
         self.again = ui.button(place, "Again", self._reset, style="@primary", tip=tip_of("reset", "play"))
         self.again.hide()
+        left, top = self.free.relative_rect.bottomleft
+        place = pygame.Rect((left, top + ui.px(FREE_PLACE[1] / 2)), self.free.relative_rect.size)
+        self.lost = ui.button(place, "Bring back", self._bring_back, tip=tip_of("bring_back", "play"))
+        self.lost.hide()
         # Beside a panel in a narrow window they have no room: they lie below it.
         wide, below_panel = self.area[2] / ui.scale, 0.0
         if wide < ROOM_BESIDE_PANEL:
@@ -268,6 +272,7 @@ class PlayScreen:
             "melt": self.toggle_melt,
             "follow": self._follow,
             "free": self._free,
+            "bring_back": self._bring_back,
             "undo": lambda: self.playback.submit_undo(),
             "redo": lambda: self.playback.submit_redo(),
             "pause": lambda: self.playback.toggle_pause(),
@@ -512,6 +517,18 @@ class PlayScreen:
         if bool(found) != bool(self.free.visible):
             (self.free.show if found else self.free.hide)()
 
+    def _bring_back(self) -> None:
+        """Put what has left the picture back into it, at rest."""
+        found, gesture = (
+            bring_back(self.playback.session.world, self.stage.first_box),
+            self.playback.session.new_gesture(),
+        )
+        for command in found:
+            self.playback.submit(command, gesture)
+        self.out_of_view = OutOfView()
+        if not found:
+            self._app.say("Nothing has left the picture.")
+
     def _show_again(self) -> None:
         was_over = self.out_of_view.is_over
         self.out_of_view.update(self.playback.session.world, self.stage.first_box)
@@ -520,6 +537,8 @@ class PlayScreen:
             (self._app.say if is_over else self._app.take_back)(LEFT_VIEW)
         if is_over != bool(self.again.visible):
             (self.again.show if is_over else self.again.hide)()
+        if self.out_of_view.has_lost != bool(self.lost.visible):
+            (self.lost.show if self.out_of_view.has_lost else self.lost.hide)()
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw the world, what hands pull with, and the keys that the level has."""

@@ -7,8 +7,8 @@ from sandbox.editor.document import EditError
 from sandbox.editor.edits.copying import inserted, shifted
 from sandbox.editor.edits.names import owner_of, rewired, with_owner
 from sandbox.level.build.joining import Joiners
-from sandbox.level.build.surfaces import group_bits
 from sandbox.level.faults.level_error import LevelError, one_line, shown
+from sandbox.level.format.look import BodyLook
 from sandbox.level.format.model import Level, Material, ParticleDef
 from sandbox.level.format.quantities import Description, Point, replaced
 from sandbox.level.kinds.mesh import MeshDef
@@ -35,7 +35,7 @@ def joining_commands(part: Level, world: World, at: Point, velocity: Point = (0.
         format=source.format, version=source.version, name=source.name, settings=source.settings, materials=known,
         contacts=source.contacts,
     )  # fmt: skip
-    joined, _ = inserted(bare, [shifted(_able_to_join(part, source), *at)])
+    joined, _ = inserted(bare, [shifted(_able_to_join(part), *at)])
     commands: list[Command] = []
     if joined.bodies:
         add = _add_body(joined, known, velocity)
@@ -55,14 +55,10 @@ def _materials(world: World, source: Level) -> dict[str, Material]:
     return known
 
 
-def _able_to_join(part: Level, source: Level) -> Level:
+def _able_to_join(part: Level) -> Level:
     """The part with its loose particles that springs or welds hold as bodies. Raises EditError where it cannot join."""
     if part.terrain:
         raise EditError(f"{shown(part.name)} has terrain, which cannot join a run; build it into a level")
-    known, bits = group_bits(source), group_bits(part)
-    lost = [name for name in bits if name not in known]
-    if lost:
-        raise EditError(f"{shown(part.name)} has the collision group {shown(lost[0])}, which this level does not have")
     named = {owner_of(name) for pair in ((each.a, each.b) for each in part.springs) for name in pair}
     named |= {owner_of(name) for pair in part.welds for name in pair}
     held = [particle for particle in part.particles if particle.id in named]
@@ -80,7 +76,7 @@ def _unsaid(particle: ParticleDef, is_held: bool) -> str:
     """The first thing that a particle says and no command can; empty where there is none."""
     said = SAID | UNSEEN
     if is_held:
-        said |= OF_FREE_DISCS | frozenset(MeshDef.model_fields) - {"look"}
+        said |= OF_FREE_DISCS | frozenset(MeshDef.model_fields)
     for name, field in ParticleDef.model_fields.items():
         if name not in said and getattr(particle, name) != field.default:
             return name.replace("_", " ")
@@ -96,6 +92,8 @@ def _as_mesh(particle: ParticleDef) -> MeshDef:
         masses=(particle.mass,),
         particle_radius=particle.radius,
         pinned=(0,) if particle.pinned else (),
+        # What ball it is, no body says.
+        look=None if particle.look is None else BodyLook(colour=particle.look.colour),
         **{name: getattr(particle, name) for name in same},
     )
 

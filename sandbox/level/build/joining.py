@@ -87,10 +87,10 @@ class Joiners:
     def _group_faults(self, index: int) -> Iterator[Fault]:
         said, path = self._said[index], "body" if index == 0 else f"others.{index - 1}"
         group = said.get("collision_group")
-        if group is not None and (group not in self._bits or group == TERRAIN_NAME):
-            yield f"{path}.collision_group", f"the level has no group {shown(group)}" + suggestion(group, self._bits)
+        if group == TERRAIN_NAME:
+            yield f"{path}.collision_group", f"{shown(group)} is the group of terrain alone"
         for number, name in enumerate(said.get("collides", ())):
-            if name not in self._bits:
+            if name not in self._bits and name not in self._own_groups:
                 place = f"{path}.collides.{number}"
                 yield place, f"the level has no group {shown(name)}" + suggestion(name, self._bits)
 
@@ -98,19 +98,34 @@ class Joiners:
         """Group and collides of their particles, and collides of the world's own from now on. Raises LevelError."""
         owner, present = self.built.owner[: self.particles], world.collides.copy()
         group, collides = np.zeros((2, self.particles), np.int64)
+        bits = self._bits | self._own_bits(world)
         for index, said in enumerate(self._said):
             mine = owner == index
-            group[mine] = self._bits[said.get("collision_group") or DEFAULT_GROUP]
-            named = sum(self._bits[name] for name in dict.fromkeys(said["collides"])) if "collides" in said else None
+            group[mine] = bits[said.get("collision_group") or DEFAULT_GROUP]
+            named = sum(bits[name] for name in dict.fromkeys(said["collides"])) if "collides" in said else None
             collides[mine] = self.built.collides[: self.particles][mine] if named is None else named
         if not self.level.has_contacts:
             return group, np.zeros_like(collides), present
-        used = max(int(world.group.max(initial=1)), *self._bits.values())
+        used = max(int(world.group.max(initial=1)), *bits.values())
         for number, (wheel, mount) in enumerate(free_wheels(self.level), used.bit_length()):
             if 1 << number > ALL_GROUPS:
                 raise LevelError(SOURCE, [("", "there are too many wheels that do not touch their mounts")])
             _give_group(group, (collides, present), owner == wheel, np.isin(owner, list(mount)), 1 << number)
         return group, collides, present
+
+    @property
+    def _own_groups(self) -> list[str]:
+        """Groups that these bodies bring along: names that the level does not know."""
+        named = dict.fromkeys(said.get("collision_group") for said in self._said)
+        return [name for name in named if name is not None and name not in self._bits]
+
+    def _own_bits(self, world: World) -> dict[str, int]:
+        """The bits of those groups, which nothing of the world has yet. Raises LevelError where there are too many."""
+        first = max(int(world.group.max(initial=1)), *self._bits.values()).bit_length()
+        found = {name: 1 << number for number, name in enumerate(self._own_groups, first)}
+        if any(bit > ALL_GROUPS for bit in found.values()):
+            raise LevelError(SOURCE, [("", "there are too many collision groups")])
+        return found
 
     def check_room(self, world: World) -> None:
         """Raise LevelError where the world would become larger than a level may be."""

@@ -6,13 +6,16 @@ from sandbox.physics.components import body_of
 from sandbox.physics.world import BANK_UNOPENED, World
 
 
-def move_body(world: World, particle: int, by: tuple[float, float], limit: float) -> bool:
+def move_body(world: World, particle: int, by: tuple[float, float], limit: float, at_rest: bool = False) -> bool:
     """Move all that springs join to a particle by a way [m]; False, and nothing is moved, where it ends beyond limit
-    [m]."""
+    [m]. at_rest: it stands still there."""
     body = body_of(world, particle)
     places = world.position[body] + np.array(by)
     if not (np.abs(places) <= limit).all():
         return False
     world.change("position", places, body)
+    if at_rest:
+        world.change("velocity", 0.0, body)
+        world.slow_velocity[body] = 0.0
     world.energy_bank[body] = BANK_UNOPENED
     return True

@@ -17,13 +17,17 @@ Way = Annotated[float, Field(ge=-COORDINATE_LIMIT, le=COORDINATE_LIMIT, json_sch
 
 @dataclass(frozen=True)
 class MoveBody(Command):
-    """Move all that hangs together with a particle, its pins too, by a way [m], at once; its velocity stays."""
+    """Move all that hangs together with a particle, its pins too, by a way [m], at once.
+
+    at_rest: it stands still there; else its velocity stays.
+    """
 
     type = "move_body"
     particle: ParticleSlot
     by: tuple[Way, Way]
+    at_rest: bool = False
 
     def carry_out(self, world: World) -> None:
         name = particle_of(world, self.particle)
-        if not move_body(world, self.particle, self.by, COORDINATE_LIMIT):
+        if not move_body(world, self.particle, self.by, COORDINATE_LIMIT, self.at_rest):
             raise CommandError(f"what hangs on {name} would be beyond {COORDINATE_LIMIT:g} m")
