@@ -1,4 +1,4 @@
-"""Backdrop: what does not move, stage, grid and ground, as a picture that is kept while the camera stands still."""
+"""Backdrop: what does not move, stage and ground, as a picture that is kept while the camera stands still."""
 
 import functools
 
@@ -6,7 +6,7 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.app.draw.camera import Camera, grid_spacing
+from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import Colour
 from sandbox.app.draw.looks import ground_look
 from sandbox.app.draw.raster.bodies import GRAIN, BodyRows, Flush, Outlines, Skins
@@ -20,8 +20,6 @@ from sandbox.physics.terrain import Terrain
 
 Floats = NDArray[np.float64]
 
-# Distance of grid lines, at least [pixels at scale 1], and how much of them shows.
-GRID_STEP, GRID_SHARE = 64.0, 0.75
 # Corners farther away than this [pixels] are drawn there: kernels take no others.
 FARTHEST = 5e5
 # Terrain wider than this part of the view or of all terrain is soil, if nothing says otherwise.
@@ -77,11 +75,7 @@ class Backdrop:
         layer = pygame.Surface((width, height), 0, 32)
         own = Camera(camera.centre, camera.zoom, (0, 0, width, height))
         pixels = pygame.surfarray.pixels2d(layer).T
-        bare, gridded = stage_pictures((width, height), theme)
-        pixels[:] = bare
-        columns, rows = _grid_lines(own, scale)
-        pixels[:, columns] = gridded[:, columns]
-        pixels[rows] = gridded[rows]
+        pixels[:] = stage_picture((width, height), theme)
         del pixels
         self._painter.compiled = painter.exact
         self._painter.begin(layer)
@@ -179,49 +173,30 @@ def _packed(colour: Colour) -> int:
     return colour[0] << 16 | colour[1] << 8 | colour[2]
 
 
-def _grid_lines(camera: Camera, scale: float) -> tuple[list[int], list[int]]:
-    """Columns and rows of pixels that grid lines lie on."""
-    _, _, width, height = camera.viewport
-    spacing = grid_spacing(camera.zoom, GRID_STEP * scale)
-    (x0, y1), (x1, y0) = camera.to_world((0, 0)), camera.to_world((width, height))
-    found: list[list[int]] = []
-    thick = max(1, round(scale))
-    for axis, low, high, most in ((0, x0, x1, width), (1, y0, y1, height)):
-        lines = range(int(np.ceil(low / spacing)), int(np.floor(high / spacing)) + 1)
-        places = [round(camera.to_pixels((index * spacing, index * spacing))[axis]) for index in lines]
-        shown = (place + more for place in places for more in range(-(thick // 2), thick - thick // 2))
-        found.append([place for place in shown if 0 <= place < most])
-    return found[0], found[1]
-
-
 @functools.lru_cache(maxsize=1)
-def stage_pictures(size: tuple[int, int], theme: Theme) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
-    """The stage (h, w) without and with its grid everywhere: the next run has mostly the same."""
+def stage_picture(size: tuple[int, int], theme: Theme) -> NDArray[np.uint32]:
+    """The stage (h, w): the next run has mostly the same."""
     width, height = size
-    bare, gridded = (np.full((height, width), 0xFF, dtype=np.uint32) for _ in range(2))
+    picture = np.full((height, width), 0xFF, dtype=np.uint32)
     for first in range(0, height, BAND):
         rows = slice(first, min(first + BAND, height))
-        _fill_band(rows, size, theme, bare[rows], gridded[rows])
-    return bare, gridded
+        _fill_band(rows, size, theme, picture[rows])
+    return picture
 
 
-def _fill_band(
-    rows: slice, size: tuple[int, int], theme: Theme, bare: NDArray[np.uint32], gridded: NDArray[np.uint32]
-) -> None:
-    """Draw these rows of the stage, of which the first is a multiple of 4, on both pictures."""
+def _fill_band(rows: slice, size: tuple[int, int], theme: Theme, picture: NDArray[np.uint32]) -> None:
+    """Draw these rows of the stage, of which the first is a multiple of 4."""
     width, height = size
     y, x = np.arange(rows.start, rows.stop, dtype=np.float32)[:, None], np.arange(width, dtype=np.float32)
     share = y / np.float32(max(height, 1))
     away = np.sqrt(((x - width / 2) / (0.62 * width)) ** 2 + ((y - 0.46 * height) / (0.72 * height)) ** 2)
-    # A lamp behind the stage; the grid fades with the distance from the middle, and all of it towards the corners.
+    # A lamp behind the stage, which is darker towards the corners.
     lit = np.clip(1 - 1.25 * away, 0, 1) ** 2
-    fade = np.clip(1.15 - 1.05 * away, 0, 1) * np.float32(GRID_SHARE)
     dark = 1 - np.float32(theme.vignette) * np.clip(away - 0.55, 0, 1.2) ** np.float32(1.6)
     # An ordered dither, or the gradient shows as bands.
     bayer = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]], dtype=np.float32) / 16 + 0.03
     dither = np.tile(bayer, (len(y) // 4 + 1, width // 4 + 1))[: len(y), :width]
-    for top, bottom, lamp, grid in zip(*theme.stage, theme.lamp, theme.grid, strict=True):
+    for top, bottom, lamp in zip(*theme.stage, theme.lamp, strict=True):
         colour = top * (1 - share) + bottom * share + lit * lamp
-        for picture, shown in ((bare, colour), (gridded, colour + (grid - colour) * fade)):
-            picture <<= 8
-            picture |= np.clip(shown * dark + dither, 0, 255).astype(np.uint8)
+        picture <<= 8
+        picture |= np.clip(colour * dark + dither, 0, 255).astype(np.uint8)

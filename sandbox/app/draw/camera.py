@@ -139,6 +139,10 @@ def bounds(points: NDArray[np.float64]) -> Box:
     return left, bottom, right, top
 
 
+# Distance of grid lines on a sheet and of a ruler's marks, at least [pixels at scale 1].
+GRID_STEP = 64.0
+
+
 def grid_spacing(zoom: float, wanted: float) -> float:
     """Distance [m] between grid lines, 1, 2 or 5 times a power of ten, at least `wanted` pixels apart."""
     metres = wanted / zoom

@@ -6,8 +6,7 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.app.draw.backdrop import GRID_STEP as GRID_STEP
-from sandbox.app.draw.backdrop import Backdrop, stage_pictures
+from sandbox.app.draw.backdrop import Backdrop, stage_picture
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import ACCENT, DANGER, WARNING, packed
 from sandbox.app.draw.detail import FULL, NO_EFFECTS, NO_SHADOWS
@@ -132,7 +131,7 @@ class Renderer:
     def expect(self, camera: Camera) -> None:
         """Make what takes longest of the first picture of a view of this size."""
         width, height = camera.viewport[2:]
-        stage_pictures((width, height), self.theme)
+        stage_picture((width, height), self.theme)
 
     def draw(
         self,

@@ -12,7 +12,6 @@ class Theme:
     name: str
     stage: tuple[Colour, Colour]
     lamp: Colour
-    grid: Colour
     vignette: float
     shadow: Colour
     shadow_strength: float
@@ -44,7 +43,7 @@ def _pair(first: int, second: int) -> tuple[Colour, Colour]:
 
 
 DARK = Theme(
-    "dark", stage=_pair(0x202A3E, 0x10141D), lamp=(34, 40, 52), grid=_rgb(0x2C374C), vignette=0.42,
+    "dark", stage=_pair(0x202A3E, 0x10141D), lamp=(34, 40, 52), vignette=0.42,
     shadow=_rgb(0x04060A), shadow_strength=0.50, soil=_pair(0x463C42, 0x2A262E), turf=_pair(0x6CC58B, 0x2F7A5C),
     rock=_pair(0x59627A, 0x2A2F3D), metal=_pair(0x7D8AA5, 0x39425A), text=_rgb(0xE8ECF4), accent=_rgb(0x5ED0B2),
     card=_rgb(0x1A202C), line=_rgb(0x2E384A), tyre=_rgb(0x343842), dust=_rgb(0xCDBFA6),
@@ -52,7 +51,7 @@ DARK = Theme(
     contact=_rgb(0xFF6AD5), force=_rgb(0xFFE45C), velocity=_rgb(0x6FF2E0), past=_rgb(0xFF4D8B),
 )  # fmt: skip
 LIGHT = Theme(
-    "light", stage=_pair(0xCFE4F1, 0xFBF3E3), lamp=(14, 12, 6), grid=_rgb(0xB9CBD6), vignette=0.14,
+    "light", stage=_pair(0xCFE4F1, 0xFBF3E3), lamp=(14, 12, 6), vignette=0.14,
     shadow=_rgb(0x4A4030), shadow_strength=0.26, soil=_pair(0xB08459, 0xBF966A), turf=_pair(0x93CF63, 0x5C9C44),
     rock=_pair(0xA3A9B5, 0x7F8794), metal=_pair(0xAEB8C8, 0x78859A), text=_rgb(0x27303F), accent=_rgb(0x12907A),
     card=_rgb(0xFFFDF8), line=_rgb(0xDDD5C6), tyre=_rgb(0x42444C), dust=_rgb(0xE9DCC2),

@@ -13,6 +13,8 @@ from sandbox.physics.world import Floats
 # Names of powers of a thousand, the least first.
 _PREFIXES = {-9: "n", -6: "\u00b5", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 DIGITS = 3
+# What swings for longer than this [s] swings on; what is at rest before is back at once.
+LONG, AT_ONCE = 600.0, 0.04
 # A smaller share is said to be nothing.
 UNSEEN = 1e-5
 
@@ -23,6 +25,7 @@ def number(value: float, digits: int = DIGITS) -> str:
         return "\u221e" if value > 0.0 else "\u2212\u221e" if value < 0.0 else "?"
     if value == 0.0 or abs(value) < 1e-12:
         return "0"
+    value = float(f"{value:.{digits}g}")
     decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
     text = f"{value:.{min(decimals, 12)}f}"
     return text.rstrip("0").rstrip(".") if "." in text else text
@@ -56,12 +59,13 @@ def per_cent(share: float, digits: int = 2) -> str:
 
 def motion_words(motion: SpringMotion) -> str:
     """How an error goes back, and when it is gone."""
+    if motion.swings:
+        goes_on = motion.rest > LONG
+        return "swings on and on" if goes_on else f"swings, at rest after {seconds(motion.rest)}"
     if math.isinf(motion.half):
         return "does not come back"
-    if math.isinf(motion.rest) or (motion.swings and motion.rest > 600.0):
-        return "swings on and on"
-    if motion.swings:
-        return f"swings, at rest after {seconds(motion.rest)}"
+    if motion.rest < AT_ONCE:
+        return "is back at once"
     return f"creeps back, half in {seconds(motion.half)}"
 
 

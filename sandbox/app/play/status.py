@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, NOTICE, SURFACE, TEXT, WARNING, Colour, mixed
+from sandbox.app.panel.readings import number
 from sandbox.app.screen import Figures, NoticesPlace, Pixel
 from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
@@ -232,7 +233,7 @@ def motor_parts(readings: list[MotorReading], carries: bool) -> list[tuple[str, 
         return [*parts, (f"{len(readings)} motors, {told}", WARNING if full else MUTED)]
     for reading in readings:
         if reading.pushes:
-            text = f"motor {reading.name}: {abs(reading.torque):.3g} of {reading.limit:.3g} N m"
+            text = f"motor {reading.name}: {number(abs(reading.torque))} of {number(reading.limit)} N m"
             parts.append((text, WARNING if reading.at_limit else MUTED))
         else:
             parts.append((f"motor {reading.name}: it pushes against nothing", WARNING))

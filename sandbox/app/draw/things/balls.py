@@ -17,7 +17,9 @@ Floats = NDArray[np.float64]
 _STYLES = {"marble": MARBLED, "stripe": STRIPED, "steel": STUDDED, "sand": STRIPED, "bumper": PLAIN, "plain": PLAIN}
 STEEL_BALL, STUD, WHITE, SAND_MARK = 0x8D99B0, 0x39435A, 0xFFFFFF, 0xB97F3A
 # Smallest ball, and pins [pixels at scale 1].
-LEAST, PIN, PIN_RIM, PIN_GLEAM = 2.5, 4.9, 6.2, 1.5
+LEAST, PIN, PIN_RIM, PIN_SLOT = 2.5, 3.5, 4.4, 2.5
+# A pin is a screw: its head, its rim, and the slot in it.
+SCREW, SCREW_RIM, SCREW_SLOT = 0xB4BCC9, 0x141924, 0x4A5363
 
 
 class Balls:
@@ -66,12 +68,12 @@ class Balls:
 
     def mark_pins(self, marks: MarkList, frame: Frame) -> None:
         """Draw what is held."""
-        red, green, blue = frame.theme.accent
         for slots, size in ((self.pins, 1.0), (self._held, 0.55)):
             at, k = frame.at[slots], frame.scale * size
-            marks.discs(at, PIN_RIM * k, 0x141924, 0.9)
-            marks.discs(at, PIN * k, red << 16 | green << 8 | blue)
-            marks.discs(at + np.array([-1.3, -1.5]) * k, PIN_GLEAM * k, WHITE, 0.85)
+            marks.discs(at, PIN_RIM * k, SCREW_RIM, 0.9)
+            marks.discs(at, PIN * k, SCREW)
+            half = np.array([PIN_SLOT, -PIN_SLOT]) * k
+            marks.strokes(np.column_stack([at - half, at + half]), 0.6 * k, SCREW_SLOT)
 
 
 def _colour(k: int, ball: Ball) -> int:

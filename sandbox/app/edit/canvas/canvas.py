@@ -9,7 +9,7 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.app.draw.camera import Box, Camera, grid_spacing
+from sandbox.app.draw.camera import GRID_STEP, Box, Camera, grid_spacing
 from sandbox.app.draw.colours import (
     ACCENT,
     BACKGROUND,
@@ -29,7 +29,6 @@ from sandbox.app.draw.lines import Canvas
 from sandbox.app.draw.renderer import (
     CROWDED,
     DENSITY,
-    GRID_STEP,
     PIN_RADIUS,
     SMALLEST_RADIUS,
     SPRING_WIDTH,

@@ -5,9 +5,8 @@ from collections.abc import Callable
 
 import pygame
 
-from sandbox.app.draw.camera import Camera, Point, grid_spacing
+from sandbox.app.draw.camera import GRID_STEP, Camera, Point, grid_spacing
 from sandbox.app.draw.colours import ACCENT, LINE, MUTED, SURFACE
-from sandbox.app.draw.renderer import GRID_STEP
 from sandbox.app.widgets.ui import Ui
 
 # Thickness in layout units; lengths of marks as a part of it.
