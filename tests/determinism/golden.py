@@ -11,8 +11,9 @@ LONG = 3600  # ticks
 # Levels whose minute would take too long, or too much room, and the ticks of theirs.
 SHORTER = {
     "balloons": 120, "beating_heart": 240, "catapult": 120, "curtain": 180, "dominoes": 240, "hourglass": 240,
-    "jelly_pile": 180, "quad_mesh": 60, "rope_bridge_wheel": 240, "spider_web": 180, "trampoline": 180,
-    "truck_bridge": 240, "tumble_drum": 180, "wrecking_crane": 180,
+    "jelly_pile": 180, "quad_mesh": 60, "rope_bridge_wheel": 240,
+    "spider_web": 180, "suspension_bridge": 240, "trampoline": 180, "truck_bridge": 240, "tumble_drum": 180,
+    "wrecking_ball": 240, "wrecking_crane": 180,
 }  # fmt: skip
 # From one stored state to the next. It is no multiple of a round of scenes, so that each begins in other scenes.
 STATE_TICKS = 1500

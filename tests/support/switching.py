@@ -12,7 +12,7 @@ import numpy as np
 from sandbox.physics import jit
 
 LEVELS = (
-    "rope", "truss_bridge", "suspension_bridge", "ferris_wheel", "wrecking_ball", "breaking_bridge", "girder",
+    "rope", "truss_bridge", "suspension_bridge", "ferris_wheel", "spider_web", "breaking_bridge", "girder",
     "hooke_comparison", "side_by_side", "mast", "walker", "hourglass",
 )  # fmt: skip
 

@@ -47,16 +47,16 @@ SECTIONS = (
     }),
     GallerySection("Bridges and ropes", "Pull, cut, and see who takes the load.", {
         "rope": "Crack it like a whip",
-        "suspension_bridge": "Cut a hanger",
-        "breaking_bridge": "Hold the weight back",
+        "suspension_bridge": "Pull the deck, cut the cable",
+        "breaking_bridge": "Swing the ball",
         "spider_web": "Pull at the fly",
     }),
     GallerySection("Proofs for engineers", "What the equations promise, and how to try it.", {
         "girder": "Drag its free end; then choose Iterative",
         "mast": "Drag its head; then choose Iterative",
-        "truss_bridge": "Cut a chord under the load",
+        "truss_bridge": "Cut one bar; then cut it through",
         "wrecking_ball": "Try 5 and 20 iterations",
-        "side_by_side": "R, then . for single ticks",
+        "side_by_side": "R, Space, then . for single ticks",
         "hooke_comparison": "See the classic spring explode",
     }),
 )  # fmt: skip
@@ -65,7 +65,7 @@ OTHERS = GallerySection("More", "", {})
 # What a first visit is to begin with.
 FIRST = "jelly_pile"
 # Levels that can be played while the physics is still being prepared.
-LIGHT_LEVELS = ("rope", "ferris_wheel", "suspension_bridge", "breaking_bridge", "wrecking_ball", "truss_bridge")
+LIGHT_LEVELS = ("rope", "ferris_wheel", "newtons_cradle", "breaking_bridge", "side_by_side", "truss_bridge")
 
 
 def in_sections(paths: Iterable[Path]) -> list[tuple[GallerySection, list[Path]]]:
