@@ -90,9 +90,9 @@ def test_a_look_that_names_what_is_not_there_is_refused(look, line):
 def test_the_panel_opens_on_the_material_that_the_level_names(open_app):
     level = load_level("jelly_pile")
     named = parse_level(
-        json.dumps({**json.loads(level_text(level)), "look": {"material": "soft"}}).encode(), "soft first"
+        json.dumps({**json.loads(level_text(level)), "look": {"material": "rubber"}}).encode(), "rubber first"
     )
-    assert open_app(named).panel.menu.selected_option[0] == "soft"
+    assert open_app(named).panel.menu.selected_option[0] == "rubber"
     assert build_world(named).particle_count == build_world(level).particle_count
 
 

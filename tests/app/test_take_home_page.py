@@ -27,7 +27,7 @@ def shown(driver):
 
 def test_the_page_opens_on_the_body_that_is_spoken_of_with_all_numbers(page):
     text = shown(page)
-    assert text.startswith('"cube 1" of "Jelly pile": 72 springs of soft.')
+    assert text.startswith('"cube 1" of "Jelly pile": 72 springs of jelly.')
     for name in ("Box2D", "Unity", "Godot", "Rapier", "pymunk", "Chipmunk", "single pass"):
         assert name in text
 

@@ -28,7 +28,7 @@ def test_a_click_on_a_body_chooses_it_and_its_material(pile):
     pile.release(at)
     panel = pile.panel
     assert panel.firmness.menu.selected_option[0] == "cube 1"
-    assert panel.menu.selected_option[0] == "soft"
+    assert panel.menu.selected_option[0] == "jelly"
     pile.click_widget(panel.firmness.words.buttons["rigid"])
     pile.frames(3)
     world = pile.world

@@ -240,7 +240,7 @@ def test_the_page_for_designers_shows_what_is_printed():
 def test_a_world_in_a_run_takes_home_what_it_has_now():
     session = Session(load_level("jelly_pile"))
     assert take_home_text(session.world, "cube 1") == take_home_text(load_level("jelly_pile"), "cube 1")
-    soft = session.world.material_names.index("soft")
+    soft = session.world.material_names.index("jelly")
     session.submit(SetCoefficients(stiffness=0.05, damping=0.1, material=soft))
     for _ in range(30):
         session.advance()

@@ -44,6 +44,8 @@ SIDES_HEIGHT = 38.0
 # Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
 LOOK_EVERY = 15
 ALL_MATERIALS = "All springs"
+# Sections that fold, by what they are called.
+SECTIONS = {"engineers": "For engineers", "world": "World"}
 CS_TIP = "Cs: part of its error that a spring takes back in a tick; more is stiffer. 0 to 1"
 CD_TIP = "Cd: part of its speed that a spring takes away in a tick; more is calmer. 0 to 1"
 
@@ -96,7 +98,9 @@ class Panel:
         self._scale: CoefficientScale = PLAIN
         self._body: BodyMotion | None = None
         self.by_pad = height >= PAD_FROM if shape.springs is None else shape.springs == "pad"
-        self._open = {"engineers": False, "world": height >= WORLD_FROM, **shape.open}
+        # What the level's text points at is open, unless the person has folded it.
+        said = {name: title in playback.level.description for name, title in SECTIONS.items()}
+        self._open = {**said, "world": said["world"] or height >= WORLD_FROM, **shape.open}
         background = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
         # What does not fit is scrolled to.
         self.area = ScrollArea(ui, ui.rect(0, 0, PANEL_WIDTH, height), background)
@@ -106,10 +110,12 @@ class Panel:
         if self.firmness.shown:
             self._build_firmness()
         self._build_springs()
-        for name, title, build in (
-            ("engineers", "For engineers", self._build_engineers), ("world", "World", partial(self.world.build, rows)),
-        ):  # fmt: skip
-            rows.section(title, self._open[name], partial(choose["fold"], name), build)
+        sections: dict[str, Callable[[], None]] = {
+            "engineers": self._build_engineers,
+            "world": partial(self.world.build, rows),
+        }
+        for name, build in sections.items():
+            rows.section(SECTIONS[name], self._open[name], partial(choose["fold"], name), build)
         self.area.set_height(ui.px(rows.y))
         self.refresh()
 
