@@ -155,6 +155,8 @@ def test_the_legend_stays_in_its_room_smaller_or_with_fewer_rows(size, scale):
 
 def test_keys_and_buttons_show_overlays_with_their_legend_and_take_them_away(driver):
     driver.take_sliders()
+    driver.app.play.fold("engineers")
+    driver.frames(2)
     shown = driver.stage.renderer.overlays.shown
     keys = dict(zip(NAMES, (pygame.K_l, *range(pygame.K_F3, pygame.K_F8)), strict=True))
     for name, key in keys.items():

@@ -117,7 +117,7 @@ def test_a_gif_has_the_seconds_that_were_played_and_moves_and_its_path_is_on_the
     assert sum(duration for _, duration in frames) == pytest.approx(1000 * seconds, abs=50)
     assert all((one[0] != other[0]).any() for one, other in pairwise(frames))
     assert [str(folder / "small.gif")] == COPIED
-    assert "Its path is on the clipboard" in driver.app.sharing.note
+    assert "its path is copied" in driver.app.sharing.note
 
 
 def test_an_mp4_of_a_part_in_the_other_size_without_the_name(driver, folder):

@@ -109,7 +109,7 @@ def test_scaling_keeps_it_and_a_setting_that_puts_it_out_of_reach_is_refused():
 
 @pytest.mark.parametrize(
     ("tool", "end", "sag"),
-    [("box", (1, 1), 0.05), ("circle", (1, 1), 0.05), ("wheel", (1, 0), 0.003), ("ring", (1, 0), 0.05)],
+    [("box", (1, 1), 0.05), ("circle", (1, 1), 0.05), ("wheel", (1, 0), 0.0015), ("ring", (1, 0), 0.05)],
 )
 def test_tools_draw_bodies_with_a_firmness_of_their_own_unless_told_otherwise(tool, end, sag):
     empty = Document(empty_level())
