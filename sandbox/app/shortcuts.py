@@ -69,6 +69,7 @@ SHORTCUTS = (
     Shortcut("melt", ("Z",), "Melt, or make whole again", "Tools", "play"),
     Shortcut("free", ("J",), "Free it: what is stuck in something", "Tools", "play"),
     Shortcut("bring_back", ("Shift+J",), "Bring back what left the picture", "Tools", "play"),
+    Shortcut("touching", ("Shift+T",), "Touching on or off, from the beginning", "Tools", "play"),
     Shortcut("edit", ("E",), "Edit this level; or back to the document", "Files", "play"),
     Shortcut("keep", ("Ctrl+K",), "Keep some of the run in the document", "Files", "play"),
     Shortcut("undo", ("Ctrl+Z",), "Undo a drag, cut, pin or slider move", "Tools", "play"),

@@ -18,6 +18,7 @@ from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.toolbar import BAR_HEIGHT
+from sandbox.app.play.touching import Touching
 from sandbox.app.profile import Profile
 from sandbox.app.screen import Pixel, Pointer
 from sandbox.app.share.film_pair import FilmPair
@@ -124,7 +125,20 @@ class CompareScreen(PlayScreen):
     def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> SidePanel:
         self.shape.side = self.side
         playback = self.playback if self.side == SIDES[0] or self.beside is None else self.other
-        return Panel(ui, playback, self._app.say, {**choices, "side": self.choose_side}, BAR_HEIGHT, height, self.shape)
+        return Panel(
+            ui,
+            playback,
+            self._app.say,
+            {**choices, "side": self.choose_side},
+            BAR_HEIGHT,
+            height,
+            self.shape,
+            self.touch,
+        )
+
+    def touch(self, touching: Touching) -> None:
+        """Two runs of one level stay of one level."""
+        self._app.say("A and B are of one level. Leave the comparison (F9) to change how things touch.")
 
     def _ask_rate(self, typed: str) -> None:
         self._app.say(f"A and B go by one clock. Leave the comparison (F9) to play at {typed} ticks a second.")

@@ -17,6 +17,7 @@ from sandbox.app.panel.response_curve import ResponseCurve
 from sandbox.app.panel.solver_rows import SolverRows
 from sandbox.app.panel.world_rows import WorldRows
 from sandbox.app.play.playback import Playback
+from sandbox.app.play.touching import Touching
 from sandbox.app.sentences import sentence
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.sweeps.pad_maps import PadMaps
@@ -70,12 +71,12 @@ class Panel:
 
     choose: what is done with a strength of the "hand", with a "view" that is shown or no longer, with how "springs" are
     set ("pad" or "sliders"), that they are to "melt", the section whose "fold" changes, another tick "rate" [1/s], and
-    of two runs the "side" to show.
+    of two runs the "side" to show. touch: what begins the run anew where things touch otherwise.
     """
 
     def __init__(
         self, ui: Ui, playback: Playback, say: Callable[[str], None], choose: Mapping[str, Callable[[str], None]],
-        top: float, height: float, shape: PanelShape,
+        top: float, height: float, shape: PanelShape, touch: Callable[[Touching], None],
     ) -> None:  # fmt: skip
         self._ui, self.playback, self._say, self._choose = ui, playback, say, choose
         self.pad: CoefficientPad | None = None
@@ -92,7 +93,7 @@ class Panel:
         self._refreshed_at: tuple[object, ...] = ()
         self.firmness = FirmnessRows(playback, say)
         self.solving = SolverRows(playback, say, choose["rate"])
-        self.world = WorldRows(playback, say, choose)
+        self.world = WorldRows(playback, say, choose, touch)
         self._offered = self._present()
         self._scale_of: tuple[object, ...] = ()
         self._scale: CoefficientScale = PLAIN

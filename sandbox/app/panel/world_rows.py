@@ -1,14 +1,17 @@
 """Rows of the panel for the world as a whole: gravity, the hand, overlays, and where its energy is."""
 
 from collections.abc import Callable, Mapping, Set
+from dataclasses import replace
+from typing import Any
 
 from sandbox.app.panel.panel_rows import INSIDE, MARGIN, ROW, PanelRows
 from sandbox.app.panel.readings import with_unit
 from sandbox.app.panel.view_row import ViewRow
 from sandbox.app.play.playback import Playback
-from sandbox.app.widgets.fields import typed_number
+from sandbox.app.play.touching import Touching
+from sandbox.app.widgets.fields import DASH, typed_number
 from sandbox.app.widgets.painted import TextBlock
-from sandbox.level.format.limits import GRAVITY_LIMIT
+from sandbox.level.format.limits import FRICTION_LIMIT, GRAVITY_LIMIT
 from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.session.commands import SetGravity
 from sandbox.tools.drag import STRENGTHS
@@ -18,12 +21,16 @@ GRAVITY_TIP = "Acceleration of what falls; -9.81 downwards is that of the Earth,
 
 
 class WorldRows:
-    """What the rows show and do; choose: what is done with a strength of the "hand" and with a "view"."""
+    """What the rows show and do; choose: what is done with a strength of the "hand" and with a "view".
+
+    touch: what begins the run anew where things touch otherwise.
+    """
 
     def __init__(
-        self, playback: Playback, say: Callable[[str], None], choose: Mapping[str, Callable[[str], None]]
-    ) -> None:
-        self.playback, self._say, self._choose = playback, say, choose
+        self, playback: Playback, say: Callable[[str], None], choose: Mapping[str, Callable[[str], None]],
+        touch: Callable[[Touching], None],
+    ) -> None:  # fmt: skip
+        self.playback, self._say, self._choose, self._begin_touching = playback, say, choose, touch
 
     def build(self, rows: PanelRows) -> None:
         """Make the widgets."""
@@ -31,6 +38,15 @@ class WorldRows:
         self.gravity_x, self.gravity_y = rows.beside(
             ("Gravity x [m/s\u00b2]", GRAVITY_TIP, lambda text: self._type_gravity(text, 0)),
             ("Gravity y [m/s\u00b2]", GRAVITY_TIP, lambda text: self._type_gravity(text, 1)),
+        )
+        ui.label(rows.place(MARGIN, 0, LABEL, ROW - 2), "Touch", back, "@muted")
+        options = [("off", "Off", "Things pass through each other; the run begins anew"),
+                   ("on", "On", "Things touch each other; the run begins anew")]  # fmt: skip
+        place = rows.row(ROW - 2, 6, MARGIN + LABEL, INSIDE - LABEL)
+        self.touch = ui.choice(place, options, self._choose_touch, back)
+        self.friction, self.bounce = rows.beside(
+            ("Friction", "Of all that says nothing else: 0 slides, 1 grips; the run begins anew", self._type_friction),
+            ("Bounce", "Part of its speed that it keeps, 0 to 1; the run begins anew", self._type_bounce),
         )
         ui.label(rows.place(MARGIN, 0, LABEL, ROW - 2), "Hand", back, "@muted")
         options = [(name, name.capitalize(), _strength_tip(strength)) for name, strength in STRENGTHS.items()]
@@ -46,6 +62,10 @@ class WorldRows:
         gravity = self.playback.session.world.settings.gravity
         self.gravity_x.show(f"{gravity[0]:g}")
         self.gravity_y.show(f"{gravity[1]:g}")
+        touching = Touching.of(self.playback.level)
+        self.touch.show("on" if touching.is_on else "off")
+        self.friction.show(f"{touching.friction:g}" if touching.is_on else DASH)
+        self.bounce.show(f"{touching.restitution:g}" if touching.is_on else DASH)
         if energies:
             self._show_energies()
 
@@ -60,6 +80,23 @@ class WorldRows:
         kinetic, springs, height, lost = (with_unit(value, "J") for value in found)
         self.energies[0].show_text(f"moving {kinetic}\nin springs {springs}")
         self.energies[1].show_text(f"in height {height}\nlost {lost}")
+
+    def _choose_touch(self, way: str) -> None:
+        self._touch(is_on=way == "on")
+
+    def _type_friction(self, text: str) -> bool:
+        value = typed_number(self._say, text, "Friction", 0.0, FRICTION_LIMIT)
+        return value is not None and self._touch(is_on=True, friction=value)
+
+    def _type_bounce(self, text: str) -> bool:
+        value = typed_number(self._say, text, "Bounce", 0.0, 1.0)
+        return value is not None and self._touch(is_on=True, restitution=value)
+
+    def _touch(self, **changes: Any) -> bool:
+        before = Touching.of(self.playback.level)
+        if replace(before, **changes) != before:
+            self._begin_touching(replace(before, **changes))
+        return False
 
     def _type_gravity(self, text: str, axis: int) -> bool:
         value = typed_number(self._say, text, "Gravity", -GRAVITY_LIMIT, GRAVITY_LIMIT)

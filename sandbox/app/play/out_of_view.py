@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Box
+from sandbox.app.play.playback import Playback
 from sandbox.physics.components import body_of
 from sandbox.physics.query import shown_particles
 from sandbox.physics.state import Slots
@@ -45,8 +46,16 @@ class OutOfView:
         self.is_over = bool(mass[is_gone[moving]].sum() > GONE * mass.sum())
 
 
-def bring_back(world: World, box: Box) -> list[MoveBody]:
-    """What puts all that is out of sight back into a box [m], side by side near its top, at rest."""
+def put_back(playback: Playback, box: Box) -> bool:
+    """Put all that is out of sight back into a box [m], in one gesture; whether there is anything."""
+    found, gesture = _ways_back(playback.session.world, box), playback.session.new_gesture()
+    for command in found:
+        playback.submit(command, gesture)
+    return bool(found)
+
+
+def _ways_back(world: World, box: Box) -> list[MoveBody]:
+    # Side by side near the top of the box, at rest.
     _, is_gone = _gone(world, box)
     bodies: list[Slots] = []
     left_over = set(np.flatnonzero(is_gone).tolist())

@@ -26,7 +26,7 @@ from sandbox.app.play.key_caps import KEYS_HEIGHT, ROOM_BESIDE, draw_key_caps
 from sandbox.app.play.legend import Legend
 from sandbox.app.play.melting import toggle_melt
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
-from sandbox.app.play.out_of_view import OutOfView, bring_back
+from sandbox.app.play.out_of_view import OutOfView, put_back
 from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.speeds import state_of
@@ -35,6 +35,7 @@ from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
 from sandbox.app.play.stuck import NOTICE, StuckBodies
 from sandbox.app.play.time_bar import TimeBar
 from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
+from sandbox.app.play.touching import Touching, begin_touching
 from sandbox.app.profile import Profile
 from sandbox.app.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
 from sandbox.app.share.film import Film, last_ticks
@@ -216,7 +217,11 @@ class PlayScreen:
                 self.panel.choose_material(before.material)
 
     def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> SidePanel:
-        return Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape)
+        return Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape, self.touch)
+
+    def touch(self, touching: Touching) -> None:
+        """Begin the run anew with things that touch so."""
+        begin_touching(self._app, self.playback, touching, self.of_document)
 
     def _set_by(self, way: str) -> None:
         """Show the pad or the sliders from now on, in later runs too."""
@@ -271,6 +276,7 @@ class PlayScreen:
             "hand": self._next_strength,
             "melt": self.toggle_melt,
             "follow": self._follow,
+            "touching": lambda: self.touch(Touching.of(self.playback.level).other),
             "free": self._free,
             "bring_back": self._bring_back,
             "undo": lambda: self.playback.submit_undo(),
@@ -345,7 +351,7 @@ class PlayScreen:
 
     def _say_what_touches(self) -> None:
         if not self.has_contacts:
-            self._app.say("Nothing touches anything in this level: what you drop passes through all else.")
+            self._app.say("Nothing touches anything in this level. Shift+T lets things touch, from the beginning.")
 
     def _zoom(self, steps: int) -> None:
         if not self.stage.resize(steps):
@@ -519,14 +525,8 @@ class PlayScreen:
 
     def _bring_back(self) -> None:
         """Put what has left the picture back into it, at rest."""
-        found, gesture = (
-            bring_back(self.playback.session.world, self.stage.first_box),
-            self.playback.session.new_gesture(),
-        )
-        for command in found:
-            self.playback.submit(command, gesture)
         self.out_of_view = OutOfView()
-        if not found:
+        if not put_back(self.playback, self.stage.first_box):
             self._app.say("Nothing has left the picture.")
 
     def _show_again(self) -> None:
