@@ -453,3 +453,23 @@ def test_a_page_has_no_size_to_choose(driver):
     driver.click_widget(page.kinds.buttons["gif"])
     driver.frames()
     assert all(button.is_enabled for button in page.sizes.buttons.values())
+
+
+def test_what_lies_further_back_can_be_had_and_the_liveliest_seconds(open_app):
+    ball = {"id": "ball", "position": [0, 0], "velocity": [0, 9.0], "radius": 0.2}
+    floor = {"id": "floor", "polyline": [[-3, -0.25], [3, -0.25]]}
+    settings = {"gravity": [0, -9.81]}
+    level = small_level(bodies=[], particles=[ball], terrain=[floor], settings=settings, view=[-3, -1, 3, 5])
+    driver = open_app(level)
+    # It flies for 1.8 s, then it lies.
+    driver.pass_unseen(60 * 14)
+    driver.app.act("share")
+    driver.frames(2)
+    sharing = driver.app.sharing
+    assert sharing.film.seconds == pytest.approx(14.0, abs=0.3)
+    assert sharing.wanted.end - sharing.wanted.start == pytest.approx(10.0)
+    assert sharing.wanted.start == pytest.approx(sharing.film.seconds - 10.0)
+    sharing.choose_liveliest()
+    driver.frames(40)
+    assert sharing.wanted.start < 0.5 and sharing.wanted.end == pytest.approx(sharing.wanted.start + 5.0)
+    assert 0 < len(sharing.pictures) <= 75

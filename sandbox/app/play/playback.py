@@ -10,6 +10,7 @@ import numpy as np
 
 from sandbox.app.loop import TickClock
 from sandbox.app.play.breaks import Breaks
+from sandbox.app.play.liveliness import Liveliness
 from sandbox.app.play.travel import Travel
 from sandbox.level.format.model import Level
 from sandbox.physics.energy import Dissipation
@@ -55,6 +56,7 @@ class Playback:
         self.clock = TickClock()
         self.dissipation = Dissipation()
         self.breaks = Breaks(level)
+        self.liveliness = Liveliness()
         self.behind = False
         self.verdict = ""
         self.messages: list[str] = []

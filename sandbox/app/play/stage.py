@@ -322,6 +322,7 @@ class Stage:
         if not self.drag.dragging:
             # A hand at the edge of the picture would else drag the picture along, and itself.
             self.following.update(self.camera, self.playback.session.world, self.playback.current, frame_time)
+        self.playback.liveliness.note(self.playback.current)
         self.stillness.follow(self.playback.current, self.camera.zoom, frame_time + passed)
         self._hovered = None
         tool = self.tool

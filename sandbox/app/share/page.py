@@ -10,7 +10,7 @@ from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, TEXT
 from sandbox.app.share.film import Film
 from sandbox.app.share.film_pair import FilmPair
 from sandbox.app.share.range_slider import RangeSlider
-from sandbox.app.share.sharing import SHORTEST_FILM, SIZES, Sharing
+from sandbox.app.share.sharing import LIVELY, SHORTEST_FILM, SIZES, Sharing
 from sandbox.app.widgets.painted import Painted, TextBlock
 from sandbox.app.widgets.ui import Ui
 
@@ -146,6 +146,11 @@ class ShareForm:
         self.suffix = ui.label(pygame.Rect(row.right + ui.px(6), row.top, ui.px(40), row.height), "", self._box)
         if film.seconds >= SHORTEST_FILM:
             self.slider = RangeSlider(ui, place, film.seconds, self._choose_range, self._box)
+            if film.seconds > LIVELY:
+                wide = 92.0
+                spot = ui.rect(MARGIN + self._preview_width - wide, self._below + 2, wide, 24)
+                tip = f"The {LIVELY:g} seconds in which the most moved"
+                ui.button(spot, f"Liveliest {LIVELY:g} s", sharing.choose_liveliest, self._box, style="@quiet", tip=tip)
         else:
             for kind in ("gif", "mp4", "html"):
                 self.kinds.buttons[kind].disable()
@@ -244,7 +249,7 @@ def _title(film: Film | FilmPair | None) -> str:
     """How much there is to share, and whether it is the latest."""
     if film is None or film.seconds < 2.0:
         return "Share"
-    return f"Share {'the last ' if film.is_latest else ''}{film.seconds:.0f} seconds"
+    return f"Share some of {'the last ' if film.is_latest else ''}{film.seconds:.0f} seconds"
 
 
 class FilmPreview(Painted):

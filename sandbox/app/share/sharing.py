@@ -17,7 +17,7 @@ from sandbox.app.draw.picture import write_png
 from sandbox.app.recordings import chosen_path, free_path, move_new, pictures_folder, plain_name
 from sandbox.app.share.desktop import copy_text, copying_picture, open_folder
 from sandbox.app.share.export import Excerpt, Export, Slices
-from sandbox.app.share.film import Film
+from sandbox.app.share.film import Film, last_ticks
 from sandbox.app.share.film_pair import FilmPair
 from sandbox.app.share.kinds import KINDS, Missing, Size, require
 from sandbox.app.widgets.dialogs import Choice, choose
@@ -25,13 +25,13 @@ from sandbox.editor.document import empty_level
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.level.faults.level_error import one_line
 
-# How much of a run can be kept [s].
-REMEMBERED = 10.0
+# How much of a run can be kept [s]; what is chosen at first, its end; and how long the liveliest part is.
+REMEMBERED, USUAL, LIVELY = 60.0, 10.0, 5.0
 # A film shorter than this [s] is a picture.
 SHORTEST_FILM = 0.1
 SIZES: tuple[Size, ...] = ((640, 360), (1280, 720))
-# The moving preview: its pictures a second, and their size.
-PREVIEW_FPS, PREVIEW_SIZE = 15.0, (380, 214)
+# The moving preview: its pictures a second, their size, and how many there are at most.
+PREVIEW_FPS, PREVIEW_SIZE, MOST_PICTURES = 15.0, (380, 214), 150
 # Wall time [s] that a frame may take for the preview, for the work while its page is open, and beside a run.
 PREVIEW_BUDGET, OPEN_BUDGET, PLAY_BUDGET = 0.02, 0.1, 0.006
 # What files of a level without a name are called.
@@ -79,6 +79,9 @@ class Sharing:
         self._filming: Iterator[pygame.Surface | None] | None = None
         self._copying: Generator[None, None, bool] | None = None
         self._shown_at = 0.0
+        # Of which seconds the preview is, and how many pictures of a second it has.
+        self._previewed: tuple[float, ...] = ()
+        self._preview_fps = PREVIEW_FPS
         # What waits for the file to be whole.
         self._then: Callable[[], object] | None = None
 
@@ -98,8 +101,8 @@ class Sharing:
                 return False
             self.saved, self.note = None, ""
             self._take(play.film(REMEMBERED))
-        if self.film is not None:
-            self._filming = self.film.pictures(0.0, self.film.seconds, PREVIEW_FPS, PREVIEW_SIZE)
+        self._previewed = ()
+        self._film_preview()
         self.is_open = True
         return True
 
@@ -107,7 +110,7 @@ class Sharing:
         self.film = film
         kind, size = preference(KIND), preference(SIZE)
         self.wanted = Choices(
-            kind if isinstance(kind, str) and kind in KINDS else "gif", 0.0, film.seconds,
+            kind if isinstance(kind, str) and kind in KINDS else "gif", max(0.0, film.seconds - USUAL), film.seconds,
             SIZES[1] if size == "large" else SIZES[0], preference(NAMED) is not False, "",
         )  # fmt: skip
         self._say_where()
@@ -128,6 +131,8 @@ class Sharing:
     def choose(self, **changes: object) -> None:
         """Change what is wanted."""
         self.wanted = replace(self.wanted, **changes)  # type: ignore[arg-type]
+        if self.is_open:
+            self._film_preview()
         self._say_where()
         if "kind" in changes:
             set_preference(KIND, self.wanted.kind)
@@ -136,6 +141,26 @@ class Sharing:
             set_preference(SIZE, "large" if self.wanted.size == SIZES[1] else "small")
         if "named" in changes:
             set_preference(NAMED, self.wanted.named)
+
+    def choose_liveliest(self) -> None:
+        """Take the seconds in which the most moved."""
+        film, play = self.film, self._app.play
+        if film is None or play is None:
+            return
+        first, last = last_ticks(play.playback.session, film.seconds)
+        rate = play.playback.session.world.settings.tick_rate
+        start = (play.playback.liveliness.liveliest(first, last, round(LIVELY * rate)) - first) / rate
+        self.choose(start=start, end=min(start + LIVELY, film.seconds))
+
+    def _film_preview(self) -> None:
+        """Draw what is chosen anew, where other seconds are."""
+        film, wanted = self.film, self.wanted
+        chosen = (0.0, film.seconds) if film is not None and wanted.kind == "png" else (wanted.start, wanted.end)
+        if film is None or chosen == self._previewed:
+            return
+        self._previewed, self.pictures = chosen, []
+        self._preview_fps = min(PREVIEW_FPS, MOST_PICTURES / max(chosen[1] - chosen[0], 1e-3))
+        self._filming = film.pictures(*chosen, self._preview_fps, PREVIEW_SIZE)
 
     @property
     def level_name(self) -> str:
@@ -258,8 +283,8 @@ class Sharing:
         wanted = self.wanted
         at = wanted.end
         if wanted.kind != "png" and wanted.end > wanted.start:
-            at = wanted.start + self._shown_at % (wanted.end - wanted.start)
-        return self.pictures[min(int(at * PREVIEW_FPS), len(self.pictures) - 1)]
+            at = self._shown_at % (wanted.end - wanted.start)
+        return self.pictures[min(int(at * self._preview_fps), len(self.pictures) - 1)]
 
     def status(self) -> list[tuple[str, Colour]]:
         """What the status line says of work that goes on beside a run."""
