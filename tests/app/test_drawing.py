@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sandbox.app.draw.backdrop import _grid_lines
 from sandbox.app.draw.camera import Camera, bounds, grid_spacing
 from sandbox.app.draw.lines import Canvas
 from sandbox.app.draw.picture import crop_of, draw_picture, save_picture, view_of
@@ -77,14 +76,6 @@ def test_bounds_leave_out_what_is_not_finite():
 def test_grid_lines_are_never_closer_than_wanted_and_never_ten_times_farther(zoom):
     pixels = grid_spacing(zoom, 64.0) * zoom
     assert 64.0 * (1 - 1e-6) <= pixels < 640.0
-
-
-@pytest.mark.parametrize(("scale", "thick"), [(1.0, 1), (2.0, 2), (3.0, 3)])
-def test_lines_of_the_grid_are_as_thick_as_the_scale_asks_for(scale, thick):
-    columns, rows = _grid_lines(Camera((0.0, 0.0), 40.0, (0, 0, 640, 480)), scale)
-    for found, middle in ((columns, 320), (rows, 240)):
-        assert len(found) == len(set(found)) and set(found) >= {middle - thick // 2 + k for k in range(thick)}
-        assert middle - thick // 2 - 1 not in found and middle - thick // 2 + thick not in found
 
 
 def test_the_clock_gives_the_same_number_of_ticks_at_every_frame_rate():

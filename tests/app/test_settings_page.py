@@ -1,6 +1,7 @@
 """Settings: what is chosen holds at once and at the next start; keys can be given away, and nothing is lost."""
 
 import json
+from types import SimpleNamespace
 
 import pygame
 import pytest
@@ -74,7 +75,7 @@ def test_the_app_says_that_a_broken_file_was_set_aside(open_app, tmp_path):
     (tmp_path / "data" / "preferences.json").write_text("{")
     driver = open_app(small_level())
     assert any("preferences.broken.json" in text for text in driver.notices)
-    assert driver.app.chosen["theme"] == "dark"
+    assert driver.app.chosen["theme"] == "system"
 
 
 def test_values_that_cannot_be_used_are_named_and_the_usual_ones_hold(documents):
@@ -82,13 +83,13 @@ def test_values_that_cannot_be_used_are_named_and_the_usual_ones_hold(documents)
     set_preference("scale", "large")
     set_preference("keys", {"play.reset": "R"})
     chosen = Chosen()
-    assert (chosen["theme"], chosen["scale"], chosen.keys) == ("dark", None, {})
+    assert (chosen["theme"], chosen["scale"], chosen.keys) == ("system", None, {})
     assert len(chosen.faults) == 3 and all("\n" not in fault for fault in chosen.faults)
 
 
 def test_what_is_given_for_one_start_is_not_remembered(documents):
     assert Chosen(theme="light")["theme"] == "light"
-    assert Chosen()["theme"] == "dark"
+    assert Chosen()["theme"] == "system"
 
 
 def test_every_setting_takes_its_values_and_no_others():
@@ -100,6 +101,20 @@ def test_every_setting_takes_its_values_and_no_others():
         else:
             assert isinstance(setting, OneOf) and setting.fault_of("?") is not None
     assert theme_of("light") == "light" and theme_of("dark") == "dark" and theme_of("system") in ("dark", "light")
+
+
+@pytest.mark.parametrize(
+    ("platform", "answer", "theme"),
+    [("linux", "'prefer-dark'\n", "dark"), ("linux", "'default'\n", "light"), ("linux", "", "light"),
+     ("darwin", "Dark\n", "dark"), ("darwin", "", "light"), ("plan9", "dark", "light")],
+)  # fmt: skip
+def test_the_theme_is_light_unless_the_system_says_dark(monkeypatch, platform, answer, theme):
+    monkeypatch.setattr("sandbox.app.settings.system_theme.sys.platform", platform)
+    monkeypatch.setattr("sandbox.app.settings.system_theme.shutil.which", lambda name: name)
+    monkeypatch.setattr(
+        "sandbox.app.settings.system_theme.subprocess.run", lambda *_, **__: SimpleNamespace(stdout=answer)
+    )
+    assert theme_of("system") == theme
 
 
 # The page.

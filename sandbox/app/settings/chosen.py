@@ -62,7 +62,7 @@ Setting = OneOf | Amount
 SCALES = (0.5, 4.0)
 
 SETTINGS: tuple[Setting, ...] = (
-    OneOf("theme", "Theme", "Look", (("dark", "Dark"), ("light", "Light"), ("system", "As the system")),
+    OneOf("theme", "Theme", "Look", (("system", "As the system"), ("light", "Light"), ("dark", "Dark")),
           "Some levels set their own"),
     Amount("scale", "Size of widgets", "Look", *SCALES, 0.125, tip="Ctrl++ and Ctrl+- as well"),
     OneOf("effects", "Shadows and effects", "Look", (("auto", "Automatic"), ("on", "On"), ("off", "Off")),

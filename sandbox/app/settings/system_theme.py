@@ -15,20 +15,20 @@ _QUESTIONS = {
 
 
 def theme_of(chosen: str) -> ThemeName:
-    """The theme that is meant by what was chosen: "dark", "light" or "system"; dark where the system says nothing."""
+    """The theme that is meant by what was chosen: "dark", "light" or "system"; light where the system says nothing."""
     if chosen == "system":
-        return "light" if _is_light() else "dark"
-    return "light" if chosen == "light" else "dark"
+        return "dark" if _is_dark() else "light"
+    return "dark" if chosen == "dark" else "light"
 
 
-def _is_light() -> bool:
+def _is_dark() -> bool:
     if sys.platform == "win32":
         import winreg
 
         place = r"Software\Microsoft\Windows\CurrentVersion\Themes\Personalize"
         try:
             with winreg.OpenKey(winreg.HKEY_CURRENT_USER, place) as key:
-                return bool(winreg.QueryValueEx(key, "AppsUseLightTheme")[0])
+                return not winreg.QueryValueEx(key, "AppsUseLightTheme")[0]
         except OSError:
             return False
     question = _QUESTIONS.get(sys.platform)
@@ -38,7 +38,5 @@ def _is_light() -> bool:
         asked = subprocess.run(question, capture_output=True, text=True, timeout=PATIENCE, check=False)
     except (OSError, subprocess.SubprocessError):
         return False
-    if sys.platform == "darwin":
-        # Only the dark one has a name.
-        return "Dark" not in asked.stdout
-    return bool(asked.stdout) and "dark" not in asked.stdout
+    # On macOS the light one has no name.
+    return "dark" in asked.stdout.casefold()
