@@ -7,6 +7,7 @@ import json
 import os
 import re
 import stat
+import subprocess
 import weakref
 from itertools import pairwise
 from pathlib import Path
@@ -20,6 +21,7 @@ from PIL import Image, ImageSequence
 
 from sandbox.app.play.playback import Playback
 from sandbox.app.share import desktop
+from sandbox.app.share.export import Excerpt, Export
 from sandbox.app.share.film import film_of_view
 from sandbox.app.share.gif import GifWriter
 from sandbox.app.share.movie import MovieWriter
@@ -473,3 +475,25 @@ def test_what_lies_further_back_can_be_had_and_the_liveliest_seconds(open_app):
     driver.frames(40)
     assert sharing.wanted.start < 0.5 and sharing.wanted.end == pytest.approx(sharing.wanted.start + 5.0)
     assert 0 < len(sharing.pictures) <= 75
+
+
+def streams_of(path):
+    """What ffmpeg says of a file's streams."""
+    command = [imageio_ffmpeg.get_ffmpeg_exe(), "-hide_banner", "-i", str(path)]
+    told = subprocess.run(command, capture_output=True, text=True, check=False).stderr
+    return [line.strip() for line in told.splitlines() if "Stream #" in line]
+
+
+@pytest.mark.parametrize(("gravity", "is_heard"), [(-9.81, True), (0.0, False)])
+def test_a_film_has_the_sound_of_what_lands_and_none_where_nothing_is_heard(tmp_path, gravity, is_heard):
+    ball = {"id": "ball", "position": [0, 1.5], "radius": 0.2, "mass": 5.0}
+    floor = {"id": "floor", "polyline": [[-3, 0], [3, 0]]}
+    session = Session(small_level(bodies=[], particles=[ball], terrain=[floor], settings={"gravity": [0, gravity]}))
+    for _ in range(90):
+        session.advance()
+    film = film_of_view(session, (160, 90), 10.0)
+    path = tmp_path / "fall.mp4"
+    for _ in Export(film, Excerpt("mp4", 0.0, film.seconds, 30.0, (160, 90)), path).slices():
+        pass
+    audio = [line for line in streams_of(path) if "Audio" in line]
+    assert len(audio) == is_heard and all("aac" in line and "stereo" in line for line in audio)

@@ -13,6 +13,7 @@ from sandbox.app.sound import waves
 from sandbox.app.sound.bank import MAKERS, Bank, Note
 from sandbox.app.sound.device import Device, may_have_sound
 from sandbox.app.sound.ear import Ear
+from sandbox.app.sound.mixdown import Mixdown
 from sandbox.app.sound.sounds import Sounds
 from sandbox.app.sound.voices import SPARE, VOICES, Cue, Voices
 from sandbox.level.format.files import load_level
@@ -20,7 +21,6 @@ from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddParticle, CutSprings, SetDrive
 from sandbox.session.session import Session
 from tests.app.conftest import FRAME, small_level
-from tests.support.mixdown import Mixdown
 
 FALLING = {
     "contacts": {"friction": 0.5, "restitution": 0.3},

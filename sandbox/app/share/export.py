@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import tempfile
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from pathlib import Path
@@ -79,14 +80,21 @@ class Export:
 
     def _write_movie(self, path: Path) -> Slices:
         from sandbox.app.share.movie import MovieWriter
+        from sandbox.app.share.soundtrack import write_soundtrack
 
-        writer = MovieWriter(path, self.excerpt.size, self.excerpt.fps)
-        try:
-            yield from self._pictures(writer.add)
-            while not writer.is_closed():
-                yield 1.0
-        finally:
-            writer.give_up()
+        excerpt = self.excerpt
+        with tempfile.TemporaryDirectory() as folder:
+            sound = Path(folder) / "sound.wav"
+            _, part = self.film.parts[0]
+            for _ in write_soundtrack(part, excerpt.start, excerpt.end, sound):
+                yield 0.0
+            writer = MovieWriter(path, excerpt.size, excerpt.fps, sound if sound.exists() else None)
+            try:
+                yield from self._pictures(writer.add)
+                while not writer.is_closed():
+                    yield 1.0
+            finally:
+                writer.give_up()
 
     def _write_still(self, path: Path) -> Slices:
         yield from self._pictures(lambda picture: None)

@@ -15,13 +15,18 @@ _NO_WINDOW = getattr(subprocess, "CREATE_NO_WINDOW", 0)
 
 
 class MovieWriter:
-    """Writes pictures of a size, whose sides are even, into a file, fps of them a second. Raises OSError."""
+    """Writes pictures of a size, whose sides are even, into a file, fps of them a second. Raises OSError.
 
-    def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
+    sound: a WAV file that is heard with them; None: there is none.
+    """
+
+    def __init__(self, path: Path, size: tuple[int, int], fps: float, sound: Path | None = None) -> None:
         self._path = path
         self._told = tempfile.TemporaryFile()  # noqa: SIM115
         taken = ["-f", "rawvideo", "-pix_fmt", "bgra", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
-        made = ["-an", "-c:v", "libx264", "-preset", PRESET, "-crf", QUALITY, "-pix_fmt", "yuv420p"]
+        heard = ["-an"] if sound is None else ["-c:a", "aac", "-b:a", "160k"]
+        taken += [] if sound is None else ["-i", str(sound)]
+        made = [*heard, "-c:v", "libx264", "-preset", PRESET, "-crf", QUALITY, "-pix_fmt", "yuv420p"]
         command = [imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-v", "error", *taken, *made]
         self._ffmpeg = subprocess.Popen(
             [*command, "-movflags", "+faststart", "-f", "mp4", str(path)], stdin=subprocess.PIPE,

@@ -70,8 +70,8 @@ class Sounds:
                 self._ahead = self._ear.likely_notes()
             if self._ahead:
                 self.bank.make(self._ahead.pop())
-            self.voices.play([_wanted(each, camera) for each in heard], now)
-            self.voices.hum([_wanted(each, camera) for each in self._ear.motors(world)], now)
+            self.voices.play([cue_of(each, camera) for each in heard], now)
+            self.voices.hum([cue_of(each, camera) for each in self._ear.motors(world)], now)
 
     def _attend(self, playback: Playback | None, now: float) -> None:
         """Listen to another run, or to none."""
@@ -93,7 +93,7 @@ class Sounds:
         self.device.close()
 
 
-def _wanted(sounding: Sounding, camera: Camera) -> Cue:
+def cue_of(sounding: Sounding, camera: Camera) -> Cue:
     """A sound where it is on the screen."""
     left, _, width, _ = camera.viewport
     across = 2.0 * (camera.to_pixels(sounding.place)[0] - left) / max(width, 1) - 1.0
