@@ -155,7 +155,7 @@ SHORTCUTS = (
     Shortcut("smaller", ("Ctrl+-",), "Smaller widgets", "View"),
     Shortcut("gallery", ("G",), "Levels", "Files", "play"),
     Shortcut("open", ("Ctrl+O",), "Open a level or replay; or drop its file here", "Files", "play"),
-    Shortcut("share", ("F12",), "Share the last ten seconds: GIF, MP4, PNG, page", "Files", "play"),
+    Shortcut("share", ("F12",), "Share the last minute: GIF, MP4, PNG, page", "Files", "play"),
     Shortcut("toy", ("Ctrl+T",), "Desk toy: this level in a small window that stays on top", "Files", "play"),
     Shortcut("record", ("Ctrl+R",), "Start or stop recording", "Files", "play"),
     Shortcut("save", ("Ctrl+S",), "Save the run so far as a replay", "Files", "play"),
