@@ -4,15 +4,18 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
-from sandbox.editor.document import Document
+from pydantic import ValidationError
+
+from sandbox.editor.document import Document, EditError, first_fault
 from sandbox.editor.edits.fields import set_level_field, set_setting
-from sandbox.editor.edits.materials import set_checks
+from sandbox.editor.edits.materials import set_checks, set_material
 from sandbox.editor.items import chosen_bodies, chosen_particles
 from sandbox.editor.panel.field_info import abouts
 from sandbox.editor.panel.property import Property, Section, part_properties, with_axes
 from sandbox.editor.scene import make_scene
 from sandbox.level.checks import METRICS, SUBJECTS, CheckDef
-from sandbox.level.format.model import Level, Settings
+from sandbox.level.format.look import BodyLook
+from sandbox.level.format.model import Level, Material, MaterialDef, NissenMaterial, Settings
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
 
@@ -51,6 +54,24 @@ def _object(document: Document, name: str) -> list[Property]:
         return change(document, lambda old: _FIRST[name](document) if old is None else old)
 
     return part_properties(name, abouts(Level)[name], [getattr(document.level, name)], change, add)
+
+
+def look_properties(name: str, material: Material) -> list[Property]:
+    """What can be changed of how things of a material look."""
+
+    def change(document: Document, new: Callable[[Any], Any]) -> Document:
+        now = document.level.materials.get(name, NissenMaterial())
+        look = new(now.look)
+        try:
+            wanted = None if look is None else BodyLook.model_validate(look)
+        except ValidationError as error:
+            raise EditError(first_fault(error, "look", 0)) from None
+        return set_material(document, name, replaced(now, look=wanted))
+
+    def add(document: Document) -> Document:
+        return change(document, lambda old: {} if old is None else old.__dict__)
+
+    return part_properties("look", abouts(MaterialDef)["look"], [material.look], change, add)
 
 
 def _first_walls(document: Document) -> dict[str, Any]:

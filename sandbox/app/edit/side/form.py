@@ -287,14 +287,14 @@ class Form:
         if each.about.kind == "touches":
             return [Row(EVERYTHING), Row(NOTHING), *(Row(name, self._toggle_of(each, name)) for name in self._groups)]
         about = each.about
+        first = [Row(about.empty or NONE, colour=MUTED)] if about.optional else []
         if about.kind != "material":
-            first = [Row(about.empty or NONE, colour=MUTED)] if about.optional else []
             if about.kind == "colour":
                 palette = [Row(name, swatch=rgb_of(colour_of(name))) for name in about.choices]
                 return [*first, *palette, Row(OTHER_COLOUR)]
             return first + [Row(value) for value in (YES_NO if about.kind == "yes_no" else about.choices)]
         colours = material_colours(self._screen.document.level.materials)
-        return [Row(name, swatch=colour) for name, colour in colours.items()]
+        return [*first, *(Row(name, swatch=colour) for name, colour in colours.items())]
 
     @property
     def _groups(self) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ import pygame
 from sandbox.app.draw.colours import material_colours
 from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.boxes import Scrub
-from sandbox.app.edit.side.form import GAP, ROW
+from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.list_head import HeadButton, ListHead
 from sandbox.app.edit.side.rows import Row
 from sandbox.app.panel.readings import number
@@ -21,7 +21,8 @@ from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.materials import add_material, assign, delete_material, rename_material, set_material
 from sandbox.editor.panel.field_info import FieldInfo, abouts
-from sandbox.editor.panel.property import Property
+from sandbox.editor.panel.level_properties import look_properties
+from sandbox.editor.panel.property import Property, Section
 from sandbox.editor.panel.typed import line_text, number_text, read_line, read_number
 from sandbox.editor.pick import items_of_material
 from sandbox.level.format.limits import DEFAULT_MATERIAL
@@ -33,7 +34,8 @@ from sandbox.physics.equation import coefficients_from_frequency, frequency_from
 LIST_PART = 0.3
 FIELD_WIDTH = 96.0
 SHORT = {"stiffness": "Cs  stiffness", "damping": "Cd  damping", "k": "k  stiffness", "c": "c  damping"}
-LIMITS = tuple(MaterialDef.model_fields)
+# What they look like has a form of its own.
+LIMITS = tuple(name for name in MaterialDef.model_fields if name != "look")
 LAWS = (
     ("nissen", "Impulse", "The impulse-based spring: Cs and Cd, the same behaviour for every mass"),
     ("hooke", "Hooke", "The classic spring, F = -k x - c u, for comparison: it explodes where k or c is too large"),
@@ -63,6 +65,7 @@ class MaterialsPage:
         self._head = ListHead(self._ui, place, LIST_PART, 2, buttons, self._choose, container)
         self.list, self.buttons, self.area = self._head.list, self._head.buttons, self._head.area
         self._inside = place.width / self._ui.scale - 12.0
+        self.look: Form | None = None
 
     # Making the editor of a material.
 
@@ -87,7 +90,7 @@ class MaterialsPage:
         self._y += ROW + 4
         for name in LIMITS:
             self._add_limit(name, abouts(type(material))[name])
-        self.area.set_height(ui.px(self._y))
+        self.look = Form(self._screen, self.area, above=self._y + 6)
 
     def _label(self, text: str, tip: str = "") -> None:
         label = self._ui.label(self._ui.rect(0, self._y, self._inside, ROW), text, self.area.content, "@muted")
@@ -135,6 +138,9 @@ class MaterialsPage:
         for widget in self._widgets:
             self._ui.remove(widget)
         self._widgets, self.fields, self.sliders = [], {}, {}
+        if self.look is not None:
+            self.look.close()
+            self.look = None
 
     # Showing.
 
@@ -168,6 +174,8 @@ class MaterialsPage:
         for name in self.fields.keys() & type(material).model_fields.keys():
             value = getattr(material, name)
             self.fields[name].show("" if value is None else number_text(value))
+        if self.look is not None:
+            self.look.show([Section("Look", tuple(look_properties(self.chosen, material)))])
         for name, slider in self.sliders.items():
             slider.show_state(SliderState(getattr(material, name)))
         if isinstance(material, NissenMaterial):
@@ -335,7 +343,7 @@ def _materials(level: Level) -> dict[str, Material]:
 def _of_selection(document: Document) -> str:
     """The material of what is selected first, else the first of the level's own."""
     level = document.level
-    chosen = next((item for item in document.selection if item.kind != "particle"), None)
+    chosen = next((item for item in document.selection if item.kind in ("body", "spring")), None)
     if chosen is not None:
         if chosen.kind == "spring":
             return level.springs[int(chosen.key)].material
