@@ -307,7 +307,7 @@ class Ui(WindowLayout):
             return True
         if event.type == pygame.MOUSEWHEEL and self._turn(event.precise_y or event.y):
             return True
-        if event.type == pygame.MOUSEBUTTONDOWN:
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button in (1, 2, 3):
             # Tab goes on from what was clicked.
             self._focus, self._left = None, self._under_mouse()
         used = bool(self.manager.process_events(event))

@@ -31,6 +31,10 @@ class Row:
     colour: Colour = TEXT
 
 
+# Shortest thumb, and how far from the right a press takes it [layout units].
+SHORTEST_THUMB, THUMB_REACH = 20.0, 12.0
+
+
 class RowList(Painted):
     """Rows to choose from; choose(index) is called by a click, Enter or Space; only what is seen is painted.
 
@@ -110,7 +114,19 @@ class RowList(Painted):
     # What mouse and keys do.
 
     def process_event(self, event: pygame.event.Event) -> bool:
-        """Choose by a click, scroll by the wheel."""
+        """Choose by a click, scroll by the wheel and by the thumb."""
+        if event.type == pygame.MOUSEMOTION and self._grip is not None:
+            self._drag_thumb(event.pos)
+            return True
+        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self._grip is not None:
+            self._grip = None
+            return True
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self._is_at_thumb(event.pos):
+            y = self.ui.manager.calculate_scaled_mouse_position(event.pos)[1] - self.rect.top
+            top, tall = self._thumb()
+            self._grip = y - top if top <= y <= top + tall else tall / 2
+            self._drag_thumb(event.pos)
+            return True
         if event.type == pygame.MOUSEMOTION:
             hovered = self._row_at(event.pos)
             if hovered != self._pointed:
@@ -126,6 +142,23 @@ class RowList(Painted):
             self._scroll_to(self._offset - (event.precise_y or event.y) * self.ui.px(WHEEL_STEP))
             return True
         return False
+
+    def _thumb(self) -> tuple[float, int]:
+        """Top and height of the thumb [pixels]."""
+        height = self.rect.height
+        tall = max(height * height // max(self._tops[-1], 1), self.ui.px(SHORTEST_THUMB))
+        return (height - tall) * self._offset / max(self._tops[-1] - height, 1), tall
+
+    def _is_at_thumb(self, pos: tuple[int, int]) -> bool:
+        x, y = self.ui.manager.calculate_scaled_mouse_position(pos)
+        needed = self._tops[-1] > self.rect.height
+        return bool(needed and self.hover_point(x, y) and x >= self.rect.right - self.ui.px(THUMB_REACH))
+
+    def _drag_thumb(self, pos: tuple[int, int]) -> None:
+        assert self._grip is not None
+        y = self.ui.manager.calculate_scaled_mouse_position(pos)[1] - self.rect.top
+        room = max(self.rect.height - self._thumb()[1], 1)
+        self._scroll_to((y - self._grip) / room * (self._tops[-1] - self.rect.height))
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """Arrows go from row to row, Page keys by a page, Home and End to the ends; Enter and Space choose."""
@@ -169,8 +202,7 @@ class RowList(Painted):
                 break
             self._paint_row(surface, index, self._tops[index] - round(self._offset))
         if self._tops[-1] > size[1]:
-            tall = max(size[1] * size[1] // self._tops[-1], ui.px(20))
-            top = (size[1] - tall) * self._offset / (self._tops[-1] - size[1])
+            top, tall = self._thumb()
             place = pygame.Rect(size[0] - ui.px(6), round(top), ui.px(4), tall)
             pygame.draw.rect(surface, mixed(LINE, MUTED, 0.35), place, border_radius=ui.px(2))
         pygame.draw.rect(surface, LINE, surface.get_rect(), 1, border_radius=ui.px(6))
@@ -297,8 +329,8 @@ class _Beside(Painted):
         return pygame.Surface(size, pygame.SRCALPHA)
 
     def process_event(self, event: pygame.event.Event) -> bool:
-        """Close on any press."""
-        if event.type == pygame.MOUSEBUTTONDOWN:
+        """Close on any press of a button; the wheel is none."""
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button in (1, 2, 3):
             self._close()
             return True
         return False
