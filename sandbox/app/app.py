@@ -18,6 +18,7 @@ from sandbox.app.display import SCALE_RANGE, Display, fitting_layout
 from sandbox.app.draw.colours import BACKGROUND, WARNING, show_theme
 from sandbox.app.edit.documents import DocumentActions
 from sandbox.app.edit.tour import Guide
+from sandbox.app.failure import FrameGuard
 from sandbox.app.files import FileActions
 from sandbox.app.gallery.gallery import Gallery
 from sandbox.app.gallery.sections import FIRST
@@ -483,12 +484,15 @@ def run_app(
     if app.play is not None:
         app.play.stage.renderer.expect(app.play.stage.camera)
         show_progress()
-    clock = pygame.time.Clock()
+    clock, guard = pygame.time.Clock(), FrameGuard(app)
     started = before = time.perf_counter()
     try:
         while app.running and (seconds is None or before - started < seconds):
             now = time.perf_counter()
-            app.frame(now - before)
+            try:
+                app.frame(now - before)
+            except Exception as error:
+                guard.take(error)
             before = now
             profile.shown()
             profile.reached("the first page")

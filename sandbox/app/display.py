@@ -1,5 +1,6 @@
 """Display: whether there is one, its window, and how large things have to be on it."""
 
+import math
 import os
 import sys
 
@@ -124,9 +125,11 @@ def _guessed_scale(desktop: tuple[int, int]) -> float:
     """Scale that the system asks for, or that the desktop's height suggests."""
     for name in ("GDK_SCALE", "QT_SCALE_FACTOR"):
         try:
-            return min(max(float(os.environ[name]), 1.0), SCALE_RANGE[1])
+            asked = float(os.environ[name])
         except (KeyError, ValueError):
             continue
+        if math.isfinite(asked):
+            return min(max(asked, 1.0), SCALE_RANGE[1])
     if sys.platform == "win32":
         import ctypes
 

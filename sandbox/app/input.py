@@ -35,6 +35,23 @@ def _works_while_typing(event: pygame.event.Event) -> bool:
     return event.key in (pygame.K_F1, pygame.K_F11) or (with_ctrl and event.key not in EDITING_KEYS)
 
 
+# Codes of keys whose letters are of other alphabets than the Latin one; and how many letters that has.
+OTHER_LETTERS, LATIN_LETTERS = (0x250, 0x40000000), 26
+
+
+def by_place(event: pygame.event.Event) -> pygame.event.Event:
+    """A key event whose letter is that of the key's place, where the layout has no Latin letter there.
+
+    So shortcuts and the keys of levels work under Cyrillic, Greek, Hebrew and other layouts; what is typed is not this.
+    """
+    if event.type not in (pygame.KEYDOWN, pygame.KEYUP) or not OTHER_LETTERS[0] <= event.key < OTHER_LETTERS[1]:
+        return event
+    place = event.dict.get("scancode", -1) - pygame.KSCAN_A
+    if not 0 <= place < LATIN_LETTERS:
+        return event
+    return pygame.event.Event(event.type, {**event.dict, "key": pygame.K_a + place})
+
+
 class Input:
     """Decides who gets an event."""
 
@@ -50,7 +67,7 @@ class Input:
 
     def process(self, events: list[pygame.event.Event]) -> None:
         """Hand out the events of a frame."""
-        for event in events:
+        for event in map(by_place, events):
             if event.type == pygame.KEYDOWN:
                 # What a widget takes is held all the same: what it opens does not have the key again.
                 self._is_repeated = event.key in self._held_keys

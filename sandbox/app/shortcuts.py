@@ -240,7 +240,9 @@ def combination_of(key: int, modifiers: int) -> str | None:
     key = _TWINS.get(key, key)
     name = next((name for name, code in _NAMES.items() if code == key), None)
     if name is None and 32 < key < 0x3000 and chr(key).isprintable():
-        name = chr(key).upper()
+        # A letter that its capital does not lead back to stays as it is.
+        upper = chr(key).upper()
+        name = upper if len(upper) == 1 and upper.lower() == chr(key) else chr(key)
     if name is None or key in _FIXED or modifiers & pygame.KMOD_ALT:
         return None
     shift = bool(modifiers & pygame.KMOD_SHIFT) and key not in _WITHOUT_SHIFT
@@ -252,7 +254,7 @@ def _combination(text: str) -> tuple[int, bool, bool]:
     """Key, Ctrl and Shift of "Ctrl+Shift+Z"."""
     ctrl, rest = text.startswith("Ctrl+"), text.removeprefix("Ctrl+")
     shift, name = rest.startswith("Shift+"), rest.removeprefix("Shift+")
-    return _NAMES.get(name) or ord(name.lower()), ctrl, shift
+    return _NAMES.get(name) or ord(name.lower() if len(name.lower()) == 1 else name), ctrl, shift
 
 
 def _is_known(text: str) -> bool:
