@@ -30,8 +30,8 @@ from sandbox.app.play.status import STATUS_HEIGHT, counted_parts
 from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.profile import Profile
 from sandbox.app.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
-from sandbox.app.sentences import sentence
 from sandbox.app.shortcuts import Mode
+from sandbox.app.widgets.sentences import sentence
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import can_scale_unevenly, move

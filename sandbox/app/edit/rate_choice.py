@@ -4,8 +4,8 @@ from functools import partial
 
 from sandbox.app.application import Application
 from sandbox.app.play.playback import Playback
-from sandbox.app.sentences import sentence
 from sandbox.app.widgets.dialogs import choose
+from sandbox.app.widgets.sentences import sentence
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.bake import keep_coefficients
 from sandbox.editor.edits.fields import set_setting

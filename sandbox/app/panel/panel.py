@@ -18,13 +18,13 @@ from sandbox.app.panel.solver_rows import SolverRows
 from sandbox.app.panel.world_rows import WorldRows
 from sandbox.app.play.playback import Playback
 from sandbox.app.play.touching import Touching
-from sandbox.app.sentences import sentence
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.sweeps.pad_maps import PadMaps
 from sandbox.app.sweeps.pad_sweeps import PadSweeps
 from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale, scale_for
 from sandbox.app.widgets.fields import DASH, MIXED, typed_number
 from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.sentences import sentence
 from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.model import NissenMaterial

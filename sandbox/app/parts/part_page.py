@@ -6,9 +6,9 @@ from sandbox.app.draw.colours import MUTED, TEXT, WARNING, Colour
 from sandbox.app.edit.side.part_card import PartCard, card_places, fill_card
 from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.screen import Pixel
-from sandbox.app.sentences import sentence
 from sandbox.app.slice_queue import SliceQueue
 from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.sentences import sentence
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.joining import joining_commands

@@ -2,7 +2,7 @@
 
 from collections import Counter
 
-from sandbox.app.sentences import sentence
+from sandbox.app.widgets.sentences import sentence
 from sandbox.level.format.model import Level
 from sandbox.physics.world import World
 

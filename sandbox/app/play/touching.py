@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from sandbox.app.application import Application
 from sandbox.app.edit.rate_choice import level_at_rate
 from sandbox.app.play.playback import Playback
-from sandbox.app.sentences import sentence
+from sandbox.app.widgets.sentences import sentence
 from sandbox.editor.document import EditError
 from sandbox.level.format.model import ContactsDef, Level
 from sandbox.level.format.quantities import replaced

@@ -12,7 +12,7 @@ from sandbox.app.edit.canvas.gestures import Boxing, Gesture, Lassoing, Moving, 
 from sandbox.app.edit.canvas.handles import Handles
 from sandbox.app.edit.canvas.overlay import draw_outline
 from sandbox.app.edit.editing import Editing
-from sandbox.app.sentences import capitalised, sentence
+from sandbox.app.widgets.sentences import capitalised, sentence
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.grouping import with_groups
 from sandbox.editor.edits.terrain import corners_of, delete_corner, move_corner, piece_of

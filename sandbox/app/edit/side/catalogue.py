@@ -12,11 +12,11 @@ from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.part_card import PartCard, card_places, fill_card
 from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.screen import Pixel
-from sandbox.app.sentences import sentence
 from sandbox.app.shortcuts import tip_of
 from sandbox.app.slice_queue import SliceQueue
 from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.sentences import sentence
 from sandbox.editor.scene import make_scene
 from sandbox.editor.storage.level_file import StorageError
 from sandbox.editor.storage.part_files import PartFile, catalogue, delete_part, rename_part

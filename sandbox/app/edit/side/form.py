@@ -15,11 +15,11 @@ from sandbox.app.edit.side.boxes import CheckBox, KeyBox, Scrub
 from sandbox.app.edit.side.rows import Picker, Row
 from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.play.drive_keys import code_of
-from sandbox.app.sentences import sentence
 from sandbox.app.shortcuts import action_of, tip_of
 from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.fields import Field
 from sandbox.app.widgets.painted import TextBlock, wrapped
+from sandbox.app.widgets.sentences import sentence
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.collision_groups import collision_groups
 from sandbox.editor.panel.property import MIXED, Property, Section

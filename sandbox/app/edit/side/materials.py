@@ -15,8 +15,8 @@ from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.list_head import HeadButton, ListHead
 from sandbox.app.edit.side.rows import Row
 from sandbox.app.panel.readings import number
-from sandbox.app.sentences import sentence
 from sandbox.app.widgets.fields import Field
+from sandbox.app.widgets.sentences import sentence
 from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.materials import add_material, assign, delete_material, rename_material, set_material

@@ -11,8 +11,8 @@ from sandbox.app.draw.colours import material_colours
 from sandbox.app.edit.canvas.pointer import DrawTool
 from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.rows import Picker, Row
-from sandbox.app.sentences import sentence
 from sandbox.app.widgets.fields import Field
+from sandbox.app.widgets.sentences import sentence
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.moving import move, rotate, scale
 from sandbox.editor.tools.drawing_options import OptionInfo, described, stepped
