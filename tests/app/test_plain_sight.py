@@ -64,7 +64,7 @@ def open_metrics(edit):
 
 
 def test_the_wheel_scrolls_a_menu_and_the_last_metric_is_chosen_by_mouse(edit):
-    driver, picker, menu = open_metrics(edit)
+    driver, _, menu = open_metrics(edit)
     assert len(menu.rows) > 12
     driver.move(menu.rect.center)
     for _ in range(8):
