@@ -60,7 +60,7 @@ goldens-anew: kernels
 	$(BIN)/python -m tests.determinism.make_goldens --processes $(WORKERS)
 
 pictures: $(VENV)/installed-dev
-	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.picture_cache
+	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.draw.picture_cache
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.draw.app_icon
 	$(BIN)/python -m tests.pictures
 

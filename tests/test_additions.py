@@ -232,7 +232,7 @@ sys.path.append({str(ROOT)!r})
 import pytest
 from tests.app.conftest import Driver
 import pygame
-from sandbox.app.shortcuts import tip_of
+from sandbox.app.base.shortcuts import tip_of
 for name in ("user_data_dir", "user_documents_dir", "user_cache_dir"):
     pytest.MonkeyPatch().setattr(f"platformdirs.{{name}}", lambda *_, **__: "person")
 driver = Driver(parse_level(level(), "level"))

@@ -188,7 +188,7 @@ def test_the_plugin_of_pytest_loads_nothing_heavy():
 
 
 def test_the_window_needs_none_of_the_libraries_that_take_long_to_import():
-    loaded = loaded_after("from sandbox.app.opening import open_app")
+    loaded = loaded_after("from sandbox.app.window.opening import open_app")
     assert "pygame" in loaded
     assert not loaded & {"pygame_gui", "numba", "numpy", "pydantic", "platformdirs", "sandbox.physics.jit"}
 

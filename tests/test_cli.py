@@ -399,8 +399,8 @@ def compiling(monkeypatch, succeeds):
         report(1, 2)
         return succeeds
 
-    monkeypatch.setattr("sandbox.app.compiling.compile_all", compile_all)
-    monkeypatch.setattr("sandbox.app.compiling.note_prepared", lambda: asked.append("noted"))
+    monkeypatch.setattr("sandbox.app.kernels.compiling.compile_all", compile_all)
+    monkeypatch.setattr("sandbox.app.kernels.compiling.note_prepared", lambda: asked.append("noted"))
     return asked
 
 
@@ -521,15 +521,15 @@ def test_an_interrupted_run_leaves_a_recording_that_is_only_cut_off(rope, tmp_pa
 
 
 def test_edit_without_a_display_is_refused_in_one_line(monkeypatch, capsys):
-    monkeypatch.setattr("sandbox.app.display.has_display", lambda: False)
+    monkeypatch.setattr("sandbox.app.base.display.has_display", lambda: False)
     assert main(["edit"]) == 2
     assert capsys.readouterr().err.count("\n") == 1
 
 
 def test_edit_hands_the_level_on_to_the_app(monkeypatch, rope):
     asked = []
-    monkeypatch.setattr("sandbox.app.display.has_display", lambda: True)
-    monkeypatch.setattr("sandbox.app.opening.open_app", lambda find, **_: asked.append(find()) or 0)
+    monkeypatch.setattr("sandbox.app.base.display.has_display", lambda: True)
+    monkeypatch.setattr("sandbox.app.window.opening.open_app", lambda find, **_: asked.append(find()) or 0)
     assert main(["edit", rope]) == 0
     assert main(["edit"]) == 0
     assert [wanted.edit for wanted in asked] == [rope, ""]
@@ -537,8 +537,8 @@ def test_edit_hands_the_level_on_to_the_app(monkeypatch, rope):
 
 def test_play_opens_the_window_before_it_reads_what_was_asked_for(monkeypatch, rope):
     found = []
-    monkeypatch.setattr("sandbox.app.display.has_display", lambda: True)
-    monkeypatch.setattr("sandbox.app.opening.open_app", lambda find, **_: found.append(find()) or 0)
+    monkeypatch.setattr("sandbox.app.base.display.has_display", lambda: True)
+    monkeypatch.setattr("sandbox.app.window.opening.open_app", lambda find, **_: found.append(find()) or 0)
     assert main(["play", rope]) == main(["play", "rope"]) == main(["play"]) == 0
     of_file, shipped, nothing = found
     assert of_file.source == Path(rope) and shipped.source is None

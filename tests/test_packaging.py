@@ -6,7 +6,7 @@ import tomllib
 import zipfile
 from pathlib import Path
 
-from sandbox.app.share.kinds import KINDS
+from sandbox.app.film.kinds import KINDS
 
 ROOT = Path(__file__).resolve().parents[1]
 

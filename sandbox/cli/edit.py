@@ -15,11 +15,11 @@ def add(commands: Commands) -> None:
 
 def edit(options: argparse.Namespace) -> int:
     """Open the editor. Raises Refused where there is no display."""
-    from sandbox.app.display import has_display
+    from sandbox.app.base.display import has_display
 
     if not has_display():
         raise Refused("the editor needs a display; without one, edit the level's JSON and try `sandbox check`")
-    from sandbox.app.opening import open_app
-    from sandbox.app.start_request import StartRequest
+    from sandbox.app.base.start_request import StartRequest
+    from sandbox.app.window.opening import open_app
 
     return open_app(lambda: StartRequest(edit=options.level or ""), scale=options.scale, theme=options.theme)

@@ -30,13 +30,13 @@ def add(commands: Commands) -> None:
 
 def play(options: argparse.Namespace) -> int:
     """Open the app; without a display, play without one."""
-    from sandbox.app.display import has_display
+    from sandbox.app.base.display import has_display
 
     if not has_display():
         level, replay = level_or_replay(options.level or "rope_bridge_jelly")
         return _play_headless(level, replay)
-    from sandbox.app.opening import open_app
-    from sandbox.app.start_request import StartRequest
+    from sandbox.app.base.start_request import StartRequest
+    from sandbox.app.window.opening import open_app
 
     def find() -> StartRequest:
         if options.level is None:

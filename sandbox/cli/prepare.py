@@ -17,7 +17,7 @@ def add(commands: Commands) -> None:
 def prepare(options: argparse.Namespace) -> int:
     """Compile what is not compiled yet. Raises Refused."""
     level = level_of(options.level) if options.level else None
-    from sandbox.app.compiling import GROUPS, compile_all, note_prepared, usual_processes
+    from sandbox.app.kernels.compiling import GROUPS, compile_all, note_prepared, usual_processes
 
     groups = GROUPS if level is None or level.has_contacts else GROUPS[:1]
     solvers = None if level is None else (level.settings.solver,)

@@ -75,7 +75,7 @@ def _render_page(options: argparse.Namespace) -> int:
 
 
 def _check_render_options(options: argparse.Namespace, kind: str) -> None:
-    from sandbox.app.share.kinds import KINDS, Missing, require
+    from sandbox.app.film.kinds import KINDS, Missing, require
 
     most = KINDS[kind].most_fps
     if kind == "png":
@@ -105,9 +105,9 @@ def _draw_still(session: "Session", options: argparse.Namespace) -> str:
 
 def _draw_film(session: "Session", options: argparse.Namespace, kind: str, length: float) -> str:
     """Draw the last `length` [s] of a run; what was drawn."""
+    from sandbox.app.film.film import film_of_view
+    from sandbox.app.film.kinds import KINDS, possible_size
     from sandbox.app.share.export import Excerpt, Export
-    from sandbox.app.share.film import film_of_view
-    from sandbox.app.share.kinds import KINDS, possible_size
 
     pixels, fps = possible_size(options.size or FILM_SIZE, kind), options.fps or KINDS[kind].usual_fps
     film = film_of_view(session, pixels, length)

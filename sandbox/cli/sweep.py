@@ -71,7 +71,7 @@ def sweep(options: argparse.Namespace) -> int:
     except SweepError as error:
         raise Refused(str(error)) from None
     if kind == MAP:
-        from sandbox.app.sweeps.sweep_chart import draw_map
+        from sandbox.app.panel.sweeps.sweep_chart import draw_map
 
         draw_map(grid, rows, panels, options.output)
         print(f"{options.output}: {len(panels)} measures")
@@ -79,7 +79,7 @@ def sweep(options: argparse.Namespace) -> int:
 
 
 def _require(options: argparse.Namespace, kind: str) -> None:
-    from sandbox.app.share.kinds import Missing, require_module
+    from sandbox.app.film.kinds import Missing, require_module
 
     try:
         if kind == MAP:

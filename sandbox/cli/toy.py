@@ -24,7 +24,7 @@ def add(commands: Commands) -> None:
 
 def play_toy(options: argparse.Namespace) -> int:
     """Play a level in a small window that stays on top. Raises Refused where there is no display."""
-    from sandbox.app.display import has_display
+    from sandbox.app.base.display import has_display
 
     if not has_display():
         raise Refused("the desk toy needs a display; `sandbox run` plays a level without one")

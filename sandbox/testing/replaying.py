@@ -108,8 +108,8 @@ def _update(config: pytest.Config, path: Path) -> str | None:
 
 def _drawn(config: pytest.Config, found: Comparison, path: Path) -> list[str]:
     """Draw where a run parts, and say where that is."""
+    from sandbox.app.film.kinds import Missing
     from sandbox.app.share.evidence import write_motion, write_picture
-    from sandbox.app.share.kinds import Missing
     from sandbox.session.player.report import report_page
 
     folder = _output(config)

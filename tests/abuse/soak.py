@@ -23,12 +23,12 @@ from pathlib import Path
 
 import pygame
 
-from sandbox.app.app import App
-from sandbox.app.compiling import warm_up_rest
-from sandbox.app.display import SCALE_RANGE, Display
-from sandbox.app.play.playback import Playback
+from sandbox.app.base.display import SCALE_RANGE, Display
+from sandbox.app.base.start_request import StartRequest
+from sandbox.app.kernels.compiling import warm_up_rest
+from sandbox.app.run.playback import Playback
 from sandbox.app.settings.chosen import SETTINGS
-from sandbox.app.start_request import StartRequest
+from sandbox.app.window.app import App
 from sandbox.level.format.files import load_level
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import warm_up

@@ -11,10 +11,10 @@ import json
 import pygame
 import pytest
 
-from sandbox.app.app import App
-from sandbox.app.display import Display
-from sandbox.app.idle import REST
-from sandbox.app.start_request import StartRequest
+from sandbox.app.base.display import Display
+from sandbox.app.base.idle import REST
+from sandbox.app.base.start_request import StartRequest
+from sandbox.app.window.app import App
 from sandbox.level.format.files import parse_level
 from tests.support.person import VirtualScreen
 
@@ -201,10 +201,12 @@ def documents(tmp_path, monkeypatch):
     monkeypatch.setattr(
         "sandbox.editor.storage.level_file.platformdirs.user_data_dir", lambda *_, **__: str(tmp_path / "data")
     )
-    monkeypatch.setattr("sandbox.app.recordings.platformdirs.user_documents_dir", lambda: str(tmp_path))
-    monkeypatch.setattr("sandbox.app.recordings.platformdirs.user_pictures_dir", lambda: str(tmp_path / "pictures"))
+    monkeypatch.setattr("sandbox.app.base.recordings.platformdirs.user_documents_dir", lambda: str(tmp_path))
     monkeypatch.setattr(
-        "sandbox.app.picture_cache.platformdirs.user_cache_dir", lambda *_, **__: str(tmp_path / "cache")
+        "sandbox.app.base.recordings.platformdirs.user_pictures_dir", lambda: str(tmp_path / "pictures")
+    )
+    monkeypatch.setattr(
+        "sandbox.app.draw.picture_cache.platformdirs.user_cache_dir", lambda *_, **__: str(tmp_path / "cache")
     )
     # The system asks for the dark theme, which pictures and colours of these tests are of.
     monkeypatch.setattr("sandbox.app.settings.system_theme._is_dark", lambda: True)

@@ -11,14 +11,14 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.display import has_display
-from sandbox.app.edit.side.scroll import BAR_WIDTH
-from sandbox.app.opening import open_app
-from sandbox.app.play.playback import Playback
-from sandbox.app.preparing import Preparation
-from sandbox.app.screen import Figures
-from sandbox.app.shortcuts import action_of, shortcuts
-from sandbox.app.start_request import StartRequest
+from sandbox.app.base.display import has_display
+from sandbox.app.base.shortcuts import action_of, shortcuts
+from sandbox.app.base.start_request import StartRequest
+from sandbox.app.contracts.screen import Figures
+from sandbox.app.kernels.preparing import Preparation
+from sandbox.app.run.playback import Playback
+from sandbox.app.widgets.scroll import BAR_WIDTH
+from sandbox.app.window.opening import open_app
 from sandbox.editor.storage.recent import remember
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import shipped_levels
@@ -421,8 +421,8 @@ def test_a_window_made_smaller_and_larger_again_shows_what_it_showed(driver):
 
 def test_a_long_run_played_again_shows_how_far_it_is(driver, monkeypatch):
     now, shown = [0.0], []
-    monkeypatch.setattr("sandbox.app.progress.time.perf_counter", lambda: now[0])
-    monkeypatch.setattr("sandbox.app.progress.draw_work", lambda surface, ui, share, *_: shown.append(share))
+    monkeypatch.setattr("sandbox.app.window.progress.time.perf_counter", lambda: now[0])
+    monkeypatch.setattr("sandbox.app.window.progress.draw_work", lambda surface, ui, share, *_: shown.append(share))
     for done in range(0, 1000, 100):
         now[0] += 0.06
         driver.playback.session.progress(done, 1000)
@@ -431,7 +431,7 @@ def test_a_long_run_played_again_shows_how_far_it_is(driver, monkeypatch):
 
 def test_keys_pressed_while_a_run_is_played_again_are_not_typed_into_what_comes_after_it(driver, monkeypatch):
     now, actions = [0.0], driver.app.screen.actions
-    monkeypatch.setattr("sandbox.app.progress.time.perf_counter", lambda: now[0])
+    monkeypatch.setattr("sandbox.app.window.progress.time.perf_counter", lambda: now[0])
 
     def played_again(key):
         for done in range(0, 1000, 100):
@@ -452,7 +452,7 @@ def test_keys_pressed_while_a_run_is_played_again_are_not_typed_into_what_comes_
 
 
 def test_there_is_no_display_where_none_is_named_or_none_answers(monkeypatch):
-    command = [sys.executable, "-c", "from sandbox.app.display import has_display; print(has_display())"]
+    command = [sys.executable, "-c", "from sandbox.app.base.display import has_display; print(has_display())"]
     for names in ({}, {"DISPLAY": ":4321"}):
         environment = {key: value for key, value in os.environ.items() if key not in DISPLAY_NAMES} | names
         run = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
@@ -481,7 +481,7 @@ def delayed_contacts(driver, monkeypatch):
     """Contacts that are loaded once the event is set."""
     touching = threading.Event()
     driver.app.preparation.finish()
-    monkeypatch.setattr("sandbox.app.preparing._load_contacts", touching.wait)
+    monkeypatch.setattr("sandbox.app.kernels.preparing._load_contacts", touching.wait)
     monkeypatch.setattr(driver.app, "preparation", Preparation())
     driver.app.preparation.finish()
     return touching

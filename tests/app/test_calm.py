@@ -6,14 +6,14 @@ from types import SimpleNamespace
 import pygame
 import pytest
 
-from sandbox.app import calm
-from sandbox.app.app import App, run_app
-from sandbox.app.calm import CALM_AFTER, CALM_RATE, RESTING_RATE, Calm
-from sandbox.app.display import Display
-from sandbox.app.loop import FRAME_RATE
+from sandbox.app.base import calm
+from sandbox.app.base.calm import CALM_AFTER, CALM_RATE, RESTING_RATE, Calm
+from sandbox.app.base.display import Display
+from sandbox.app.base.loop import FRAME_RATE
+from sandbox.app.base.profile import Profile
+from sandbox.app.base.start_request import StartRequest
 from sandbox.app.play.stage import AT_REST_AFTER
-from sandbox.app.profile import Profile
-from sandbox.app.start_request import StartRequest
+from sandbox.app.window.app import App, run_app
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import Grab, Push
 from sandbox.session.session import Session
@@ -40,7 +40,7 @@ class FakeTime:
 @pytest.fixture
 def fake_time(monkeypatch):
     made = FakeTime()
-    monkeypatch.setattr("sandbox.app.app.time", made)
+    monkeypatch.setattr("sandbox.app.window.app.time", made)
     monkeypatch.setattr(calm, "time", made)
     return made
 

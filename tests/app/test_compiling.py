@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.app import compiling
-from sandbox.app.compiling import Crew, divide, is_prepared, note_prepared
+from sandbox.app.kernels import compiling
+from sandbox.app.kernels.compiling import Crew, divide, is_prepared, note_prepared
 from sandbox.physics import jit
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -138,7 +138,7 @@ def test_that_all_is_prepared_is_noted_until_kernels_are_gone(monkeypatch, tmp_p
 
 def test_a_child_that_nobody_listens_to_and_one_that_cannot_compile_end_by_themselves():
     environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "SDL_VIDEODRIVER": "dummy"}
-    command = [sys.executable, "-m", "sandbox.app.compiling", "0", "8", "basics", "single_pass"]
+    command = [sys.executable, "-m", "sandbox.app.kernels.compiling", "0", "8", "basics", "single_pass"]
     child = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
     assert child.stdout is not None
     child.stdout.close()

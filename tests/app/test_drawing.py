@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sandbox.app.base.loop import LONGEST_FRAME, SPEEDS, TickClock
 from sandbox.app.draw.camera import Camera, bounds, grid_spacing
 from sandbox.app.draw.lines import Canvas
 from sandbox.app.draw.picture import crop_of, draw_picture, save_picture, view_of
@@ -18,8 +19,7 @@ from sandbox.app.draw.renderer import Renderer
 from sandbox.app.draw.strain_colours import strain_tones
 from sandbox.app.draw.textures import Tiles, grains, skin_table
 from sandbox.app.draw.themes import THEMES
-from sandbox.app.loop import LONGEST_FRAME, SPEEDS, TickClock
-from sandbox.app.play.playback import Playback, interpolated
+from sandbox.app.run.playback import Playback, interpolated
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import Level
 from sandbox.level.kinds.jelly import BoxShape, JellyDef
@@ -111,7 +111,7 @@ def test_a_paused_clock_gives_single_ticks_only():
 def test_a_run_that_is_too_slow_loses_time_instead_of_running_away(monkeypatch):
     playback = Playback(small_level(settings={"solver": "single_pass", "tick_rate": 10_000}))
     now = [0.0]
-    monkeypatch.setattr("sandbox.app.play.playback.time.perf_counter", lambda: now[0])
+    monkeypatch.setattr("sandbox.app.run.playback.time.perf_counter", lambda: now[0])
     advance = playback.session.advance
 
     def slow_tick():

@@ -4,7 +4,7 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.screen import Figures
+from sandbox.app.contracts.screen import Figures
 from sandbox.session.commands import CutSprings, SetSolver
 from tests.app.conftest import small_level
 

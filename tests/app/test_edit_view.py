@@ -6,12 +6,12 @@ import numpy as np
 import pygame
 import pytest
 
+from sandbox.app.base.shortcuts import shortcuts
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import BACKGROUND
 from sandbox.app.edit.actions import MENU
 from sandbox.app.edit.canvas.canvas import PLAIN_FROM, ScenePainter, SelectionMasks
 from sandbox.app.edit.canvas.handles import Handles
-from sandbox.app.shortcuts import shortcuts
 from sandbox.editor.scene import make_scene
 from tests.app.conftest import small_level
 

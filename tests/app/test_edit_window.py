@@ -10,8 +10,8 @@ import sys
 
 import pytest
 
-from sandbox.app.display import WINDOW_SIZE
-from sandbox.app.shortcuts import tip_of
+from sandbox.app.base.display import WINDOW_SIZE
+from sandbox.app.base.shortcuts import tip_of
 from sandbox.level.format.files import read_level
 from sandbox.session.replay.reader import read_replay
 from tests.support.person import DEADLINE, Person, needs_a_screen

@@ -6,7 +6,7 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.recordings import chosen_path, free_path, plain_name
+from sandbox.app.base.recordings import chosen_path, free_path, plain_name
 from sandbox.editor.storage.recent import remember
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import shipped_levels

@@ -3,8 +3,8 @@
 import pygame
 import pytest
 
-from sandbox.app.edit.side.scroll import ScrollBar
-from sandbox.app.help import ShortcutTable
+from sandbox.app.widgets.scroll import ScrollBar
+from sandbox.app.window.help import ShortcutTable
 
 
 def table(driver):

@@ -6,9 +6,9 @@ import weakref
 import pytest
 from pygame_gui.core.utility import get_default_manager
 
+from sandbox.app.base.idle import ENOUGH, REST, IdleCollector
 from sandbox.app.draw.raster.painter import _scratch_for, _scratches
-from sandbox.app.idle import ENOUGH, REST, IdleCollector
-from sandbox.app.play.playback import Playback
+from sandbox.app.run.playback import Playback
 from tests.app.conftest import small_level
 
 

@@ -6,8 +6,8 @@ import pytest
 from sandbox.app.draw.colours import TEXT
 from sandbox.app.play.key_caps import KEYS_HEIGHT
 from sandbox.app.play.palette import PartsPalette
-from sandbox.app.play.playback import Playback
 from sandbox.app.play.status import STATUS_HEIGHT
+from sandbox.app.run.playback import Playback
 from sandbox.level.format.files import load_level
 from tests.app.conftest import small_level
 

@@ -3,10 +3,10 @@
 import pygame
 import pytest
 
-from sandbox.app.display import Display
+from sandbox.app.base.display import Display
+from sandbox.app.base.start_request import StartRequest
 from sandbox.app.draw.colours import BACKGROUND, TEXT
-from sandbox.app.opening import open_app
-from sandbox.app.start_request import StartRequest
+from sandbox.app.window.opening import open_app
 from tests.app.conftest import small_level
 
 
@@ -48,7 +48,7 @@ def test_a_fault_closes_the_window_and_is_raised(pictures, monkeypatch):
 
 
 def test_closing_the_window_early_ends_the_program(pictures, monkeypatch):
-    monkeypatch.setattr("sandbox.app.app.run_app", lambda *_: pytest.fail("the app was opened"))
+    monkeypatch.setattr("sandbox.app.window.app.run_app", lambda *_: pytest.fail("the app was opened"))
     pygame.display.init()
     pygame.event.post(pygame.event.Event(pygame.QUIT))
     assert open_app(lambda: StartRequest(small_level())) == 0
@@ -61,6 +61,6 @@ def test_keys_pressed_while_the_words_are_shown_reach_the_app(pictures, monkeypa
         pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_h, mod=0, unicode="h", scancode=0))
         return StartRequest(small_level())
 
-    monkeypatch.setattr("sandbox.app.app.run_app", lambda *_: seen.extend(pygame.event.get(pygame.KEYDOWN)))
+    monkeypatch.setattr("sandbox.app.window.app.run_app", lambda *_: seen.extend(pygame.event.get(pygame.KEYDOWN)))
     assert open_app(find) == 0
     assert [event.key for event in seen] == [pygame.K_h]

@@ -8,6 +8,7 @@ import numpy as np
 import pygame
 import pytest
 
+from sandbox.app.base.shortcuts import SHORTCUTS
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.effects import Effects
 from sandbox.app.draw.raster.painter import MarkList
@@ -17,7 +18,6 @@ from sandbox.app.draw.themes import THEMES
 from sandbox.app.draw.things.frame import Frame
 from sandbox.app.draw.views.overlays import LONGEST_ARROW, NAMES, Overlays, Scale, stability_tones
 from sandbox.app.play.legend import Legend, rows_of
-from sandbox.app.shortcuts import SHORTCUTS
 from sandbox.level.format.parse import parse_level
 from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.snapshot import state_hash

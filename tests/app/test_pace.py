@@ -3,8 +3,8 @@
 import threading
 from collections import deque
 
-from sandbox.app import pace
-from sandbox.app.pace import FIRST_TICK_LIMIT, PATIENCE, TICK_LIMIT, TRIAL_TICKS, Pace
+from sandbox.app.kernels import pace
+from sandbox.app.kernels.pace import FIRST_TICK_LIMIT, PATIENCE, TICK_LIMIT, TRIAL_TICKS, Pace
 from tests.app.conftest import small_level
 
 

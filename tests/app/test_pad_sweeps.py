@@ -4,10 +4,10 @@ import numpy as np
 import pygame
 import pytest
 
-import sandbox.app.sweeps.pad_sweeps as pad_sweeps
+import sandbox.app.panel.sweeps.pad_sweeps as pad_sweeps
 from sandbox.app.draw.colours import show_theme
-from sandbox.app.sweeps.pad_sweeps import coarse_first
-from sandbox.app.sweeps.sweep_layer import BLOWN, FAILS, HOLDS, SweepLayer
+from sandbox.app.panel.sweeps.pad_sweeps import coarse_first
+from sandbox.app.panel.sweeps.sweep_layer import BLOWN, FAILS, HOLDS, SweepLayer
 from sandbox.cli import main
 from sandbox.level.format.files import write_level
 from sandbox.session.commands import SetSolver

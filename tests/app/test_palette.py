@@ -3,11 +3,11 @@
 import pygame
 import pytest
 
+from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.draw.part_pictures import PartGhost
 from sandbox.app.play.palette import MORE, NAMES
 from sandbox.app.play.stage import CATALOGUE
-from sandbox.app.shortcuts import tip_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.session.commands import AddBody, AddParticle, Push, Remove, SetAir

@@ -5,11 +5,11 @@ import os
 import pygame
 import pytest
 
-from sandbox.app import picture_cache
+from sandbox.app.base.recent_pictures import RecentPictures
+from sandbox.app.draw import picture_cache
 from sandbox.app.draw.colours import THEME_NAMES
+from sandbox.app.draw.picture_cache import kept_picture, picture_key, read_picture, shipped_picture, stale_pictures
 from sandbox.app.gallery import gallery
-from sandbox.app.picture_cache import kept_picture, picture_key, read_picture, shipped_picture, stale_pictures
-from sandbox.app.recent_pictures import RecentPictures
 from sandbox.editor.storage.recent import remember
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import shipped_levels

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from sandbox.app.contracts.screen import Figures
 from sandbox.app.panel.panel import ALL_MATERIALS
-from sandbox.app.play.breaks import QUIET, Breaks
-from sandbox.app.screen import Figures
+from sandbox.app.run.breaks import QUIET, Breaks
 from sandbox.level.format.files import load_level
 from sandbox.session.session import Session
 from tests.app.conftest import small_level

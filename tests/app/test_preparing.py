@@ -9,8 +9,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from sandbox.app import preparing
-from sandbox.app.preparing import Preparation
+from sandbox.app.kernels import preparing
+from sandbox.app.kernels.preparing import Preparation
 from tests.app.conftest import small_level
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -185,10 +185,10 @@ import json, sys
 import pygame
 from sandbox.physics import jit
 jit.start_interpreted()
-import sandbox.app.preparing as preparing
-from sandbox.app.app import App
-from sandbox.app.display import Display
-from sandbox.app.start_request import StartRequest
+import sandbox.app.kernels.preparing as preparing
+from sandbox.app.window.app import App
+from sandbox.app.base.display import Display
+from sandbox.app.base.start_request import StartRequest
 
 from sandbox.level.format.files import load_level
 from sandbox.session.replay.reader import read_replay

@@ -1,6 +1,6 @@
 import pygame
 
-from sandbox.app.recent_pictures import RecentPictures
+from sandbox.app.base.recent_pictures import RecentPictures
 
 BYTES = 4 * 20 * 10
 

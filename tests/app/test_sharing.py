@@ -19,10 +19,10 @@ import pygame
 import pytest
 from PIL import Image, ImageSequence
 
-from sandbox.app.play.playback import Playback
-from sandbox.app.share import desktop
+from sandbox.app.base import desktop
+from sandbox.app.film.film import film_of_view
+from sandbox.app.run.playback import Playback
 from sandbox.app.share.export import Excerpt, Export
-from sandbox.app.share.film import film_of_view
 from sandbox.app.share.gif import GifWriter
 from sandbox.app.share.movie import MovieWriter
 from sandbox.app.share.sharing import Sharing

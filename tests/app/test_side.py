@@ -6,8 +6,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sandbox.app.edit.side.checks import Trial
-from sandbox.app.edit.side.rows import RowList
 from sandbox.app.edit.side.side import PAGES
+from sandbox.app.widgets.rows import RowList
 from sandbox.editor.edits.additions import add_object
 from sandbox.editor.items import Item
 from sandbox.level.format.canonical import level_text

@@ -9,7 +9,7 @@ import pytest
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.detail import FRAMES, FULL, LATE, NO_EFFECTS, NO_SHADOWS, TRY_AFTER, Detail
 from sandbox.app.draw.renderer import Overlay, Renderer
-from sandbox.app.play.playback import Playback, interpolated
+from sandbox.app.run.playback import Playback, interpolated
 from sandbox.physics.jit import COMPILED
 from sandbox.session.session import Session
 from tests.app.conftest import small_level

@@ -3,7 +3,7 @@
 import pygame
 import pytest
 
-from sandbox.app.loop import BACKWARD_SPEEDS, TickClock
+from sandbox.app.base.loop import BACKWARD_SPEEDS, TickClock
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import Grab, Pin
 from sandbox.session.replay.reader import read_replay

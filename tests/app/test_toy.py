@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import pygame
 import pytest
 
+from sandbox.app.base.stillness import Stillness
 from sandbox.app.settings.chosen import Chosen
-from sandbox.app.stillness import Stillness
 from sandbox.app.toy import toy_start
 from sandbox.app.toy.desk import KEPT, MOST_PLACES, Desk
 from sandbox.app.toy.frame_motion import FARTHEST, FASTEST, HARDEST, FrameMotion
@@ -342,6 +342,6 @@ def test_the_app_starts_a_toy_of_the_level_that_is_played(driver, monkeypatch):
 
 
 def test_without_a_display_it_is_refused_in_one_line(monkeypatch, capsys):
-    monkeypatch.setattr("sandbox.app.display.has_display", lambda: False)
+    monkeypatch.setattr("sandbox.app.base.display.has_display", lambda: False)
     assert main(["toy"]) == 2
     assert "needs a display" in capsys.readouterr().err

@@ -15,10 +15,10 @@ import time
 
 import pygame
 
-from sandbox.app.app import App
-from sandbox.app.display import Display
+from sandbox.app.base.display import Display
+from sandbox.app.base.start_request import StartRequest
 from sandbox.app.edit.edit_screen import EditScreen
-from sandbox.app.start_request import StartRequest
+from sandbox.app.window.app import App
 from sandbox.editor.document import empty_level
 from sandbox.level.format.model import Level, ParticleDef, SpringDef
 from sandbox.level.kinds.jelly import BoxShape, JellyDef

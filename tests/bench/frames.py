@@ -16,9 +16,9 @@ os.environ["SDL_AUDIODRIVER"] = "dummy"
 import numpy as np
 import pygame
 
-from sandbox.app.app import App
-from sandbox.app.display import Display
-from sandbox.app.start_request import StartRequest
+from sandbox.app.base.display import Display
+from sandbox.app.base.start_request import StartRequest
+from sandbox.app.window.app import App
 from sandbox.level.format.files import read_level, shipped_levels
 from sandbox.level.format.model import Level
 from sandbox.level.format.parse import parse_level

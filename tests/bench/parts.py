@@ -15,9 +15,9 @@ os.environ["SDL_VIDEODRIVER"] = "dummy"
 
 import pygame
 
-from sandbox.app.app import App
-from sandbox.app.display import Display
-from sandbox.app.start_request import StartRequest
+from sandbox.app.base.display import Display
+from sandbox.app.base.start_request import StartRequest
+from sandbox.app.window.app import App
 from sandbox.level.format.files import load_level
 from sandbox.session.commands import AddParticle
 from sandbox.session.session import Session

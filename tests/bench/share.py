@@ -13,9 +13,9 @@ from pathlib import Path
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from sandbox.app.film.film import film_of_view
+from sandbox.app.film.kinds import KINDS
 from sandbox.app.share.export import Excerpt, Export
-from sandbox.app.share.film import film_of_view
-from sandbox.app.share.kinds import KINDS
 from sandbox.level.format.files import load_level
 from sandbox.session.session import Session
 

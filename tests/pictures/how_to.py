@@ -5,7 +5,7 @@ from contextlib import closing
 import numpy as np
 import pygame
 
-from sandbox.app.sweeps.sweep_chart import draw_map
+from sandbox.app.panel.sweeps.sweep_chart import draw_map
 from sandbox.level.format.files import load_level
 from sandbox.session.sweep.grid import SweepGrid
 from sandbox.session.sweep.pool import swept

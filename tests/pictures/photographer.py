@@ -14,7 +14,7 @@ import platformdirs
 import pygame
 from PIL import Image
 
-from sandbox.app.screen import Figures
+from sandbox.app.contracts.screen import Figures
 from tests.app.conftest import Driver
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -3,7 +3,7 @@
 import pytest
 
 import sandbox.session.session as session_module
-from sandbox.app.play.playback import Playback
+from sandbox.app.run.playback import Playback
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from sandbox.session.commands import AddParticle, CutSprings, Grab, MoveGrab, Pin, Release, Unpin

@@ -12,7 +12,7 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.display import WINDOW_SIZE
+from sandbox.app.base.display import WINDOW_SIZE
 
 # How long something that must happen may take before it counts as not happening [s].
 DEADLINE = 90.0

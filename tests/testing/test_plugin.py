@@ -154,7 +154,7 @@ def test_where_a_recording_cannot_give_the_values_its_stored_states_around_that_
 def test_without_pillow_there_is_the_picture_alone_and_a_line(project, fault, monkeypatch):
     fault(tick=23, slot=7, times=1)
     monkeypatch.setitem(sys.modules, "PIL", None)
-    monkeypatch.setattr("sandbox.app.share.kinds.importlib.util.find_spec", lambda name: None)
+    monkeypatch.setattr("sandbox.app.film.kinds.importlib.util.find_spec", lambda name: None)
     result = project("two.replay.gz")
     result.assert_outcomes(failed=1)
     assert 'motion: GIF needs Pillow: pip install "spring-sandbox[export]"' in result.stdout.str()

@@ -7,21 +7,21 @@ from typing import ClassVar
 
 import pygame
 
-from sandbox.app.application import Application
+from sandbox.app.base.profile import Profile
 from sandbox.app.compare.difference import Difference, draw_chip, draw_pill
 from sandbox.app.compare.twin import TwinPlayback, coefficients_of
+from sandbox.app.contracts.application import Application
+from sandbox.app.contracts.screen import Pixel, Pointer
 from sandbox.app.draw.colours import LINE, TEXT
+from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.panel.panel import Panel
 from sandbox.app.panel.side_panel import SidePanel
 from sandbox.app.panel.solver_rows import SOLVER_LABELS
+from sandbox.app.panel.touching import Touching
 from sandbox.app.play.play_screen import PlayScreen
-from sandbox.app.play.playback import Playback
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.toolbar import BAR_HEIGHT
-from sandbox.app.play.touching import Touching
-from sandbox.app.profile import Profile
-from sandbox.app.screen import Pixel, Pointer
-from sandbox.app.share.film_pair import FilmPair
+from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.ui import Ui
 
 SIDES = ("A", "B")

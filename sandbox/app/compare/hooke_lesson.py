@@ -5,16 +5,16 @@ from collections.abc import Callable
 import numpy as np
 import pygame
 
-from sandbox.app.application import Application
+from sandbox.app.base.profile import Profile
 from sandbox.app.compare.compare_screen import CompareScreen
 from sandbox.app.compare.difference import draw_card_of_words
 from sandbox.app.compare.hooke_level import CD, C, SpringTrial, lesson_level
 from sandbox.app.compare.lesson_panel import LessonPanel
 from sandbox.app.compare.twin import TwinPlayback
+from sandbox.app.contracts.application import Application
+from sandbox.app.contracts.screen import Pixel
 from sandbox.app.panel.side_panel import SidePanel
 from sandbox.app.play.toolbar import BAR_HEIGHT
-from sandbox.app.profile import Profile
-from sandbox.app.screen import Pixel
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.world import World
 

@@ -8,12 +8,12 @@ import pygame
 from sandbox.app.compare.hooke_level import CD, FIRST_CS, FIRST_K, MOST_DOUBLINGS, C, SpringTrial, words
 from sandbox.app.compare.limit_gauge import LimitGauge
 from sandbox.app.draw.colours import TEXT
-from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.panel.coefficient_pad import CoefficientPad
 from sandbox.app.panel.panel_rows import INSIDE, MARGIN, PANEL_WIDTH
-from sandbox.app.play.playback import Playback
+from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.fields import Choice
 from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.

@@ -4,7 +4,7 @@ from typing import Self
 
 import numpy as np
 
-from sandbox.app.play.playback import Playback
+from sandbox.app.run.playback import Playback
 from sandbox.physics.world import LAW_HOOKE, World
 from sandbox.session.commands import Command, SetCoefficients, SetFirmness, SetSolver
 from sandbox.session.log import Branch

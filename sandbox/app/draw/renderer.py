@@ -6,6 +6,7 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
+from sandbox.app.base.profile import Profile
 from sandbox.app.draw.backdrop import Backdrop, stage_picture
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import ACCENT, DANGER, WARNING, packed
@@ -21,8 +22,7 @@ from sandbox.app.draw.things.cast import Cast, cast_of, joined_cast
 from sandbox.app.draw.things.ensemble import Ensemble
 from sandbox.app.draw.things.frame import Frame, strain_of
 from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
-from sandbox.app.play.playback import interpolated
-from sandbox.app.profile import Profile
+from sandbox.app.run.playback import interpolated
 from sandbox.level.format.model import Level
 from sandbox.physics.changing.equipment import Joined
 from sandbox.physics.joints.pulls import Pull

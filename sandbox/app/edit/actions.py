@@ -5,16 +5,16 @@ from collections.abc import Callable
 from functools import partial
 from typing import Literal
 
-from sandbox.app.application import Application
+from sandbox.app.base.shortcuts import shortcuts, tip_of
+from sandbox.app.contracts.application import Application
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.camera import Box
 from sandbox.app.draw.colours import material_colours
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.edit.clipboard import Clipboard
-from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.part_keeping import ask_to_keep_part
-from sandbox.app.edit.side.rows import Row
-from sandbox.app.shortcuts import shortcuts, tip_of
 from sandbox.app.widgets.dialogs import choose, choose_row, fill_in
+from sandbox.app.widgets.rows import Row
 from sandbox.editor.document import Document
 from sandbox.editor.edits.copying import array_circle, array_line, duplicate
 from sandbox.editor.edits.deleting import break_apart, delete

@@ -5,11 +5,11 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.base.shortcuts import tip_of
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import ACCENT, DISABLED, TEXT, Colour
 from sandbox.app.edit.edit_icons import EDIT_ICONS
-from sandbox.app.edit.editing import Editing
 from sandbox.app.play.toolbar import BAR_HEIGHT, BUTTON, GAP, ICON, ROOM_FOR_NAME
-from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.bar_title import BarTitle
 from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.ui import Ui

@@ -6,10 +6,10 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from sandbox.app.application import Application
+from sandbox.app.base.recordings import plain_name, recordings_folder
+from sandbox.app.contracts.application import Application
 from sandbox.app.edit.edit_screen import EditScreen
-from sandbox.app.play.playback import Playback
-from sandbox.app.recordings import plain_name, recordings_folder
+from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.dialogs import ask, choose, show_lines
 from sandbox.editor.document import UNTITLED, Document, empty_level
 from sandbox.editor.history import History

@@ -9,7 +9,12 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.app.application import Application
+from sandbox.app.base.profile import Profile
+from sandbox.app.base.sentences import sentence
+from sandbox.app.base.shortcuts import Mode
+from sandbox.app.contracts.application import Application
+from sandbox.app.contracts.editing import PointerTool
+from sandbox.app.contracts.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
 from sandbox.app.draw.camera import Box, Camera, Point, grid_spacing, union
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, SURFACE, TEXT, WARNING, Colour
 from sandbox.app.edit.actions import edit_actions
@@ -20,7 +25,6 @@ from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.edit.canvas.rulers import RULER, Rulers
 from sandbox.app.edit.canvas.view import View
 from sandbox.app.edit.clipboard import Clipboard
-from sandbox.app.edit.editing import PointerTool
 from sandbox.app.edit.side.options import OPTIONS_HEIGHT, OptionsRow
 from sandbox.app.edit.side.side import Side
 from sandbox.app.edit.watch import Watch
@@ -28,10 +32,6 @@ from sandbox.app.panel.side_panel import ROOM_FOR_PANEL
 from sandbox.app.play.stage import PICK_RADIUS
 from sandbox.app.play.status import STATUS_HEIGHT, counted_parts
 from sandbox.app.play.toolbar import BAR_HEIGHT
-from sandbox.app.profile import Profile
-from sandbox.app.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
-from sandbox.app.shortcuts import Mode
-from sandbox.app.widgets.sentences import sentence
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import can_scale_unevenly, move

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from sandbox.app.edit.editing import Editing
+from sandbox.app.base.sentences import capitalised, sentence
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.widgets.dialogs import ask
-from sandbox.app.widgets.sentences import capitalised, sentence
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.parts import part_of
 from sandbox.editor.items import chosen_definitions

@@ -5,7 +5,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.application import Application
+from sandbox.app.contracts.application import Application
 from sandbox.app.draw.colours import ACCENT, MUTED, TEXT, WARNING
 from sandbox.app.edit.canvas.pointer import DrawTool
 from sandbox.app.edit.documents import DocumentActions

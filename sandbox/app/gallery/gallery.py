@@ -9,17 +9,12 @@ from pathlib import Path
 
 import pygame
 
-from sandbox.app.application import Application
+from sandbox.app.base.recordings import saved_recordings
+from sandbox.app.base.slice_queue import SliceQueue
 from sandbox.app.compare.lesson_picture import lesson_picture, twice
-from sandbox.app.compiling import is_prepared
+from sandbox.app.contracts.application import Application
 from sandbox.app.draw.colours import TEXT, shown_theme
-from sandbox.app.edit.side.scroll import ScrollArea
-from sandbox.app.gallery.card import PICTURE_RATIO, TEXT_HEIGHT, Card, draw_shadow
-from sandbox.app.gallery.header import Header
-from sandbox.app.gallery.preview import Preview
-from sandbox.app.gallery.replay_card import date_of, fill_replay
-from sandbox.app.gallery.sections import FIRST, LIGHT_LEVELS, in_sections, is_found, search_rank
-from sandbox.app.picture_cache import (
+from sandbox.app.draw.picture_cache import (
     SECONDS,
     draw_in_slices,
     find_picture,
@@ -27,9 +22,14 @@ from sandbox.app.picture_cache import (
     kept_picture,
     picture_key,
 )
-from sandbox.app.recordings import saved_recordings
-from sandbox.app.slice_queue import SliceQueue
+from sandbox.app.gallery.card import PICTURE_RATIO, TEXT_HEIGHT, Card, draw_shadow
+from sandbox.app.gallery.header import Header
+from sandbox.app.gallery.preview import Preview
+from sandbox.app.gallery.replay_card import date_of, fill_replay
+from sandbox.app.gallery.sections import FIRST, LIGHT_LEVELS, in_sections, is_found, search_rank
+from sandbox.app.kernels.compiling import is_prepared
 from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.recent import played_levels, recent_levels
 from sandbox.level.faults.level_error import LevelError, one_line

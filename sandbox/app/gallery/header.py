@@ -6,9 +6,9 @@ from typing import Any
 
 from pygame_gui.elements import UIButton
 
-from sandbox.app.application import Application
+from sandbox.app.base.shortcuts import tip_of
+from sandbox.app.contracts.application import Application
 from sandbox.app.draw.colours import TEXT
-from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.fields import Field
 from sandbox.app.widgets.icons import ICONS, painted_icon
 from sandbox.app.widgets.ui import Ui

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pygame
 
+from sandbox.app.base.loop import TickClock
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.picture import crop_of
+from sandbox.app.draw.picture_cache import LINE_SCALE, PARTICLES, SECONDS, SIZE
 from sandbox.app.draw.renderer import Renderer
-from sandbox.app.loop import TickClock
-from sandbox.app.picture_cache import LINE_SCALE, PARTICLES, SECONDS, SIZE
 from sandbox.level.faults.level_error import LevelError
 from sandbox.level.format.files import read_level
 from sandbox.session.session import Session

@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 import pygame
 
-from sandbox.app.application import Application
+from sandbox.app.base.recordings import free_path, pictures_folder, plain_name, recordings_folder
+from sandbox.app.base.shortcuts import tip_of
+from sandbox.app.contracts.application import Application
 from sandbox.app.draw.colours import LINE, SURFACE
 from sandbox.app.draw.picture import write_png
 from sandbox.app.graphs.chart import Chart, GraphLine
 from sandbox.app.graphs.measures import MEASURES, Moment
 from sandbox.app.graphs.tracks import Track
-from sandbox.app.play.playback import Playback
-from sandbox.app.recordings import free_path, pictures_folder, plain_name, recordings_folder
-from sandbox.app.shortcuts import tip_of
+from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.fields import Choice
 from sandbox.app.widgets.ui import Ui

@@ -8,8 +8,8 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.colours import ACCENT, DANGER, DECADE, FIELD, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
-from sandbox.app.sweeps.layer_paint import limits_of, paint_cells, paint_line, paint_scale
-from sandbox.app.sweeps.sweep_layer import SweepLayer
+from sandbox.app.panel.sweeps.layer_paint import limits_of, paint_cells, paint_line, paint_scale
+from sandbox.app.panel.sweeps.sweep_layer import SweepLayer
 from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale
 from sandbox.app.widgets.painted import Draggable, wrapped
 from sandbox.app.widgets.slider import FINE_KEY_STEP, KEY_STEP

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.panel.readings import DIGITS, motion_words, number, per_cent, sag_words
-from sandbox.app.play.playback import Playback
+from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.fields import DASH, MIXED, Choice, Field, typed_number
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.ui import Ui

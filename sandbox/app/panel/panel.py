@@ -7,24 +7,24 @@ from functools import partial
 
 import numpy as np
 
+from sandbox.app.base.sentences import sentence
+from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.draw.colours import TEXT, WARNING
-from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.panel.coefficient_pad import STIFFNESSES, CoefficientPad, PadState
 from sandbox.app.panel.firmness_rows import ALL_BODIES, FirmnessRows
 from sandbox.app.panel.panel_rows import ENTRY_WIDTH, INSIDE, MARGIN, PANEL_WIDTH, ROW, PanelRows
 from sandbox.app.panel.readings import number, stability_words
 from sandbox.app.panel.response_curve import ResponseCurve
 from sandbox.app.panel.solver_rows import SolverRows
+from sandbox.app.panel.sweeps.pad_maps import PadMaps
+from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps
+from sandbox.app.panel.touching import Touching
 from sandbox.app.panel.world_rows import WorldRows
-from sandbox.app.play.playback import Playback
-from sandbox.app.play.touching import Touching
-from sandbox.app.shortcuts import tip_of
-from sandbox.app.sweeps.pad_maps import PadMaps
-from sandbox.app.sweeps.pad_sweeps import PadSweeps
+from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale, scale_for
 from sandbox.app.widgets.fields import DASH, MIXED, typed_number
 from sandbox.app.widgets.painted import TextBlock
-from sandbox.app.widgets.sentences import sentence
+from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.model import NissenMaterial

@@ -4,7 +4,7 @@ from collections.abc import Set
 from typing import Protocol
 
 from sandbox.app.panel.coefficient_pad import CoefficientPad
-from sandbox.app.play.playback import Playback
+from sandbox.app.run.playback import Playback
 
 # Narrower windows begin without a panel at their side [layout units].
 ROOM_FOR_PANEL = 800.0

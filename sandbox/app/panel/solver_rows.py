@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from sandbox.app.panel.panel_rows import ROW, PanelRows
-from sandbox.app.play.playback import Playback
+from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.fields import typed_number
 from sandbox.level.format.limits import SUBSTEPS
 from sandbox.physics.settings import AUTO

@@ -4,10 +4,10 @@ from collections.abc import Callable
 
 import pygame
 
+from sandbox.app.base.desktop import copy_text
 from sandbox.app.draw.colours import TEXT
-from sandbox.app.edit.side.scroll import ScrollArea
-from sandbox.app.share.desktop import copy_text
 from sandbox.app.widgets.painted import TextBlock, line_height, wrapped
+from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.ui import Ui
 from sandbox.export.chosen_body import NoSuchBody, body_names
 from sandbox.export.take_home_text import take_home_text

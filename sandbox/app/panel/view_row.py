@@ -6,9 +6,9 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.draw.colours import ACCENT, TEXT
 from sandbox.app.draw.views.overlays import NAMES
-from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.icons import ICONS, painted_icon
 from sandbox.app.widgets.ui import Ui
 

@@ -6,9 +6,9 @@ from typing import Any
 
 from sandbox.app.panel.panel_rows import INSIDE, MARGIN, ROW, PanelRows
 from sandbox.app.panel.readings import with_unit
+from sandbox.app.panel.touching import Touching
 from sandbox.app.panel.view_row import ViewRow
-from sandbox.app.play.playback import Playback
-from sandbox.app.play.touching import Touching
+from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.fields import DASH, typed_number
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.level.format.limits import FRICTION_LIMIT, GRAVITY_LIMIT

@@ -2,13 +2,13 @@
 
 from collections.abc import Callable, Iterator
 
+from sandbox.app.base.sentences import sentence
+from sandbox.app.base.slice_queue import SliceQueue
+from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.colours import MUTED, TEXT, WARNING, Colour
-from sandbox.app.edit.side.part_card import PartCard, card_places, fill_card
-from sandbox.app.edit.side.scroll import ScrollArea
-from sandbox.app.screen import Pixel
-from sandbox.app.slice_queue import SliceQueue
+from sandbox.app.parts.part_card import PartCard, card_places, fill_card
 from sandbox.app.widgets.painted import TextBlock
-from sandbox.app.widgets.sentences import sentence
+from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.joining import joining_commands

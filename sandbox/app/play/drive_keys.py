@@ -2,7 +2,7 @@
 
 import pygame
 
-from sandbox.app.play.playback import Playback
+from sandbox.app.run.playback import Playback
 from sandbox.level.build.actuators import driving_keys
 from sandbox.session.commands import SetDrive
 

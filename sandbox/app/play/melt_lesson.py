@@ -2,11 +2,11 @@
 
 from typing import ClassVar
 
+from sandbox.app.base.profile import Profile
+from sandbox.app.contracts.screen import Pixel
 from sandbox.app.play.melting import MELTED, WHOLE, is_melted
 from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.toolbar import BAR_HEIGHT
-from sandbox.app.profile import Profile
-from sandbox.app.screen import Pixel
 from sandbox.app.widgets.ui import Ui
 
 # Size of the button, and how far it is below the bar [layout units].

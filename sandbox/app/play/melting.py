@@ -1,6 +1,6 @@
 """The melt: the same Cs and Cd, solved one spring after another as in the article's loop, or all at once."""
 
-from sandbox.app.play.playback import Playback
+from sandbox.app.run.playback import Playback
 from sandbox.session.commands import SetSolver
 
 MELTED = "One spring after another, as in the article's loop: what is stiff melts or explodes."

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Box
-from sandbox.app.play.playback import Playback
+from sandbox.app.run.playback import Playback
 from sandbox.physics.components import body_of
 from sandbox.physics.query import shown_particles
 from sandbox.physics.state import Slots

@@ -7,10 +7,10 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.draw.colours import ACCENT, TEXT, Colour
 from sandbox.app.draw.part_pictures import picture_of
 from sandbox.app.play.stage import CATALOGUE
-from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.icons import ICONS, painted_icon
 from sandbox.app.widgets.ui import Ui

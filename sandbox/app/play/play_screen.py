@@ -7,19 +7,25 @@ from typing import ClassVar
 
 import pygame
 
-from sandbox.app.application import Application
+from sandbox.app.base.loop import SPEEDS
+from sandbox.app.base.profile import Profile
+from sandbox.app.base.shortcuts import Mode, tip_of
+from sandbox.app.contracts.application import Application
+from sandbox.app.contracts.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colour
 from sandbox.app.draw.detail import FULL, NO_EFFECTS
 from sandbox.app.draw.views.overlays import NAMES as OVERLAYS
-from sandbox.app.edit.bake_choice import ask_to_keep
-from sandbox.app.edit.rate_choice import ask_for_pace
+from sandbox.app.film.film import Film, last_ticks
+from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.graphs.graph_dock import GraphDock
-from sandbox.app.loop import SPEEDS
 from sandbox.app.panel.panel import Panel, PanelShape
 from sandbox.app.panel.panel_rows import PANEL_WIDTH
+from sandbox.app.panel.rate_choice import ask_for_pace
 from sandbox.app.panel.side_panel import ROOM_FOR_PANEL, SidePanel
+from sandbox.app.panel.touching import Touching, begin_touching
 from sandbox.app.parts.part_page import PartPage
+from sandbox.app.play.bake_choice import ask_to_keep
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.hand_labels import draw_labels
 from sandbox.app.play.key_caps import KEYS_HEIGHT, ROOM_BESIDE, draw_key_caps
@@ -28,19 +34,13 @@ from sandbox.app.play.melting import toggle_melt
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.out_of_view import OutOfView, put_back
 from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
-from sandbox.app.play.playback import Playback
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
 from sandbox.app.play.stuck import NOTICE, StuckBodies
 from sandbox.app.play.time_bar import TimeBar
 from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
-from sandbox.app.play.touching import Touching, begin_touching
-from sandbox.app.profile import Profile
-from sandbox.app.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
-from sandbox.app.share.film import Film, last_ticks
-from sandbox.app.share.film_pair import FilmPair
-from sandbox.app.shortcuts import Mode, tip_of
+from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.level.format.model import Level

@@ -7,16 +7,16 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
+from sandbox.app.base.profile import Profile
+from sandbox.app.base.stillness import Stillness
 from sandbox.app.draw.camera import Box, Camera, bounds
 from sandbox.app.draw.detail import Detail
 from sandbox.app.draw.part_pictures import PartGhost, box_of
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Overlay, Renderer
 from sandbox.app.play.following import Following, driven_particle
-from sandbox.app.play.playback import Playback
-from sandbox.app.play.stability_paint import StabilityPaint
-from sandbox.app.profile import Profile
-from sandbox.app.stillness import Stillness
+from sandbox.app.run.playback import Playback
+from sandbox.app.run.stability_paint import StabilityPaint
 from sandbox.editor.edits.joining import joining_commands
 from sandbox.editor.edits.sizing import sized
 from sandbox.level.format.model import Level

@@ -4,13 +4,13 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from sandbox.app.application import Application
+from sandbox.app.base.loop import BACKWARD_SPEEDS, FAST_SPEEDS
+from sandbox.app.base.shortcuts import tip_of
+from sandbox.app.contracts.application import Application
 from sandbox.app.draw.colours import ACCENT, TEXT
-from sandbox.app.loop import BACKWARD_SPEEDS, FAST_SPEEDS
-from sandbox.app.play.playback import Playback
 from sandbox.app.play.time_track import TimeTrack
-from sandbox.app.play.travel import Mark
-from sandbox.app.shortcuts import tip_of
+from sandbox.app.run.playback import Playback
+from sandbox.app.run.travel import Mark
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.icons import ICONS, painted_icon
 from sandbox.app.widgets.painted import wrapped

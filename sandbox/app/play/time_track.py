@@ -6,7 +6,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, SURFACE, TEXT, WARNING, mixed
-from sandbox.app.play.travel import Mark, Travel
+from sandbox.app.run.travel import Mark, Travel
 from sandbox.app.widgets.painted import Painted
 from sandbox.app.widgets.ui import Ui
 

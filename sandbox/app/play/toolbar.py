@@ -7,9 +7,9 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED, TEXT, Colour
 from sandbox.app.play.speeds import words_of
-from sandbox.app.shortcuts import tip_of
 from sandbox.app.widgets.bar_title import BarTitle
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.icons import ICONS, painted_icon

@@ -5,8 +5,8 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.base.shortcuts import Shortcut, combination_of
 from sandbox.app.draw.colours import ACCENT, LINE, MUTED, SURFACE, TEXT, mixed
-from sandbox.app.shortcuts import Shortcut, combination_of
 from sandbox.app.widgets.painted import Lit, Pressable, wrapped
 from sandbox.app.widgets.ui import Ui
 

@@ -2,12 +2,12 @@
 
 from functools import partial
 
+from sandbox.app.base.shortcuts import Mode, Shortcut, shortcuts, spoken, with_keys
 from sandbox.app.draw.colours import TEXT
-from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.settings.chosen import SETTINGS, Amount, Chosen, OneOf
 from sandbox.app.settings.key_row import KeyRow
-from sandbox.app.shortcuts import Mode, Shortcut, shortcuts, spoken, with_keys
 from sandbox.app.widgets.painted import TextBlock, text_height
+from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.

@@ -10,7 +10,7 @@ import pygame
 from sandbox.app.draw.camera import Box, Camera
 from sandbox.app.draw.picture import view_of, write_png
 from sandbox.app.draw.renderer import Renderer
-from sandbox.app.share.kinds import require
+from sandbox.app.film.kinds import require
 from sandbox.app.widgets.fonts import plain_font
 from sandbox.level.format.model import Level
 from sandbox.physics.snapshot import Snapshot, take

@@ -11,9 +11,9 @@ import numpy as np
 import pygame
 
 from sandbox.app.draw.picture import write_png
-from sandbox.app.share.film import Film, picture_count
-from sandbox.app.share.film_pair import FilmPair
-from sandbox.app.share.kinds import Size
+from sandbox.app.film.film import Film, picture_count
+from sandbox.app.film.film_pair import FilmPair
+from sandbox.app.film.kinds import Size
 
 # The work, in slices: each gives the part of it that is done, 0..1, the last nothing.
 Slices = Generator[float, None, None]

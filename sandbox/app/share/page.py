@@ -5,13 +5,13 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.application import Application
+from sandbox.app.contracts.application import Application
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, TEXT
-from sandbox.app.share.film import Film
-from sandbox.app.share.film_pair import FilmPair
-from sandbox.app.share.range_slider import RangeSlider
+from sandbox.app.film.film import Film
+from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.share.sharing import LIVELY, SHORTEST_FILM, SIZES, Sharing
 from sandbox.app.widgets.painted import Painted, TextBlock
+from sandbox.app.widgets.range_slider import RangeSlider
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.

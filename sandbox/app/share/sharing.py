@@ -11,15 +11,15 @@ from typing import Literal
 
 import pygame
 
-from sandbox.app.application import Application
+from sandbox.app.base.desktop import copy_text, copying_picture, open_folder
+from sandbox.app.base.recordings import chosen_path, free_path, move_new, pictures_folder, plain_name
+from sandbox.app.contracts.application import Application
 from sandbox.app.draw.colours import ACCENT, Colour
 from sandbox.app.draw.picture import write_png
-from sandbox.app.recordings import chosen_path, free_path, move_new, pictures_folder, plain_name
-from sandbox.app.share.desktop import copy_text, copying_picture, open_folder
+from sandbox.app.film.film import Film, last_ticks
+from sandbox.app.film.film_pair import FilmPair
+from sandbox.app.film.kinds import KINDS, Missing, Size, require
 from sandbox.app.share.export import Excerpt, Export, Slices
-from sandbox.app.share.film import Film, last_ticks
-from sandbox.app.share.film_pair import FilmPair
-from sandbox.app.share.kinds import KINDS, Missing, Size, require
 from sandbox.app.widgets.dialogs import Choice, choose
 from sandbox.editor.document import empty_level
 from sandbox.editor.storage.preferences import preference, set_preference

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from sandbox.app.draw.camera import Camera
-from sandbox.app.share.film import Film
+from sandbox.app.film.film import Film
 from sandbox.app.sound.bank import Bank
 from sandbox.app.sound.ear import Ear
 from sandbox.app.sound.mixdown import Mixdown

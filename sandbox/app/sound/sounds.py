@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from sandbox.app.draw.camera import Camera
-from sandbox.app.play.playback import Playback
+from sandbox.app.run.playback import Playback
 from sandbox.app.sound.bank import Bank, Note
 from sandbox.app.sound.device import Device
 from sandbox.app.sound.ear import Ear, Sounding

@@ -7,13 +7,13 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.base.loop import LONGEST_FRAME
+from sandbox.app.base.profile import Profile
 from sandbox.app.draw.colours import MUTED, show_theme
-from sandbox.app.loop import LONGEST_FRAME
+from sandbox.app.kernels.preparing import Preparation
 from sandbox.app.play.drive_keys import DriveKeys
-from sandbox.app.play.playback import Playback
 from sandbox.app.play.stage import Stage
-from sandbox.app.preparing import Preparation
-from sandbox.app.profile import Profile
+from sandbox.app.run.playback import Playback
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.settings.system_theme import theme_of
 from sandbox.app.sound.sounds import Sounds

@@ -7,7 +7,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.display import Display
+from sandbox.app.base.display import Display
 from sandbox.app.toy.desk import Desk
 
 # Its sides, or those of the square of its area; how much longer than high it is at most, or the other way round; and

@@ -7,9 +7,9 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import TEXT, WARNING
-from sandbox.app.edit.side.rows import MENU_ROWS, Row, RowList
-from sandbox.app.edit.side.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.painted import TextBlock, text_height
+from sandbox.app.widgets.rows import MENU_ROWS, Row, RowList
+from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.ui import Again, Ui
 
 # Sizes in layout units.

@@ -9,7 +9,7 @@ from pygame_gui.core.drawable_shapes.drawable_shape import DrawableShape
 from pygame_gui.core.interfaces import IUIManagerInterface
 from pygame_gui.core.surface_cache import SurfaceCache
 
-from sandbox.app.recent_pictures import RecentPictures
+from sandbox.app.base.recent_pictures import RecentPictures
 
 # What pictures of buttons and the like that are kept may take [bytes]; most have 10 kB, none has more than 160.
 HELD = 8_000_000

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pygame
 
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.camera import Camera, Point
 from sandbox.app.draw.colours import MUTED
 from sandbox.app.edit.canvas.overlay import CORNER, draw_corner
-from sandbox.app.edit.editing import Editing
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.terrain import corners_of, form_of, insert_corner, move_corner, piece_of
 from sandbox.editor.items import Item

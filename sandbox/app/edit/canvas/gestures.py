@@ -7,10 +7,10 @@ from typing import Protocol
 import numpy as np
 import pygame
 
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.camera import Point
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.edit.canvas.handles import Handles, Scaling, Turn
-from sandbox.app.edit.editing import Editing
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import move, rotate, scale
 from sandbox.editor.edits.placing import weld

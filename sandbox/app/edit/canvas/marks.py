@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pygame
 
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.camera import Camera, Point
 from sandbox.app.draw.colours import BACKGROUND, DRIVE, TEXT, mixed
-from sandbox.app.edit.editing import Editing
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.actuators import SceneActuators, scene_actuators
 from sandbox.editor.scene import Scene

@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 import pygame
 
+from sandbox.app.base.sentences import capitalised, sentence
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.camera import Point
 from sandbox.app.edit.canvas.corners import CornerMoving, Corners
 from sandbox.app.edit.canvas.gestures import Boxing, Gesture, Lassoing, Moving, Transforming, pick_mode
 from sandbox.app.edit.canvas.handles import Handles
 from sandbox.app.edit.canvas.overlay import draw_outline
-from sandbox.app.edit.editing import Editing
-from sandbox.app.widgets.sentences import capitalised, sentence
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.grouping import with_groups
 from sandbox.editor.edits.terrain import corners_of, delete_corner, move_corner, piece_of

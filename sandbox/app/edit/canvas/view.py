@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pygame
 
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.camera import Point
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.edit.canvas.canvas import Part, ScenePainter, SelectionMasks, moved_by
@@ -12,7 +13,6 @@ from sandbox.app.edit.canvas.edited_terrain import Ground
 from sandbox.app.edit.canvas.marks import DriveMarks
 from sandbox.app.edit.canvas.overlay import SPOT_SECONDS, draw_cursor, draw_label, draw_spot
 from sandbox.app.edit.canvas.pointer import SelectTool
-from sandbox.app.edit.editing import Editing
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.panel.typed import number_text
 from sandbox.editor.scene import Scene, make_scene

@@ -6,17 +6,17 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.base.sentences import sentence
+from sandbox.app.base.shortcuts import tip_of
+from sandbox.app.base.slice_queue import SliceQueue
+from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.colours import DANGER, MUTED, TEXT
 from sandbox.app.edit.canvas.pointer import DrawTool
-from sandbox.app.edit.editing import Editing
-from sandbox.app.edit.side.part_card import PartCard, card_places, fill_card
-from sandbox.app.edit.side.scroll import ScrollArea
-from sandbox.app.screen import Pixel
-from sandbox.app.shortcuts import tip_of
-from sandbox.app.slice_queue import SliceQueue
+from sandbox.app.parts.part_card import PartCard, card_places, fill_card
 from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.painted import TextBlock
-from sandbox.app.widgets.sentences import sentence
+from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.editor.scene import make_scene
 from sandbox.editor.storage.level_file import StorageError
 from sandbox.editor.storage.part_files import PartFile, catalogue, delete_part, rename_part

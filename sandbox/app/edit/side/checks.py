@@ -5,11 +5,11 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED
-from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.form import Form
 from sandbox.app.edit.side.list_head import HeadButton, ListHead
-from sandbox.app.edit.side.rows import Row
+from sandbox.app.widgets.rows import Row
 from sandbox.editor.document import Document
 from sandbox.editor.panel.level_properties import add_check, check_properties, delete_check
 from sandbox.level.checks import METRICS, CheckDef, CheckResult, promise_text, time_text

@@ -4,10 +4,10 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import ACCENT, DANGER, WARNING, Colour
-from sandbox.app.edit.editing import Editing
 from sandbox.app.edit.side.form import GAP, ROW
-from sandbox.app.edit.side.rows import Row, RowList
+from sandbox.app.widgets.rows import Row, RowList
 from sandbox.editor.items import items_of
 from sandbox.editor.lint.finding import Finding, Remedy
 

@@ -8,18 +8,18 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.base.sentences import sentence
+from sandbox.app.base.shortcuts import action_of, tip_of
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import MUTED, material_colours
 from sandbox.app.draw.themes import rgb_of
-from sandbox.app.edit.editing import Editing
-from sandbox.app.edit.side.boxes import CheckBox, KeyBox, Scrub
-from sandbox.app.edit.side.rows import Picker, Row
-from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.play.drive_keys import code_of
-from sandbox.app.shortcuts import action_of, tip_of
+from sandbox.app.widgets.boxes import CheckBox, KeyBox, Scrub
 from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.fields import Field
 from sandbox.app.widgets.painted import TextBlock, wrapped
-from sandbox.app.widgets.sentences import sentence
+from sandbox.app.widgets.rows import Picker, Row
+from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.collision_groups import collision_groups
 from sandbox.editor.panel.property import MIXED, Property, Section

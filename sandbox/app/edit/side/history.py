@@ -4,9 +4,9 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import DISABLED, TEXT
-from sandbox.app.edit.editing import Editing
-from sandbox.app.edit.side.rows import Row, RowList
+from sandbox.app.widgets.rows import Row, RowList
 from sandbox.editor.document import Document
 
 

@@ -7,7 +7,8 @@ import pygame
 
 from sandbox.app.draw.colours import FIELD, LINE, MUTED, TEXT, mixed
 from sandbox.app.edit.side.form import GAP, ROW
-from sandbox.app.edit.side.rows import (
+from sandbox.app.widgets.painted import wrapped
+from sandbox.app.widgets.rows import (
     DETAIL_SIZE,
     INSET,
     LINE_HEIGHT,
@@ -18,8 +19,7 @@ from sandbox.app.edit.side.rows import (
     Row,
     RowList,
 )
-from sandbox.app.edit.side.scroll import ScrollArea
-from sandbox.app.widgets.painted import wrapped
+from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.ui import Ui
 
 # A page that is lower than this has no room for a list beside what is chosen in it [layout units].

@@ -8,15 +8,15 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.base.sentences import sentence
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import material_colours
-from sandbox.app.edit.editing import Editing
-from sandbox.app.edit.side.boxes import Scrub
 from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.list_head import HeadButton, ListHead
-from sandbox.app.edit.side.rows import Row
 from sandbox.app.panel.readings import number
+from sandbox.app.widgets.boxes import Scrub
 from sandbox.app.widgets.fields import Field
-from sandbox.app.widgets.sentences import sentence
+from sandbox.app.widgets.rows import Row
 from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.materials import add_material, assign, delete_material, rename_material, set_material

@@ -7,12 +7,12 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.base.sentences import sentence
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import material_colours
 from sandbox.app.edit.canvas.pointer import DrawTool
-from sandbox.app.edit.editing import Editing
-from sandbox.app.edit.side.rows import Picker, Row
 from sandbox.app.widgets.fields import Field
-from sandbox.app.widgets.sentences import sentence
+from sandbox.app.widgets.rows import Picker, Row
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.moving import move, rotate, scale
 from sandbox.editor.tools.drawing_options import OptionInfo, described, stepped

@@ -4,9 +4,9 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.edit.editing import Editing
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.edit.side.form import Form
-from sandbox.app.edit.side.scroll import ScrollArea
+from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.editor.document import Document
 from sandbox.editor.panel.properties import properties
 

@@ -4,12 +4,12 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.edit.editing import Editing
+from sandbox.app.base.sentences import sentence
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.list_head import ROOM_FOR_LIST
-from sandbox.app.edit.side.scroll import ScrollArea
 from sandbox.app.widgets.dialogs import ask
-from sandbox.app.widgets.sentences import sentence
+from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_level_field
 from sandbox.editor.edits.pace import set_rate_in_pace

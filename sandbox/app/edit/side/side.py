@@ -7,7 +7,7 @@ from typing import Any, Protocol
 import pygame
 from pygame_gui.elements import UIButton
 
-from sandbox.app.edit.editing import Editing
+from sandbox.app.contracts.editing import Editing
 from sandbox.app.edit.side.catalogue import CataloguePage
 from sandbox.app.edit.side.checks import ChecksPage
 from sandbox.app.edit.side.findings import FindingsPage

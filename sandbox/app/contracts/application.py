@@ -1,0 +1,255 @@
+"""Application: what the parts of the app ask of it as a whole."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Protocol
+
+import pygame
+
+from sandbox.app.base.display import Display
+from sandbox.app.base.shortcuts import Mode
+from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.screen import Screen
+from sandbox.app.film.film import Film
+from sandbox.app.film.film_pair import FilmPair
+from sandbox.app.run.playback import Playback
+from sandbox.app.settings.chosen import Chosen
+from sandbox.app.sound.sounds import Sounds
+from sandbox.app.widgets.ui import Ui
+from sandbox.level.format.model import Level
+
+
+class Run(Screen, Protocol):
+    """A run on the screen; of_document: of the level that the editor has open."""
+
+    of_document: bool
+
+    @property
+    def playback(self) -> Playback:
+        """The run."""
+        ...
+
+    def film(self, seconds: float) -> Film | FilmPair:
+        """Its last seconds [s], as it is seen now."""
+        ...
+
+    def show_sweep(self, path: Path) -> None:
+        """Show a table that `sandbox sweep` made of its level. Raises SweepError and OSError."""
+        ...
+
+
+class Documents(Protocol):
+    """What is done with the level that the editor has open; editor: its screen, also while it is played."""
+
+    @property
+    def editor(self) -> Editing | None:
+        """Its screen."""
+        ...
+
+    def new(self, then: Callable[[], object] = ...) -> None:
+        """Begin an empty level, once it is clear what becomes of the present one."""
+        ...
+
+    def open(self, path: str | Path) -> None:
+        """Edit the level of a file; faults are shown."""
+        ...
+
+    def open_copy(self, path: str | Path) -> None:
+        """Edit a level that is saved under a new name."""
+        ...
+
+    def edit_level(self, level: Level, label: str = ...) -> None:
+        """Edit a level that has no file."""
+        ...
+
+    def save(self) -> None:
+        """Save the level to its file."""
+        ...
+
+    def save_as(self) -> None:
+        """Save the level under a name that is asked for."""
+        ...
+
+    def revert(self) -> None:
+        """Read the file again."""
+        ...
+
+    def note(self, level: Level, path: Path | None, label: str) -> None:
+        """Have the autosave follow."""
+        ...
+
+    def look_at_disk(self) -> None:
+        """Say so where another program has changed the file."""
+        ...
+
+    def play(self) -> None:
+        """Play the level."""
+        ...
+
+    def back(self) -> None:
+        """Back to the level from a run of it."""
+        ...
+
+
+class Files(Protocol):
+    """What is done with files; faults are shown as lines."""
+
+    def open_path(self, path: str | Path) -> bool:
+        """Open a level or a recording; whether it could be."""
+        ...
+
+    def open_level(self, path: str | Path, shipped: bool = ...) -> bool:
+        """Open a level, to be played or edited; whether it could be."""
+        ...
+
+    def open_replay(self, path: str | Path) -> bool:
+        """Open a recording; whether it could be."""
+        ...
+
+    def ask_to_open(self) -> None:
+        """Ask for a file."""
+        ...
+
+    def toggle_recording(self) -> None:
+        """Begin to record the run, or stop."""
+        ...
+
+    def save_run(self) -> None:
+        """Save the run so far as a recording."""
+        ...
+
+
+class Page(Protocol):
+    """A page over the screen that takes keys and the wheel."""
+
+    @property
+    def is_on_top(self) -> bool:
+        """Whether no other page lies over it."""
+        ...
+
+    def press_key(self, event: pygame.event.Event) -> bool:
+        """React to a key; whether it has a meaning here."""
+        ...
+
+    def scroll(self, notches: float) -> None:
+        """React to the mouse's wheel."""
+        ...
+
+
+class Application(Protocol):
+    """The app as its parts see it."""
+
+    @property
+    def display(self) -> Display:
+        """The window."""
+        ...
+
+    @property
+    def ui(self) -> Ui:
+        """The widgets."""
+        ...
+
+    @property
+    def ready(self) -> bool:
+        """Whether the physics is prepared."""
+        ...
+
+    @property
+    def chosen(self) -> Chosen:
+        """What the person has chosen about the app."""
+        ...
+
+    @property
+    def sounds(self) -> Sounds:
+        """What is heard of the run."""
+        ...
+
+    @property
+    def mode(self) -> Mode:
+        """Which table of shortcuts holds."""
+        ...
+
+    @property
+    def screen(self) -> Screen | None:
+        """What fills the window under its pages."""
+        ...
+
+    @property
+    def play(self) -> Run | None:
+        """The run that is on the screen, if it is one."""
+        ...
+
+    @property
+    def gallery(self) -> Page | None:
+        """The page of levels or recordings, where it is open."""
+        ...
+
+    @property
+    def documents(self) -> Documents:
+        """What is edited."""
+        ...
+
+    @property
+    def files(self) -> Files:
+        """Opening, recording, saving."""
+        ...
+
+    def say(self, text: str) -> None:
+        """Show a line to the person for some seconds."""
+        ...
+
+    def take_back(self, text: str) -> None:
+        """Take away a line that no longer holds."""
+        ...
+
+    def show_faults(self, title: str, faults: list[str]) -> None:
+        """Show lines in a box."""
+        ...
+
+    def act(self, action: str) -> None:
+        """Do what a key or button asks for, where the screen knows it."""
+        ...
+
+    def start(self, playback: Playback, source: Path | None = None) -> None:
+        """Show a run from its beginning; source: the file of its level."""
+        ...
+
+    def start_document(self, playback: Playback) -> Run:
+        """Show a run of the level that the editor has open."""
+        ...
+
+    def show_screen(self, screen: Screen) -> None:
+        """Fill the window with another screen."""
+        ...
+
+    def start_pair(self, path: Path) -> None:
+        """Play the level of a file twice side by side, with the pad in the panel."""
+        ...
+
+    def start_melt(self) -> None:
+        """Begin the lesson on springs that are solved one by one."""
+        ...
+
+    def start_lesson(self) -> None:
+        """Begin the lesson on Hooke's spring and the article's."""
+        ...
+
+    def follow(self, playback: Playback, can_cancel: bool = True) -> None:
+        """Show how far a run is that has to be played again."""
+        ...
+
+    def offer_tour(self) -> None:
+        """Offer the tour of the editor to who has not seen it."""
+        ...
+
+    def open_gallery(self, section: str = ..., query: str = ...) -> None:
+        """Choose a level or a recording."""
+        ...
+
+    def rebuild(self) -> None:
+        """Lay everything out anew."""
+        ...
+
+    def quit(self) -> None:
+        """Leave after this frame."""
+        ...

@@ -1,0 +1,254 @@
+"""Editing: what the parts of the editor ask of the screen that they belong to."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+import pygame
+from numpy.typing import NDArray
+
+from sandbox.app.contracts.screen import Pixel, Pointer
+from sandbox.app.draw.camera import Box, Camera, Point
+from sandbox.app.widgets.ui import Ui
+from sandbox.editor.document import Document
+from sandbox.editor.history import History
+from sandbox.editor.items import Selection
+from sandbox.editor.lint.finding import Finding
+from sandbox.editor.scene import Scene
+from sandbox.editor.storage.level_file import LevelFile
+from sandbox.editor.tools.snap import Snap
+
+
+class PointerTool(Protocol):
+    """A tool under the pointer; matrix: what it does to the selection so far."""
+
+    @property
+    def hint(self) -> str:
+        """What to do next, in one line."""
+        ...
+
+    @property
+    def measure(self) -> str:
+        """Sizes of what is under way; empty where nothing is."""
+        ...
+
+    @property
+    def matrix(self) -> np.ndarray | None:
+        """What becomes of the selection so far (2, 3); None = nothing."""
+        ...
+
+    def down(self, point: Point, modifiers: int, clicks: int) -> None:
+        """The pointer is pressed at a point [m]."""
+        ...
+
+    def move(self, point: Point, modifiers: int) -> None:
+        """The pointer moves while pressed."""
+        ...
+
+    def up(self, point: Point, modifiers: int) -> None:
+        """The pointer is released."""
+        ...
+
+    def hover(self, point: Point | None, modifiers: int) -> None:
+        """Where the pointer is while nothing is pressed; None = elsewhere."""
+        ...
+
+    def cancel(self) -> bool:
+        """Give up what is under way; whether there was anything."""
+        ...
+
+    def ghost(self) -> Document | None:
+        """The document as it would be."""
+        ...
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """Draw what belongs to the tool."""
+        ...
+
+
+class Editing(Protocol):
+    """A level that is edited; `edit` alone changes it, so that every change can be undone."""
+
+    ui: Ui
+    history: History
+    camera: Camera
+    snapping: bool
+    # The keyboard cursor [m], and the mouse [pixels], where they are over the level.
+    cursor: Point | None
+    pointer: Pixel | None
+
+    @property
+    def actions(self) -> dict[str, Callable[[], object]]:
+        """What can be done, by the names of the table of shortcuts."""
+        ...
+
+    @property
+    def show_side(self) -> bool:
+        """Whether the panel at the side is shown."""
+        ...
+
+    # The document.
+
+    @property
+    def document(self) -> Document:
+        """The level in work, and what of it is selected."""
+        ...
+
+    @property
+    def scene(self) -> Scene:
+        """The level as arrays."""
+        ...
+
+    @property
+    def level_file(self) -> LevelFile:
+        """Where the level is saved."""
+        ...
+
+    @property
+    def selection_box(self) -> Box | None:
+        """The box [m] around the selection; None where nothing is selected."""
+        ...
+
+    @property
+    def scales_apart(self) -> bool:
+        """Whether width and height of the selection can be changed each by itself."""
+        ...
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What the linter found."""
+        ...
+
+    @property
+    def hanging(self) -> NDArray[np.float64] | None:
+        """Where everything will hang [m]; None while it is not asked for or not known."""
+        ...
+
+    def edit(self, label: str, function: Callable[[Document], Document], merge: str | None = None) -> bool:
+        """Make an edit a step of the history; False, and a line for the person, where it cannot be made."""
+        ...
+
+    def apply(self, label: str, document: Document, merge: str | None = None) -> None:
+        """Take a document over as a step of the history."""
+        ...
+
+    def step_to(self, index: int) -> None:
+        """Show the state after a step of the history."""
+        ...
+
+    def select(self, selection: Selection) -> None:
+        """Select items."""
+        ...
+
+    # Tools and the pointer.
+
+    @property
+    def tool(self) -> str:
+        """The name of the tool that the pointer has."""
+        ...
+
+    @property
+    def pointer_tool(self) -> PointerTool:
+        """What the pointer does."""
+        ...
+
+    @property
+    def reach(self) -> float:
+        """How far off a particle [m] the pointer still takes it."""
+        ...
+
+    def contains(self, pixel: Pixel) -> bool:
+        """Whether a pixel shows the level."""
+        ...
+
+    def point(self, kind: Pointer, pixel: Pixel, modifiers: int, clicks: int = 1) -> None:
+        """Hand a pointer event to the tool."""
+        ...
+
+    @property
+    def grid(self) -> float:
+        """Distance [m] of the points that the pointer snaps to."""
+        ...
+
+    def choose_tool(self, name: str) -> None:
+        """Take another tool up."""
+        ...
+
+    def cancel(self) -> None:
+        """Give up what is under way, then the tool, then the selection."""
+        ...
+
+    def press_cursor(self) -> None:
+        """Click at the keyboard cursor; without one, end what is drawn."""
+        ...
+
+    def grid_snaps(self, modifiers: int) -> bool:
+        """Whether anything draws the pointer now."""
+        ...
+
+    def snapped(self, point: Point, modifiers: int, anchor: Point | None = None, skip: Selection = frozenset()) -> Snap:
+        """Where the pointer is taken to be."""
+        ...
+
+    # What is shown.
+
+    @property
+    def without_button(self) -> tuple[str, ...]:
+        """Actions whose buttons have no room."""
+        ...
+
+    @property
+    def ready(self) -> bool:
+        """Whether the physics is prepared."""
+        ...
+
+    @property
+    def scale(self) -> float:
+        """Pixels per layout unit."""
+        ...
+
+    def say(self, text: str) -> None:
+        """Show a line to the person."""
+        ...
+
+    def show(self, place: Point) -> None:
+        """Bring a place [m] into view, and mark it for a moment."""
+        ...
+
+    def fit(self) -> None:
+        """Show the level's view and all particles."""
+        ...
+
+    def draw_snap(self, surface: pygame.Surface, snapped: Snap) -> None:
+        """Mark what the pointer snaps to, with a word."""
+        ...
+
+    def focus_numbers(self) -> None:
+        """Type into the row of numbers."""
+        ...
+
+    def toggle_side(self) -> None:
+        """Hide or show the panel at the side."""
+        ...
+
+    def show_parts(self, path: Path | None = None) -> None:
+        """Show the catalogue of parts at the side, and give the part of a file the keyboard; None = that in hand."""
+        ...
+
+    def turn_page(self, by: int) -> None:
+        """Show another page of the panel at the side."""
+        ...
+
+    @property
+    def shows_forecast(self) -> bool:
+        """Whether it is shown where everything will hang."""
+        ...
+
+    def begin_at_rest(self) -> None:
+        """Let everything begin where it will hang."""
+        ...
+
+    def toggle_forecast(self) -> None:
+        """Show where everything will hang, or no more."""
+        ...

@@ -1,0 +1,211 @@
+"""PadSweeps: what sweeps of the level on the screen say of every Cs and Cd, found in the background and kept."""
+
+import contextlib
+import json
+import os
+from collections.abc import Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+import platformdirs
+
+from sandbox.app.kernels.compiling import usual_processes
+from sandbox.app.panel.sweeps.sweep_layer import SweepLayer
+from sandbox.app.panel.sweeps.sweep_measures import measure_of
+from sandbox.app.widgets.coefficient_scale import PLAIN
+from sandbox.level.faults.level_error import LevelError
+from sandbox.level.format.model import Level
+from sandbox.physics.settings import WorldSettings
+from sandbox.session.replay.again import with_settings
+from sandbox.session.sweep.background import BackgroundSweep
+from sandbox.session.sweep.grid import CD, CS, SweepError, SweepGrid
+from sandbox.session.sweep.journal import Journal
+from sandbox.session.sweep.sweep_map import panel_values
+from sandbox.session.sweep.table import Rows, read_table
+
+# Values on each axis of the pad, and how long each run is [s].
+SIDE, SECONDS = 13, 10.0
+# Sweeps that are kept, those used last.
+KEPT = 60
+# Settings of a world that a person may change while it runs, and that a level has.
+SETTINGS = ("solver", "substeps", "iterations", "warm_start", "gravity")
+SOLVER, SUBSTEPS = "settings.solver", "settings.substeps"
+
+
+class _Found(NamedTuple):
+    """A sweep, the file that it was opened from, its journal where it is not whole, and its rows."""
+
+    file: Path | None
+    grid: SweepGrid
+    journal: Journal | None
+    rows: Rows
+
+
+class PadSweeps:
+    """Sweeps of the level that runs, for one measure that is shown (None: none is)."""
+
+    def __init__(self) -> None:
+        self.measure: str | None = None
+        self.layer: SweepLayer | None = None
+        self.error: str | None = None
+        self._file: Path | None = None
+        self._of: tuple[Level, WorldSettings, str | None] | None = None
+        self._grid: SweepGrid | None = None
+        self._journal: Journal | None = None
+        self._rows: Rows = {}
+        self._work: BackgroundSweep | None = None
+        self._thread = ThreadPoolExecutor(1)
+        self._finding: Future[_Found] | None = None
+
+    @property
+    def progress(self) -> tuple[int, int]:
+        """How many runs are known, and how many there are."""
+        return len(self._rows), 0 if self._grid is None else self._grid.runs
+
+    def show(self, measure: str | None) -> None:
+        """Show a measure; None: nothing, and no more runs are made."""
+        self.measure, self.error = measure, None
+        if measure is None:
+            self.stop()
+        self._paint()
+
+    def load(self, path: Path, level: Level, settings: WorldSettings, materials: Sequence[str]) -> str | None:
+        """Show a table that `sandbox sweep` made of the level; the material that it is of.
+
+        Raises SweepError where it is of another level or no map of these settings, and OSError.
+        """
+        present = _present(level, settings)
+        grid, _ = read_table(path, present, (None, *materials))
+        _place_in(grid, settings)
+        self._file, self._of = path, None
+        if self.measure not in grid.figures:
+            self.show(grid.figures[0])
+        return grid.material
+
+    def follow(self, level: Level, settings: WorldSettings, material: str | None) -> None:
+        """Be of a level with settings as they are now, and of a material's springs (None = all)."""
+        if self.measure is None:
+            return
+        if self._of is not None and self._of[0] is level and self._of[1:] == (settings, material):
+            return
+        self.stop()
+        self._of, self.error = (level, settings, material), None
+        self._journal, self._grid, self._rows = None, None, {}
+        # Files may take their time.
+        self._finding = self._thread.submit(_find, self._file, level, settings, material)
+        self._paint()
+
+    def update(self) -> bool:
+        """Take up what has been found; whether there is anything new."""
+        if self._finding is not None and self._finding.done():
+            self._begin(self._finding)
+            self._finding = None
+            self._paint()
+            return True
+        if self._work is None or self._journal is None:
+            return False
+        found = self._work.new_rows()
+        with contextlib.suppress(OSError):
+            for number, row in found:
+                self._journal.add(number, row)
+        before, self.error = self.error, self._work.error or self.error
+        if self._work.is_done:
+            self._work.stop()
+            self._work = None
+            self._thread.submit(self._journal.finish)
+        if found:
+            self._paint()
+        return bool(found) or before != self.error
+
+    def stop(self) -> None:
+        """Let no child run on; what is known stays."""
+        if self._work is not None:
+            self._work.stop()
+        self._work = self._finding = self._of = None
+
+    def _begin(self, finding: "Future[_Found]") -> None:
+        """Show what was found, and let children find the rest."""
+        try:
+            found = finding.result()
+            self._file, self._grid, self._journal, self._rows = found
+            if found.journal is not None:
+                numbers = [number for number in coarse_first(SIDE) if number not in found.rows]
+                self._work = BackgroundSweep(found.grid, numbers, max(1, usual_processes() - 1))
+        except (SweepError, LevelError, OSError) as error:
+            self.error = str(error)
+
+    def _paint(self) -> None:
+        self.layer = None
+        grid = self._grid
+        if self.measure is None or grid is None or self._of is None:
+            return
+        figure = self.measure if self.measure in grid.figures else grid.figures[0]
+        axes, values = panel_values(grid, self._rows, _place_in(grid, self._of[1]))
+        self.layer = SweepLayer(figure, axes[CS], axes[CD], values)
+
+
+def _find(file: Path | None, level: Level, settings: WorldSettings, material: str | None) -> _Found:
+    """The sweep in a file that was opened, else one that is kept, else one that is to be made."""
+    level = _present(level, settings)
+    if file is not None:
+        with contextlib.suppress(SweepError, OSError, UnicodeDecodeError):
+            grid, rows = read_table(file, level, (material,))
+            _place_in(grid, settings)
+            return _Found(file, grid, None, rows)
+    values = tuple(float(f"{each:.9g}") for each in PLAIN.values(SIDE))
+    grid = SweepGrid(level, {CS: values, CD: values}, round(SECONDS * level.settings.tick_rate), material)
+    table = _kept_table(grid)
+    with contextlib.suppress(SweepError, OSError, UnicodeDecodeError):
+        found = read_table(table, level, (material,))
+        os.utime(table)
+        return _Found(None, found[0], None, found[1])
+    journal = Journal(table, grid)
+    return _Found(None, grid, journal, journal.rows)
+
+
+def coarse_first(side: int) -> list[int]:
+    """Numbers of the points of a square grid, in an order in which every part of it is soon known roughly."""
+    steps = [4, 2, 1]
+    rank: dict[int, int] = {}
+    for step in steps:
+        for number in range(side * side):
+            if number // side % step == 0 and number % side % step == 0:
+                rank.setdefault(number, len(rank))
+    return list(rank)
+
+
+def measures_of(level: Level) -> dict[str, str]:
+    """What a pad can show of sweeps of a level: names of figures by what a person reads."""
+    figures = SweepGrid(level, {CS: (1.0,)}, 1).figures
+    return {measure_of(figure).title.partition(" [")[0].capitalize(): figure for figure in figures}
+
+
+def _present(level: Level, settings: WorldSettings) -> Level:
+    """The level with the settings that a person may have changed."""
+    now = {name: getattr(settings, name) for name in SETTINGS}
+    if all(getattr(level.settings, name) == value for name, value in now.items()):
+        return level
+    return with_settings(level, json.loads(json.dumps(now)), "the level with these settings")
+
+
+def _place_in(grid: SweepGrid, settings: WorldSettings) -> dict[str, object]:
+    """Which panel of a grid is of these settings. Raises SweepError."""
+    now = {SOLVER: settings.solver, SUBSTEPS: settings.substeps}
+    others = [name for name in grid.columns if name not in (CS, CD)]
+    if not {CS, CD} <= set(grid.columns) or not set(others) <= set(now):
+        raise SweepError("the pad shows sweeps over Cs and Cd, and solvers and substeps")
+    for name in others:
+        if now[name] not in grid.columns[name]:
+            raise SweepError(f"the sweep has no runs with {name.removeprefix('settings.')} {now[name]}")
+    return {name: now[name] for name in others}
+
+
+def _kept_table(grid: SweepGrid) -> Path:
+    """Where the table of a grid is kept in the user's cache, from which those go that were not used for longest."""
+    folder = Path(platformdirs.user_cache_dir("spring-sandbox", appauthor=False)) / "sweeps"
+    folder.mkdir(parents=True, exist_ok=True)
+    kept = sorted(folder.glob("*.csv*"), key=lambda path: path.stat().st_mtime, reverse=True)
+    for path in kept[KEPT:]:
+        path.unlink(missing_ok=True)
+    return folder / f"{grid.digest}.csv"

@@ -1,0 +1,406 @@
+"""Playback: the run on the screen: a session, the clock that drives it and the two snapshots that are drawn."""
+
+import time
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from sandbox.app.base.loop import TickClock
+from sandbox.app.run.breaks import Breaks
+from sandbox.app.run.liveliness import Liveliness
+from sandbox.app.run.travel import Travel
+from sandbox.level.format.model import Level
+from sandbox.physics.energy import Dissipation
+from sandbox.physics.snapshot import Snapshot, state_hash
+from sandbox.physics.step import expect
+from sandbox.physics.world import World
+from sandbox.session.breaks import break_lines
+from sandbox.session.commands import Command, CommandError, Redo, Undo
+from sandbox.session.log import Branch
+from sandbox.session.replay.recording import Replay, ReplayError
+from sandbox.session.session import Session
+from sandbox.session.whole import Interrupted
+from sandbox.tools.tool import Response
+
+# Wall time [s] that the ticks of one frame may take; the ticks beyond it are lost and the run falls behind real time,
+# but the window goes on answering.
+TICK_BUDGET = 0.05
+# Frames without a tick after something has joined the run: the one that adds it, and the one that lays out its ticks.
+FRAMES_TO_JOIN = 2
+# What is said where playing a run again was given up.
+GIVEN_UP = "Cancelled: the run is as it was."
+
+
+class Listener(Protocol):
+    """Who is told of every tick of a run; it reads and never writes."""
+
+    def hear(self, world: World) -> None:
+        """Take in the world after a tick."""
+        ...
+
+    def forget(self) -> None:
+        """Compare with nothing that was before: history is another."""
+        ...
+
+
+class Playback:
+    """A level being played, or a replay being watched; `previous` and `current` are what the renderer draws between."""
+
+    def __init__(self, level: Level, replay: Replay | None = None, start: Snapshot | None = None) -> None:
+        self.session = Session(level, replay.script if replay else (), start)
+        self.level = level
+        self.replay = replay
+        self.clock = TickClock()
+        self.dissipation = Dissipation()
+        self.breaks = Breaks(level)
+        self.liveliness = Liveliness()
+        self.behind = False
+        self.verdict = ""
+        self.messages: list[str] = []
+        self.listener: Listener | None = None
+        self.current = self.previous = self.session.snapshot()
+        self.travel = Travel(self.session, replay)
+        self._equal = True
+        self._taken_over = False
+        self._passed_over = False
+        self._submitted = False
+        # Frames that what joins a run takes for itself.
+        self._making_room = 0
+        # Grows with every command of the person's that was applied.
+        self.revision = 0
+
+    @property
+    def has_pending(self) -> bool:
+        """Whether commands wait that `apply_pending` has not applied yet."""
+        return self._submitted
+
+    @property
+    def watching(self) -> bool:
+        """Whether a replay still decides what happens."""
+        return self.replay is not None and not self._taken_over
+
+    @property
+    def moves(self) -> bool:
+        """Whether time passes in it, or it is on its way to another tick."""
+        return not self.clock.paused or self.clock.single_steps > 0 or self._submitted or self.travel.target is not None
+
+    @property
+    def outcome(self) -> str:
+        """What came of a replay that was watched, while the run is at its end or no longer follows it; else ""."""
+        return self.verdict if self._taken_over or self.session.tick == self.length else ""
+
+    @property
+    def length(self) -> int:
+        """The last tick that can be gone to."""
+        return self.travel.length(self.watching)
+
+    def reset(self) -> "Playback":
+        """The same level or replay from its beginning, at the same speed."""
+        fresh = Playback(self.level, self.replay)
+        fresh.clock = replace(self.clock, speed=abs(self.clock.speed), accumulator=0.0, single_steps=0)
+        fresh.travel.bookmarks, fresh.travel.span = self.travel.bookmarks, self.travel.span
+        return fresh
+
+    def submit(self, command: Command, gesture: int | None = None) -> None:
+        """Queue a command of the person's; while a replay is watched, or in the past, the person takes over from it."""
+        session = self.session
+        is_past = session.tick < session.last_tick
+        if (self.watching or is_past) and not self._submitted:
+            gesture = session.new_gesture() if gesture is None else gesture
+            self._end_what_goes_on(gesture)
+        if self.watching:
+            self.take_over()
+        if is_past and not self._submitted:
+            self.messages.append("The run goes on from here. What followed is kept: Shift+Y returns to it.")
+        if self.clock.speed < 0.0:
+            self.clock.speed, self.clock.accumulator = 1.0, 0.0
+        self.travel.target = None
+        self._submitted = True
+        if self.listener is not None and isinstance(command, (Undo, Redo)):
+            self.listener.forget()
+        session.submit(command, gesture)
+
+    def respond(self, response: Response) -> None:
+        """Queue what a tool answered."""
+        for command, gesture in response.submissions:
+            self.submit(command, gesture)
+        if response.message:
+            self.messages.append(response.message)
+
+    def submit_undo(self) -> None:
+        """Take the last gesture back, also one of this frame."""
+        self.apply_pending()
+        self._submit_if(self.session.can_undo, Undo(), "There is nothing to undo.")
+
+    def submit_redo(self) -> None:
+        """Make the gesture again that was undone last, also in this frame."""
+        self.apply_pending()
+        self._submit_if(self.session.can_redo, Redo(), "There is nothing to redo.")
+
+    def _submit_if(self, possible: bool, command: Command, otherwise: str) -> None:
+        if possible:
+            self.submit(command)
+        else:
+            self.messages.append(otherwise)
+
+    def toggle_pause(self) -> None:
+        """Pause, or go on; at the end of a replay the run goes on from there."""
+        if self.clock.paused and self.watching and self.verdict and self.session.tick == self.length:
+            self._end_what_goes_on(self.session.new_gesture())
+            self.take_over()
+        self.travel.target = None
+        self.clock.paused = not self.clock.paused
+
+    def _end_what_goes_on(self, gesture: int) -> None:
+        """Let go what hands hold and stop what is driven by commands that are not followed any further."""
+        for ending in self.session.going():
+            self.session.submit(ending, gesture)
+
+    def take_over(self) -> None:
+        """Stop following the replay: from here the person plays."""
+        self._taken_over = True
+        self.verdict = f"You took over at tick {self.session.tick}"
+        self.messages.append(f"{self.verdict}: the recording is not followed any further.")
+
+    def seek(self, tick: int) -> None:
+        """Go to a tick, as near as there is one; a replay that has not been there yet goes on from its stored
+        state nearest before it, and hurries on from there.
+
+        While the run is recorded it stays where it is, with a message.
+        """
+        session = self.session
+        tick = min(max(tick, 0), self.length)
+        if session.recording is not None:
+            self.messages.append("Stop the recording before you go back in time.")
+            self.clock.speed = abs(self.clock.speed)
+            return
+        self.apply_pending()
+        here = session.snapshot()
+        self._jump(tick)
+        self.travel.target = tick if tick > session.last_tick else None
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                session.seek(min(tick, session.last_tick))
+        except Interrupted:
+            if session.tick != here.tick:
+                session.adopt(here)
+            self.travel.target, self.clock.paused = None, True
+            self.messages.append(GIVEN_UP)
+        self.clock.accumulator = 0.0
+        self.revision += 1
+        if self.listener is not None:
+            self.listener.forget()
+        self.current = self.previous = session.snapshot()
+
+    def _jump(self, tick: int) -> None:
+        """Take the replay's stored state that is nearest before a tick, where that shortens the way."""
+        stored = self.travel.stored_before(tick) if self.watching else None
+        if stored is None:
+            return
+        assert self.replay is not None
+        ahead = stored > self.session.last_tick
+        # A state that is damaged is come to tick by tick.
+        with suppress(ReplayError, CommandError):
+            self.session.adopt(self.replay.state(stored))
+            self._passed_over = self._passed_over or ahead
+
+    def return_to(self, branch: Branch) -> None:
+        """Go back to where a branch begins, with it as what follows."""
+        if self.session.recording is not None:
+            self.messages.append("Stop the recording before you go back in time.")
+            return
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                self.session.return_to(branch)
+        except Interrupted:
+            self.messages.append(GIVEN_UP)
+            return
+        self._taken_over = True
+        self.seek(branch.tick)
+
+    def apply_pending(self) -> None:
+        """Apply what was submitted, also while paused, and show it at once."""
+        submitted, self._submitted = self._submitted, False
+        joined = self.session.world.joined
+        try:
+            self.session.apply_pending()
+        except CommandError as error:
+            self._give_up(error)
+        except Interrupted:
+            self._stop_short()
+        if len(self.session.world.joined) > len(joined):
+            self._making_room = FRAMES_TO_JOIN
+        if submitted:
+            self.revision += 1
+            self.current = self.session.snapshot()
+            if len(self.previous.mass) != len(self.current.mass) or self.clock.paused:
+                self.previous = self.current
+        self._drain()
+
+    def record_to(self, path: Path) -> Path:
+        """Record from here on, and what was until now; in a replay's past the person takes over from it.
+
+        The file's path. Raises OSError where it cannot be written.
+        """
+        self.apply_pending()
+        is_past = self.session.tick < self.session.last_tick
+        self.session.record_to(path)
+        if self.watching and is_past:
+            self.take_over()
+        return path
+
+    def save_to(self, path: Path) -> Path | None:
+        """Write what was until now into a file, and leave the run as it is; see Session.save_to."""
+        self.apply_pending()
+        return self.session.save_to(path)
+
+    def stop_recording(self) -> Path | None:
+        """End a recording, with all that was submitted until now in it; its file, None where none was being made."""
+        self.apply_pending()
+        return self.session.stop_recording()
+
+    def advance(self, frame_time: float) -> int:
+        """Let frame_time [s] of wall time pass; returns the ticks that were made."""
+        if self._making_room and not self.clock.paused:
+            self._make_room()
+            return 0
+        due = self.clock.ticks(frame_time, self.session.world.settings.tick_rate)
+        if self.travel.target is not None:
+            return self._hurry(self.travel.target)
+        if due < 0:
+            return self._go_back(-due)
+        started, done = time.perf_counter(), 0
+        self.behind = False
+        while done < due and not self._at_replays_end():
+            turn = self.travel.turns_at(self.session.tick, backward=False)
+            if turn is not None and self.session.recording is None:
+                self.seek(turn)
+            if done == due - 1:
+                self.previous = self.session.snapshot()
+            if not self._tick():
+                break
+            done += 1
+            if done < due and time.perf_counter() - started > TICK_BUDGET:
+                self.behind = True
+                self.clock.accumulator = 0.0
+                self.previous = self.session.snapshot()
+                break
+        if done:
+            self.current = self.session.snapshot()
+            if len(self.previous.mass) != len(self.current.mass):
+                self.previous = self.current
+        self._drain()
+        return done
+
+    def _make_room(self) -> None:
+        """Let a frame do one part of what joining takes: adding and drawing it anew, what its ticks need, a tick."""
+        self._making_room -= 1
+        if self._making_room == 0:
+            expect(self.session.world)
+
+    def _hurry(self, target: int) -> int:
+        """Make as many ticks towards a tick as a frame has time for."""
+        started, done = time.perf_counter(), 0
+        self._jump(target)
+        while self.session.tick < target and time.perf_counter() - started < TICK_BUDGET and self._tick():
+            done += 1
+        if self.session.tick >= target or not self.watching:
+            self.travel.target = None
+        self.current = self.previous = self.session.snapshot()
+        self._drain()
+        return done
+
+    def _go_back(self, ticks: int) -> int:
+        """Play backwards; pauses at the beginning."""
+        tick = self.session.tick
+        turn = self.travel.turns_at(tick, backward=True)
+        self.seek(tick - ticks if turn is None else turn)
+        if self.session.tick == 0 and turn is None:
+            self.clock.paused, self.clock.speed = True, 1.0
+        self._drain()
+        return 0
+
+    def _tick(self) -> bool:
+        is_new = self.session.tick == self.session.last_tick
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                self.session.apply_pending()
+                self.dissipation.before(self.session.world)
+                self.session.advance()
+                self.dissipation.after(self.session.world)
+                self._note_breaks()
+                if self.listener is not None and self.travel.target is None:
+                    self.listener.hear(self.session.world)
+        except CommandError as error:
+            self._give_up(error)
+            return False
+        except Interrupted:
+            self._stop_short()
+            return False
+        if self.watching and is_new:
+            self._compare()
+        return True
+
+    def _note_breaks(self) -> None:
+        """Tell what broke in words of its own, in place of the session's."""
+        world, messages = self.session.world, self.session.messages
+        # Of a past that is played again the session says nothing.
+        said = break_lines(world)
+        messages[:] = [line for line in messages if line not in said]
+        self.breaks.note(world)
+
+    def _compare(self) -> None:
+        assert self.replay is not None
+        tick = self.session.tick
+        if self._equal and tick <= self.replay.ticks:
+            self._equal = self.replay.hashes[tick].fits(state_hash(self.session.world))
+            if not self._equal:
+                self.messages.append(f"The run differs from the recording at tick {tick}; `sandbox replay` says where.")
+
+    def _at_replays_end(self) -> bool:
+        if not self.watching:
+            return False
+        assert self.replay is not None
+        if self.session.tick < self.replay.ticks:
+            return False
+        if self.verdict:
+            self.clock.paused = True
+            return True
+        cut = " (the file is cut off there)" if self.replay.end_hash is None else ""
+        whole = "some were passed over, all others" if self._passed_over else "every tick"
+        outcome = f"verified: {whole} equal bit for bit" if self._equal else "NOT equal to the recording"
+        self._end_watching(f"{self.replay.ticks:,} ticks{cut}, {outcome}")
+        return True
+
+    def _end_watching(self, outcome: str) -> None:
+        self.verdict = f"End of the replay: {outcome}"
+        self.clock.paused = True
+        self.messages.append(self.verdict)
+
+    def _give_up(self, error: CommandError) -> None:
+        self._end_watching(f"the recording holds a command that cannot be carried out: {error}")
+        self._taken_over = True
+
+    def _stop_short(self) -> None:
+        """Something is not undone, or made again: what a replay holds is not followed any further then."""
+        # What was submitted after it still waits.
+        self._submitted = True
+        if self.watching:
+            self.take_over()
+        else:
+            self.messages.append(GIVEN_UP)
+
+    def _drain(self) -> None:
+        self.messages.extend(self.session.messages)
+        self.session.messages.clear()
+
+
+def interpolated(previous: Snapshot, current: Snapshot, alpha: float) -> np.ndarray:
+    """Positions [m] (n, 2) between two snapshots; those of the current one where they cannot be paired."""
+    if previous is current or len(previous.mass) != len(current.mass):
+        return current.position
+    with np.errstate(over="ignore", invalid="ignore"):
+        return previous.position + (current.position - previous.position) * alpha

@@ -1,0 +1,510 @@
+"""App: the window, its loop, its pages, and the screen that fills it."""
+
+import gc
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pygame
+
+from sandbox.app.base.calm import CALM_RATE, RESTING_RATE, Calm, wait_for_event
+from sandbox.app.base.display import SCALE_RANGE, Display, fitting_layout
+from sandbox.app.base.idle import IdleCollector
+from sandbox.app.base.loop import FRAME_RATE
+from sandbox.app.base.profile import Profile
+from sandbox.app.base.shortcuts import Mode, use_keys
+from sandbox.app.base.start_request import StartRequest
+from sandbox.app.compare.compare_screen import CompareScreen
+from sandbox.app.compare.hooke_lesson import HookeLesson
+from sandbox.app.compare.twin import TwinPlayback
+from sandbox.app.contracts.screen import Figures, Screen
+from sandbox.app.draw.colours import BACKGROUND, WARNING, show_theme
+from sandbox.app.edit.documents import DocumentActions
+from sandbox.app.edit.tour import Guide
+from sandbox.app.gallery.gallery import Gallery
+from sandbox.app.gallery.sections import FIRST
+from sandbox.app.kernels.preparing import Preparation
+from sandbox.app.play.melt_lesson import MeltLesson
+from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
+from sandbox.app.play.play_screen import PlayScreen
+from sandbox.app.play.status import NOTICES, STATUS_HEIGHT, Notice, StatusLine, draw_bar, draw_spinner
+from sandbox.app.run.playback import Playback
+from sandbox.app.settings.chosen import Chosen
+from sandbox.app.settings.settings_sheet import SettingsSheet
+from sandbox.app.settings.system_theme import theme_of
+from sandbox.app.share.page import SharePage
+from sandbox.app.share.sharing import Sharing
+from sandbox.app.sound.sounds import Sounds
+from sandbox.app.toy.toy_start import ToyStarter
+from sandbox.app.widgets.dialogs import show_lines
+from sandbox.app.widgets.ui import Ui
+from sandbox.app.window.failure import FrameGuard
+from sandbox.app.window.files import FileActions
+from sandbox.app.window.help import show_help
+from sandbox.app.window.input import Input
+from sandbox.app.window.progress import RunProgress
+from sandbox.level.format.files import load_level, read_level
+
+# How often the status figures and the window title change [s].
+FIGURES_EVERY = 0.5
+# While a run waits for kernels, more frames [1/s] would take time from what they wait for.
+WAITING_RATE = 20
+# A run that waits for kernels no longer than this [s] says nothing of it.
+WAIT_UNSEEN = 0.3
+# Settings that all widgets are laid out anew for.
+LAID_OUT = ("theme", "scale", "keys")
+
+
+class App:
+    """The app in its window; `frame` is one turn of the loop; `screen` is what the window shows under its pages."""
+
+    def __init__(self, display: Display, profile: Profile | None = None, chosen: Chosen | None = None) -> None:
+        self.display = display
+        self.chosen = chosen or Chosen()
+        self.chosen.changed = self._obey
+        self.chosen.automatic["scale"] = display.scale
+        self._take_up()
+        self.profile = profile or Profile()
+        self._collector = IdleCollector()
+        self.calm = Calm()
+        self._notices: deque[Notice] = deque(maxlen=NOTICES)
+        self._description = ""
+        self.running = True
+        self.ready = False
+        self.screen: Screen | None = None
+        # What was on it when a frame ended last.
+        self._seen: Screen | None = None
+        self.input = Input(self)
+        self.files = FileActions(self)
+        self.documents = DocumentActions(self)
+        self.guide = Guide(self, self.documents)
+        self.sharing = Sharing(self)
+        self.share_page = SharePage(self, self.sharing)
+        self.sounds = Sounds(self.chosen, time.perf_counter)
+        self._progress = RunProgress(self)
+        self._toys = ToyStarter()
+        self._own_actions = self._actions()
+        self._figures = Figures()
+        self._counted = [0.0, 0, 0, 0.0]
+        self._seconds = 0.0
+        self._build_ui()
+        for fault in self.chosen.faults:
+            self.say(fault)
+        self.preparation = Preparation(self._switched)
+        # How long the run on the screen has been waiting for kernels [s].
+        self._waited = 0.0
+
+    # What is on the screen.
+
+    def open(self, wanted: StartRequest) -> None:
+        """Show what the program was started for."""
+        if wanted.replay is not None:
+            self.start(Playback(wanted.replay.level, wanted.replay))
+        elif wanted.level is not None:
+            self.start(Playback(wanted.level), wanted.source)
+        elif wanted.edit is not None:
+            self.documents.begin(wanted.edit)
+        else:
+            self.open_gallery()
+
+    @property
+    def play(self) -> PlayScreen | None:
+        """The run that is on the screen, if it is one."""
+        return self.screen if isinstance(self.screen, PlayScreen) else None
+
+    @property
+    def mode(self) -> Mode:
+        """Which table of shortcuts holds."""
+        return "play" if self.screen is None else self.screen.mode
+
+    def _build_ui(self) -> None:
+        self.gallery: Gallery | None = None
+        size, scale = fitting_layout(self.display.size, self.scale)
+        self.ui = Ui(size, scale, self.display.pixel_ratio)
+        self.status = StatusLine(self.ui, self._notices)
+        if self.screen is not None:
+            self.screen.build(self.ui)
+        self.guide.build()
+
+    def rebuild(self) -> None:
+        """Lay everything out anew, after the window or the scale changed."""
+        before = self.ui
+        self._build_ui()
+        self.ui.take_over(before)
+        self._collector.expect_old_garbage()
+
+    def say(self, text: str) -> None:
+        """Show a line to the person for some seconds."""
+        self.status.say(text)
+
+    def take_back(self, text: str) -> None:
+        """Take away a line that no longer holds."""
+        self.status.take_back(text)
+
+    def offer_tour(self) -> None:
+        """Offer the tour of the editor to who has not seen it."""
+        self.guide.offer()
+
+    def show_faults(self, title: str, faults: list[str]) -> None:
+        """Show lines in a box; the app goes on with what it had."""
+        show_lines(self.ui, title, faults)
+
+    def show_screen(self, screen: Screen) -> None:
+        """Fill the window with another screen."""
+        self.close_gallery()
+        self._describe("")
+        if self.screen is not None and self.screen is not screen:
+            self.screen.leave()
+        self.screen = screen
+        before = self.ui
+        self._build_ui()
+        self.ui.take_over(before, questions_alone=True)
+        self._collector.expect_old_garbage()
+
+    def start(self, playback: Playback, source: Path | None = None) -> None:
+        """Show another run from its beginning; source: the file of its level."""
+        self.show_screen(PlayScreen(self, playback, source))
+        shown = playback.replay is None and self.chosen["hints"] == "show"
+        self._describe(playback.level.description if shown else "")
+
+    def start_document(self, playback: Playback) -> PlayScreen:
+        """Show a run of the level that the editor has open."""
+        screen = PlayScreen(self, playback, of_document=True)
+        self.show_screen(screen)
+        return screen
+
+    def _describe(self, description: str) -> None:
+        """Say what a level is about, in place of what the one before it was."""
+        self.status.take_back(self._description)
+        self._description = description
+        if description:
+            self.say(description)
+
+    def _show_hint(self) -> None:
+        """Say once more what the level of the run is about."""
+        if self.play is not None:
+            self._describe(self.play.playback.level.description or "This level says nothing of itself.")
+
+    def follow(self, playback: Playback, can_cancel: bool = True) -> None:
+        """Show how far a run is that has to be played again, for an undo or a recording, where that takes long."""
+        playback.session.progress = partial(self._progress.show, can_cancel=can_cancel)
+
+    def open_gallery(self, section: str = "levels", query: str = "") -> None:
+        """Choose a level or a recording; query: what is searched."""
+        self.close_gallery()
+        self._describe("")
+        for said in (LEFT_VIEW, *(() if self.play is None else (self.play.told, self.play.welcome))):
+            self.status.take_back(said)
+        self.gallery = Gallery(self.ui, self, section, self.close_gallery, query)
+
+    def close_gallery(self) -> None:
+        """Back to the screen, where there is one."""
+        if self.gallery is not None:
+            self.gallery.close()
+            self.gallery = None
+            # Its cards hold tens of megabytes of pictures.
+            self._collector.expect_old_garbage()
+
+    # Actions.
+
+    def _actions(self) -> dict[str, Callable[[], object]]:
+        return {
+            "fullscreen": self.display.toggle_fullscreen,
+            "larger": lambda: self._rescale(1.125),
+            "smaller": lambda: self._rescale(1 / 1.125),
+            "settings": self._open_settings,
+            "help": lambda: show_help(self.ui, self.mode, self.guide.begin),
+            "tour": self.guide.begin,
+            "quit": self.quit,
+        }
+
+    def _play_actions(self) -> dict[str, Callable[[], object]]:
+        return {
+            "hint": self._show_hint,
+            "share": self.share_page.open,
+            "compare": self._compare,
+            "sound": self._toggle_sound,
+            "toy": self._start_toy,
+        }
+
+    def _first_actions(self) -> dict[str, Callable[[], object]]:
+        """What can be done before there is a screen."""
+        return {"open": self.files.ask_to_open, "recordings": lambda: self.open_gallery("recordings")}
+
+    def start_lesson(self) -> None:
+        """Begin the lesson on Hooke's spring and the article's."""
+        self.show_screen(HookeLesson(self))
+
+    def start_melt(self) -> None:
+        """Begin the lesson on springs that are solved one by one."""
+        self.show_screen(MeltLesson(self, Playback(load_level(FIRST))))
+        self.say(MeltLesson.welcome)
+
+    def start_pair(self, path: Path) -> None:
+        """Play the level of a file twice side by side, with the pad in the panel."""
+        level = read_level(path)
+        screen = CompareScreen(self, TwinPlayback(level), TwinPlayback(level), None)
+        screen.shape.springs = "pad"
+        self.show_screen(screen)
+
+    def _compare(self) -> None:
+        """Play the level of the run twice side by side, with two settings; or back to once."""
+        play = self.play
+        if play is None:
+            return
+        level, source = play.playback.level, play.source
+        if isinstance(play, CompareScreen):
+            back = play.single or Playback(level)
+            # Kernels may have come about meanwhile.
+            back.session.world.drop_caches()
+            self.take_back(play.welcome)
+            self.start(back, source)
+        elif play.of_document:
+            self.say("Save the level and open it from its file to play it twice: this run belongs to the editor.")
+        else:
+            pair = CompareScreen(self, TwinPlayback(level), TwinPlayback(level), source)
+            pair.single = play.playback
+            self.show_screen(pair)
+
+    @property
+    def actions(self) -> dict[str, Callable[[], object]]:
+        """What can be done now, by the names of the table of shortcuts."""
+        of_play = self._play_actions() if self.mode == "play" else {}
+        return self._own_actions | of_play | (self._first_actions() if self.screen is None else self.screen.actions)
+
+    def act(self, action: str) -> None:
+        """Do what a key or button asks for, where the screen knows it."""
+        do = self.actions.get(action)
+        if do is not None:
+            do()
+
+    def quit(self) -> None:
+        """Leave after this frame, once it is clear what becomes of what is not saved, or not written yet."""
+        self.documents.if_saved(lambda: self.sharing.if_written(self._stop))
+
+    def _stop(self) -> None:
+        self.documents.give_up()
+        self.running = False
+
+    def close(self) -> None:
+        """Close the window; whatever ended the loop, a recording gets its last line."""
+        if self.screen is not None:
+            self.screen.leave()
+        self.sounds.close()
+        self.sharing.close()
+        self.documents.close()
+        self.display.close()
+        self._collector.close()
+
+    def _rescale(self, factor: float) -> None:
+        self.chosen.choose("scale", min(max(self.ui.scale * factor, SCALE_RANGE[0]), SCALE_RANGE[1]))
+
+    # What the person has chosen.
+
+    def _take_up(self) -> None:
+        """Obey what is chosen."""
+        self.scale = self.chosen["scale"] or self.chosen.automatic["scale"]
+        show_theme(theme_of(self.chosen["theme"]))
+        for keys in use_keys(self.chosen.keys):
+            self.chosen.faults.append(f"preferences.json: keys: there is no key {keys!r:.40}.")
+
+    def _obey(self, name: str) -> None:
+        """Follow a change of what is chosen."""
+        self._take_up()
+        if name == "sound" and not self.sounds.device.is_open:
+            self.sounds.look_again()
+        if name in LAID_OUT:
+            self.rebuild()
+
+    def _toggle_sound(self) -> None:
+        is_on = self.chosen["sound"] == "on"
+        self.chosen.choose("sound", "off" if is_on else "on")
+
+    def _start_toy(self) -> None:
+        if self.play is not None:
+            self.say(self._toys.start(self.play.playback.level))
+
+    def _open_settings(self) -> None:
+        SettingsSheet(self.ui, self.chosen)
+
+    # The loop.
+
+    def frame(self, frame_time: float) -> None:
+        """One turn: events, ticks, drawing; frame_time [s] since the last one."""
+        started = time.perf_counter()
+        self._seconds += frame_time
+        with self.profile.part("events"):
+            events = pygame.event.get()
+            self._collector.update(frame_time, bool(events))
+            self.input.process(events)
+            if self.display.refresh():
+                self.rebuild()
+        self._prepare(frame_time)
+        if self.screen is not None:
+            tick, began = self._tick, time.thread_time()
+            self.screen.update(frame_time, self.input.pointer_over_world(), self.profile, self.ready)
+            self.preparation.note(self._tick - tick, time.thread_time() - began)
+            self._sound()
+        with self.profile.part("ui"):
+            self.status.update(frame_time)
+            self.documents.update()
+            if self.gallery is not None:
+                self.gallery.update(self.preparation.is_ready, frame_time)
+            self.guide.update(frame_time)
+            self.sharing.update(frame_time)
+            self.share_page.update()
+            self.ui.update(frame_time)
+        if not self.display.hidden:
+            self._draw()
+            with self.profile.part("flip"):
+                self.display.flip()
+        self._progress.end()
+        self._seen = self.screen
+        self.calm.follow(frame_time, bool(events) or any(pygame.mouse.get_pressed()) or self.moves)
+        spent = time.perf_counter() - started
+        self.profile.end_frame(spent)
+        self._count(frame_time, spent)
+
+    @property
+    def moves(self) -> bool:
+        """Whether something in the window changes by itself, or works in its frames at what it will show."""
+        parts = (self.screen, self.gallery, self.status, self.guide, self.sharing)
+        return not self.ready or any(part is not None and part.moves for part in parts)
+
+    @property
+    def calm_rate(self) -> int:
+        """Frames [1/s] that are enough while nothing in the window moves."""
+        return RESTING_RATE if self.play is not None and self.play.runs else CALM_RATE
+
+    def _sound(self) -> None:
+        play, covered = self.play, self.ui.has_sheet or self.gallery is not None or self.display.hidden
+        clock = None if play is None else play.playback.clock
+        is_heard = clock is not None and self.ready and not covered and not clock.paused and clock.speed > 0.0
+        with self.profile.part("sound"):
+            self.sounds.update(play, is_heard)
+
+    @property
+    def _tick(self) -> int:
+        return self.play.playback.session.tick if self.play is not None else 0
+
+    def _prepare(self, frame_time: float) -> None:
+        play = self.play
+        contacts = play is not None and play.has_contacts
+        # A run is tried out beside its second picture, not before its first, which takes longest.
+        is_seen = play is not None and self._seen is play
+        self.preparation.update(play.playback.level if play is not None and is_seen else None, contacts)
+        self.ready = self.preparation.may_play(contacts)
+        self._waited = 0.0 if self.ready else self._waited + frame_time
+
+    def _switched(self) -> None:
+        if self.play is not None:
+            self.play.drop_caches()
+        self.sharing.drop_caches()
+
+    def _draw(self) -> None:
+        surface = self.display.surface
+        if self.screen is None:
+            surface.fill(BACKGROUND)
+        else:
+            self.screen.draw(surface, self.profile)
+        with self.profile.part("ui"):
+            if self.screen is not None:
+                parts = self.sharing.status() + self.screen.status(self._figures)
+                if not self.ready and self.mode == "edit":
+                    parts.append(("preparing the physics", WARNING))
+                self.status.draw(surface, parts)
+                if self.gallery is None:
+                    is_under = False if self.ui.has_sheet else None
+                    self.status.draw_notices(surface, self.screen.notices_place, over_page=is_under)
+            self.ui.draw(surface)
+            if self.gallery is not None:
+                self.gallery.draw(surface)
+            self.guide.draw(surface)
+            if (self.screen is None or self.ui.has_sheet) and not self.ui.shows_page:
+                # What was said before lies under the page; a gallery covers all.
+                place = 16.0, -STATUS_HEIGHT, self.ui.units[0]
+                self.status.draw_notices(surface, place, over_page=True if self.gallery is None else None)
+            # A level can be drawn before the physics is there.
+            if self._waited > WAIT_UNSEEN and self.play is not None:
+                self._draw_waiting(surface)
+
+    def _draw_waiting(self, surface: pygame.Surface) -> None:
+        done, total = self.preparation.progress
+        if total and done < total:
+            draw_bar(surface, self.ui, done / total, f"Warming up: {done} of {total} parts of the physics")
+        else:
+            detail = "Only the first start takes some seconds."
+            draw_spinner(surface, self.ui, self._seconds, "Warming up", detail)
+
+    def _count(self, frame_time: float, spent: float) -> None:
+        counted = self._counted
+        counted[0] += frame_time
+        counted[1] += 1
+        counted[3] += spent
+        if counted[0] < FIGURES_EVERY:
+            return
+        tick = self._tick
+        ticks = max(0.0, tick - counted[2])
+        self._figures = Figures(ticks / counted[0], counted[1] / counted[0], 1e3 * counted[3] / counted[1])
+        self._counted = [0.0, 0, tick, 0.0]
+        self.display.window.title = self.title()
+
+    def title(self) -> str:
+        """The window's title, so that other programs can follow what happens."""
+        if self.screen is None or self.gallery is not None:
+            return f"{'Levels' if self.gallery is None else self.gallery.title} - Spring Sandbox"
+        words = [*self.screen.title(), *(["dialog"] if self.ui.has_sheet else [])]
+        words += [] if self.ready else ["preparing"]
+        return " - ".join([*words, "Spring Sandbox"])
+
+
+def run_app(
+    display: Display,
+    wanted: StartRequest,
+    profile: Profile,
+    seconds: float | None,
+    given: Mapping[str, Any],
+    show_progress: Callable[[], object] = lambda: None,
+) -> None:
+    """Show what is wanted in the window and run until it is closed, or for so many seconds.
+
+    given: see `Chosen`. show_progress: called now and then until there is something to show.
+    """
+    # What is imported stays: whoever looks for garbage passes it over, which takes a tenth of a second less.
+    gc.freeze()
+    app = App(display, profile, Chosen(**given))
+    show_progress()
+    app.guide.may_offer = True
+    app.open(wanted)
+    app.documents.offer_recovery()
+    show_progress()
+    if app.play is not None:
+        app.play.stage.renderer.expect(app.play.stage.camera)
+        show_progress()
+    clock, guard = pygame.time.Clock(), FrameGuard(app)
+    started = before = time.perf_counter()
+    try:
+        while app.running and (seconds is None or before - started < seconds):
+            now = time.perf_counter()
+            try:
+                app.frame(now - before)
+            except Exception as error:
+                guard.take(error)
+            before = now
+            profile.shown()
+            profile.reached("the first page")
+            if app.play is not None and app.play.playback.session.tick:
+                profile.reached("the first tick")
+            if not app.calm.has_come:
+                clock.tick(FRAME_RATE if app.ready or app.play is None else WAITING_RATE)
+                continue
+            if wait_for_event(1.0 / app.calm_rate):
+                # Time that passed asleep is not made up for by what the event sets going.
+                before = max(before, time.perf_counter() - 1.0 / FRAME_RATE)
+            profile.rested()
+    finally:
+        # Whatever ended the loop, a recording gets its last line.
+        app.close()

@@ -1,0 +1,205 @@
+"""FileActions: opening levels and replays, recording, saving."""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from sandbox.app.base.recordings import SUFFIX, chosen_path, free_path, move_new, plain_name, recordings_folder
+from sandbox.app.contracts.application import Application
+from sandbox.app.run.playback import Playback
+from sandbox.app.widgets.dialogs import ask
+from sandbox.editor.storage.recent import remember_played
+from sandbox.level.faults.level_error import LevelError, one_line
+from sandbox.level.format.files import load_level, read_level, shipped_folder
+from sandbox.level.format.writing import refusal_of
+from sandbox.session.replay.reader import begins_as_replay, read_replay
+from sandbox.session.replay.recording import ReplayError
+from sandbox.session.sweep.grid import SweepError
+from sandbox.session.whole import Interrupted
+
+# How the name of a sweep's table ends.
+TABLE = ".csv"
+
+
+class FileActions:
+    """What the app does with files; faults are shown as lines, and the app goes on with what it had."""
+
+    def __init__(self, app: Application) -> None:
+        self.app = app
+
+    # Opening.
+
+    def open_path(self, path: str | Path) -> bool:
+        """Open a level or a replay, whichever the file is; True where it could be."""
+        if Path(path).suffix.lower() == TABLE:
+            return self.open_sweep(Path(path))
+        try:
+            is_replay = begins_as_replay(path)
+        except OSError as error:
+            self._refuse(path, [one_line(f"{path}: cannot be read: {refusal_of(error)}")])
+            return False
+        return self.open_replay(path) if is_replay else self.open_level(path)
+
+    def open_level(self, path: str | Path, shipped: bool = False) -> bool:
+        """Open a level file: play it, or edit it where a level is edited now, a shipped one as a copy."""
+        if self.app.mode == "edit":
+            documents = self.app.documents
+            (documents.open_copy if shipped else documents.open)(path)
+            return True
+        try:
+            playback = Playback(read_level(Path(path)))
+        except LevelError as error:
+            self._refuse(path, error.faults)
+            return False
+        self.app.start(playback, None if shipped else Path(path))
+        remember_played(path)
+        return True
+
+    def open_sweep(self, path: Path) -> bool:
+        """Show a table of `sandbox sweep` behind the pad, if it is of the level that runs."""
+        try:
+            if self.app.play is None:
+                raise SweepError(f"{path}: play the level that it is of, then open it again")
+            self.app.play.show_sweep(path)
+        except (SweepError, UnicodeDecodeError) as error:
+            self._refuse(path, [str(error)])
+            return False
+        except OSError as error:
+            self._refuse(path, [one_line(f"{path}: cannot be read: {refusal_of(error)}")])
+            return False
+        return True
+
+    def open_replay(self, path: str | Path) -> bool:
+        """Open a replay and watch it; one that is cut off as far as it goes."""
+        try:
+            try:
+                replay = read_replay(path)
+            except ReplayError:
+                replay = read_replay(path, partial=True)
+            playback = Playback(replay.level, replay)
+        except ReplayError as error:
+            self._refuse(path, error.faults)
+            return False
+        self.app.start(playback)
+        self.app.say(f"Watching {one_line(Path(path).name)}. Touch anything to take over.")
+        return True
+
+    def ask_to_open(self) -> None:
+        """Ask for the path of a level or replay, or a shipped level's name."""
+        hint = "A path, or the name of a shipped level. Files can be dropped on the window too."
+        ask(self.app.ui, "Open a level or a replay", hint, "", "Open", self._fault_of, then=self._open_typed)
+
+    def _fault_of(self, typed: str) -> str | None:
+        """Why nothing can be opened by that name; a file's own faults are shown when it is opened."""
+        if os.path.isfile(os.path.expanduser(typed)):
+            return None
+        try:
+            load_level(typed)
+        except LevelError as error:
+            return error.faults[0]
+        return None
+
+    def _open_typed(self, typed: str) -> None:
+        path = os.path.expanduser(typed)
+        if os.path.isfile(path):
+            self.open_path(path)
+        elif self.app.mode == "edit":
+            self.app.documents.edit_level(load_level(typed))
+        else:
+            self.app.start(Playback(load_level(typed)))
+            remember_played(shipped_folder("levels") / f"{typed}.json")
+
+    def _refuse(self, path: str | Path, faults: list[str]) -> None:
+        self.app.show_faults(f"{one_line(Path(path).name)} cannot be opened", [one_line(fault) for fault in faults])
+
+    # Recording.
+
+    def toggle_recording(self) -> None:
+        """Start recording the run, its beginning included, or stop and ask for a name."""
+        play = self.app.play
+        if play is None:
+            return
+        if play.playback.session.recording is not None:
+            self._stop_and_name()
+            return
+        path = self._write(play.playback.record_to)
+        # A disk may be full before what was until now is written: why it ended is said then.
+        if path is not None and play.playback.session.recording is not None:
+            self.app.say(_recording(path))
+
+    def save_run(self) -> None:
+        """Save the run so far as a replay, under a name that is asked for."""
+        play = self.app.play
+        if play is None:
+            return
+        if play.playback.session.recording is not None:
+            self._stop_and_name()
+            return
+        path = self._write(play.playback.save_to)
+        if path is not None:
+            self._name(path)
+
+    def _write(self, write: Callable[[Path], Path | None]) -> Path | None:
+        """Write a new file for the run's recording; its path, None where that cannot be."""
+        assert self.app.play is not None
+        try:
+            return write(free_path(recordings_folder(), plain_name(self.app.play.playback.level.name)))
+        except OSError as error:
+            where = f" to {error.filename}" if error.filename else ""
+            self.app.say(f"The recording cannot be written{where}: {error.strerror or error}.")
+        except ValueError as error:
+            self.app.say(f"The recording cannot be made: {error}.")
+        except Interrupted:
+            self.app.say("Cancelled: no recording was made.")
+        return None
+
+    def _stop_and_name(self) -> None:
+        assert self.app.play is not None
+        path = self.app.play.playback.stop_recording()
+        if path is not None:
+            self.app.take_back(_recording(path))
+            self._name(path)
+
+    def _name(self, path: Path) -> None:
+        self.app.say(_saved(path))
+        suggestion = path.name.removesuffix(SUFFIX)
+        ask(
+            self.app.ui,
+            "Name the replay",
+            f"In {path.parent}. Escape keeps the name.",
+            suggestion,
+            "Save",
+            lambda typed: self._rename(path, typed),
+            ("Discard", lambda: self._discard(path)),
+        )
+
+    def _rename(self, path: Path, typed: str) -> str | None:
+        if typed.removesuffix(SUFFIX) == path.name.removesuffix(SUFFIX):
+            return None
+        try:
+            wanted = chosen_path(path.parent, typed)
+            move_new(path, wanted)
+        except ValueError as error:
+            return str(error)
+        except OSError as error:
+            return f"It stays {path.name}: {error.strerror or error}."
+        self.app.take_back(_saved(path))
+        self.app.say(_saved(wanted))
+        return None
+
+    def _discard(self, path: Path) -> None:
+        try:
+            path.unlink()
+        except OSError as error:
+            self.app.say(f"{path} cannot be removed: {error.strerror or error}.")
+        else:
+            self.app.take_back(_saved(path))
+            self.app.say(f"Removed {path.name}.")
+
+
+def _recording(path: Path) -> str:
+    return f"Recording to {path}, from the beginning of the run."
+
+
+def _saved(path: Path) -> str:
+    return f"Saved as {path}"
