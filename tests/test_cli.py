@@ -685,7 +685,7 @@ def test_a_headless_run_loads_no_drawing_and_without_contacts_nothing_that_finds
             "sandbox.physics.collision.terrain_clamp", "sandbox.physics.collision.narrow_phase",
         }  # fmt: skip
         # Nor anything of what parts folds, of triangles, joints and drives: none of these are there.
-        assert not modules & {"sandbox.physics.changing.freeing", "sandbox.physics.collision.parting"}
+        assert not modules & {"sandbox.physics.changing.freeing", "sandbox.physics.untangling.parting"}
         words = ("joint", "driving", "triangle", "constraint", "breaking", "dissect", "lowest_mode", "parallel")
         made = {name for name in modules if name.startswith("kernel:")}
         assert made and not {name for name in made if any(word in name for word in words)}

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 from sandbox.level.format.files import load_level, parse_level, shipped_levels
-from sandbox.physics.energy import kinetic_energy, spring_energy, spring_lengths
+from sandbox.physics.analysis.energy import kinetic_energy, spring_energy, spring_lengths
+from sandbox.physics.analysis.firmness import lowest_mode_of
+from sandbox.physics.analysis.stability import report
 from sandbox.physics.equation import of_body, of_springs
-from sandbox.physics.firmness import lowest_mode_of
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.stability import report
 from sandbox.physics.step import step
 from sandbox.physics.substeps import halve
 from sandbox.physics.world import World

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.level.faults.level_error import shown, suggestion
-from sandbox.physics.energy import reduced_masses
+from sandbox.physics.analysis.energy import reduced_masses
+from sandbox.physics.analysis.firmness import lowest_mode_of
+from sandbox.physics.analysis.stability import constraint_count, effective_count
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, of_body
-from sandbox.physics.firmness import lowest_mode_of
 from sandbox.physics.forms import strength_of
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.stability import constraint_count, effective_count
 from sandbox.physics.substeps import substep_coefficients, substep_time
 from sandbox.physics.world import LAW_HAND, LAW_HOOKE, Floats, World
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sandbox.export.chosen_body import ChosenBody
-from sandbox.physics.stability import BOUND
+from sandbox.physics.analysis.stability import BOUND
 
 # Substeps of a step, by default, of Box2D 3 (b2World_Step) and Rapier (numSolverIterations).
 SOFT_STEP_SUBSTEPS = 4

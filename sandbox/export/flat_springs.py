@@ -8,11 +8,11 @@ from sandbox.export.chosen_body import SLOW, as_in_solver
 from sandbox.export.engines import MOST_STEPS
 from sandbox.export.flat_model import FlatSpring
 from sandbox.level.format.model import Level
+from sandbox.physics.analysis.energy import reduced_masses
+from sandbox.physics.analysis.firmness import LARGEST_READ, lowest_mode_of
+from sandbox.physics.analysis.stability import BOUND, effective_count
 from sandbox.physics.collision.filter import NO_EDGE
-from sandbox.physics.energy import reduced_masses
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
-from sandbox.physics.firmness import LARGEST_READ, lowest_mode_of
-from sandbox.physics.stability import BOUND, effective_count
 from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import LAW_HOOKE, Floats, World
 

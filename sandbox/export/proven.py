@@ -11,8 +11,8 @@ import numpy as np
 from sandbox.export.chosen_body import ChosenBody
 from sandbox.export.numbers import floored
 from sandbox.physics.analysis.body_motion import BodyMotion
+from sandbox.physics.analysis.stability import BOUND
 from sandbox.physics.equation import frequency_from_coefficients
-from sandbox.physics.stability import BOUND
 
 SUBSTEPS = (1, 2, 4, 8)
 

@@ -10,7 +10,7 @@ from sandbox.export.proven import LoopRow, loop_rows
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import Level
 from sandbox.physics.analysis.body_motion import read_body, word_for
-from sandbox.physics.stability import BOUND
+from sandbox.physics.analysis.stability import BOUND
 from sandbox.physics.world import World
 
 

@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.analysis.query import slot_name
 from sandbox.physics.events import Containment
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
-from sandbox.physics.query import slot_name
 from sandbox.physics.state import GUARDED, Family, Floats
 from sandbox.physics.world import World
 

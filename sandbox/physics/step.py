@@ -1,22 +1,18 @@
 """step(world): one tick on one screen. The order of its parts is part of the replay contract."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles, StrainLimits
 from sandbox.physics.breaking import yield_and_break
-from sandbox.physics.collision.triangle_clamp import clamp_world, has_triangles
-from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_springs, drives_springs
 from sandbox.physics.flight import begin_flight
 from sandbox.physics.forces import Before, apply_forces, forces_of
 from sandbox.physics.integrate import integrate
 from sandbox.physics.joints.joint_set import JointSet, joints_of, keep_joints, load_joints
 from sandbox.physics.sanitise import LOST, UNSOUND, contain_inputs, contain_outcome
-from sandbox.physics.settings import AUTO, WorldSettings
+from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import (
     Pair,
@@ -28,11 +24,11 @@ from sandbox.physics.substeps import (
     substep_count,
     substep_time,
 )
-from sandbox.physics.terrain import Chain, make_terrain
+from sandbox.physics.untangling.triangle_clamp import clamp_world, has_triangles
 from sandbox.physics.world import World
 
 if TYPE_CHECKING:
-    from sandbox.physics.collision.collide import Collisions
+    from sandbox.physics.pipeline import Collisions
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
 PHYSICS_VERSION = 9
@@ -59,7 +55,7 @@ def _plan(world: World) -> TickPlan:
     collisions, joints, drives = None, joints_of(world), drives_springs(world)
     if world.has_contacts:
         # Half of the physics, which a world in which nothing touches does without.
-        from sandbox.physics.collision.collide import collisions_of
+        from sandbox.physics.pipeline import collisions_of
 
         collisions = collisions_of(world)
     free = collisions if collisions is not None and collisions.is_free and joints is None and not drives else None
@@ -154,48 +150,3 @@ def _step_held(world: World, flies: bool) -> None:
     world.scale_impulses(1.0 / scale)
     world.end_tick()
     contain_outcome(world)
-
-
-def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> None:
-    """Compile every kernel of a tick with these solvers, or load it from the cache, on a world of two particles.
-
-    contacts: also those that a world alone needs in which things touch.
-    """
-    for solver in solvers:
-        world = World(WorldSettings(solver=solver, substeps=AUTO, drag=1.0))
-        world.add_particles(["a", "b", "c"], np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
-        world.add_springs(["s", "t"], [0, 0], [1, 1], law=[0, 1])
-        world.add_constraints(AREA, [[0, 1, 2]])
-        world.limits = StrainLimits(np.ones(1), np.ones(1), np.ones(1), np.zeros(1))
-        # Nothing acts on bodies from outside, then a motor does.
-        step(world)
-        one = np.zeros(1, dtype=np.int64)
-        muscles = Muscles(one, np.zeros(1), one + 2, np.zeros(1))
-        hydraulics = Hydraulics(one + 1, np.ones(1), np.ones(1), np.zeros(1), one)
-        motors = Motors(one, np.ones(1), np.ones(1), one, np.array([0, 1]), one + 1)
-        world.fit(Actuators(("a",), muscles, hydraulics, motors), [1.0])
-        step(world)
-        if contacts:
-            from sandbox.physics.collision.filter import TERRAIN_GROUP
-
-            # Two free ones that touch, and two on a spring, out of their reach.
-            places = np.array([[0.0, 0.0], [0.0, 0.0], [0.5, 0.0], [0.7, 0.0]])
-            world.add_particles(["d", "e", "f", "g"], places, group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
-            world.add_springs(["u"], [5], [6])
-            world.terrain = make_terrain([Chain([[-1.0, 0.0], [1.0, 0.0]])])
-            step(world)
-            # And a world of free ones alone, which takes a way of its own.
-            free = World(world.settings)
-            free.add_particles(["a", "b"], np.zeros((2, 2)), group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
-            step(free)
-    if "direct" in solvers:
-        from sandbox.physics.solvers.direct import lowest_mode
-        from sandbox.physics.solvers.direct.layout import layout_of
-        from sandbox.physics.solvers.linear import parallel
-        from sandbox.physics.solvers.linear.dissection import dissect
-
-        # That is too small a body to be dissected by itself, or to need a second thread.
-        dissect(np.array([0]), np.array([1]), world.position)
-        system = layout_of(world).system
-        parallel.warm_up(system.fronts, system.rows.change)
-        lowest_mode.warm_up()

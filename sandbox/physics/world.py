@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.actuators import Actuators, StrainLimits, Surface, unlimited
-from sandbox.physics.changing.equipment import Equipment, Joined
-from sandbox.physics.changing.room import Room
+from sandbox.physics.capacity import Room
 from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, rest_of_area, rest_of_bend, sides_gone
+from sandbox.physics.equipment import Equipment, Joined
 from sandbox.physics.events import Containment
 from sandbox.physics.forms import FirmBody
 from sandbox.physics.names import Names

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from sandbox.level.checks import STILL, CheckDef, CheckResult, excess, judge, window_of
 from sandbox.level.format.model import Level
-from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
-from sandbox.physics.query import load_bearing, shown_particles, shown_springs, strain
+from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy
+from sandbox.physics.analysis.query import load_bearing, shown_particles, shown_springs, strain
 from sandbox.physics.world import World
 from sandbox.session.session import Session
 from sandbox.session.summary import STRAIN_WINDOW, particle_metric, strain_sample

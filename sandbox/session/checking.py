@@ -7,7 +7,7 @@ from typing import Any
 from sandbox.level.build.build_world import build_world
 from sandbox.level.checks import CheckResult
 from sandbox.level.format.files import LevelError, load_level
-from sandbox.physics.stability import report
+from sandbox.physics.analysis.stability import report
 from sandbox.session.check_run import run_checks
 from sandbox.session.probe import finite
 from sandbox.session.worker_pool import interrupts_ignored, worker_pool

@@ -7,8 +7,8 @@ from statistics import median
 
 import numpy as np
 
-from sandbox.physics.energy import Dissipation, gravity_energy, kinetic_energy, spring_energy
-from sandbox.physics.query import load_bearing, shown_particles, shown_springs, strain
+from sandbox.physics.analysis.energy import Dissipation, gravity_energy, kinetic_energy, spring_energy
+from sandbox.physics.analysis.query import load_bearing, shown_particles, shown_springs, strain
 from sandbox.physics.settings import Substeps
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.world import World

@@ -10,7 +10,7 @@ import pytest
 
 from sandbox.level.format.files import load_level, parse_level
 from sandbox.level.format.model import Level
-from sandbox.physics.query import load_bearing, strain
+from sandbox.physics.analysis.query import load_bearing, strain
 from sandbox.physics.world import HAND_STRENGTH
 from sandbox.session.commands import Command, CommandError, CutSprings, Grab, MoveGrab, Release
 from sandbox.session.commands.records import from_record

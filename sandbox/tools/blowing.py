@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 
-from sandbox.physics.query import shown_particles
+from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Push, SetAir
 from sandbox.tools.parts import ROUND, Loop, Point

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import ClassVar
 
-from sandbox.physics.query import nearest_particle
+from sandbox.physics.analysis.query import nearest_particle
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command
 from sandbox.tools.tool import NOTHING, PointerEvent, Response, Submission

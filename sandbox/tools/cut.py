@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from sandbox.physics.query import nearest_spring, springs_crossing
+from sandbox.physics.analysis.query import nearest_spring, springs_crossing
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import CutSprings
 from sandbox.tools.tool import NOTHING, Point, PointerEvent, Response, Submission

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from sandbox.physics.query import free_particle_at, grip_radius, nearest_particle
+from sandbox.physics.analysis.query import free_particle_at, grip_radius, nearest_particle
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import GRAB_COUNT, HAND_STRENGTH
 from sandbox.session.commands import Grab, MoveBody, MoveGrab, Release

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sandbox.physics.query import shown_particles
+from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command, Pin, Remove, Unpin
 from sandbox.tools.click import ClickTool

@@ -11,7 +11,7 @@ import sys
 
 import numpy as np
 
-from sandbox.physics.energy import total_energy
+from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.step import step
 from tests.support.carts import (
     angular_momentum,

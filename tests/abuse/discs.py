@@ -10,7 +10,7 @@ import sys
 
 import numpy as np
 
-from sandbox.physics.energy import kinetic_energy
+from sandbox.physics.analysis.energy import kinetic_energy
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.state import ROLLING_RESISTANCE
 from sandbox.physics.step import step

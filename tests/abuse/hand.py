@@ -11,10 +11,10 @@ from functools import partial
 
 import numpy as np
 
+from sandbox.physics.analysis.query import grip_radius
+from sandbox.physics.analysis.stability import report
 from sandbox.physics.joints.pulls import pulls_of
-from sandbox.physics.query import grip_radius
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.stability import report
 from sandbox.physics.world import World
 from sandbox.tools.drag import STRENGTHS
 from tests.support.hands import RATE, Drag, dough, drag_away, follow, jelly, momentum_velocity, nearest, rope, truss

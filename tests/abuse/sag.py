@@ -14,7 +14,7 @@ import sys
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from sandbox.physics.firmness import Reach
+from sandbox.physics.analysis.firmness import Reach
 from sandbox.physics.forms import Firmness
 from sandbox.physics.step import step
 from tests.support.wobbles import firm_world, height, measured_wobble, standing_box

@@ -31,7 +31,7 @@ from sandbox.app.settings.chosen import SETTINGS
 from sandbox.app.window.app import App
 from sandbox.level.format.files import load_level
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.step import warm_up
+from sandbox.physics.warm_up import warm_up
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
 from tests.support.person import VirtualScreen

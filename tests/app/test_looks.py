@@ -21,8 +21,8 @@ from sandbox.app.draw.things.ensemble import Ensemble
 from sandbox.level.format.files import read_level, shipped_levels
 from sandbox.level.format.look import LINES, PALETTE, SKINS
 from sandbox.level.format.parse import parse_level
+from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.jit import COMPILED
-from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.session import Session
 from tests.app.conftest import small_level

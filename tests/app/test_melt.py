@@ -4,7 +4,7 @@ import numpy as np
 import pygame
 
 from sandbox.level.format.files import load_level
-from sandbox.physics.query import strain
+from sandbox.physics.analysis.query import strain
 
 
 def stretched(driver):

@@ -18,9 +18,9 @@ import numpy as np
 import pymunk
 
 from sandbox.physics import jit
-from sandbox.physics.collision.collide import last_contacts
+from sandbox.physics.analysis.energy import kinetic_energy
 from sandbox.physics.collision.outline import outline_of
-from sandbox.physics.energy import kinetic_energy
+from sandbox.physics.pipeline import last_contacts
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
 from sandbox.physics.world import World

@@ -10,7 +10,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sandbox.physics.step import step, warm_up
+from sandbox.physics.step import step
+from sandbox.physics.warm_up import warm_up
 from sandbox.physics.world import World
 from tests.bench import scenes
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sandbox.physics.analysis.energy import measure_constraints
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.energy import measure_constraints
 from sandbox.physics.settings import Substeps, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step

@@ -14,7 +14,7 @@ import numpy as np
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import Level, NissenMaterial, Settings
 from sandbox.level.kinds.jelly import BoxShape, CircleShape, JellyDef, PolygonShape, Shape
-from sandbox.physics.energy import total_energy
+from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.settings import AUTO
 from sandbox.physics.step import step
 from sandbox.physics.world import Floats, World

@@ -12,7 +12,8 @@ from collections.abc import Callable
 import numpy as np
 
 from sandbox.physics.solvers.direct.layout import make_layout
-from sandbox.physics.step import step, warm_up
+from sandbox.physics.step import step
+from sandbox.physics.warm_up import warm_up
 from sandbox.physics.world import Floats
 from tests.bench import scenes
 from tests.bench.engines import pymunk_setting

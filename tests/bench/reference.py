@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.physics.energy import kinetic_energy, spring_energy
-from sandbox.physics.query import load_bearing, strain
+from sandbox.physics.analysis.energy import kinetic_energy, spring_energy
+from sandbox.physics.analysis.query import load_bearing, strain
 from sandbox.physics.snapshot import take
 from sandbox.physics.step import step
 from sandbox.physics.world import World

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
-from sandbox.physics.query import load_bearing, strain
+from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy
+from sandbox.physics.analysis.query import load_bearing, strain
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.world import Floats, Slots, World
 

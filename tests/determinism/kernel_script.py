@@ -222,7 +222,7 @@ def modes():
     """The lowest modes of some forms, as text that shows every bit."""
     import numpy as np
 
-    from sandbox.physics.firmness import lowest_mode_of
+    from sandbox.physics.analysis.firmness import lowest_mode_of
     from sandbox.physics.forms import StiffForm
 
     generator = np.random.default_rng(1)

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from sandbox.level.format.files import read_level, shipped_levels
-from sandbox.physics.firmness import lowest_mode_of
-from sandbox.physics.query import shown_particles, shown_springs
+from sandbox.physics.analysis.firmness import lowest_mode_of
+from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers import SOLVERS
 from sandbox.session.commands.records import from_record

@@ -12,7 +12,7 @@ from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import NissenMaterial, ParticleDef
 from sandbox.level.format.parse import parse_level
 from sandbox.level.kinds.body_def import FirmnessDef
-from sandbox.physics.firmness import Reach, set_firmness
+from sandbox.physics.analysis.firmness import Reach, set_firmness
 from sandbox.physics.forms import Firmness
 from sandbox.physics.step import step
 from tests.support.wobbles import firm_level

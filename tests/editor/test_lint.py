@@ -33,7 +33,7 @@ from sandbox.level.kinds.bridge import BridgeDef
 from sandbox.level.kinds.jelly import BoxShape, JellyDef
 from sandbox.level.kinds.rope import RopeDef
 from sandbox.level.kinds.wheel import WheelDef
-from sandbox.physics.stability import report, spring_loads
+from sandbox.physics.analysis.stability import report, spring_loads
 from tests.support.zoo import zoo
 
 LEVELS = sorted((Path(__file__).resolve().parents[2] / "levels").glob("*.json"))

@@ -14,7 +14,7 @@ from sandbox.export.chosen_body import choose_body
 from sandbox.export.engines import MOST_STEPS, engine_numbers
 from sandbox.export.take_home import take_home
 from sandbox.export.take_home_text import as_text
-from sandbox.physics.energy import reduced_masses
+from sandbox.physics.analysis.energy import reduced_masses
 from tests.support.springs_elsewhere import Swing, lattice, level_of_springs, swing, swing_here, weight
 
 TICKS = 3000

@@ -18,7 +18,7 @@ from sandbox.export.svg import svg
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.files import load_level, shipped_levels
 from sandbox.level.format.parse import parse_level
-from sandbox.physics.energy import reduced_masses
+from sandbox.physics.analysis.energy import reduced_masses
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
 from sandbox.physics.step import step
 from sandbox.session.session import Session

@@ -18,8 +18,8 @@ from sandbox.export.take_home_text import ENGINES, TARGETS, as_text, take_home_t
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.files import load_level, shipped_levels
 from sandbox.level.format.parse import parse_level
+from sandbox.physics.analysis.stability import report
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.stability import report
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from sandbox.session.commands import SetCoefficients

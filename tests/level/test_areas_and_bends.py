@@ -15,8 +15,8 @@ from sandbox.level.kinds.jelly import JellyDef
 from sandbox.level.kinds.mesh import MeshDef
 from sandbox.level.kinds.ring import RingDef
 from sandbox.level.kinds.rope import RopeDef
+from sandbox.physics.analysis.energy import measure_constraints
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.energy import measure_constraints
 
 
 def world_of(*bodies, **level):

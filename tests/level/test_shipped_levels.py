@@ -9,8 +9,8 @@ from sandbox.level.build.build_world import build_world
 from sandbox.level.checks import judge
 from sandbox.level.format.canonical import level_text
 from sandbox.level.format.files import load_level, parse_level, read_level, shipped_levels
+from sandbox.physics.analysis.query import load_bearing, strain
 from sandbox.physics.jit import COMPILED
-from sandbox.physics.query import load_bearing, strain
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 

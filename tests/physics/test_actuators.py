@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from sandbox.physics.actuators import Actuators, Hydraulics, Muscles
+from sandbox.physics.analysis.energy import kinetic_energy, reduced_masses, spring_energy, spring_lengths, total_energy
 from sandbox.physics.driving import drive_muscles, wave
-from sandbox.physics.energy import kinetic_energy, reduced_masses, spring_energy, spring_lengths, total_energy
 from sandbox.physics.equation import implicit_spring_constant
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS

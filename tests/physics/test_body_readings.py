@@ -9,8 +9,8 @@ import pytest
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.files import load_level, parse_level, shipped_levels
 from sandbox.physics.analysis.body_motion import read_body, word_edges, word_for
+from sandbox.physics.analysis.firmness import WORDS, lowest_mode_of
 from sandbox.physics.analysis.standing import StandingRun
-from sandbox.physics.firmness import WORDS, lowest_mode_of
 from sandbox.physics.jit import COMPILED
 from tests.support.wobbles import measured_wobble
 

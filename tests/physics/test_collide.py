@@ -5,9 +5,9 @@ import copy
 import numpy as np
 import pytest
 
-from sandbox.physics.collision import collide
-from sandbox.physics.collision.collide import Collisions, collisions_of, last_contacts
+from sandbox.physics import pipeline
 from sandbox.physics.collision.types import NO_CONTACTS
+from sandbox.physics.pipeline import Collisions, collisions_of, last_contacts
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
@@ -43,10 +43,10 @@ def hashes(w, ticks):
 @pytest.mark.parametrize("jelly", [False, True])
 def test_a_run_whose_arrays_grow_on_the_way_has_the_bits_of_one_with_room_from_the_start(monkeypatch, substeps, jelly):
     ticks = scaled(120, 30)
-    monkeypatch.setattr(collide, "LEAST_ROOM", 5000)
+    monkeypatch.setattr(pipeline, "LEAST_ROOM", 5000)
     ample = hashes(heap(jelly, substeps=substeps), ticks)
-    monkeypatch.setattr(collide, "LEAST_ROOM", 1)
-    monkeypatch.setattr(collide, "MORE_ROOM", 1)
+    monkeypatch.setattr(pipeline, "LEAST_ROOM", 1)
+    monkeypatch.setattr(pipeline, "MORE_ROOM", 1)
     w = heap(jelly, substeps=substeps)
     rooms = []
     for expected in ample:
@@ -72,8 +72,8 @@ def test_a_tick_of_a_heap_at_rest_makes_no_array():
 def test_a_tick_of_free_discs_is_one_call_of_a_kernel(monkeypatch):
     w = heap(jelly=False, substeps=4)
     run(w, 20)
-    calls, entry = [], collide._collide
-    monkeypatch.setattr(collide, "_collide", lambda *arguments: calls.append(arguments) or entry(*arguments))
+    calls, entry = [], pipeline._collide
+    monkeypatch.setattr(pipeline, "_collide", lambda *arguments: calls.append(arguments) or entry(*arguments))
     for other in ("sanitise._are_sound", "sanitise._keep_if_sound", "forces._add_gravity_and_air", "step.integrate"):
         monkeypatch.setattr(f"sandbox.physics.{other}", None)
     run(w, 5)

@@ -8,14 +8,14 @@ import pytest
 
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import ContactsDef
+from sandbox.physics.analysis.energy import constraint_energies, measure_constraints, total_energy
+from sandbox.physics.analysis.stability import constraint_count, largest_eigenvalue, report
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.energy import constraint_energies, measure_constraints, total_energy
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.solvers.direct import layout
-from sandbox.physics.stability import constraint_count, largest_eigenvalue, report
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import step
 from sandbox.physics.world import World

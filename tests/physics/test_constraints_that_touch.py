@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from sandbox.physics.actuators import StrainLimits
+from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.breaking import yield_and_break
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.energy import total_energy
 from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sandbox.physics.collision.contact_points import contact_points
-from sandbox.physics.energy import spring_forces
+from sandbox.physics.analysis.contact_points import contact_points
+from sandbox.physics.analysis.energy import spring_forces
+from sandbox.physics.analysis.stability import BOUND, spring_loads, stability_shares
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.stability import BOUND, spring_loads, stability_shares
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
 from sandbox.physics.world import World

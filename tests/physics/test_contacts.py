@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.physics.collision.collide import last_contacts
+from sandbox.physics.analysis.energy import kinetic_energy, total_energy
 from sandbox.physics.collision.contacts import PENETRATION_TICKS
 from sandbox.physics.collision.filter import ALL_GROUPS
-from sandbox.physics.energy import kinetic_energy, total_energy
+from sandbox.physics.pipeline import last_contacts
 from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS

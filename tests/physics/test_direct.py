@@ -7,14 +7,14 @@ import sys
 import numpy as np
 import pytest
 
-from sandbox.physics.energy import kinetic_energy, spring_energy
+from sandbox.physics.analysis.energy import kinetic_energy, spring_energy
+from sandbox.physics.analysis.stability import coefficient_limits, report
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.joints.joint_set import joints_of
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers.direct import layout
 from sandbox.physics.solvers.direct.layout import layout_of
-from sandbox.physics.stability import coefficient_limits, report
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE, World
 from tests.bench import energy_gate, scenes

@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.energy import gravity_energy, kinetic_energy, reduced_masses, spring_energy, spring_lengths
+from sandbox.physics.analysis.energy import (
+    gravity_energy,
+    kinetic_energy,
+    reduced_masses,
+    spring_energy,
+    spring_lengths,
+)
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE, World

@@ -5,8 +5,8 @@ import random
 import numpy as np
 import pytest
 
+from sandbox.physics.analysis.firmness import WORDS, OutOfReach, Reach, least_ratio, lowest_mode_of
 from sandbox.physics.equation import of_body, of_springs
-from sandbox.physics.firmness import WORDS, OutOfReach, Reach, least_ratio, lowest_mode_of
 from sandbox.physics.forms import Firmness, StiffForm
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.settings import AUTO

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sandbox.physics.collision.inversion import find_inverted, new_inversions, triangles_of
+from sandbox.physics.analysis.energy import spring_energy, total_energy
 from sandbox.physics.constraints import AREA
-from sandbox.physics.energy import spring_energy, total_energy
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
+from sandbox.physics.untangling.inversion import find_inverted, new_inversions, triangles_of
 from tests.bench import jelly_abuse
 from tests.support import folding
 from tests.support.overlaps import overlaps

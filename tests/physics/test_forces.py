@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.energy import gravity_energy, kinetic_energy, total_energy
+from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, total_energy
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
 from tests.support.physics_scenes import network, run

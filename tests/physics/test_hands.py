@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from sandbox.physics.analysis.query import grip_radius
+from sandbox.physics.analysis.stability import report
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.joints.hands import FASTEST_HAND, grips_of
 from sandbox.physics.joints.pulls import pulls_of
-from sandbox.physics.query import grip_radius
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.stability import report
 from sandbox.physics.step import step
 from sandbox.physics.world import HAND_STRENGTH
 from sandbox.tools.drag import STRENGTHS

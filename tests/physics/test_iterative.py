@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.query import strain
+from sandbox.physics.analysis.query import strain
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE

@@ -60,7 +60,7 @@ def test_kernels_are_interpreted_where_compiling_is_switched_off():
 
 LAZY = """
 import sys
-import sandbox.physics.step, sandbox.physics.solvers.direct.solve, sandbox.physics.collision.collide
+import sandbox.physics.step, sandbox.physics.solvers.direct.solve, sandbox.physics.pipeline
 from sandbox.physics import jit
 from sandbox.physics.components import label_bodies
 assert "numba" not in sys.modules

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.collision.collide import CROSSED, collisions_of
 from sandbox.physics.collision.filter import LINE
 from sandbox.physics.collision.outline import outline_of
+from sandbox.physics.pipeline import CROSSED, collisions_of
 from sandbox.physics.step import step
 from tests.support.carts import ring_wheel
 from tests.support.contact_scenes import add_discs, world

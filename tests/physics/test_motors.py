@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.actuators import Actuators, Motors
-from sandbox.physics.energy import total_energy
+from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import hash_by_array, restore, take
 from sandbox.physics.solvers import SOLVERS

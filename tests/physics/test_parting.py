@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.collision.collide import last_contacts
+from sandbox.physics.analysis.energy import kinetic_energy, total_energy
 from sandbox.physics.collision.filter import LINE
-from sandbox.physics.energy import kinetic_energy, total_energy
+from sandbox.physics.pipeline import last_contacts
 from sandbox.physics.step import step
 from tests.support.contact_scenes import FLOOR, add_discs, add_jelly, world
 from tests.support.overlaps import overlaps

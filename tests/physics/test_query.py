@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.query import nearest_particle, nearest_spring, springs_crossing
+from sandbox.physics.analysis.query import nearest_particle, nearest_spring, springs_crossing
 from sandbox.physics.snapshot import take
 from sandbox.physics.world import World
 from tests.support.physics_scenes import network

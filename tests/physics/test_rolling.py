@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.physics.energy import total_energy
+from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.energy import kinetic_energy, spring_energy
+from sandbox.physics.analysis.energy import kinetic_energy, spring_energy
+from sandbox.physics.analysis.stability import report
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.stability import report
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE
 from tests.support.physics_scenes import SCENES, STILL, lengths, network, random_graph, run, scaled

@@ -27,7 +27,7 @@ def play():
 """
 WARM_UP = f"""
 from sandbox.physics import jit
-from sandbox.physics.step import warm_up
+from sandbox.physics.warm_up import warm_up
 {STEPS}
 warm_up()
 before = count()
@@ -40,7 +40,7 @@ from sandbox.physics import jit
 jit.start_interpreted()
 import sandbox.physics.step
 {STEPS}
-from sandbox.physics.step import warm_up
+from sandbox.physics.warm_up import warm_up
 with jit.recorded("all"):
     warm_up()
 noted = {{kernel.name: len(kernel.signatures) for kernel in jit.entries() if kernel.signatures}}

@@ -6,8 +6,14 @@ import time
 import numpy as np
 import pytest
 
-from sandbox.physics.energy import reduced_masses
-from sandbox.physics.stability import POWER_ITERATIONS, coefficient_limits, effective_count, largest_eigenvalue, report
+from sandbox.physics.analysis.energy import reduced_masses
+from sandbox.physics.analysis.stability import (
+    POWER_ITERATIONS,
+    coefficient_limits,
+    effective_count,
+    largest_eigenvalue,
+    report,
+)
 from sandbox.physics.substeps import substep_coefficients, substep_time
 from sandbox.physics.world import LAW_HOOKE, World
 from tests.support.physics_scenes import (

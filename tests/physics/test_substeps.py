@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sandbox.physics import energy
+from sandbox.physics.analysis import energy
+from sandbox.physics.analysis.stability import report
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.stability import report
 from sandbox.physics.step import step
 from sandbox.physics.substeps import MOST_AUTO, substep_count
 from sandbox.physics.world import World

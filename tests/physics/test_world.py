@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from sandbox.physics.analysis.energy import kinetic_energy, spring_energy
 from sandbox.physics.constraints import AREA
-from sandbox.physics.energy import kinetic_energy, spring_energy
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import take
 from sandbox.physics.solvers import SOLVERS

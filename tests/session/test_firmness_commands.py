@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from sandbox.level.format.parse import parse_level
+from sandbox.physics.analysis.firmness import Reach, lowest_mode_of
 from sandbox.physics.equation import of_body
-from sandbox.physics.firmness import Reach, lowest_mode_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify
 from sandbox.session.commands import CommandError, SetCoefficients, SetFirmness, SetSolver, apply

@@ -2,7 +2,7 @@
 
 import pytest
 
-from sandbox.physics.energy import total_energy
+from sandbox.physics.analysis.energy import total_energy
 from sandbox.session.check_run import run_checks
 from sandbox.session.commands import CutSprings, Grab, Release, SetDrive
 from sandbox.session.session import Session

@@ -7,13 +7,13 @@ import numpy as np
 
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.jelly import JellyDef
-from sandbox.physics.collision.filter import ALL_GROUPS, LINE
-from sandbox.physics.constraints import AREA
-from sandbox.physics.energy import (
+from sandbox.physics.analysis.energy import (
     gravity_energy,
     kinetic_energy,
     spring_energy,
 )
+from sandbox.physics.collision.filter import ALL_GROUPS, LINE
+from sandbox.physics.constraints import AREA
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.direct.energy_bank import UNDERDAMPED_BANK_SHARE
 from sandbox.physics.terrain import Chain

@@ -7,9 +7,9 @@ import numpy as np
 
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import Level
-from sandbox.physics.collision.inversion import find_inverted, new_inversions, triangles_of
-from sandbox.physics.energy import total_energy
+from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.step import step
+from sandbox.physics.untangling.inversion import find_inverted, new_inversions, triangles_of
 from sandbox.physics.world import Floats, World
 
 DEEDS = ("dropped", "squeezed", "thrown", "stirred")

@@ -8,7 +8,7 @@ import numpy as np
 
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.model import Level
-from sandbox.physics.query import grip_radius, load_bearing, strain
+from sandbox.physics.analysis.query import grip_radius, load_bearing, strain
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from sandbox.tools.drag import STRENGTHS

@@ -6,7 +6,7 @@ import random
 import numpy as np
 
 from sandbox.level.format.parse import parse_level
-from sandbox.physics.query import shown_particles, shown_springs
+from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.session.commands import (
     AddBody,
     AddParticle,

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from sandbox.physics.query import shown_particles, shown_springs
+from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.settings import AUTO
 from sandbox.session.commands import (
     CutSprings,

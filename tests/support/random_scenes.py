@@ -10,8 +10,8 @@ import numpy as np
 
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.parse import parse_level
+from sandbox.physics.analysis.energy import kinetic_energy, total_energy
 from sandbox.physics.collision.outline import outline_of
-from sandbox.physics.energy import kinetic_energy, total_energy
 from sandbox.physics.settings import Substeps
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.solvers.contact.small_steps import small_steps

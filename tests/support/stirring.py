@@ -8,7 +8,7 @@ import numpy as np
 
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.parse import parse_level
-from sandbox.physics.energy import kinetic_energy, spring_energy, total_energy
+from sandbox.physics.analysis.energy import kinetic_energy, spring_energy, total_energy
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.support.overlaps import overlaps

@@ -8,8 +8,8 @@ import numpy as np
 
 from sandbox.level.build.build_world import build_world
 from sandbox.level.format.parse import parse_level
+from sandbox.physics.analysis.energy import measure_constraints, reduced_masses
 from sandbox.physics.constraints import AREA
-from sandbox.physics.energy import measure_constraints, reduced_masses
 from sandbox.physics.step import step
 from sandbox.physics.world import Floats, World
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sandbox.level.format.files import load_level, shipped_levels
-from sandbox.physics.query import shown_particles
+from sandbox.physics.analysis.query import shown_particles
 from sandbox.session.commands import Grab, MoveBody
 from sandbox.session.session import Session
 from sandbox.tools.drag import DragTool

@@ -8,8 +8,8 @@ import pygame
 from sandbox.app.draw.colours import ACCENT, LINE, MUTED, SURFACE, TEXT, Colour
 from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
-from sandbox.physics.energy import spring_lengths
-from sandbox.physics.query import shown_particles
+from sandbox.physics.analysis.energy import spring_lengths
+from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 
 # Frames between two looks; places nearer than this [m] are the same to the eye.

@@ -12,7 +12,7 @@ from sandbox.app.draw.renderer import Renderer
 from sandbox.level.format.limits import FORMAT, VERSION
 from sandbox.level.format.model import Level
 from sandbox.level.format.parse import parse_level
-from sandbox.physics.query import shown_particles
+from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.session import Session
 from sandbox.tools.parts import COLOURS, PARTS

@@ -16,7 +16,7 @@ from sandbox.app.draw.renderer import Renderer
 from sandbox.app.draw.themes import THEMES
 from sandbox.level.format.model import Level
 from sandbox.level.format.writing import write_file
-from sandbox.physics.query import shown_particles
+from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.session import Session
 

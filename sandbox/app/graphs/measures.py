@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy, spring_lengths
+from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy, spring_lengths
 from sandbox.physics.joints.readings import motor_readings
 from sandbox.physics.world import World
 

@@ -87,7 +87,7 @@ def needed_kernels(groups: Iterable[str], solvers: Sequence[str] | None) -> list
     """
     jit.start_interpreted()
     from sandbox.physics.solvers import SOLVERS
-    from sandbox.physics.step import warm_up
+    from sandbox.physics.warm_up import warm_up
 
     names = tuple(SOLVERS) if solvers is None else tuple(solvers)
     with jit.recorded("basics"):
@@ -136,8 +136,8 @@ def warm_up_rest() -> None:
     import numpy as np
 
     from sandbox.app.draw.raster.painter import expect_painting
+    from sandbox.physics.analysis.energy import total_energy
     from sandbox.physics.constraints import AREA
-    from sandbox.physics.energy import total_energy
     from sandbox.physics.settings import WorldSettings
     from sandbox.physics.step import constraint_coefficients, substep_coefficients
     from sandbox.physics.world import World

@@ -13,7 +13,7 @@ from sandbox.app.kernels.compiling import GROUPS, Crew, is_prepared, note_prepar
 from sandbox.app.kernels.pace import Pace
 from sandbox.level.format.model import Level
 from sandbox.physics import jit
-from sandbox.physics.step import warm_up
+from sandbox.physics.warm_up import warm_up
 
 
 class Preparation:

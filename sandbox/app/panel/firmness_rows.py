@@ -16,11 +16,11 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
 from sandbox.physics import jit
 from sandbox.physics.analysis.body_motion import BodyMotion, BodyReading, present_coefficients, read_body, word_for
+from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, OutOfReach, Reach, lowest_mode_of
+from sandbox.physics.analysis.stability import BOUND, spring_loads
 from sandbox.physics.analysis.standing import StandingRun
-from sandbox.physics.firmness import LARGEST_READ, WORDS, OutOfReach, Reach, lowest_mode_of
 from sandbox.physics.forms import Firmness
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.stability import BOUND, spring_loads
 from sandbox.session.commands import SetFirmness
 
 ALL_BODIES = "All bodies"

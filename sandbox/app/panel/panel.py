@@ -30,9 +30,9 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.model import NissenMaterial
 from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
+from sandbox.physics.analysis.firmness import WORDS
+from sandbox.physics.analysis.stability import CoefficientLimits, coefficient_limits
 from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
-from sandbox.physics.firmness import WORDS
-from sandbox.physics.stability import CoefficientLimits, coefficient_limits
 from sandbox.physics.world import LAW_HOOKE, Floats
 from sandbox.session.commands import Command, SetCoefficients
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from sandbox.physics.analysis.body_motion import FLAT
 from sandbox.physics.analysis.spring_motion import SpringMotion
+from sandbox.physics.analysis.stability import CoefficientLimits
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.stability import CoefficientLimits
 from sandbox.physics.world import Floats
 
 # Names of powers of a thousand, the least first.

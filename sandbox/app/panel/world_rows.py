@@ -12,7 +12,7 @@ from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.fields import DASH, typed_number
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.level.format.limits import FRICTION_LIMIT, GRAVITY_LIMIT
-from sandbox.physics.energy import gravity_energy, kinetic_energy, spring_energy
+from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.session.commands import SetGravity
 from sandbox.tools.drag import STRENGTHS
 

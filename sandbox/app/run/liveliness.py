@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sandbox.physics.query import shown_particles
+from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 
 # Faster than this [m/s] is no livelier: what flies away is not what one wants to see.

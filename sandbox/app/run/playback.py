@@ -13,7 +13,7 @@ from sandbox.app.run.breaks import Breaks
 from sandbox.app.run.liveliness import Liveliness
 from sandbox.app.run.travel import Travel
 from sandbox.level.format.model import Level
-from sandbox.physics.energy import Dissipation
+from sandbox.physics.analysis.energy import Dissipation
 from sandbox.physics.snapshot import Snapshot, state_hash
 from sandbox.physics.step import expect
 from sandbox.physics.world import World

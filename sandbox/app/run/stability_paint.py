@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.stability import stability_shares
+from sandbox.physics.analysis.stability import stability_shares
 from sandbox.physics.world import World
 
 # Ticks between two looks at what changes by itself, such as springs that break.

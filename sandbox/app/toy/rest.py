@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sandbox.physics.query import shown_particles
+from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 
 # It sleeps after so long [s] at rest, with the pointer over it after so long without a deed.

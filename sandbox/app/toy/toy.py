@@ -22,7 +22,7 @@ from sandbox.app.toy.rest import Rest
 from sandbox.app.toy.toy_window import ToyWindow
 from sandbox.app.widgets.fonts import plain_font
 from sandbox.level.format.model import Level
-from sandbox.physics.query import free_particle_at, shown_particles
+from sandbox.physics.analysis.query import free_particle_at, shown_particles
 from sandbox.session.commands import Shake
 
 # Frames a second: while somebody plays or something moves fast, and while it comes to rest. Looks for events while it

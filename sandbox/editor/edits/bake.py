@@ -16,8 +16,8 @@ from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.kinds.geometry import Points
+from sandbox.physics.analysis.firmness import Reach
 from sandbox.physics.equation import of_body, of_springs
-from sandbox.physics.firmness import Reach
 from sandbox.physics.forms import Firmness
 from sandbox.physics.world import World
 

@@ -9,9 +9,9 @@ from sandbox.level.build.constraints import add_constraints
 from sandbox.level.build.forms import add_forms
 from sandbox.level.build.materials import coefficients
 from sandbox.level.format.model import Level, NissenMaterial
+from sandbox.physics.analysis.stability import BOUND, spring_loads
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.stability import BOUND, spring_loads
 from sandbox.physics.world import LAW_NISSEN, World
 
 

@@ -16,8 +16,8 @@ from sandbox.level.format.model import Level, NissenMaterial
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BodyDef, FirmnessDef
+from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, OutOfReach, Reach
 from sandbox.physics.equation import of_body
-from sandbox.physics.firmness import LARGEST_READ, WORDS, OutOfReach, Reach
 from sandbox.physics.forms import Firmness
 
 # What the menu of words says of a body that is as its material is, and of one whose firmness has no word.

@@ -18,7 +18,7 @@ from sandbox.level.format.model import HookeMaterial
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import KINDS, AnyBody, expansion
 from sandbox.level.kinds.body_def import FirmnessDef
-from sandbox.physics.firmness import OutOfReach, Reach
+from sandbox.physics.analysis.firmness import OutOfReach, Reach
 from sandbox.physics.forms import Firmness
 
 AnyBodyOptions = TypeVar("AnyBodyOptions", bound=BodyOptions)

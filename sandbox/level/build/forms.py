@@ -7,7 +7,7 @@ import numpy as np
 
 from sandbox.level.format.model import HookeMaterial, Level, Material
 from sandbox.level.kinds.expansion import Expansion
-from sandbox.physics.firmness import Reach, set_firmness
+from sandbox.physics.analysis.firmness import Reach, set_firmness
 from sandbox.physics.forms import FirmBody
 from sandbox.physics.world import TRIANGLE, World
 

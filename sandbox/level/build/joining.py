@@ -29,10 +29,10 @@ from sandbox.level.format.limits import (
 )
 from sandbox.level.format.model import Level, Material, NissenMaterial
 from sandbox.level.format.parse import parse_level
-from sandbox.physics.changing.equipment import Joined
 from sandbox.physics.changing.joining import Place, append_state, equipped
 from sandbox.physics.collision.filter import ALL_GROUPS
 from sandbox.physics.driving import drive_muscles
+from sandbox.physics.equipment import Joined
 from sandbox.physics.state import Slots
 from sandbox.physics.world import World
 

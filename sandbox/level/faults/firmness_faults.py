@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from sandbox.level.build.plan import Plan
 from sandbox.level.faults.level_error import Fault, shown
 from sandbox.level.format.model import HookeMaterial, Level
-from sandbox.physics.firmness import OutOfReach, Reach, lowest_mode_of
+from sandbox.physics.analysis.firmness import OutOfReach, Reach, lowest_mode_of
 
 
 def firmness_faults(level: Level, plan: Plan) -> Iterator[Fault]:

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sandbox.physics.analysis.firmness import STANDING, WORDS, lowest_mode_of
 from sandbox.physics.analysis.spring_motion import SpringMotion, motion_of
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
-from sandbox.physics.firmness import STANDING, WORDS, lowest_mode_of
 from sandbox.physics.forms import StiffForm, strength_of
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sandbox.physics.analysis.stability import BOUND, demand_limit, largest_eigenvalue, most_springs
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.stability import BOUND, demand_limit, largest_eigenvalue, most_springs
 from sandbox.physics.substeps import halve
 from sandbox.physics.world import Floats, World
 

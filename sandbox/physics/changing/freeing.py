@@ -9,9 +9,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.collision.collide import collisions_of
 from sandbox.physics.collision.outline import Outline, outline_of
 from sandbox.physics.components import body_of
+from sandbox.physics.pipeline import collisions_of
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.world import BANK_UNOPENED, World
 

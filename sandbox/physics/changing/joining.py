@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles, StrainLimits
-from sandbox.physics.changing.equipment import Equipment
+from sandbox.physics.equipment import Equipment
 from sandbox.physics.state import FAMILIES, Family, Slots
 from sandbox.physics.world import World
 

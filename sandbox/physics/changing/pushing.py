@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.geometry.sums import sum_in_order
-from sandbox.physics.query import shown_particles
 from sandbox.physics.world import World
 
 

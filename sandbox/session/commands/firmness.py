@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field
 
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
-from sandbox.physics.firmness import OutOfReach, Reach, set_firmness
+from sandbox.physics.analysis.firmness import OutOfReach, Reach, set_firmness
 from sandbox.physics.forms import Firmness
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from sandbox.level.format.look import PALETTE
 from sandbox.level.format.model import Level
+from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.constraints import AREA
-from sandbox.physics.query import shown_particles, shown_springs
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import World
 from sandbox.session.commands import CommandError

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.query import slot_name
+from sandbox.physics.analysis.query import slot_name
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.state import BY_STORED, Family
 from sandbox.physics.world import World

@@ -31,8 +31,8 @@ from sandbox.level.build.build_world import build_world
 from sandbox.level.build.joining import Joiners
 from sandbox.level.format.files import level_data
 from sandbox.level.format.model import Level
-from sandbox.physics.changing.equipment import Equipment
 from sandbox.physics.constraints import AREA
+from sandbox.physics.equipment import Equipment
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.state import BY_STORED, FAMILIES, Column, Family
 from sandbox.physics.terrain import NO_TERRAIN

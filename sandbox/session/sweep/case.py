@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from sandbox.level.checks import STILL
-from sandbox.physics.energy import total_energy
-from sandbox.physics.query import load_bearing, shown_particles, shown_springs, strain
+from sandbox.physics.analysis.energy import total_energy
+from sandbox.physics.analysis.query import load_bearing, shown_particles, shown_springs, strain
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
 from sandbox.session.check_run import CheckWatch

@@ -16,7 +16,7 @@ from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.level.kinds.jelly import JellyDef
-from sandbox.physics.changing.equipment import Joined
+from sandbox.physics.equipment import Joined
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]

@@ -11,8 +11,8 @@ from sandbox.app.draw.colours import packed
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.themes import Theme
 from sandbox.app.draw.things.frame import Frame, Seen
-from sandbox.physics.collision.contact_points import contact_points
-from sandbox.physics.energy import spring_forces
+from sandbox.physics.analysis.contact_points import contact_points
+from sandbox.physics.analysis.energy import spring_forces
 from sandbox.physics.snapshot import Snapshot
 
 Floats = NDArray[np.float64]

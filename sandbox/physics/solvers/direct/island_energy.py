@@ -8,14 +8,11 @@ is stored, up to a limit, in the energy banks of bodies and particles; to push a
 import math
 
 from sandbox.physics.collision.filter import TERRAIN_GROUP
-from sandbox.physics.collision.overlaps import DEEP
-from sandbox.physics.collision.parting import PARTING_SPEED
 from sandbox.physics.collision.terrain_clamp import STOPS, stopped
 from sandbox.physics.collision.turning import SURFACE_WEIGHT
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH, PENETRATION_SHARE, ContactTerms
-from sandbox.physics.solvers.contact.islands import BODIES, ISLANDS, MEMBERS, BodyIslands, Touch
 from sandbox.physics.solvers.direct.energy_bank import (
     BANK_SHARE,
     ENERGY_ROUNDING,
@@ -26,6 +23,7 @@ from sandbox.physics.solvers.direct.energy_bank import (
     reserve,
 )
 from sandbox.physics.solvers.direct.families import find_tension
+from sandbox.physics.solvers.direct.islands import BODIES, ISLANDS, MEMBERS, BodyIslands, Touch
 from sandbox.physics.solvers.direct.joint_response import work_of_joints
 from sandbox.physics.solvers.direct.motion import copy, hold_triangles, scale
 from sandbox.physics.solvers.direct.rigid_turn import damp_within
@@ -44,6 +42,8 @@ from sandbox.physics.solvers.direct.system import (
     System,
     span_of,
 )
+from sandbox.physics.untangling.overlaps import DEEP
+from sandbox.physics.untangling.parting import PARTING_SPEED
 from sandbox.physics.world import BANK_UNOPENED, Floats
 
 # Halvings of what moves within bodies that fail the test, before all that moves is slowed down.

@@ -8,7 +8,6 @@ together that touch each other, so that one may take what another gives.
 
 from typing import Any
 
-from sandbox.physics.collision.triangle_clamp import AS_IT_WAS
 from sandbox.physics.collision.turning import spin_of
 from sandbox.physics.collision.types import Contacts, LentContacts, weight_of
 from sandbox.physics.jit import contents, inner_kernel, kernel
@@ -25,15 +24,6 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     load_surfaces,
     mark_calm,
     solve_contacts,
-)
-from sandbox.physics.solvers.contact.islands import (
-    BODIES,
-    MEMBERS,
-    BodyIslands,
-    IslandRoom,
-    Touch,
-    find_body_islands,
-    new_islands,
 )
 from sandbox.physics.solvers.direct.energy_bank import is_new
 from sandbox.physics.solvers.direct.factor import respond, solve_linear
@@ -58,6 +48,15 @@ from sandbox.physics.solvers.direct.island_energy import (
     store_energies,
     weigh_body,
 )
+from sandbox.physics.solvers.direct.islands import (
+    BODIES,
+    MEMBERS,
+    BodyIslands,
+    IslandRoom,
+    Touch,
+    find_body_islands,
+    new_islands,
+)
 from sandbox.physics.solvers.direct.joint_response import (
     fails_driven,
     load_answers,
@@ -73,6 +72,7 @@ from sandbox.physics.solvers.direct.shape_matching import release_shape
 from sandbox.physics.solvers.direct.slow_motion import AHEAD
 from sandbox.physics.solvers.direct.step_body import LINEAR_SOLVES, MISFIT_RATE, open_body, step_bodies
 from sandbox.physics.solvers.direct.system import Inputs, Rows, Span, State, System, span_of
+from sandbox.physics.untangling.triangle_clamp import AS_IT_WAS
 from sandbox.physics.world import Floats, World
 
 # Sweeps over the contacts for each linear solve. More costs time, fewer leaves piles soft and restless.

@@ -2,8 +2,8 @@
 
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_sweep import Joints, couple_joints
-from sandbox.physics.solvers.contact.islands import Touch
 from sandbox.physics.solvers.direct.factor import respond
+from sandbox.physics.solvers.direct.islands import Touch
 from sandbox.physics.solvers.direct.system import Rows, Span, System
 from sandbox.physics.world import Floats, Slots
 

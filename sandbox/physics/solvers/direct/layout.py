@@ -10,8 +10,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.collision.inversion import Jellies, group_triangles
-from sandbox.physics.collision.triangle_clamp import ClampedTriangles, new_triangles
 from sandbox.physics.components import label_bodies
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import bundle
@@ -29,6 +27,8 @@ from sandbox.physics.solvers.linear.minimum_degree import (
 )
 from sandbox.physics.solvers.linear.parallel import hire
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix
+from sandbox.physics.untangling.inversion import Jellies, group_triangles
+from sandbox.physics.untangling.triangle_clamp import ClampedTriangles, new_triangles
 from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, Floats, Slots, World
 
 # First guess of blocks in the factor per particle; too low costs one more pass, too high memory.

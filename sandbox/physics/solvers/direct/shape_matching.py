@@ -7,10 +7,10 @@ no jelly as a whole, and let it lose its spin; what they add to the body's energ
 
 import math
 
-from sandbox.physics.collision.inversion import is_out_of_shape, is_wound, wind
 from sandbox.physics.equation import implicit_masses
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.system import Goals, Rows, Span, System
+from sandbox.physics.untangling.inversion import is_out_of_shape, is_wound, wind
 
 # No turn fits where the fit of the best is below this share [1] of what it is to itself: in one point, or a square
 # turned inside out. Any value well above rounding will do.

@@ -7,7 +7,6 @@ what it had plus what its bank holds of earlier losses; else f itself is minimis
 
 import math
 
-from sandbox.physics.collision.triangle_clamp import AS_IT_WAS, JOINED
 from sandbox.physics.integrate import follow
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.energy_bank import (
@@ -33,6 +32,7 @@ from sandbox.physics.solvers.direct.rigid_turn import (
 from sandbox.physics.solvers.direct.shape_matching import find_inverted, match_shape, release_shape
 from sandbox.physics.solvers.direct.slow_motion import AHEAD
 from sandbox.physics.solvers.direct.system import Inputs, Span, State, System, span_of
+from sandbox.physics.untangling.triangle_clamp import AS_IT_WAS, JOINED
 
 # A body of which a spring, after a linear solve, misses the length that was predicted by more than this share of it
 # times h^2 [1/s^2] (1e-4 at 60 Hz) gets another: what turns fast, a whipping tip or a dragged end, stretches 5 to 20

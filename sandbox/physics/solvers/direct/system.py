@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.collision.triangle_clamp import ClampedTriangles
 from sandbox.physics.jit import inlined_kernel
 from sandbox.physics.solvers.linear.fronts import Fronts
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix
 from sandbox.physics.terrain import Terrain
+from sandbox.physics.untangling.triangle_clamp import ClampedTriangles
 from sandbox.physics.world import Floats, Slots
 
 Flags = NDArray[np.bool_]

@@ -49,7 +49,7 @@ class OutOfReach(ValueError):
 
 def lowest_mode_of(shape: StiffForm) -> float:
     """The lowest eigenvalue of a form, without unit; 0 where it is not stiff without pins."""
-    from sandbox.physics.solvers.direct.lowest_mode import find_lowest_mode
+    from sandbox.physics.analysis.lowest_mode import find_lowest_mode
 
     return find_lowest_mode(shape)
 

@@ -14,7 +14,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.filter import TERRAIN_GROUP
-from sandbox.physics.collision.inversion import (
+from sandbox.physics.collision.terrain_clamp import STOPS, stopped
+from sandbox.physics.collision.types import Flags
+from sandbox.physics.components import root_of, united
+from sandbox.physics.jit import bundle, contents, inlined_kernel, inner_kernel, kernel
+from sandbox.physics.state import Floats, Slots
+from sandbox.physics.terrain import Terrain
+from sandbox.physics.untangling.inversion import (
     Inversions,
     Jellies,
     Triangles,
@@ -22,12 +28,6 @@ from sandbox.physics.collision.inversion import (
     new_inversions,
     triangles_of,
 )
-from sandbox.physics.collision.terrain_clamp import STOPS, stopped
-from sandbox.physics.collision.types import Flags
-from sandbox.physics.components import root_of, united
-from sandbox.physics.jit import bundle, contents, inlined_kernel, inner_kernel, kernel
-from sandbox.physics.state import Floats, Slots
-from sandbox.physics.terrain import Terrain
 from sandbox.physics.world import World
 
 # A step leaves a triangle at least this share of the area wanted, or of the area that it has, if that is less. Higher

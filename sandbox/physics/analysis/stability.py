@@ -18,8 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.energy import measure_constraints, reduced_masses
-from sandbox.physics.query import slot_name
+from sandbox.physics.analysis.energy import measure_constraints, reduced_masses
+from sandbox.physics.analysis.query import slot_name
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import halve, substep_time
 from sandbox.physics.world import LAW_HAND, LAW_HOOKE, Floats, World

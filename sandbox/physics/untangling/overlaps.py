@@ -12,12 +12,12 @@ import numpy as np
 
 from sandbox.physics.collision.broad_phase import Boxes, Grid, bucket_of, cell_number, overlap
 from sandbox.physics.collision.edge_geometry import closest, winds
-from sandbox.physics.collision.meeting import Meetings, cross, find_meetings, may_cross
 from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, may_collide
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, Flags, KeptContacts
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import Floats, Slots
+from sandbox.physics.untangling.meeting import Meetings, cross, find_meetings, may_cross
 
 # Outlines of solid bodies that overlap deeper than this many radii of a particle part, until nothing crosses. Less
 # takes contacts from what is only pressed together, more leaves what has been pushed through.

@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 from sandbox.physics.collision.edge_geometry import edge_normal, winds
 from sandbox.physics.collision.outline import Outline
-from sandbox.physics.collision.overlaps import OVERLAPS, Overlaps, give_way
 from sandbox.physics.collision.types import Colliders, Flags
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import Floats
+from sandbox.physics.untangling.overlaps import OVERLAPS, Overlaps, give_way
 from sandbox.physics.world import BANK_UNOPENED
 
 # Bodies that overlap part at this speed [m/s]. Faster frees no more of them, slower takes longer.

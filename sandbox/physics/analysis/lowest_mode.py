@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sandbox.physics.analysis.energy import measure_constraints, reduced_masses
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.energy import measure_constraints, reduced_masses
 from sandbox.physics.forms import StiffForm
 from sandbox.physics.jit import kernel
 from sandbox.physics.solvers.direct.layout import lay_out_matrix, order_small

@@ -24,18 +24,7 @@ from sandbox.physics.collision.broad_phase import (
 )
 from sandbox.physics.collision.contacts import bound_solids, carry_over, fill_boxes, find_contacts, find_terrain
 from sandbox.physics.collision.disc_stop import stop_discs
-from sandbox.physics.collision.inversion import Inversions, Triangles, find_inverted, new_inversions, triangles_of
-from sandbox.physics.collision.meeting import Meetings, new_meetings
 from sandbox.physics.collision.outline import Outline, colliders_of, outline_of
-from sandbox.physics.collision.overlaps import (
-    CROSSINGS,
-    OVERLAPS,
-    Overlaps,
-    find_crossings,
-    new_overlaps,
-    pair_overlaps,
-)
-from sandbox.physics.collision.parting import MovedParticles, part_overlaps
 from sandbox.physics.collision.restitution import find_bounces
 from sandbox.physics.collision.terrain_clamp import clamp_at_pins, clamp_at_terrain, clamp_at_tips
 from sandbox.physics.collision.turning import SURFACE_WEIGHT, load_arms
@@ -63,6 +52,17 @@ from sandbox.physics.solvers.contact.small_steps import small_steps
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.substeps import Cadence
 from sandbox.physics.terrain import Terrain
+from sandbox.physics.untangling.inversion import Inversions, Triangles, find_inverted, new_inversions, triangles_of
+from sandbox.physics.untangling.meeting import Meetings, new_meetings
+from sandbox.physics.untangling.overlaps import (
+    CROSSINGS,
+    OVERLAPS,
+    Overlaps,
+    find_crossings,
+    new_overlaps,
+    pair_overlaps,
+)
+from sandbox.physics.untangling.parting import MovedParticles, part_overlaps
 from sandbox.physics.world import World
 
 # What a step may find before it asks for more room, at least; and by how much more than it needs it then gets.
