@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOME = {
-    "Level": "sandbox.level.format.model",
-    "LevelError": "sandbox.level.faults.level_error",
-    "load_level": "sandbox.level.format.files",
-    "build_world": "sandbox.level.build.build_world",
+    "Level": "sandbox.level.document.model",
+    "LevelError": "sandbox.level.format.level_error",
+    "load_level": "sandbox.level.reading.files",
+    "build_world": "sandbox.level.assembly.build_world",
     "Snapshot": "sandbox.physics.snapshot",
     "World": "sandbox.physics.world",
     "WorldSettings": "sandbox.physics.settings",
@@ -40,10 +40,10 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from sandbox.level.build.build_world import build_world
-    from sandbox.level.faults.level_error import LevelError
-    from sandbox.level.format.files import load_level
-    from sandbox.level.format.model import Level
+    from sandbox.level.assembly.build_world import build_world
+    from sandbox.level.document.model import Level
+    from sandbox.level.format.level_error import LevelError
+    from sandbox.level.reading.files import load_level
     from sandbox.physics.settings import WorldSettings
     from sandbox.physics.snapshot import Snapshot, state_hash
     from sandbox.physics.step import step

@@ -5,11 +5,7 @@ Values are validated where they are made: tuples for lists, and ValidationError 
 """
 
 from sandbox.level.checks import CheckDef
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef, MuscleDef
-from sandbox.level.format.files import parse_level, write_level
-from sandbox.level.format.limits import FORMAT, VERSION
-from sandbox.level.format.model import (
+from sandbox.level.document.model import (
     ContactsDef,
     HookeMaterial,
     Level,
@@ -20,6 +16,9 @@ from sandbox.level.format.model import (
     TerrainDef,
     WallsDef,
 )
+from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef, MuscleDef
+from sandbox.level.format.level_error import LevelError
+from sandbox.level.format.limits import FORMAT, VERSION
 from sandbox.level.kinds.body_def import BendingDef
 from sandbox.level.kinds.bridge import BridgeDef
 from sandbox.level.kinds.girder import GirderDef
@@ -29,6 +28,7 @@ from sandbox.level.kinds.ring import RingDef
 from sandbox.level.kinds.rope import RopeDef
 from sandbox.level.kinds.web import WebDef
 from sandbox.level.kinds.wheel import WheelDef
+from sandbox.level.reading.files import parse_level, write_level
 
 __all__ = [
     "FORMAT",

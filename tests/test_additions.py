@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 PLAY = """
 from pathlib import Path
-from sandbox.level.format.files import parse_level
+from sandbox.level.reading.files import parse_level
 from sandbox.physics.step import step
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.script import read_script
@@ -180,7 +180,7 @@ for name in ("r.start", "nobody"):
 def test_a_level_setting_is_three_files(package):
     put(package / "physics/settings.py", "    lift: float = 0.0\n", before="    drag: float = 0.0")
     put(
-        package / "level/format/model.py",
+        package / "level/document/model.py",
         '    lift: float = Field(default=0.0, ge=-1e6, le=1e6, description="Acceleration upward.")\n',
         before="    drag: Drag = Field(",
     )
@@ -202,7 +202,7 @@ except ValueError as error:
     print(error)
 """
     assert "settings.lift" in play(package, script)
-    assert changed(package) == ["level/format/model.py", "physics/forces.py", "physics/settings.py"]
+    assert changed(package) == ["level/document/model.py", "physics/forces.py", "physics/settings.py"]
 
 
 def test_a_state_array_is_one_line(package):

@@ -20,6 +20,13 @@ ROOMS = (
     "physics", "level", "export", "session", *PUBLIC, "tools", "editor", "app", "testing", "terminal", "cli",
     "__main__",
 )  # fmt: skip
+# Rooms of the window, from the ground up.
+ROOMS_OF_APP = (
+    "base", "run", "draw", "sound", "kernels", "widgets", "film", "settings", "contracts", "graphs", "share", "parts",
+    "panel", "play", "edit", "compare", "toy", "gallery", "window",
+)  # fmt: skip
+# Folders that import each other both ways: the table of solvers says where joints bear a load.
+BOTH_WAYS = {"physics": [("joints", "solvers")], "level": []}
 LIBRARIES = {
     "physics": {"numpy", "numba", "llvmlite"},
     "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},
@@ -97,6 +104,30 @@ def test_imports_point_downward():
         f"{name} imports {other}" for name, other in own_imports() if ROOMS.index(room(other)) > ROOMS.index(room(name))
     ]
     assert upward == []
+
+
+def folder(name):
+    """The folder of one of our modules below its room, or the module itself where it lies in the room."""
+    below = name.split(".")[2:]
+    is_package = any(other.startswith(f"{name}.") for other in sources())
+    return ".".join(below if is_package or len(below) == 1 else below[:-1])
+
+
+def test_imports_of_the_window_point_downward():
+    inside = [(name, other) for name, other in own_imports() if room(name) == room(other) == "app"]
+    rank = {name: ROOMS_OF_APP.index(folder(name).split(".")[0]) for pair in inside for name in pair}
+    assert [f"{name} imports {other}" for name, other in inside if rank[other] > rank[name]] == []
+
+
+@pytest.mark.parametrize("wanted", BOTH_WAYS)
+def test_folders_of_a_room_do_not_import_each_other_both_ways(wanted):
+    inside = [(folder(name), folder(other)) for name, other in own_imports() if room(name) == room(other) == wanted]
+    arrows = {(one, other) for one, other in inside if one != other}
+    assert sorted((one, other) for one, other in arrows if one < other and (other, one) in arrows) == BOTH_WAYS[wanted]
+
+
+def test_no_file_lies_loose_in_the_window():
+    assert [path.name for path in (PACKAGE / "app").glob("*.py")] == ["__init__.py"]
 
 
 def test_of_the_package_itself_only_the_version_is_imported():

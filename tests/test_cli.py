@@ -14,7 +14,7 @@ import pytest
 from PIL import Image, ImageSequence
 
 from sandbox.cli import main
-from sandbox.level.format.files import shipped_folder
+from sandbox.level.reading.files import shipped_folder
 from sandbox.terminal import SLOW
 
 ROPE = {

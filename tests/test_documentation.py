@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.level.format.files import load_level, parse_level, shipped_levels
+from sandbox.level.reading.files import load_level, parse_level, shipped_levels
 from sandbox.physics.analysis.energy import kinetic_energy, spring_energy, spring_lengths
 from sandbox.physics.analysis.firmness import lowest_mode_of
 from sandbox.physics.analysis.stability import report

@@ -34,7 +34,7 @@ def test_an_installed_wheel_finds_its_levels_parts_and_assets_from_another_folde
     readers = {path.name for path in (installed / "sandbox" / "_shipped" / "examples" / "flat").iterdir()}
     assert readers == {path.name for path in (ROOT / "examples" / "flat").iterdir() if path.is_file()}
     program = (
-        "import sandbox; from sandbox.level.format.files import load_level, shipped_folder, shipped_levels\n"
+        "import sandbox; from sandbox.level.reading.files import load_level, shipped_folder, shipped_levels\n"
         "assert load_level('rope').name and shipped_levels()\n"
         "print(sandbox.__file__, len(shipped_levels()), len(list(shipped_folder('assets').iterdir())),\n"
         "len(list((shipped_folder('levels') / 'parts').glob('*.json'))))"

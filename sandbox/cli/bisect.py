@@ -8,7 +8,7 @@ from sandbox.cli.command import Commands, add_command
 from sandbox.cli.inputs import EXIT_OK, Refused, is_replay, level_of, recording_of
 
 if TYPE_CHECKING:
-    from sandbox.level.format.model import Level
+    from sandbox.level.document.model import Level
 
 
 def add(commands: Commands) -> None:
@@ -24,7 +24,7 @@ def add(commands: Commands) -> None:
 
 def bisect(options: argparse.Namespace) -> int:
     """Find what makes a level fail."""
-    from sandbox.level.faults.level_error import LevelError
+    from sandbox.level.format.level_error import LevelError
     from sandbox.session.bisect import BisectError, Tried, checks_hold, deciding_edits, deciding_value, recording_holds
 
     if (options.bad is None) == (options.set is None):

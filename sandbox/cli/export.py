@@ -9,7 +9,7 @@ from sandbox.cli.command import Commands, add_command
 from sandbox.cli.inputs import EXIT_OK, Refused, level_of
 
 if TYPE_CHECKING:
-    from sandbox.level.format.model import Level
+    from sandbox.level.document.model import Level
 
 FORMS = ("flat", "svg", "pymunk")
 

@@ -16,7 +16,7 @@ def add(commands: Commands) -> None:
 
 def rewrite(options: argparse.Namespace) -> int:
     """Write a level file anew. Raises Refused."""
-    from sandbox.level.format.files import LevelError, read_level, write_level
+    from sandbox.level.reading.files import LevelError, read_level, write_level
 
     try:
         warning = write_level(read_level(options.file), options.file)

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from sandbox.level.format.model import Level
+    from sandbox.level.document.model import Level
     from sandbox.session.replay.recording import Replay
 
 EXIT_OK, EXIT_FAILED, EXIT_REFUSED, EXIT_INTERRUPTED = 0, 1, 2, 130
@@ -19,7 +19,7 @@ class Refused(Exception):
 
 def level_of(name: str) -> "Level":
     """A level file, or a shipped level of that name. Raises Refused."""
-    from sandbox.level.format.files import LevelError, load_level
+    from sandbox.level.reading.files import LevelError, load_level
 
     try:
         return load_level(name)

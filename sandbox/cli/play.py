@@ -10,7 +10,7 @@ from sandbox.cli.running import run_with_bar
 from sandbox.terminal import seconds
 
 if TYPE_CHECKING:
-    from sandbox.level.format.model import Level
+    from sandbox.level.document.model import Level
     from sandbox.session.replay.recording import Replay
 
 # How long it plays where there is no display [s].

@@ -12,7 +12,7 @@ from sandbox.cli.pages import PAGE, write_report
 from sandbox.terminal import Progress, tell
 
 if TYPE_CHECKING:
-    from sandbox.level.format.model import Level
+    from sandbox.level.document.model import Level
 
 
 def add(commands: Commands) -> None:

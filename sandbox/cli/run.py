@@ -12,7 +12,7 @@ from sandbox.cli.running import run_with_bar
 from sandbox.terminal import count, substeps, tell
 
 if TYPE_CHECKING:
-    from sandbox.level.format.model import Level
+    from sandbox.level.document.model import Level
     from sandbox.physics.world import World
     from sandbox.session.session import Session
 
@@ -79,7 +79,7 @@ def _keep_apart(options: argparse.Namespace) -> None:
 
 
 def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
-    from sandbox.level.faults.level_error import LevelError
+    from sandbox.level.format.level_error import LevelError
     from sandbox.session.replay.again import with_settings
 
     given = {name: getattr(options, name) for name in ("solver", "substeps") if getattr(options, name) is not None}

@@ -14,7 +14,7 @@ def add(commands: Commands) -> None:
 
 def print_schema(options: argparse.Namespace) -> int:
     """Print the schema."""
-    from sandbox.level.format.schema import schema
+    from sandbox.level.document.schema import schema
 
     print(json.dumps(schema(), indent=2))
     return EXIT_OK

@@ -13,7 +13,7 @@ from sandbox.cli.inputs import EXIT_INTERRUPTED, EXIT_OK, Refused, level_of
 from sandbox.terminal import Progress, cores, processes, seconds, tell
 
 if TYPE_CHECKING:
-    from sandbox.level.format.model import Level
+    from sandbox.level.document.model import Level
     from sandbox.session.sweep.grid import SweepGrid, Value
     from sandbox.session.sweep.table import Rows
 

@@ -25,7 +25,7 @@ def take_home(options: argparse.Namespace) -> int:
     """Print what a body takes home. Raises Refused."""
     from sandbox.export.chosen_body import NoSuchBody
     from sandbox.export.take_home_text import TARGETS, take_home_text
-    from sandbox.level.faults.level_error import shown, suggestion
+    from sandbox.level.format.level_error import shown, suggestion
 
     if options.to not in TARGETS:
         hint = suggestion(options.to, TARGETS) or f"; there are {', '.join(TARGETS)}"

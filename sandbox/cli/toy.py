@@ -9,7 +9,7 @@ from sandbox.cli.inputs import EXIT_OK, Refused, level_of
 from sandbox.terminal import seconds, tell
 
 if TYPE_CHECKING:
-    from sandbox.level.format.model import Level
+    from sandbox.level.document.model import Level
 
 
 def add(commands: Commands) -> None:

@@ -7,9 +7,9 @@ import numpy as np
 
 from sandbox.editor.items import Item
 from sandbox.editor.scene import Scene
-from sandbox.level.build.actuators import actuators
 from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
 from sandbox.level.kinds.wheel import WheelDef
+from sandbox.level.plan.actuators import actuators
 
 
 class SceneActuators(NamedTuple):

@@ -8,12 +8,12 @@ from typing import Any
 from pydantic import ValidationError
 
 from sandbox.editor.items import Item, Kind, Selection, keys
-from sandbox.level.faults.level_error import LevelError, shown
+from sandbox.level.document.canonical import level_text
+from sandbox.level.document.messages import worded
+from sandbox.level.document.model import Level, NissenMaterial
 from sandbox.level.faults.validate import check_level
-from sandbox.level.format.canonical import level_text
+from sandbox.level.format.level_error import LevelError, shown
 from sandbox.level.format.limits import FILE_LIMIT, FORMAT, VERSION
-from sandbox.level.format.messages import worded
-from sandbox.level.format.model import Level, NissenMaterial
 from sandbox.level.format.quantities import Described, Description, replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
 

@@ -15,8 +15,8 @@ from sandbox.editor.actuators import driven_items
 from sandbox.editor.items import Selection
 from sandbox.editor.lint.finding import called, falling_particles
 from sandbox.editor.scene import make_scene
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.model import Level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import Level
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 

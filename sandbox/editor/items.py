@@ -4,7 +4,7 @@ import functools
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal, NamedTuple
 
-from sandbox.level.format.model import Level, ParticleDef, SpringDef, TerrainDef
+from sandbox.level.document.model import Level, ParticleDef, SpringDef, TerrainDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody
 

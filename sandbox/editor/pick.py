@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.level.format.quantities import Point
 
 Box = tuple[float, float, float, float]

@@ -11,15 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.editor.items import Item, Selection, items_of
-from sandbox.level.build.layout import Layout
-from sandbox.level.build.plan import Plan, kept_plan
-from sandbox.level.build.surfaces import surfaces_of
-from sandbox.level.build.welds import united
+from sandbox.level.document.model import Level, ParticleDef
 from sandbox.level.format.limits import BODY_RADIUS, DEFAULT_MATERIAL
-from sandbox.level.format.model import Level, ParticleDef
 from sandbox.level.kinds.bodies import AnyBody, expansion
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.level.kinds.geometry import distances
+from sandbox.level.plan.layout import Layout
+from sandbox.level.plan.plan import Plan, kept_plan
+from sandbox.level.plan.surfaces import surfaces_of
+from sandbox.level.plan.welds import united
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]

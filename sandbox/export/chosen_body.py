@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.faults.level_error import shown, suggestion
+from sandbox.level.format.level_error import shown, suggestion
 from sandbox.physics.analysis.energy import reduced_masses
 from sandbox.physics.analysis.firmness import lowest_mode_of
 from sandbox.physics.analysis.stability import constraint_count, effective_count

@@ -21,9 +21,9 @@ from sandbox.export.flat_model import (
 )
 from sandbox.export.flat_springs import flat_springs
 from sandbox.export.outlines import outlines_of
-from sandbox.level.build.build_world import build_world
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import ContactsDef, Level, NissenMaterial, ParticleDef
 from sandbox.level.format.limits import DEFAULT_MATERIAL
-from sandbox.level.format.model import ContactsDef, Level, NissenMaterial, ParticleDef
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.constraints import AREA
 from sandbox.physics.state import Floats

@@ -7,7 +7,7 @@ import numpy as np
 from sandbox.export.chosen_body import SLOW, as_in_solver
 from sandbox.export.engines import MOST_STEPS
 from sandbox.export.flat_model import FlatSpring
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import reduced_masses
 from sandbox.physics.analysis.firmness import LARGEST_READ, lowest_mode_of
 from sandbox.physics.analysis.stability import BOUND, effective_count

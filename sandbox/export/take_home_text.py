@@ -5,7 +5,7 @@ from sandbox.export.loops import LISTINGS, expected, listing
 from sandbox.export.numbers import percent, short
 from sandbox.export.proven import LoopPair, LoopRow
 from sandbox.export.take_home import TakeHome, take_home
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.world import World
 
 ENGINES = ("box2d", "unity", "godot", "rapier", "pymunk", "chipmunk")

@@ -3,10 +3,10 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.files import level_data
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.quantities import replaced
+from sandbox.level.reading.files import level_data
 from sandbox.session.check_run import checks_as_they_end
 from sandbox.session.level_edits import Edit, edited, edits_between, with_value
 from sandbox.session.replay.recording import Replay, ReplayError

@@ -4,9 +4,9 @@ from collections.abc import Generator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from sandbox.level.build.build_world import build_world
+from sandbox.level.assembly.build_world import build_world
 from sandbox.level.checks import CheckResult
-from sandbox.level.format.files import LevelError, load_level
+from sandbox.level.reading.files import LevelError, load_level
 from sandbox.physics.analysis.stability import report
 from sandbox.session.check_run import run_checks
 from sandbox.session.probe import finite

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sandbox.level.faults.level_error import LevelError, suggestion
-from sandbox.level.format.files import level_data, parse_level
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import LevelError, suggestion
+from sandbox.level.reading.files import level_data, parse_level
 
 # What a place holds that is not there.
 ABSENT = object()

@@ -10,8 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.model import Level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import Level
 from sandbox.physics.snapshot import Snapshot, restore, take
 from sandbox.physics.step import step
 from sandbox.session.breaks import break_lines

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sandbox.level.format.files import load_level, parse_level
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
+from sandbox.level.reading.files import load_level, parse_level
 from sandbox.physics.analysis.query import load_bearing, strain
 from sandbox.physics.world import HAND_STRENGTH
 from sandbox.session.commands import Command, CommandError, CutSprings, Grab, MoveGrab, Release

@@ -11,7 +11,7 @@ from sandbox.testing.files import check_names
 
 if TYPE_CHECKING:
     from sandbox.level.checks import CheckResult
-    from sandbox.level.format.model import Level
+    from sandbox.level.document.model import Level
 
 
 class _Told(pytest.Item):
@@ -81,7 +81,7 @@ class LevelItem(_Told):
 
     def runtest(self) -> None:
         """Run it. Raises Failed."""
-        from sandbox.level.build.build_world import build_world
+        from sandbox.level.assembly.build_world import build_world
 
         assert isinstance(self.parent, LevelTests)
         build_world(self.parent.level())

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from sandbox.level.format.files import LevelError, load_level
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
+from sandbox.level.reading.files import LevelError, load_level
 from sandbox.session.replay.again import record_again, with_settings
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import Replay, ReplayError

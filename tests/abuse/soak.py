@@ -29,7 +29,7 @@ from sandbox.app.kernels.compiling import warm_up_rest
 from sandbox.app.run.playback import Playback
 from sandbox.app.settings.chosen import SETTINGS
 from sandbox.app.window.app import App
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.warm_up import warm_up
 from sandbox.session.replay.reader import read_replay

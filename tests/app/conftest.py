@@ -15,7 +15,7 @@ from sandbox.app.base.display import Display
 from sandbox.app.base.idle import REST
 from sandbox.app.base.start_request import StartRequest
 from sandbox.app.window.app import App
-from sandbox.level.format.files import parse_level
+from sandbox.level.reading.files import parse_level
 from tests.support.person import VirtualScreen
 
 FRAME = 1 / 60

@@ -20,8 +20,8 @@ from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.scroll import BAR_WIDTH
 from sandbox.app.window.opening import open_app
 from sandbox.editor.storage.recent import remember
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import shipped_levels
+from sandbox.level.document.canonical import level_text
+from sandbox.level.reading.files import shipped_levels
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
 from tests.app.conftest import FRAME, small_level

@@ -20,8 +20,8 @@ from sandbox.app.draw.strain_colours import strain_tones
 from sandbox.app.draw.textures import Tiles, grains, skin_table
 from sandbox.app.draw.themes import THEMES
 from sandbox.app.run.playback import Playback, interpolated
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.model import Level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import Level
 from sandbox.level.kinds.jelly import BoxShape, JellyDef
 from sandbox.level.kinds.ring import RingDef
 from sandbox.physics.jit import COMPILED

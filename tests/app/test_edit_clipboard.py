@@ -5,8 +5,8 @@ import json
 import pygame
 import pytest
 
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import parse_level
+from sandbox.level.document.canonical import level_text
+from sandbox.level.reading.files import parse_level
 from tests.app.conftest import small_level
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT

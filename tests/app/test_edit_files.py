@@ -10,8 +10,8 @@ from sandbox.app.edit import documents as documents_module
 from sandbox.app.edit.documents import OFFERED
 from sandbox.editor.storage.autosave import Autosave, orphans
 from sandbox.editor.storage.level_file import LevelFile
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import read_level, shipped_levels, write_level
+from sandbox.level.document.canonical import level_text
+from sandbox.level.reading.files import read_level, shipped_levels, write_level
 from tests.app.conftest import small_level
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT

@@ -7,9 +7,9 @@ import pygame
 import pytest
 
 from sandbox.editor.edits.placing import set_pinned
-from sandbox.level.format.files import write_level
-from sandbox.level.format.model import WallsDef
+from sandbox.level.document.model import WallsDef
 from sandbox.level.format.quantities import replaced
+from sandbox.level.reading.files import write_level
 from sandbox.session.commands import CutSprings, SetCoefficients
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify

@@ -12,7 +12,7 @@ import pytest
 
 from sandbox.app.base.display import WINDOW_SIZE
 from sandbox.app.base.shortcuts import tip_of
-from sandbox.level.format.files import read_level
+from sandbox.level.reading.files import read_level
 from sandbox.session.replay.reader import read_replay
 from tests.support.person import DEADLINE, Person, needs_a_screen
 

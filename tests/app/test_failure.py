@@ -7,7 +7,7 @@ from sandbox.app.base.display import _guessed_scale
 from sandbox.app.base.shortcuts import _combination, combination_of
 from sandbox.app.window.failure import MOST, FrameGuard, reports_folder
 from sandbox.app.window.input import by_place
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from tests.app.conftest import small_level
 
 

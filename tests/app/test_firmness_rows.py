@@ -3,8 +3,8 @@
 import pytest
 
 from sandbox.editor.items import Item
-from sandbox.level.format.parse import parse_level
 from sandbox.level.kinds.body_def import FirmnessDef
+from sandbox.level.reading.parse import parse_level
 from sandbox.session.commands import AddBody, SetCoefficients, SetFirmness
 from tests.support.wobbles import firm_level
 

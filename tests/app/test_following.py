@@ -6,10 +6,10 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import load_level, parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_text
+from sandbox.level.format.level_error import LevelError
+from sandbox.level.reading.files import load_level, parse_level
 
 SHIFT = pygame.KMOD_SHIFT
 

@@ -8,8 +8,8 @@ import pytest
 
 from sandbox.app.base.recordings import chosen_path, free_path, plain_name
 from sandbox.editor.storage.recent import remember
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import shipped_levels
+from sandbox.level.document.canonical import level_text
+from sandbox.level.reading.files import shipped_levels
 from sandbox.session.replay.reader import read_replay
 from tests.app.conftest import Driver, small_level
 

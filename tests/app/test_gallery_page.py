@@ -4,7 +4,7 @@ import pygame
 import pytest
 
 from sandbox.app.gallery.sections import FIRST, SECTIONS, in_sections
-from sandbox.level.format.files import shipped_levels
+from sandbox.level.reading.files import shipped_levels
 from tests.app.conftest import Driver
 
 

@@ -18,9 +18,9 @@ from sandbox.app.draw.things.balls import Balls
 from sandbox.app.draw.things.borders import chains_of, hull_of, sides_of, traced
 from sandbox.app.draw.things.cast import cast_of
 from sandbox.app.draw.things.ensemble import Ensemble
-from sandbox.level.format.files import read_level, shipped_levels
 from sandbox.level.format.look import LINES, PALETTE, SKINS
-from sandbox.level.format.parse import parse_level
+from sandbox.level.reading.files import read_level, shipped_levels
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.snapshot import state_hash

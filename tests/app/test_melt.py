@@ -3,7 +3,7 @@
 import numpy as np
 import pygame
 
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from sandbox.physics.analysis.query import strain
 
 

@@ -8,7 +8,7 @@ from sandbox.app.play.key_caps import KEYS_HEIGHT
 from sandbox.app.play.palette import PartsPalette
 from sandbox.app.play.status import STATUS_HEIGHT
 from sandbox.app.run.playback import Playback
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from tests.app.conftest import small_level
 
 LONG = "A line of many words " * 12

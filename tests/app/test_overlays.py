@@ -18,7 +18,7 @@ from sandbox.app.draw.themes import THEMES
 from sandbox.app.draw.things.frame import Frame
 from sandbox.app.draw.views.overlays import LONGEST_ARROW, NAMES, Overlays, Scale, stability_tones
 from sandbox.app.play.legend import Legend, rows_of
-from sandbox.level.format.parse import parse_level
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers import SOLVERS

@@ -9,7 +9,7 @@ from sandbox.app.draw.colours import show_theme
 from sandbox.app.panel.sweeps.pad_sweeps import coarse_first
 from sandbox.app.panel.sweeps.sweep_layer import BLOWN, FAILS, HOLDS, SweepLayer
 from sandbox.cli import main
-from sandbox.level.format.files import write_level
+from sandbox.level.reading.files import write_level
 from sandbox.session.commands import SetSolver
 from tests.app.conftest import small_level
 

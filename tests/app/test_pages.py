@@ -5,7 +5,7 @@ import pygame
 import pytest
 
 from sandbox.editor.items import Item
-from sandbox.level.format.files import read_level
+from sandbox.level.reading.files import read_level
 from tests.app.conftest import small_level
 
 CTRL = pygame.KMOD_CTRL

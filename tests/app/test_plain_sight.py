@@ -5,7 +5,7 @@ import pytest
 
 from sandbox.editor.items import items_of
 from sandbox.editor.storage.part_files import catalogue
-from sandbox.level.format.files import load_level, shipped_levels
+from sandbox.level.reading.files import load_level, shipped_levels
 
 PARTS = {part.path.stem: part.level for part in catalogue() if not part.is_own}
 LEVELS = [path.stem for path in shipped_levels()]

@@ -190,7 +190,7 @@ from sandbox.app.window.app import App
 from sandbox.app.base.display import Display
 from sandbox.app.base.start_request import StartRequest
 
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
 from pathlib import Path

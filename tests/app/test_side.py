@@ -10,10 +10,10 @@ from sandbox.app.edit.side.side import PAGES
 from sandbox.app.widgets.rows import RowList
 from sandbox.editor.edits.additions import add_object
 from sandbox.editor.items import Item
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import parse_level, read_level
-from sandbox.level.format.model import Level
+from sandbox.level.document.canonical import level_text
+from sandbox.level.document.model import Level
 from sandbox.level.format.quantities import replaced
+from sandbox.level.reading.files import parse_level, read_level
 from tests.app.conftest import small_level
 
 ROPE, PAIR = Item("body", "rope"), Item("body", "pair")

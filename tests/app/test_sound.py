@@ -16,7 +16,7 @@ from sandbox.app.sound.ear import Ear
 from sandbox.app.sound.mixdown import Mixdown
 from sandbox.app.sound.sounds import Sounds
 from sandbox.app.sound.voices import SPARE, VOICES, Cue, Voices
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddParticle, CutSprings, SetDrive
 from sandbox.session.session import Session

@@ -6,7 +6,7 @@ from pygame_gui.elements import UIDropDownMenu
 
 from sandbox.app.panel.take_home_page import TARGETS
 from sandbox.app.widgets.painted import TextBlock
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 
 
 @pytest.fixture

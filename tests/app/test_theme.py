@@ -6,7 +6,7 @@ from pygame_gui.core.ui_appearance_theme import UIAppearanceTheme
 from sandbox.app.draw.textures import MOST_SHEETS, MOST_TABLES, laid, skin_table, woven
 from sandbox.app.draw.themes import THEMES
 from sandbox.app.widgets.theme import Manager
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 
 BUTTON = (
     [None, None, "button"], ["root_container", "panel", "button"], [None, "@card", None], [None, "#side", "#go"],

@@ -4,7 +4,7 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from tests.app.conftest import small_level
 
 DISCS = [

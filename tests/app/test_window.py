@@ -4,7 +4,7 @@ import numpy as np
 import pygame
 
 from sandbox.app.base.display import WINDOW_SIZE
-from sandbox.level.format.files import write_level
+from sandbox.level.reading.files import write_level
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session

@@ -17,7 +17,7 @@ from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.raster.painter import expect_painting
 from sandbox.app.draw.renderer import Overlay, Renderer
-from sandbox.level.format.files import read_level, shipped_levels
+from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.session.session import Session
 
 SIZE = (1280, 720)

@@ -20,7 +20,7 @@ from sandbox.app.base.start_request import StartRequest
 from sandbox.app.edit.edit_screen import EditScreen
 from sandbox.app.window.app import App
 from sandbox.editor.document import empty_level
-from sandbox.level.format.model import Level, ParticleDef, SpringDef
+from sandbox.level.document.model import Level, ParticleDef, SpringDef
 from sandbox.level.kinds.jelly import BoxShape, JellyDef
 
 FRAME = 1.0 / 60.0  # [s]

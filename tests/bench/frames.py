@@ -19,9 +19,9 @@ import pygame
 from sandbox.app.base.display import Display
 from sandbox.app.base.start_request import StartRequest
 from sandbox.app.window.app import App
-from sandbox.level.format.files import read_level, shipped_levels
-from sandbox.level.format.model import Level
-from sandbox.level.format.parse import parse_level
+from sandbox.level.document.model import Level
+from sandbox.level.reading.files import read_level, shipped_levels
+from sandbox.level.reading.parse import parse_level
 
 SIZE, RATE = (1280, 720), 60
 WARM_UP, FRAMES = 60, 120

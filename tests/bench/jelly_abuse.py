@@ -11,8 +11,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.model import Level, NissenMaterial, Settings
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import Level, NissenMaterial, Settings
 from sandbox.level.kinds.jelly import BoxShape, CircleShape, JellyDef, PolygonShape, Shape
 from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.settings import AUTO

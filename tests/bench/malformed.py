@@ -6,7 +6,7 @@ import time
 import tracemalloc
 from pathlib import Path
 
-from sandbox.level.format.files import LevelError, parse_level
+from sandbox.level.reading.files import LevelError, parse_level
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 

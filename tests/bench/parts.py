@@ -18,7 +18,7 @@ import pygame
 from sandbox.app.base.display import Display
 from sandbox.app.base.start_request import StartRequest
 from sandbox.app.window.app import App
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from sandbox.session.commands import AddParticle
 from sandbox.session.session import Session
 from sandbox.tools.parts import PARTS

@@ -8,7 +8,7 @@ import time
 from collections.abc import Sequence
 from statistics import median
 
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.session import Session
 

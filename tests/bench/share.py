@@ -16,7 +16,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from sandbox.app.film.film import film_of_view
 from sandbox.app.film.kinds import KINDS
 from sandbox.app.share.export import Excerpt, Export
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from sandbox.session.session import Session
 
 LEVELS = ("rope", "jelly_pile", "marble_mill", "suspension_bridge", "pinball", "wrecking_crane", "hourglass")

@@ -10,7 +10,7 @@ import time
 
 import numpy as np
 
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from sandbox.session.sweep.grid import SweepGrid
 from sandbox.session.sweep.pool import swept
 

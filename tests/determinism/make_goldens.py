@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.level.format.files import read_level, shipped_levels
+from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.physics.analysis.firmness import lowest_mode_of
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.settings import AUTO

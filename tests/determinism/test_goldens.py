@@ -8,7 +8,7 @@ import random
 
 import pytest
 
-from sandbox.level.format.files import shipped_levels
+from sandbox.level.reading.files import shipped_levels
 from sandbox.physics.jit import COMPILED
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify

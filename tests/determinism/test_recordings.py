@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from sandbox.level.format.files import read_level, shipped_levels
+from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.settings import AUTO
 from sandbox.session.replay.reader import read_replay

@@ -11,7 +11,7 @@ import pytest
 from sandbox.editor.storage import autosave as module
 from sandbox.editor.storage.autosave import Autosave, orphans
 from sandbox.editor.storage.level_file import StorageError
-from sandbox.level.format.files import parse_level, read_level, shipped_levels
+from sandbox.level.reading.files import parse_level, read_level, shipped_levels
 from tests.support.storage_children import Child, edit_forever, named
 
 

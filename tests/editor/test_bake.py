@@ -8,10 +8,10 @@ from sandbox.editor.edits.bake import keep_coefficients, keep_cuts, keep_pins, k
 from sandbox.editor.edits.fields import set_setting
 from sandbox.editor.edits.placing import add_particle
 from sandbox.editor.items import Item
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.model import NissenMaterial, ParticleDef
-from sandbox.level.format.parse import parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import NissenMaterial, ParticleDef
 from sandbox.level.kinds.body_def import FirmnessDef
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.firmness import Reach, set_firmness
 from sandbox.physics.forms import Firmness
 from sandbox.physics.step import step

@@ -12,9 +12,9 @@ from sandbox.editor.scene import make_scene
 from sandbox.editor.tools.drawing_options import described, stepped
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import Snap, snap
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.parse import parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_text
+from sandbox.level.reading.parse import parse_level
 
 REACH = 0.1
 TWO_POINTS = ["spring", "rope", "bridge", "girder", "web", "box", "circle", "wheel", "ring"]

@@ -20,14 +20,14 @@ from sandbox.editor.edits import bake, copying, deleting, fields, grouping, mate
 from sandbox.editor.history import History
 from sandbox.editor.items import Item, chosen_items, items_of
 from sandbox.editor.scene import make_scene
-from sandbox.level.build.build_world import build_world
+from sandbox.level.assembly.build_world import build_world
 from sandbox.level.checks import CheckDef
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.model import Level, NissenMaterial, ParticleDef, TerrainDef, WallsDef
-from sandbox.level.format.parse import parse_level
+from sandbox.level.document.canonical import level_text
+from sandbox.level.document.model import Level, NissenMaterial, ParticleDef, TerrainDef, WallsDef
 from sandbox.level.kinds.jelly import JellyDef
 from sandbox.level.kinds.rope import RopeDef
 from sandbox.level.kinds.wheel import WheelDef
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.step import step
 from tests.support.zoo import zoo
 

@@ -23,12 +23,12 @@ from sandbox.editor.edits.names import free_id
 from sandbox.editor.edits.placing import add_body, add_particle, add_spring, cut_springs, set_pinned, unweld, weld
 from sandbox.editor.items import Item, items_of
 from sandbox.editor.scene import make_scene
-from sandbox.level.build.build_world import build_world
+from sandbox.level.assembly.build_world import build_world
 from sandbox.level.checks import CheckDef
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.model import NissenMaterial, ParticleDef
-from sandbox.level.format.parse import parse_level
+from sandbox.level.document.canonical import level_text
+from sandbox.level.document.model import NissenMaterial, ParticleDef
 from sandbox.level.kinds.rope import RopeDef
+from sandbox.level.reading.parse import parse_level
 from tests.support.zoo import zoo
 
 STEEL = NissenMaterial(stiffness=0.2, damping=0.3)

@@ -10,11 +10,11 @@ from sandbox.editor.edits.moving import scale
 from sandbox.editor.items import Item, items_of
 from sandbox.editor.panel.properties import properties
 from sandbox.editor.panel.property import MIXED
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.model import ContactsDef, TerrainDef
-from sandbox.level.format.parse import parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import ContactsDef, TerrainDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import FirmnessDef
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.step import step
 from tests.editor.test_drawing_tools import drawn, last_body

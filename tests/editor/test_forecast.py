@@ -8,9 +8,8 @@ import pytest
 from sandbox.editor.forecast import Forecast
 from sandbox.editor.items import Item
 from sandbox.editor.scene import make_scene
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.actuator_defs import MotorDef, MuscleDef
-from sandbox.level.format.model import (
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import (
     HookeMaterial,
     Level,
     NissenMaterial,
@@ -19,6 +18,7 @@ from sandbox.level.format.model import (
     SpringDef,
     TerrainDef,
 )
+from sandbox.level.format.actuator_defs import MotorDef, MuscleDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.jelly import BoxShape, JellyDef
 from sandbox.level.kinds.rope import RopeDef

@@ -7,8 +7,8 @@ import time
 import pytest
 
 from sandbox.editor.storage.autosave import orphans
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import read_level
+from sandbox.level.document.canonical import level_text
+from sandbox.level.reading.files import read_level
 from tests.support.storage_children import NIGHTLY, Child, edit_forever, named, save_forever, write_forever
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="nothing like kill -9 here")

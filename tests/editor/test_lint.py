@@ -13,11 +13,9 @@ from sandbox.editor.lint.lint import findings
 from sandbox.editor.scene import make_scene
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import Snap
-from sandbox.level.build.build_world import build_world
+from sandbox.level.assembly.build_world import build_world
 from sandbox.level.checks import CheckDef
-from sandbox.level.format.actuator_defs import MotorDef
-from sandbox.level.format.files import read_level
-from sandbox.level.format.model import (
+from sandbox.level.document.model import (
     ContactsDef,
     Level,
     NissenMaterial,
@@ -27,12 +25,14 @@ from sandbox.level.format.model import (
     TerrainDef,
     WallsDef,
 )  # fmt: skip
+from sandbox.level.format.actuator_defs import MotorDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.kinds.bridge import BridgeDef
 from sandbox.level.kinds.jelly import BoxShape, JellyDef
 from sandbox.level.kinds.rope import RopeDef
 from sandbox.level.kinds.wheel import WheelDef
+from sandbox.level.reading.files import read_level
 from sandbox.physics.analysis.stability import report, spring_loads
 from tests.support.zoo import zoo
 

@@ -11,8 +11,8 @@ from sandbox.editor.edits.moving import align, can_scale_unevenly, distribute, m
 from sandbox.editor.edits.placing import add_body, add_particle
 from sandbox.editor.items import Item, items_of
 from sandbox.editor.scene import make_scene
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.model import ParticleDef
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import ParticleDef
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.bridge import BridgeDef
 from sandbox.level.kinds.girder import GirderDef

@@ -15,12 +15,12 @@ from sandbox.editor.items import Item, items_of
 from sandbox.editor.scene import make_scene
 from sandbox.editor.storage.level_file import StorageError
 from sandbox.editor.storage.part_files import catalogue, delete_part, keep_part, rename_part
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.model import NissenMaterial, ParticleDef, TerrainDef
-from sandbox.level.format.parse import parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_text
+from sandbox.level.document.model import NissenMaterial, ParticleDef, TerrainDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bridge import BridgeDef
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.equation import frequency_from_coefficients
 from sandbox.physics.step import step
 

@@ -5,7 +5,7 @@ import pytest
 from sandbox.editor.items import Item
 from sandbox.editor.pick import combined, item_at, items_in_box, items_in_lasso, items_of_material, particle_at
 from sandbox.editor.scene import make_scene
-from sandbox.level.format.model import Level, ParticleDef, SpringDef
+from sandbox.level.document.model import Level, ParticleDef, SpringDef
 from sandbox.level.kinds.jelly import BoxShape, JellyDef
 from sandbox.level.kinds.rope import RopeDef
 from tests.support.zoo import zoo

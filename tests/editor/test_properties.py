@@ -14,11 +14,11 @@ from sandbox.editor.panel.level_properties import add_check, check_properties, d
 from sandbox.editor.panel.properties import properties
 from sandbox.editor.panel.property import MIXED, Property
 from sandbox.editor.panel.typed import line_text, list_text, number_text, read_line, read_pairs, read_words
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import parse_level
-from sandbox.level.format.model import Level, ParticleDef, Settings, SpringDef
+from sandbox.level.document.canonical import level_text
+from sandbox.level.document.model import Level, ParticleDef, Settings, SpringDef
 from sandbox.level.kinds.bodies import KINDS, expansion
 from sandbox.level.kinds.body_def import BodyDef
+from sandbox.level.reading.files import parse_level
 
 LEVEL = {
     "format": "spring-sandbox/level",

@@ -7,10 +7,10 @@ from sandbox.editor.document import Document, empty_level
 from sandbox.editor.edits.moving import move
 from sandbox.editor.items import Item, items_of
 from sandbox.editor.scene import make_scene
-from sandbox.level.build.build_world import build_world
-from sandbox.level.build.plan import kept_plan
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import parse_level, read_level, shipped_levels
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_text
+from sandbox.level.plan.plan import kept_plan
+from sandbox.level.reading.files import parse_level, read_level, shipped_levels
 from tests.support.zoo import zoo
 
 
@@ -87,7 +87,7 @@ def test_all_items_are_selected_by_mask():
 
 def test_the_scene_of_a_level_that_was_read_takes_the_expansions_of_its_check(monkeypatch):
     level = parse_level(level_text(zoo()).encode(), "zoo.json")
-    monkeypatch.setattr("sandbox.level.build.plan.expansion", lambda body: pytest.fail(body.id))
+    monkeypatch.setattr("sandbox.level.plan.plan.expansion", lambda body: pytest.fail(body.id))
     monkeypatch.setattr("sandbox.editor.scene.expansion", lambda body: pytest.fail(body.id))
     assert make_scene(level).parts.names.plan is kept_plan(level)
 

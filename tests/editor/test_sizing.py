@@ -5,7 +5,7 @@ import pytest
 
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.sizing import sized
-from sandbox.level.format.model import SpringDef
+from sandbox.level.document.model import SpringDef
 from sandbox.level.format.quantities import replaced
 from sandbox.session.commands import SetDrive
 from sandbox.session.session import Session

@@ -7,7 +7,7 @@ import pytest
 from sandbox.editor.items import Item
 from sandbox.editor.scene import make_scene
 from sandbox.editor.tools.snap import snap
-from sandbox.level.format.model import Level, ParticleDef
+from sandbox.level.document.model import Level, ParticleDef
 from sandbox.level.kinds.rope import RopeDef
 
 

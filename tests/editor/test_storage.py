@@ -10,7 +10,7 @@ import pytest
 from sandbox.editor.storage import level_file
 from sandbox.editor.storage.autosave import Autosave, orphans
 from sandbox.editor.storage.level_file import ChangedOnDisk, FileExists, LevelFile, LevelInUse, StorageError
-from sandbox.level.format.files import LevelError, read_level, write_level
+from sandbox.level.reading.files import LevelError, read_level, write_level
 from tests.support.storage_children import Child, hold, named
 
 

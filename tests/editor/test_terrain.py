@@ -26,7 +26,7 @@ from sandbox.editor.pick import corner_at, item_at, items_in_box, items_in_lasso
 from sandbox.editor.scene import make_scene
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import Snap, snap
-from sandbox.level.format.model import TerrainDef, WallsDef
+from sandbox.level.document.model import TerrainDef, WallsDef
 from tests.support.zoo import zoo
 
 GROUND, RAMP = Item("terrain", "ground"), Item("terrain", "ramp")

@@ -12,13 +12,13 @@ from sandbox.editor.items import Item
 from sandbox.editor.scene import make_scene
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import snap
-from sandbox.level.build.axles import mount_of
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.model import TerrainDef
-from sandbox.level.format.parse import parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_text
+from sandbox.level.document.model import TerrainDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import expansion
+from sandbox.level.plan.axles import mount_of
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.step import step
 
 REACH = 0.1

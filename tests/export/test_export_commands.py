@@ -8,7 +8,7 @@ import pytest
 from sandbox.cli import main
 from sandbox.export.take_home import take_home
 from sandbox.export.take_home_text import TARGETS, as_text
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 
 
 def test_take_home_prints_every_number_of_the_first_body_and_how_to_have_the_programs(capsys):

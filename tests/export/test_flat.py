@@ -15,9 +15,9 @@ from sandbox.export.flat import flat, flat_text
 from sandbox.export.flat_model import FlatLevel, flat_schema
 from sandbox.export.pymunk_program import pymunk_program
 from sandbox.export.svg import svg
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.files import load_level, shipped_levels
-from sandbox.level.format.parse import parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.reading.files import load_level, shipped_levels
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.energy import reduced_masses
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
 from sandbox.physics.step import step

@@ -15,9 +15,9 @@ from sandbox.export.numbers import floored, short
 from sandbox.export.proven import largest_pair
 from sandbox.export.take_home import take_home
 from sandbox.export.take_home_text import ENGINES, TARGETS, as_text, take_home_text
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.files import load_level, shipped_levels
-from sandbox.level.format.parse import parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.reading.files import load_level, shipped_levels
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.stability import report
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step

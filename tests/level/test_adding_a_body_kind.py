@@ -124,10 +124,10 @@ from sandbox.editor.items import items_of
 from sandbox.editor.scene import make_scene
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import Snap
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.parse import parse_level
-from sandbox.level.format.reference import format_reference
-from sandbox.level.format.schema import schema
+from sandbox.level.document.canonical import level_text
+from sandbox.level.reading.parse import parse_level
+from sandbox.level.reference import format_reference
+from sandbox.level.document.schema import schema
 
 body = {"type": "ladder", "id": "l", "width": 0.5, "segments": 3, "pin": ["top"]}
 level = {"format": "spring-sandbox/level", "version": 2, "name": "A ladder", "bodies": [body]}

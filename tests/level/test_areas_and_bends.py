@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.files import parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.format.level_error import LevelError
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BendingDef
 from sandbox.level.kinds.jelly import JellyDef
 from sandbox.level.kinds.mesh import MeshDef
 from sandbox.level.kinds.ring import RingDef
 from sandbox.level.kinds.rope import RopeDef
+from sandbox.level.reading.files import parse_level
 from sandbox.physics.analysis.energy import measure_constraints
 from sandbox.physics.constraints import AREA, BEND
 

@@ -5,12 +5,12 @@ import json
 import numpy as np
 import pytest
 
-from sandbox.level.build.axles import mount_of
-from sandbox.level.build.build_world import build_world
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.canonical import level_text
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_text
+from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.limits import COLLISION_GROUP_LIMIT
-from sandbox.level.format.parse import parse_level
+from sandbox.level.plan.axles import mount_of
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.step import step
 
 WHEEL = {"type": "wheel", "id": "w", "radius": 0.5, "thickness": 0.15, "segments": 16}

@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from sandbox.level.build.actuators import actuators, driving_keys
-from sandbox.level.build.build_world import build_world
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.canonical import level_text
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_text
+from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.limits import MOTOR_LIMIT
-from sandbox.level.format.parse import parse_level
-from sandbox.level.format.salvage import salvage
+from sandbox.level.plan.actuators import actuators, driving_keys
+from sandbox.level.reading.parse import parse_level
+from sandbox.level.reading.salvage import salvage
 from sandbox.physics.joints.limited_springs import force_limits
 
 WHEEL = {"type": "wheel", "id": "w", "radius": 1, "thickness": 0.3, "segments": 6}

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.parse import parse_level
+from sandbox.level.format.level_error import LevelError
+from sandbox.level.reading.parse import parse_level
 
 LEVEL = (
     '{"format": "spring-sandbox/level", "name": "A, b: [c", "bodies": [{"type": "rope", "id": "r"},'

@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.parse import parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_text
+from sandbox.level.format.level_error import LevelError
+from sandbox.level.reading.parse import parse_level
 from tests.support.wobbles import firm_level
 
 BOX = {"shape": {"box": [1, 1]}, "spacing": 0.25}

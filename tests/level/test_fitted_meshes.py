@@ -9,14 +9,14 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.parse import parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_text
+from sandbox.level.format.level_error import LevelError
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.fitting import TooCoarse, disc_counts, fitted_mesh
 from sandbox.level.kinds.jelly import JellyDef
 from sandbox.level.kinds.polygon import is_simple
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.collision.filter import NO_EDGE
 from sandbox.physics.step import step
 

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from sandbox.level.format.files import LevelError, parse_level
+from sandbox.level.reading.files import LevelError, parse_level
 from tests.support.malformed_levels import GOOD, encoded
 
 FOREIGN = [

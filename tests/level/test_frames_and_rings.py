@@ -6,8 +6,8 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.files import parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.reading.files import parse_level
 from sandbox.physics.step import step
 from tests.support.malformed_levels import encoded
 

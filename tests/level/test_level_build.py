@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.build.plan import kept_plan
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.files import parse_level
-from sandbox.level.format.model import Level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.polygon import polygon_grid
+from sandbox.level.plan.plan import kept_plan
+from sandbox.level.reading.files import parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from sandbox.physics.world import GRAB_COUNT, LAW_HOOKE, LAW_NISSEN

@@ -8,10 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format import files, shipped
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import (
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_text
+from sandbox.level.format import shipped
+from sandbox.level.kinds.bodies import expansion
+from sandbox.level.reading import files
+from sandbox.level.reading.files import (
     LevelError,
     level_data,
     load_level,
@@ -21,7 +23,6 @@ from sandbox.level.format.files import (
     shipped_levels,
     write_level,
 )
-from sandbox.level.kinds.bodies import expansion
 from sandbox.physics.snapshot import state_hash
 from tests.support.malformed_levels import GOOD, encoded
 

@@ -5,11 +5,11 @@ import json
 import pytest
 
 from sandbox.editor.lint.looks import unknown_looks
-from sandbox.level.build.build_world import build_world
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.canonical import level_data, level_text
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_data, level_text
+from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.look import PALETTE, colour_of
-from sandbox.level.format.parse import parse_level
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.snapshot import state_hash
 
 LEVEL = {

@@ -4,10 +4,10 @@ import pytest
 from pydantic import ValidationError
 
 from sandbox.level.checks import CheckDef, judge
-from sandbox.level.format.files import LevelError, parse_level
+from sandbox.level.document.model import NissenMaterial, Settings
 from sandbox.level.format.limits import DEFAULT_SOLVER
-from sandbox.level.format.model import NissenMaterial, Settings
 from sandbox.level.kinds.rope import RopeDef
+from sandbox.level.reading.files import LevelError, parse_level
 from sandbox.physics.solvers import SOLVERS
 from tests.support.malformed_levels import GOOD, changed, encoded
 

@@ -3,10 +3,10 @@
 import json
 from pathlib import Path
 
-from sandbox.level.format.files import parse_level
-from sandbox.level.format.model import Level
-from sandbox.level.format.reference import EXAMPLE, format_reference
-from sandbox.level.format.schema import schema
+from sandbox.level.document.model import Level
+from sandbox.level.document.schema import schema
+from sandbox.level.reading.files import parse_level
+from sandbox.level.reference import EXAMPLE, format_reference
 from tests.support.malformed_levels import GOOD, encoded
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "level-format.md"
@@ -18,7 +18,7 @@ def definitions():
 
 
 def test_the_reference_is_what_the_schema_says():
-    stale = "write it anew: python -m sandbox.level.format.reference > docs/level-format.md"
+    stale = "write it anew: python -m sandbox.level.reference > docs/level-format.md"
     assert REFERENCE.read_text(encoding="utf-8") == format_reference(), stale
 
 

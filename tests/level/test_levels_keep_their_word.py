@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from sandbox.physics.jit import COMPILED
 from sandbox.session.commands.records import from_record
 from sandbox.session.session import Session

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.level.format.files import LevelError, parse_level
 from sandbox.level.format.limits import FAULT_LIMIT
+from sandbox.level.reading.files import LevelError, parse_level
 from tests.support.enormous_levels import ENORMOUS
 from tests.support.malformed_levels import GOOD, changed, encoded, small
 

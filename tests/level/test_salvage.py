@@ -4,11 +4,11 @@ import copy
 
 import pytest
 
+from sandbox.level.document.canonical import level_text
 from sandbox.level.faults.validate import check_level
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import LevelError, parse_level
 from sandbox.level.format.limits import FAULT_LIMIT
-from sandbox.level.format.salvage import salvage
+from sandbox.level.reading.files import LevelError, parse_level
+from sandbox.level.reading.salvage import salvage
 from tests.support.malformed_levels import GOOD, changed, encoded, small
 
 SMALL = list(small())

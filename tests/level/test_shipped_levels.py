@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from sandbox.level.build.build_world import build_world
+from sandbox.level.assembly.build_world import build_world
 from sandbox.level.checks import judge
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import load_level, parse_level, read_level, shipped_levels
+from sandbox.level.document.canonical import level_text
+from sandbox.level.reading.files import load_level, parse_level, read_level, shipped_levels
 from sandbox.physics.analysis.query import load_bearing, strain
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.snapshot import state_hash

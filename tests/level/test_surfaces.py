@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import read_level, shipped_levels
-from sandbox.level.format.parse import parse_level
-from sandbox.level.format.salvage import salvage
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_text
+from sandbox.level.format.level_error import LevelError
 from sandbox.level.kinds.bodies import expansion
+from sandbox.level.reading.files import read_level, shipped_levels
+from sandbox.level.reading.parse import parse_level
+from sandbox.level.reading.salvage import salvage
 from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.step import step
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from sandbox.level.format.files import LevelError, parse_level
-from sandbox.level.format.salvage import salvage
-from sandbox.level.format.schema import schema
+from sandbox.level.document.schema import schema
+from sandbox.level.reading.files import LevelError, parse_level
+from sandbox.level.reading.salvage import salvage
 
 SCHEMA = schema()
 UNKNOWN = "qqq"

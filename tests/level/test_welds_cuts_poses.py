@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.build.welds import united
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import LevelError, parse_level
-from sandbox.level.format.model import ParticleDef
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_text
+from sandbox.level.document.model import ParticleDef
 from sandbox.level.format.quantities import replaced
+from sandbox.level.plan.welds import united
+from sandbox.level.reading.files import LevelError, parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from tests.support.malformed_levels import encoded

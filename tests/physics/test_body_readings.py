@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.files import load_level, parse_level, shipped_levels
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.reading.files import load_level, parse_level, shipped_levels
 from sandbox.physics.analysis.body_motion import read_body, word_edges, word_for
 from sandbox.physics.analysis.firmness import WORDS, lowest_mode_of
 from sandbox.physics.analysis.standing import StandingRun

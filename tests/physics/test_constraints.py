@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.model import ContactsDef
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import ContactsDef
 from sandbox.physics.analysis.energy import constraint_energies, measure_constraints, total_energy
 from sandbox.physics.analysis.stability import constraint_count, largest_eigenvalue, report
 from sandbox.physics.constraints import AREA, BEND

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sandbox.level.format.model import Settings
+from sandbox.level.document.model import Settings
 from sandbox.physics.settings import AUTO, DEFAULT_SOLVER, SOLVER_NAMES, SUBSTEPS, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.world import World

@@ -7,7 +7,7 @@ import pygame
 
 from sandbox.app.draw.picture import crop_of, draw_picture
 from sandbox.app.gallery.sections import SECTIONS
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from sandbox.session.session import Session
 from tests.pictures.photographer import DOCS, write_small
 

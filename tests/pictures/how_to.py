@@ -6,7 +6,7 @@ import numpy as np
 import pygame
 
 from sandbox.app.panel.sweeps.sweep_chart import draw_map
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from sandbox.session.sweep.grid import SweepGrid
 from sandbox.session.sweep.pool import swept
 from sandbox.terminal import cores

@@ -1,6 +1,6 @@
 import pytest
 
-from sandbox.level.build.build_world import build_world
+from sandbox.level.assembly.build_world import build_world
 from sandbox.physics.snapshot import state_hash, take
 from sandbox.physics.step import step
 from sandbox.session.commands import CutSprings, Grab, MoveGrab, Pin, Release, SetCoefficients

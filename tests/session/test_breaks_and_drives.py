@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from sandbox.level.format.parse import parse_level
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import CommandError, CutSprings, Grab, MoveGrab, SetAir, SetDrive, SetInflation, apply
 from sandbox.session.commands.records import ScriptLine

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from sandbox.cli import main
-from sandbox.level.format.files import level_data, parse_level
+from sandbox.level.reading.files import level_data, parse_level
 from sandbox.session.bisect import BisectError, Tried, checks_hold, deciding_edits, deciding_value
 from sandbox.session.commands import CutSprings, Pin
 from sandbox.session.level_edits import edits_between, with_value

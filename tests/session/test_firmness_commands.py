@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sandbox.level.format.parse import parse_level
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.firmness import Reach, lowest_mode_of
 from sandbox.physics.equation import of_body
 from sandbox.physics.snapshot import state_hash

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from sandbox.level.format.parse import parse_level
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.changing.freeing import overlapping
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import CommandError, Free, Pin, Undo, apply

@@ -6,8 +6,8 @@ from typing import get_args
 import pytest
 
 from sandbox.level.checks import METRICS, Metric, promise_text
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.files import parse_level
+from sandbox.level.format.level_error import LevelError
+from sandbox.level.reading.files import parse_level
 from sandbox.session.check_run import checks_as_they_end, run_checks
 
 # A ball falls 4 m onto the ground in 0.9 s; a rope of two springs hangs beside it, of which the lower one is slack.

@@ -18,9 +18,9 @@ from hypothesis.stateful import (
     run_state_machine_as_test,
 )
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.files import parse_level
-from sandbox.level.format.model import Level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import Level
+from sandbox.level.reading.files import parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from sandbox.session.commands import (

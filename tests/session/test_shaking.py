@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sandbox.level.format.parse import parse_level
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers import SOLVERS
 from sandbox.session.commands import CommandError, Shake, apply

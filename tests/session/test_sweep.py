@@ -12,7 +12,7 @@ import pytest
 
 import sandbox.session.sweep.pool as pool
 from sandbox.cli import main
-from sandbox.level.format.files import level_data
+from sandbox.level.reading.files import level_data
 from sandbox.session.sweep.case import run_case
 from sandbox.session.sweep.cluster import swept_by_dask
 from sandbox.session.sweep.grid import SweepError, SweepGrid, field_place

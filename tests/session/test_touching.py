@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from sandbox.level.format.parse import parse_level
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.state import BY_STORED, FAMILIES, Family
 from sandbox.session.commands import AddParticle, CutSprings, SetDrive, apply

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.parse import parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.actuators import Actuators, Motors
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.step import step

@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.model import Level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.step import step
 from sandbox.physics.untangling.inversion import find_inverted, new_inversions, triangles_of

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.model import Level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import Level
 from sandbox.physics.analysis.query import grip_radius, load_bearing, strain
 from sandbox.physics.step import step
 from sandbox.physics.world import World

@@ -5,7 +5,7 @@ import random
 
 import numpy as np
 
-from sandbox.level.format.parse import parse_level
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.session.commands import (
     AddBody,

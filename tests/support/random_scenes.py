@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.parse import parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.energy import kinetic_energy, total_energy
 from sandbox.physics.collision.outline import outline_of
 from sandbox.physics.settings import Substeps

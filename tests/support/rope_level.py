@@ -3,8 +3,8 @@
 import json
 from typing import Any
 
-from sandbox.level.format.files import parse_level
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
+from sandbox.level.reading.files import parse_level
 
 
 def rope_level(**changes: Any) -> Level:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.level.format.parse import parse_level
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.state import Floats, Slots
 from sandbox.session.commands.records import from_record
 from sandbox.session.session import Session

@@ -9,7 +9,7 @@ from sandbox.editor.edits.placing import add_particle
 from sandbox.editor.history import History
 from sandbox.editor.storage.autosave import Autosave
 from sandbox.editor.storage.level_file import LevelFile
-from sandbox.level.format.model import Level, ParticleDef
+from sandbox.level.document.model import Level, ParticleDef
 from sandbox.level.format.writing import write_over
 
 NIGHTLY = os.environ.get("SANDBOX_NIGHTLY") == "1"

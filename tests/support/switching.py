@@ -20,7 +20,7 @@ LEVELS = (
 def main(folder: str, seed: str, ticks: str, *names: str) -> None:
     """Play each level until a tick of its own, switch, play on to the end, and verify what was recorded."""
     jit.start_interpreted()
-    from sandbox.level.format.files import load_level
+    from sandbox.level.reading.files import load_level
     from sandbox.session.replay.reader import read_replay
     from sandbox.session.replay.verify import verify
     from sandbox.session.session import Session

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.format.parse import parse_level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.energy import measure_constraints, reduced_masses
 from sandbox.physics.constraints import AREA
 from sandbox.physics.step import step

@@ -2,8 +2,8 @@
 
 import json
 
-from sandbox.level.format.model import Level
-from sandbox.level.format.parse import parse_level
+from sandbox.level.document.model import Level
+from sandbox.level.reading.parse import parse_level
 
 ZOO = {
     "format": "spring-sandbox/level",

@@ -13,7 +13,7 @@ import pytest
 
 import sandbox.session.session as session_module
 from sandbox.app.draw.picture import draw_picture
-from sandbox.level.format.files import level_data
+from sandbox.level.reading.files import level_data
 from sandbox.physics.step import step
 from sandbox.session.commands import Pin
 from sandbox.session.replay.format import encode_state, seal

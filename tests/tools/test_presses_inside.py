@@ -5,7 +5,7 @@ import random
 import numpy as np
 import pytest
 
-from sandbox.level.format.files import load_level, shipped_levels
+from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.session.commands import Grab, MoveBody
 from sandbox.session.session import Session

@@ -4,7 +4,7 @@ from itertools import count
 
 import pytest
 
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.session.commands import CutSprings, Grab, MoveGrab, Pin, Release, Unpin
 from sandbox.session.session import Session
 from sandbox.tools.cut import CutTool

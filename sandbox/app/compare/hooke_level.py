@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.level.format.model import Level
-from sandbox.level.format.parse import parse_level
+from sandbox.level.document.model import Level
+from sandbox.level.reading.parse import parse_level
 
 # The spring that both begin with: k [N/m] and c [N s/m] of a weight of 1 kg at 60 ticks a second, as Cs and Cd.
 FIRST_K, C = 225.0, 3.0

@@ -16,7 +16,7 @@ from sandbox.app.run.playback import Playback
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.sound.sounds import Sounds
 from sandbox.app.widgets.ui import Ui
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 
 
 class Run(Screen, Protocol):

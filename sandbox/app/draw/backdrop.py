@@ -15,7 +15,7 @@ from sandbox.app.draw.raster.shadows import Thrown
 from sandbox.app.draw.textures import EARTH, TILE, TIMBER, Tiles, grains, skin_table
 from sandbox.app.draw.themes import Theme
 from sandbox.app.draw.things.borders import starts_of
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.terrain import Terrain
 
 Floats = NDArray[np.float64]

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from sandbox.app.draw.themes import BRICK, CLOTH, GLASS, PAINTS, STONE, WOOD
+from sandbox.level.document.model import Level, NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.look import BALLS, GROUNDS, LINES, PALETTE, SKINS, colour_of
-from sandbox.level.format.model import Level, NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.kinds.body_def import BodyDef
 
 # What a word in a name says of its stuff; the first that fits counts.

@@ -9,9 +9,9 @@ import pygame
 from sandbox.app.draw.camera import Box, Camera, bounds
 from sandbox.app.draw.picture import draw_picture
 from sandbox.app.draw.renderer import Renderer
+from sandbox.level.document.model import Level
 from sandbox.level.format.limits import FORMAT, VERSION
-from sandbox.level.format.model import Level
-from sandbox.level.format.parse import parse_level
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.session import Session

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sandbox.app.draw.camera import Box, Camera, bounds
 from sandbox.app.draw.renderer import Renderer
 from sandbox.app.draw.themes import THEMES
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.level.format.writing import write_file
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot

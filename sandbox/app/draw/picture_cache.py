@@ -16,8 +16,8 @@ import pygame
 from sandbox.app.base.recent_pictures import RecentPictures
 from sandbox.app.draw.colours import THEME_NAMES, ThemeName
 from sandbox.app.draw.picture import crop_of, draw_picture, run_ahead
-from sandbox.level.format.files import read_level, shipped_folder, shipped_levels
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
+from sandbox.level.reading.files import read_level, shipped_folder, shipped_levels
 
 # Every picture's size [pixels]: that of a card at scale 2, and twice that at scale 1.
 SIZE = (576, 324)

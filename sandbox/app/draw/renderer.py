@@ -23,7 +23,7 @@ from sandbox.app.draw.things.ensemble import Ensemble
 from sandbox.app.draw.things.frame import Frame, strain_of
 from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
 from sandbox.app.run.playback import interpolated
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.equipment import Joined
 from sandbox.physics.joints.pulls import Pull

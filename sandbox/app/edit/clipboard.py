@@ -10,10 +10,10 @@ from sandbox.app.widgets.dialogs import choose
 from sandbox.editor.document import Document
 from sandbox.editor.edits.copying import copy_text, paste
 from sandbox.editor.edits.deleting import delete
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.canonical import level_text
-from sandbox.level.format.files import parse_level
-from sandbox.level.format.model import Level
+from sandbox.level.document.canonical import level_text
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import LevelError
+from sandbox.level.reading.files import parse_level
 
 
 class Clipboard:

@@ -16,10 +16,10 @@ from sandbox.editor.history import History
 from sandbox.editor.storage.autosave import Autosave, Orphan, orphans
 from sandbox.editor.storage.level_file import ChangedOnDisk, FileExists, LevelFile, LevelInUse, StorageError
 from sandbox.editor.storage.recent import remember
-from sandbox.level.faults.level_error import LevelError, one_line
-from sandbox.level.format.files import load_level
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.quantities import replaced
+from sandbox.level.reading.files import load_level
 
 # Longest name of a level's file [characters].
 NAME_LIMIT = 200

@@ -10,7 +10,7 @@ from sandbox.app.contracts.editing import Editing
 from sandbox.editor.edits.bake import begin_at_rest
 from sandbox.editor.forecast import Forecast
 from sandbox.editor.lint.lint import Finding, findings
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 
 # Time [s] that each of the two may take of a frame, and how long the level has to stay as it is before they begin.
 SLICE = 0.004

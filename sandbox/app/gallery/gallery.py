@@ -32,8 +32,8 @@ from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.recent import played_levels, recent_levels
-from sandbox.level.faults.level_error import LevelError, one_line
-from sandbox.level.format.files import parse_level, read_bytes, shipped_folder, shipped_levels
+from sandbox.level.format.level_error import LevelError, one_line
+from sandbox.level.reading.files import parse_level, read_bytes, shipped_folder, shipped_levels
 from sandbox.physics import jit
 
 # Sizes in layout units.

@@ -12,8 +12,8 @@ from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.picture import crop_of
 from sandbox.app.draw.picture_cache import LINE_SCALE, PARTICLES, SECONDS, SIZE
 from sandbox.app.draw.renderer import Renderer
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.files import read_level
+from sandbox.level.format.level_error import LevelError
+from sandbox.level.reading.files import read_level
 from sandbox.session.session import Session
 
 # It begins after the mouse has rested on a card for so long [s]; then it starts over every so often [s].

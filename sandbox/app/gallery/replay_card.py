@@ -11,7 +11,7 @@ from sandbox.app.draw.colours import shown_theme
 from sandbox.app.draw.picture import crop_of, draw_picture
 from sandbox.app.draw.picture_cache import LINE_SCALE, SIZE, find_picture, keep_for_later, kept_picture, picture_key
 from sandbox.app.gallery.card import Card
-from sandbox.level.build.surfaces import terrain_of
+from sandbox.level.plan.surfaces import terrain_of
 from sandbox.session.replay.reader import read_in_slices
 from sandbox.session.replay.recording import Replay, ReplayError
 

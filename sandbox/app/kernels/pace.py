@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.session.session import Session
 
 # A tick may take this long [s]: 30 of them in a second, half of what most levels ask for.

@@ -11,7 +11,7 @@ from functools import cache
 
 from sandbox.app.kernels.compiling import GROUPS, Crew, is_prepared, note_prepared, usual_processes, warm_up_rest
 from sandbox.app.kernels.pace import Pace
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics import jit
 from sandbox.physics.warm_up import warm_up
 

@@ -27,7 +27,7 @@ from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.app.widgets.ui import Ui
-from sandbox.level.format.model import NissenMaterial
+from sandbox.level.document.model import NissenMaterial
 from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
 from sandbox.physics.analysis.firmness import WORDS

@@ -10,7 +10,7 @@ from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.bake import keep_coefficients
 from sandbox.editor.edits.fields import set_setting
 from sandbox.editor.edits.pace import set_rate_in_pace
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.world import World
 
 # What a person may have set in a run, beside springs.

@@ -7,7 +7,7 @@ from sandbox.app.contracts.application import Application
 from sandbox.app.panel.rate_choice import level_at_rate
 from sandbox.app.run.playback import Playback
 from sandbox.editor.document import EditError
-from sandbox.level.format.model import ContactsDef, Level
+from sandbox.level.document.model import ContactsDef, Level
 from sandbox.level.format.quantities import replaced
 
 

@@ -13,8 +13,8 @@ from sandbox.app.draw.picture_cache import picture_key as key_of_level
 from sandbox.app.widgets.painted import ENTER_KEYS, Lit, Pressable, wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.part_files import PartFile
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.files import read_bytes
+from sandbox.level.format.level_error import LevelError
+from sandbox.level.reading.files import read_bytes
 from sandbox.physics import jit
 
 # Sizes in layout units.

@@ -13,7 +13,7 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.joining import joining_commands
 from sandbox.editor.storage.part_files import PartFile, catalogue
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.world import World
 
 # Sizes in layout units.

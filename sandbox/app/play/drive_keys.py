@@ -3,7 +3,7 @@
 import pygame
 
 from sandbox.app.run.playback import Playback
-from sandbox.level.build.actuators import driving_keys
+from sandbox.level.plan.actuators import driving_keys
 from sandbox.session.commands import SetDrive
 
 ARROWS = {"left": pygame.K_LEFT, "right": pygame.K_RIGHT, "up": pygame.K_UP, "down": pygame.K_DOWN}

@@ -43,7 +43,7 @@ from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.joints.readings import motor_readings
 from sandbox.physics.solvers import SOLVERS

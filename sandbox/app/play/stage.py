@@ -19,7 +19,7 @@ from sandbox.app.run.playback import Playback
 from sandbox.app.run.stability_paint import StabilityPaint
 from sandbox.editor.edits.joining import joining_commands
 from sandbox.editor.edits.sizing import sized
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.analysis.query import free_particle_at, nearest_particle, shown_particles
 from sandbox.physics.joints.pulls import Pull, pulls_of
 from sandbox.physics.snapshot import Snapshot

@@ -3,7 +3,7 @@
 from collections import Counter
 
 from sandbox.app.base.sentences import sentence
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.world import World
 
 # After so long [s] without a break a new line begins.

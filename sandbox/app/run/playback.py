@@ -12,7 +12,7 @@ from sandbox.app.base.loop import TickClock
 from sandbox.app.run.breaks import Breaks
 from sandbox.app.run.liveliness import Liveliness
 from sandbox.app.run.travel import Travel
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import Dissipation
 from sandbox.physics.snapshot import Snapshot, state_hash
 from sandbox.physics.step import expect

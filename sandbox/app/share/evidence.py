@@ -12,7 +12,7 @@ from sandbox.app.draw.picture import view_of, write_png
 from sandbox.app.draw.renderer import Renderer
 from sandbox.app.film.kinds import require
 from sandbox.app.widgets.fonts import plain_font
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.snapshot import Snapshot, take
 from sandbox.session.player.reel import told_states
 from sandbox.session.replay.divergence import differing_particle, number_text

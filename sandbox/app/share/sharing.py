@@ -23,7 +23,7 @@ from sandbox.app.share.export import Excerpt, Export, Slices
 from sandbox.app.widgets.dialogs import Choice, choose
 from sandbox.editor.document import empty_level
 from sandbox.editor.storage.preferences import preference, set_preference
-from sandbox.level.faults.level_error import one_line
+from sandbox.level.format.level_error import one_line
 
 # How much of a run can be kept [s]; what is chosen at first, its end; and how long the liveliest part is.
 REMEMBERED, USUAL, LIVELY = 60.0, 10.0, 5.0

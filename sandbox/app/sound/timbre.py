@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.draw.looks import GRAINS, STRANDS, Look, ball_look, body_looks
 from sandbox.app.sound.waves import STUFFS
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.world import World
 

@@ -21,7 +21,7 @@ from sandbox.app.toy.frame_motion import FrameMotion
 from sandbox.app.toy.rest import Rest
 from sandbox.app.toy.toy_window import ToyWindow
 from sandbox.app.widgets.fonts import plain_font
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.analysis.query import free_particle_at, shown_particles
 from sandbox.session.commands import Shake
 

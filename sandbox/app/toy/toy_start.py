@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sandbox.editor.storage.level_file import data_folder
-from sandbox.level.format.files import write_level
+from sandbox.level.reading.files import write_level
 from sandbox.physics import jit
 
 if TYPE_CHECKING:
-    from sandbox.level.format.model import Level
+    from sandbox.level.document.model import Level
 
 # The level of a toy that names none.
 USUAL = "desk_toy"

@@ -46,7 +46,7 @@ from sandbox.app.window.files import FileActions
 from sandbox.app.window.help import show_help
 from sandbox.app.window.input import Input
 from sandbox.app.window.progress import RunProgress
-from sandbox.level.format.files import load_level, read_level
+from sandbox.level.reading.files import load_level, read_level
 
 # How often the status figures and the window title change [s].
 FIGURES_EVERY = 0.5

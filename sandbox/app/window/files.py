@@ -9,9 +9,9 @@ from sandbox.app.contracts.application import Application
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.dialogs import ask
 from sandbox.editor.storage.recent import remember_played
-from sandbox.level.faults.level_error import LevelError, one_line
-from sandbox.level.format.files import load_level, read_level, shipped_folder
+from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.writing import refusal_of
+from sandbox.level.reading.files import load_level, read_level, shipped_folder
 from sandbox.session.replay.reader import begins_as_replay, read_replay
 from sandbox.session.replay.recording import ReplayError
 from sandbox.session.sweep.grid import SweepError

@@ -11,15 +11,15 @@ from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import change_items
 from sandbox.editor.items import Definition, Item
 from sandbox.editor.scene import Scene, make_scene
-from sandbox.level.build.axles import mount_of
+from sandbox.level.document.model import Level, ParticleDef, SpringDef
 from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef, MuscleDef
 from sandbox.level.format.limits import TORQUE_LIMIT
 from sandbox.level.format.look import BodyLook, ParticleLook
-from sandbox.level.format.model import Level, ParticleDef, SpringDef
 from sandbox.level.format.quantities import significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BendingDef, FirmnessDef
 from sandbox.level.kinds.wheel import WheelDef
+from sandbox.level.plan.axles import mount_of
 
 # A new muscle swings by this share of its length, once in so many ticks: a second, at 60 ticks in one.
 MUSCLE = MuscleDef(amplitude=0.2, period=60)

@@ -10,8 +10,8 @@ from sandbox.editor.edits.placing import repinned, without_springs
 from sandbox.editor.items import Definition, Selection, changed, items_of, with_same
 from sandbox.editor.scene import Mask, Scene, Slots, make_scene
 from sandbox.editor.tools.snap import PLACE_DECIMALS
+from sandbox.level.document.model import NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL
-from sandbox.level.format.model import NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.body_def import FirmnessDef

@@ -1,10 +1,10 @@
 """Collision groups of a level: which there are, and what names one that is gone."""
 
 from sandbox.editor.items import with_same
-from sandbox.level.build.surfaces import group_bits
-from sandbox.level.format.model import Level, ParticleDef
+from sandbox.level.document.model import Level, ParticleDef
 from sandbox.level.format.quantities import Described, replaced
 from sandbox.level.kinds.body_def import BodyDef
+from sandbox.level.plan.surfaces import group_bits
 
 
 def collision_groups(level: Level) -> tuple[str, ...]:

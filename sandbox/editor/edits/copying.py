@@ -14,13 +14,13 @@ from sandbox.editor.edits.names import free_ids, owner_of, renamed, rewired, tak
 from sandbox.editor.edits.pace import set_rate_in_pace
 from sandbox.editor.items import Item, Selection, chosen_bodies, chosen_particles, chosen_terrain, items_of, keys
 from sandbox.editor.scene import make_scene
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.canonical import level_text
+from sandbox.level.document.canonical import level_text
+from sandbox.level.document.model import Level, Material, NissenMaterial, ParticleDef, Settings, SpringDef
+from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.limits import DEFAULT_MATERIAL, PARTICLE_LIMIT, SPRING_LIMIT
-from sandbox.level.format.model import Level, Material, NissenMaterial, ParticleDef, Settings, SpringDef
-from sandbox.level.format.parse import parse_level
 from sandbox.level.format.quantities import Point, replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
+from sandbox.level.reading.parse import parse_level
 
 
 def copy_text(document: Document) -> str:

@@ -8,8 +8,8 @@ from sandbox.editor.edits.grouping import taken_groups
 from sandbox.editor.edits.names import free_ids, owner_of, rewired, taken_ids
 from sandbox.editor.items import Item, chosen_bodies, keys
 from sandbox.editor.scene import make_scene
+from sandbox.level.document.model import ParticleDef, SpringDef
 from sandbox.level.format.limits import BODY_RADIUS, COORDINATE_LIMIT
-from sandbox.level.format.model import ParticleDef, SpringDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.expansion import Expansion

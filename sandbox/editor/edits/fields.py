@@ -11,9 +11,9 @@ from sandbox.editor.edits.names import renamed, rewired, taken_ids
 from sandbox.editor.edits.remap import rebuilt
 from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles, chosen_terrain
 from sandbox.editor.kinds.table import EDITING, editing
-from sandbox.level.faults.level_error import shown
+from sandbox.level.document.model import Level, ParticleDef, TerrainDef
+from sandbox.level.format.level_error import shown
 from sandbox.level.format.limits import VERSION
-from sandbox.level.format.model import Level, ParticleDef, TerrainDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.body_def import BodyDef

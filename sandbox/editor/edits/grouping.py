@@ -6,7 +6,7 @@ from typing import Literal
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.names import free_ids
 from sandbox.editor.items import Definition, Selection, changed, definitions, items_of, kept_springs, keys, with_same
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.level.format.quantities import replaced
 
 Place = Literal["front", "back", "forward", "backward"]

@@ -6,10 +6,10 @@ from typing import Any
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.copying import inserted, shifted
 from sandbox.editor.edits.names import owner_of, rewired, with_owner
-from sandbox.level.build.joining import Joiners
-from sandbox.level.faults.level_error import LevelError, one_line, shown
+from sandbox.level.assembly.joining import Joiners
+from sandbox.level.document.model import Level, Material, ParticleDef
+from sandbox.level.format.level_error import LevelError, one_line, shown
 from sandbox.level.format.look import BodyLook
-from sandbox.level.format.model import Level, Material, ParticleDef
 from sandbox.level.format.quantities import Description, Point, replaced
 from sandbox.level.kinds.mesh import MeshDef
 from sandbox.physics.world import World

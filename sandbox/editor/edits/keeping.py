@@ -7,8 +7,8 @@ import numpy as np
 
 from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.edits.names import free_ids, owner_of, renamed, taken_ids
+from sandbox.level.document.model import Level, ParticleDef
 from sandbox.level.format.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL
-from sandbox.level.format.model import Level, ParticleDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.physics.equipment import Joined

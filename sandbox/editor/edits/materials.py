@@ -8,9 +8,9 @@ from pydantic import ValidationError
 from sandbox.editor.document import Document, EditError, checked, first_fault
 from sandbox.editor.items import Definition, changed, with_same
 from sandbox.level.checks import CheckDef
-from sandbox.level.faults.level_error import shown, suggestion
+from sandbox.level.document.model import Level, Material
+from sandbox.level.format.level_error import shown, suggestion
 from sandbox.level.format.limits import DEFAULT_MATERIAL, VERSION
-from sandbox.level.format.model import Level, Material
 from sandbox.level.format.quantities import replaced
 
 # How many users of a material a message names.

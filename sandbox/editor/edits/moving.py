@@ -31,8 +31,8 @@ from sandbox.editor.items import (
 from sandbox.editor.kinds.motion import Motion, stretch
 from sandbox.editor.kinds.table import editing
 from sandbox.editor.scene import Scene, make_scene, positions
+from sandbox.level.document.model import Level, SpringDef
 from sandbox.level.format.limits import COORDINATE_LIMIT
-from sandbox.level.format.model import Level, SpringDef
 from sandbox.level.format.quantities import Point, replaced
 from sandbox.level.kinds.geometry import Points
 

@@ -3,8 +3,8 @@
 import re
 from collections.abc import Callable, Iterable
 
+from sandbox.level.document.model import Level
 from sandbox.level.format.limits import TEXT_LIMIT
-from sandbox.level.format.model import Level
 from sandbox.level.format.quantities import replaced
 
 # What a number at the end of an id looks like; a copy of "rope 2" is "rope 3".

@@ -6,9 +6,9 @@ from typing import Any
 from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.edits.fields import set_setting
 from sandbox.editor.items import Definition, with_same
-from sandbox.level.faults.level_error import shown
+from sandbox.level.document.model import NissenMaterial
+from sandbox.level.format.level_error import shown
 from sandbox.level.format.limits import DEFAULT_MATERIAL, PERIOD_RANGE
-from sandbox.level.format.model import NissenMaterial
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.physics.equation import at_other_step
 

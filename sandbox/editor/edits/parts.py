@@ -12,8 +12,8 @@ from sandbox.editor.edits.moving import mirror
 from sandbox.editor.items import items_of
 from sandbox.editor.scene import make_scene
 from sandbox.editor.tools.snap import PLACE_DECIMALS
+from sandbox.level.document.model import ContactsDef, Level
 from sandbox.level.format.limits import TEXT_LIMIT
-from sandbox.level.format.model import ContactsDef, Level
 from sandbox.level.format.quantities import Point, replaced
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from sandbox.editor.document import EditError, subject
 from sandbox.editor.kinds.motion import Motion, mapped_velocity
 from sandbox.editor.kinds.table import editing
-from sandbox.level.format.model import ParticleDef, TerrainDef
+from sandbox.level.document.model import ParticleDef, TerrainDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
 from sandbox.level.kinds.geometry import Points

@@ -8,8 +8,8 @@ from sandbox.editor.edits.names import free_id
 from sandbox.editor.edits.pins import pins_of, with_pins
 from sandbox.editor.items import Item, kept_springs, with_same
 from sandbox.editor.scene import Scene, make_scene
+from sandbox.level.document.model import Level, ParticleDef, SpringDef
 from sandbox.level.format.limits import DEFAULT_MATERIAL
-from sandbox.level.format.model import Level, ParticleDef, SpringDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
 

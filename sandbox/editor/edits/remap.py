@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from sandbox.editor.document import EditError, check_bodies, checked, subject
 from sandbox.editor.edits.names import rewired
+from sandbox.level.document.model import Level
 from sandbox.level.format.limits import COORDINATE_LIMIT
-from sandbox.level.format.model import Level
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
 from sandbox.level.kinds.geometry import Pairs, Points

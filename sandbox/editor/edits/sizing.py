@@ -6,14 +6,14 @@ from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import scale
 from sandbox.editor.items import items_of
 from sandbox.editor.panel.field_info import abouts
-from sandbox.level.faults.level_error import LevelError, one_line
-from sandbox.level.format.canonical import level_text
+from sandbox.level.document.canonical import level_text
+from sandbox.level.document.model import HydraulicDef, Level
+from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.limits import BODY_RADIUS
-from sandbox.level.format.model import HydraulicDef, Level
-from sandbox.level.format.parse import parse_level
 from sandbox.level.format.quantities import Description, replaced
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.mesh import MeshDef
+from sandbox.level.reading.parse import parse_level
 
 # How often a quantity takes up the factor of lengths, by its unit: times stay as they are, so forces go with masses.
 POWERS = {"kg": 2, "N": 2, "N/m": 2, "N s/m": 2, "N m": 3}

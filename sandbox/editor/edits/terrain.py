@@ -9,8 +9,8 @@ from pydantic import ValidationError
 from sandbox.editor.document import Document, EditError, check_terrain, checked, first_fault, validated
 from sandbox.editor.edits.names import free_id
 from sandbox.editor.items import Definition, Item, Selection, changed
-from sandbox.level.faults.level_error import shown
-from sandbox.level.format.model import Level, TerrainDef, WallsDef
+from sandbox.level.document.model import Level, TerrainDef, WallsDef
+from sandbox.level.format.level_error import shown
 from sandbox.level.format.quantities import Point, replaced
 
 Corners = tuple[Point, ...]

@@ -4,7 +4,7 @@ from sandbox.editor.items import Selection
 from sandbox.editor.lint.finding import Finding, Rule, Severity, place_of
 from sandbox.editor.scene import Scene
 from sandbox.level.checks import CheckDef, bounds_of, window_of
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 
 # Metrics that are sums of squares, sizes or counts.
 NEVER_NEGATIVE = frozenset(

@@ -10,8 +10,8 @@ from sandbox.editor.edits.moving import move
 from sandbox.editor.items import Item
 from sandbox.editor.lint.finding import Finding, Remedy, Rule, called, place_of
 from sandbox.editor.scene import Scene
+from sandbox.level.document.model import Level
 from sandbox.level.format.limits import BODY_RADIUS
-from sandbox.level.format.model import Level
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 
 Floats = NDArray[np.float64]

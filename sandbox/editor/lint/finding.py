@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sandbox.editor.document import Document
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 
 Severity = Literal["error", "warning", "hint"]

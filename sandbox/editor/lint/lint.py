@@ -16,7 +16,7 @@ from sandbox.editor.lint.motors import motors_in_vain
 from sandbox.editor.lint.places import crossing_bodies, overlapping_particles
 from sandbox.editor.lint.solver import springs_past_limits
 from sandbox.editor.scene import Scene
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 
 __all__ = ["Finding", "findings"]
 

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 from sandbox.editor.items import Item
 from sandbox.editor.lint.finding import Finding, Rule, called
-from sandbox.level.faults.level_error import shown, suggestion
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import shown, suggestion
 from sandbox.level.format.look import BALLS, GROUNDS, LINES, SKINS
-from sandbox.level.format.model import Level
 
 _KNOWN = {"skin": SKINS, "line": LINES, "ball": BALLS}
 

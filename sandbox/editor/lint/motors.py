@@ -5,7 +5,7 @@ import numpy as np
 from sandbox.editor.items import Item
 from sandbox.editor.lint.finding import Finding, Rule, called, connected_parts, place_of
 from sandbox.editor.scene import Scene
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.level.kinds.wheel import WheelDef
 from sandbox.physics.solvers import SOLVERS
 

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from sandbox.editor.lint.finding import Finding, Rule, called, place_of
 from sandbox.editor.scene import Scene
+from sandbox.level.document.model import Level
 from sandbox.level.format.limits import BODY_RADIUS
-from sandbox.level.format.model import Level
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]

@@ -5,10 +5,10 @@ from numpy.typing import NDArray
 
 from sandbox.editor.lint.finding import Finding, Rule, called, called_spring, middle_of, place_of
 from sandbox.editor.scene import Scene
-from sandbox.level.build.constraints import add_constraints
-from sandbox.level.build.forms import add_forms
-from sandbox.level.build.materials import coefficients
-from sandbox.level.format.model import Level, NissenMaterial
+from sandbox.level.document.model import Level, NissenMaterial
+from sandbox.level.plan.constraints import add_constraints
+from sandbox.level.plan.forms import add_forms
+from sandbox.level.plan.materials import coefficients
 from sandbox.physics.analysis.stability import BOUND, spring_loads
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS

@@ -10,9 +10,9 @@ from sandbox.editor.edits.fields import change_items
 from sandbox.editor.items import Definition, Item
 from sandbox.editor.panel.field_info import FieldInfo, abouts
 from sandbox.editor.panel.property import Property, same
-from sandbox.level.faults.level_error import shown
+from sandbox.level.document.model import Level, NissenMaterial
+from sandbox.level.format.level_error import shown
 from sandbox.level.format.limits import DEFAULT_MATERIAL, FREQUENCY_RANGE, SAG_LIMIT
-from sandbox.level.format.model import Level, NissenMaterial
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BodyDef, FirmnessDef

@@ -14,8 +14,8 @@ from sandbox.editor.panel.field_info import abouts
 from sandbox.editor.panel.property import Property, Section, part_properties, with_axes
 from sandbox.editor.scene import make_scene
 from sandbox.level.checks import METRICS, SUBJECTS, CheckDef
+from sandbox.level.document.model import Level, Material, MaterialDef, NissenMaterial, Settings
 from sandbox.level.format.look import BodyLook
-from sandbox.level.format.model import Level, Material, MaterialDef, NissenMaterial, Settings
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
 

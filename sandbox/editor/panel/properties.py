@@ -16,9 +16,9 @@ from sandbox.editor.panel.field_info import FieldInfo, abouts
 from sandbox.editor.panel.firmness import firmness_properties
 from sandbox.editor.panel.property import MIXED, Property, Section, part_properties, same, with_axes
 from sandbox.editor.panel.typed import number_text
-from sandbox.level.format.model import Level, ParticleDef, SpringDef, TerrainDef
+from sandbox.level.document.model import Level, ParticleDef, SpringDef, TerrainDef
+from sandbox.level.document.schema import TITLES
 from sandbox.level.format.quantities import Point
-from sandbox.level.format.schema import TITLES
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import file_order
 from sandbox.level.kinds.jelly import SHAPES, BoxShape, CircleShape, JellyDef, PolygonShape, Shape

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from sandbox.editor.document import EditError
-from sandbox.level.faults.level_error import shown
+from sandbox.level.format.level_error import shown
 from sandbox.level.format.quantities import significant
 
 # Digits that a number is shown with where they say all of it.

@@ -17,11 +17,11 @@ from typing import Any
 from filelock import FileLock, Timeout
 
 from sandbox.editor.storage.level_file import StorageError, data_folder
-from sandbox.level.faults.level_error import LevelError, one_line
-from sandbox.level.format.model import Level
-from sandbox.level.format.parse import parse_level
-from sandbox.level.format.salvage import salvage
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.writing import refusal_of, write_file
+from sandbox.level.reading.parse import parse_level
+from sandbox.level.reading.salvage import salvage
 
 _FORMAT = "spring-sandbox/autosave"
 _SUFFIX = ".autosave"

@@ -11,11 +11,11 @@ from pathlib import Path
 import platformdirs
 from filelock import FileLock, Timeout
 
-from sandbox.level.faults.level_error import LevelError, one_line
-from sandbox.level.format.files import parse_level, read_bytes, write_level
-from sandbox.level.format.model import Level
-from sandbox.level.format.salvage import salvage
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.writing import refusal_of, write_file
+from sandbox.level.reading.files import parse_level, read_bytes, write_level
+from sandbox.level.reading.salvage import salvage
 
 # Name of the person's data folder; autosaves, locks and recent levels of another name would not be found again.
 _APPLICATION = "spring-sandbox"

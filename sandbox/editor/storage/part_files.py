@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sandbox.editor.storage.level_file import StorageError, data_folder
-from sandbox.level.faults.level_error import LevelError, one_line
-from sandbox.level.format.files import parse_level, read_bytes, shipped_folder, write_level
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.quantities import replaced
 from sandbox.level.format.writing import refusal_of
+from sandbox.level.reading.files import parse_level, read_bytes, shipped_folder, write_level
 
 # Own parts that are listed at most.
 LISTED = 300

@@ -16,9 +16,9 @@ from sandbox.editor.tools.drawing_tool import staged
 from sandbox.editor.tools.editor_tool import EditorTool
 from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
+from sandbox.level.document.model import Level
 from sandbox.level.format.actuator_defs import MotorDef
 from sandbox.level.format.limits import TORQUE_LIMIT, TURN_LIMIT
-from sandbox.level.format.model import Level
 from sandbox.level.format.quantities import Point, replaced
 from sandbox.level.kinds.wheel import WheelDef
 

@@ -12,9 +12,9 @@ from sandbox.editor.edits.placing import add_body
 from sandbox.editor.tools.drawing_options import BodyOptions, LineOptions
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap
+from sandbox.level.document.messages import worded
+from sandbox.level.document.model import HookeMaterial
 from sandbox.level.format.limits import DEFAULT_MATERIAL
-from sandbox.level.format.messages import worded
-from sandbox.level.format.model import HookeMaterial
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import KINDS, AnyBody, expansion
 from sandbox.level.kinds.body_def import FirmnessDef

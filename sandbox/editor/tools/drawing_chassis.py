@@ -12,7 +12,7 @@ from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.editor_tool import EditorTool
 from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
-from sandbox.level.format.model import NissenMaterial, ParticleDef, SpringDef
+from sandbox.level.document.model import NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.quantities import Point, replaced
 from sandbox.level.kinds.mesh import MeshDef
 

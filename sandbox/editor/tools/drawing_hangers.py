@@ -17,7 +17,7 @@ from sandbox.editor.tools.drawing_tool import Drawing, staged
 from sandbox.editor.tools.editor_tool import EditorTool
 from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
-from sandbox.level.format.model import SpringDef
+from sandbox.level.document.model import SpringDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.bridge import BridgeDef

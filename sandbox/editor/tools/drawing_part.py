@@ -9,7 +9,7 @@ from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.editor_tool import EditorTool
 from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,8 @@ from sandbox.editor.tools.drawing_tool import Drawing, staged
 from sandbox.editor.tools.editor_tool import EditorTool
 from sandbox.editor.tools.icons import IconPen, draw_pin, draw_spring
 from sandbox.editor.tools.snap import Snap
+from sandbox.level.document.model import ParticleDef
 from sandbox.level.format.limits import BODY_RADIUS
-from sandbox.level.format.model import ParticleDef
 
 
 @dataclass(frozen=True)

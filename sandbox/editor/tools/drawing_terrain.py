@@ -12,8 +12,8 @@ from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.editor_tool import EditorTool
 from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
+from sandbox.level.document.model import TerrainDef, WallsDef
 from sandbox.level.format.limits import FRICTION_LIMIT
-from sandbox.level.format.model import TerrainDef, WallsDef
 from sandbox.level.format.quantities import Point
 from sandbox.level.kinds.polygon import simplified
 

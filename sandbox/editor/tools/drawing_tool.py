@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Generic, cast
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.tools.drawing_options import AnyOptions, Options, changed, described
 from sandbox.editor.tools.snap import Snap
-from sandbox.level.format.model import ParticleDef
+from sandbox.level.document.model import ParticleDef
 from sandbox.level.format.quantities import Point, replaced
 
 

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from sandbox.level.build.actuators import actuators
-from sandbox.level.faults.level_error import Fault, shown
+from sandbox.level.document.model import Level, SpringDef
 from sandbox.level.format.actuator_defs import HydraulicDef
+from sandbox.level.format.level_error import Fault, shown
 from sandbox.level.format.limits import LIMITED_LIMIT, MOTOR_LIMIT
-from sandbox.level.format.model import Level, SpringDef
 from sandbox.level.kinds.bodies import expansion
+from sandbox.level.plan.actuators import actuators
 
 
 def actuator_faults(level: Level) -> Iterator[Fault]:

@@ -3,12 +3,12 @@
 import itertools
 from collections.abc import Iterator
 
-from sandbox.level.build.surfaces import TERRAIN_NAME, colliding_items, group_bits
-from sandbox.level.faults.level_error import Fault, shown, suggestion
+from sandbox.level.document.model import Level, TerrainDef
+from sandbox.level.format.level_error import Fault, shown, suggestion
 from sandbox.level.format.limits import COLLISION_GROUP_LIMIT, CORNER_LIMIT
-from sandbox.level.format.model import Level, TerrainDef
 from sandbox.level.kinds.polygon import is_simple
 from sandbox.level.kinds.wheel import WheelDef
+from sandbox.level.plan.surfaces import TERRAIN_NAME, colliding_items, group_bits
 
 
 def collision_faults(level: Level) -> Iterator[Fault]:

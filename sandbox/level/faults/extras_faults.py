@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from sandbox.level.faults.level_error import Fault, json_path, shown
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import Fault, json_path, shown
 from sandbox.level.format.limits import TEXT_LIMIT
-from sandbox.level.format.model import Level
 
 
 def extras_faults(level: Level) -> Iterator[Fault]:

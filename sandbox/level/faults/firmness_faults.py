@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from sandbox.level.build.plan import Plan
-from sandbox.level.faults.level_error import Fault, shown
-from sandbox.level.format.model import HookeMaterial, Level
+from sandbox.level.document.model import HookeMaterial, Level
+from sandbox.level.format.level_error import Fault, shown
+from sandbox.level.plan.plan import Plan
 from sandbox.physics.analysis.firmness import OutOfReach, Reach, lowest_mode_of
 
 

@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from typing import Any
 
-from sandbox.level.build.layout import Layout
 from sandbox.level.checks import METRICS, SUBJECTS, CheckDef
-from sandbox.level.faults.level_error import Fault, shown, suggestion
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import Fault, shown, suggestion
 from sandbox.level.format.limits import DEFAULT_MATERIAL
-from sandbox.level.format.model import Level
+from sandbox.level.plan.layout import Layout
 
 
 def material_faults(level: Level, path: str, name: str) -> Iterator[Fault]:

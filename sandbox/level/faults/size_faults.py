@@ -1,9 +1,9 @@
 """What makes a level too large: particles and springs after expansion, corners and area of polygons."""
 
-from sandbox.level.build.plan import Plan
-from sandbox.level.faults.level_error import Fault, json_path
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import Fault, json_path
 from sandbox.level.format.limits import CORNER_LIMIT, PARTICLE_LIMIT, POLYGON_WORK_LIMIT, SPRING_LIMIT
-from sandbox.level.format.model import Level
+from sandbox.level.plan.plan import Plan
 
 
 def size_fault(level: Level, plan: Plan) -> Fault | None:

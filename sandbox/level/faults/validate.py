@@ -3,12 +3,11 @@
 import itertools
 from collections.abc import Iterator
 
-from sandbox.level.build.plan import Plan, kept_plan
+from sandbox.level.document.model import Level
 from sandbox.level.faults.actuator_faults import actuator_faults
 from sandbox.level.faults.collision_faults import collision_faults
 from sandbox.level.faults.extras_faults import extras_faults
 from sandbox.level.faults.firmness_faults import firmness_faults
-from sandbox.level.faults.level_error import Fault, LevelError, shown
 from sandbox.level.faults.reference_faults import (
     check_faults,
     look_faults,
@@ -18,7 +17,8 @@ from sandbox.level.faults.reference_faults import (
 )
 from sandbox.level.faults.size_faults import size_fault
 from sandbox.level.faults.weld_faults import weld_faults
-from sandbox.level.format.model import Level
+from sandbox.level.format.level_error import Fault, LevelError, shown
+from sandbox.level.plan.plan import Plan, kept_plan
 
 
 def check_level(level: Level, source: str) -> Plan:

@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sandbox.level.build.plan import Plan
-from sandbox.level.faults.level_error import Fault
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import Fault
 from sandbox.level.format.limits import MASS_RANGE
-from sandbox.level.format.model import Level
+from sandbox.level.plan.plan import Plan
 
 
 def weld_faults(level: Level, plan: Plan) -> Iterator[Fault]:

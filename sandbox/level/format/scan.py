@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sandbox.level.faults.level_error import Fault
+from sandbox.level.format.level_error import Fault
 from sandbox.level.format.limits import CONTAINER_LIMIT, DEPTH_LIMIT
 
 

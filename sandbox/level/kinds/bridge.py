@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from sandbox.level.faults.level_error import Fault
+from sandbox.level.format.level_error import Fault
 from sandbox.level.format.limits import COORDINATE_LIMIT
 from sandbox.level.format.quantities import Mass, Point, Size
 from sandbox.level.kinds.body_def import BodyDef, End

@@ -7,8 +7,8 @@ from typing import Any, ClassVar, Generic, TypeVar, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.faults.level_error import Fault, shown
 from sandbox.level.format.actuator_defs import MotorDef
+from sandbox.level.format.level_error import Fault, shown
 from sandbox.level.format.limits import COORDINATE_LIMIT
 from sandbox.level.format.quantities import Description
 from sandbox.level.kinds.body_def import BendingDef, BodyDef

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Discriminator, Field, Tag
 
-from sandbox.level.faults.level_error import Fault, shown
+from sandbox.level.format.level_error import Fault, shown
 from sandbox.level.format.limits import COORDINATE_LIMIT, CORNER_LIMIT, PARTICLE_LIMIT
 from sandbox.level.format.quantities import Angle, Description, Mass, Point, Size, Spacing, unit
 from sandbox.level.kinds.body_def import BodyDef

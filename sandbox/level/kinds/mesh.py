@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from sandbox.level.faults.level_error import Fault, shown
+from sandbox.level.format.level_error import Fault, shown
 from sandbox.level.format.limits import SPEED_LIMIT
 from sandbox.level.format.quantities import Index, Mass, Point, Velocity, unit
 from sandbox.level.kinds.body_def import BENDING, BendingDef, BodyDef

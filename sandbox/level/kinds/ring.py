@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from sandbox.level.faults.level_error import Fault
+from sandbox.level.format.level_error import Fault
 from sandbox.level.format.quantities import Angle, Inflation, Mass, Point, Size
 from sandbox.level.kinds.body_def import BENDING, BendingDef, BodyDef
 from sandbox.level.kinds.expansion import NO_POLYGONS, Expansion, round_outline_faults

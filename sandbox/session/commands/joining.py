@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
-from sandbox.level.build.joining import Joiners
-from sandbox.level.faults.level_error import LevelError
+from sandbox.level.assembly.joining import Joiners
+from sandbox.level.format.level_error import LevelError
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 

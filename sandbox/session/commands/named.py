@@ -6,7 +6,7 @@ from typing import Annotated, Any, get_args
 
 from pydantic import Field
 
-from sandbox.level.faults.level_error import suggestion
+from sandbox.level.format.level_error import suggestion
 from sandbox.physics.world import World
 from sandbox.session.commands.command import CommandError
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.level.faults.level_error import suggestion
+from sandbox.level.format.level_error import suggestion
 from sandbox.level.format.quantities import Name
 from sandbox.physics.changing.removing import remove_particles
 from sandbox.physics.joints.hands import bodies_of

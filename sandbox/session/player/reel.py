@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
-from sandbox.level.format.model import Level
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.constraints import AREA
 from sandbox.physics.snapshot import Snapshot
@@ -91,7 +91,7 @@ class Reel:
 
     def _owners(self, count: int) -> NDArray[np.int64]:
         """The number of a colour for every particle: bodies and loose particles have them in turn."""
-        from sandbox.level.build.plan import Plan, kept_plan
+        from sandbox.level.plan.plan import Plan, kept_plan
 
         layout = (kept_plan(self._level) or Plan(self._level)).layout
         owners = np.arange(count, dtype=np.int64) + len(layout.owners)

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from sandbox.level.format.files import level_data, parse_level
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
+from sandbox.level.reading.files import level_data, parse_level
 from sandbox.session.commands import CommandError
 from sandbox.session.replay.format import STATE_TICKS
 from sandbox.session.replay.recording import Replay, ReplayError

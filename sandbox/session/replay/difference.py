@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.level.format.files import level_data
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
+from sandbox.level.reading.files import level_data
 from sandbox.physics.snapshot import hash_by_array, state_hash
 from sandbox.physics.state import BY_STORED
 from sandbox.session.commands import CommandError

@@ -27,10 +27,10 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.level.build.build_world import build_world
-from sandbox.level.build.joining import Joiners
-from sandbox.level.format.files import level_data
-from sandbox.level.format.model import Level
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.assembly.joining import Joiners
+from sandbox.level.document.model import Level
+from sandbox.level.reading.files import level_data
 from sandbox.physics.constraints import AREA
 from sandbox.physics.equipment import Equipment
 from sandbox.physics.snapshot import Snapshot, canonical_bytes

@@ -5,7 +5,7 @@ from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from sandbox.level.faults.level_error import shown
+from sandbox.level.format.level_error import shown
 from sandbox.session.commands.command import plain_fault
 from sandbox.session.replay.recording import ReplayError
 

@@ -9,11 +9,11 @@ from typing import Annotated, Any, cast
 
 from pydantic import Field, field_validator
 
-from sandbox.level.build.plan import Plan, kept_plan
-from sandbox.level.format.files import LevelError, parse_level
+from sandbox.level.document.model import Level, Settings
 from sandbox.level.format.limits import FILE_LIMIT, PARTICLE_LIMIT, SPRING_LIMIT
-from sandbox.level.format.model import Level, Settings
 from sandbox.level.format.scan import scan
+from sandbox.level.plan.plan import Plan, kept_plan
+from sandbox.level.reading.files import LevelError, parse_level
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import ALWAYS_STORED, BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION

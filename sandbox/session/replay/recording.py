@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, state_hash
 from sandbox.physics.state import BY_STORED

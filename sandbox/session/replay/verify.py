@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, state_hash
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.world import World

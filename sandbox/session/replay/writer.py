@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from sandbox import __version__
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.physics.snapshot import hash_by_array, state_hash
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION

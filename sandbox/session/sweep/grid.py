@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.files import level_data, parse_level
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import LevelError
+from sandbox.level.reading.files import level_data, parse_level
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.level_edits import SILENT, with_value
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.level.build.build_world import build_world
+from sandbox.level.assembly.build_world import build_world
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
 from sandbox.physics.world import Floats
 from sandbox.session.sweep.grid import CD, CS, SweepGrid, Value, case_level

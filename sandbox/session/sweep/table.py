@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.session.sweep.grid import FIGURES, SweepError, SweepGrid, Value
 
 # More characters are no table of a sweep that can be run.

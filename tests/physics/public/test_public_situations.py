@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.level.format.files import load_level
+from sandbox.level.reading.files import load_level
 from sandbox.session.check_run import run_checks
 from sandbox.session.commands.records import from_record
 from sandbox.session.session import Session

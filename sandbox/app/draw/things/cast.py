@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from sandbox.app.draw.looks import GRAINS, Look, ball_look, body_looks, spring_look
 from sandbox.app.draw.things.borders import sides_of, traced
-from sandbox.level.build.plan import Plan, kept_plan
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.level.kinds.jelly import JellyDef
+from sandbox.level.plan.plan import Plan, kept_plan
 from sandbox.physics.equipment import Joined
 
 Floats = NDArray[np.float64]

@@ -13,8 +13,8 @@ from sandbox.app.widgets.rows import Row
 from sandbox.editor.document import Document
 from sandbox.editor.panel.level_properties import add_check, check_properties, delete_check
 from sandbox.level.checks import METRICS, CheckDef, CheckResult, promise_text, time_text
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import LevelError
 from sandbox.session.check_run import checks_as_they_end
 
 # Part of the page that the list takes.

@@ -25,8 +25,8 @@ from sandbox.editor.panel.level_properties import look_properties
 from sandbox.editor.panel.property import Property, Section
 from sandbox.editor.panel.typed import line_text, number_text, read_line, read_number
 from sandbox.editor.pick import items_of_material
+from sandbox.level.document.model import HookeMaterial, Level, Material, MaterialDef, NissenMaterial
 from sandbox.level.format.limits import DEFAULT_MATERIAL
-from sandbox.level.format.model import HookeMaterial, Level, Material, MaterialDef, NissenMaterial
 from sandbox.level.format.quantities import replaced
 from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
 

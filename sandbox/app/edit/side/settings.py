@@ -14,7 +14,7 @@ from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_level_field
 from sandbox.editor.edits.pace import set_rate_in_pace
 from sandbox.editor.panel.level_properties import level_properties
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 
 # Digits after the point of a view [m] that is taken from the camera.
 VIEW_DECIMALS = 3

@@ -14,8 +14,8 @@ from sandbox.app.kernels.compiling import usual_processes
 from sandbox.app.panel.sweeps.sweep_layer import SweepLayer
 from sandbox.app.panel.sweeps.sweep_measures import measure_of
 from sandbox.app.widgets.coefficient_scale import PLAIN
-from sandbox.level.faults.level_error import LevelError
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import LevelError
 from sandbox.physics.settings import WorldSettings
 from sandbox.session.replay.again import with_settings
 from sandbox.session.sweep.background import BackgroundSweep

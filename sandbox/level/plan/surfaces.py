@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.build.axles import free_wheels
+from sandbox.level.document.model import ContactsDef, Level, ParticleDef
 from sandbox.level.format.limits import BODY_RADIUS
-from sandbox.level.format.model import ContactsDef, Level, ParticleDef
 from sandbox.level.kinds.body_def import BodyDef
+from sandbox.level.plan.axles import free_wheels
 from sandbox.physics.actuators import Surface
 from sandbox.physics.collision.filter import ALL_GROUPS, TERRAIN_GROUP
 from sandbox.physics.terrain import NO_TERRAIN, Chain, Terrain, make_terrain

@@ -4,7 +4,7 @@ import json
 import math
 from typing import Any
 
-from sandbox.level.format.model import Level, Settings
+from sandbox.level.document.model import Level, Settings
 from sandbox.level.kinds.body_def import file_order
 
 # A value goes on one line where it fits into this many columns; otherwise its items go one to a line.

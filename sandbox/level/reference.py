@@ -1,6 +1,6 @@
 """format_reference(): the reference of the level format for level makers, generated from the schema.
 
-`python -m sandbox.level.format.reference > docs/level-format.md` writes it anew.
+`python -m sandbox.level.reference > docs/level-format.md` writes it anew.
 """
 
 import json
@@ -8,11 +8,11 @@ from collections.abc import Iterator
 from typing import Any
 
 from sandbox.level.checks import STILL
-from sandbox.level.faults.level_error import LevelError
+from sandbox.level.document.schema import TITLES, schema
 from sandbox.level.format import limits
-from sandbox.level.format.parse import parse_level
-from sandbox.level.format.schema import TITLES, schema
+from sandbox.level.format.level_error import LevelError
 from sandbox.level.kinds.bodies import EXPANSIONS
+from sandbox.level.reading.parse import parse_level
 
 EXAMPLE = """\
 {

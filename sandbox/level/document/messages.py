@@ -6,9 +6,9 @@ from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel, Tag
 
-from sandbox.level.faults.level_error import Fault, json_path, shown, suggestion
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import Fault, json_path, shown, suggestion
 from sandbox.level.format.look import COLOUR_PATTERN, PALETTE
-from sandbox.level.format.model import Level
 from sandbox.level.format.quantities import ARROW_KEYS, ID_PATTERN, KEY_PATTERN
 from sandbox.level.kinds.bodies import KINDS
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.format.model import HookeMaterial, Material
+from sandbox.level.document.model import HookeMaterial, Material
 from sandbox.physics.actuators import NEVER, StrainLimits
 from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.level.format.model import HookeMaterial, Level, Material
+from sandbox.level.document.model import HookeMaterial, Level, Material
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.physics.analysis.firmness import Reach, set_firmness
 from sandbox.physics.forms import FirmBody

@@ -14,12 +14,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sandbox.level.build.plan import keep_plan
-from sandbox.level.faults.early_end import early_end
-from sandbox.level.faults.foreign import foreign_bytes, foreign_keys
-from sandbox.level.faults.level_error import Fault, LevelError, json_path, shown
+from sandbox.level.document.messages import place, worded
+from sandbox.level.document.model import Level
 from sandbox.level.faults.validate import check_level
+from sandbox.level.format.early_end import early_end
+from sandbox.level.format.foreign import foreign_bytes, foreign_keys
 from sandbox.level.format.gc_pause import collector_paused
+from sandbox.level.format.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.format.limits import (
     CHECK_LIMIT,
     FAULT_LIMIT,
@@ -31,10 +32,9 @@ from sandbox.level.format.limits import (
     TAG_LIMIT,
     TERRAIN_LIMIT,
 )
-from sandbox.level.format.messages import place, worded
-from sandbox.level.format.migrate import migrated
-from sandbox.level.format.model import Level
 from sandbox.level.format.scan import scan
+from sandbox.level.plan.plan import keep_plan
+from sandbox.level.reading.migrate import migrated
 
 # Beyond this many errors the library takes seconds to list them all, so they are looked for piece by piece.
 _FLOOD = 2_000

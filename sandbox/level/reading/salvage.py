@@ -8,16 +8,16 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sandbox.level.build.plan import Plan
 from sandbox.level.checks import CheckDef
-from sandbox.level.faults.level_error import Fault, LevelError, json_path, shown
+from sandbox.level.document.messages import place, worded
+from sandbox.level.document.model import Level, ParticleDef, SpringDef, TerrainDef
 from sandbox.level.faults.validate import level_faults
+from sandbox.level.format.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.format.limits import FAULT_LIMIT, FILE_LIMIT, FORMAT, VERSION
-from sandbox.level.format.messages import place, worded
-from sandbox.level.format.migrate import migrated
-from sandbox.level.format.model import Level, ParticleDef, SpringDef, TerrainDef
-from sandbox.level.format.parse import BODY_LIMITS, LEVEL_LIMITS
 from sandbox.level.format.scan import scan
+from sandbox.level.plan.plan import Plan
+from sandbox.level.reading.migrate import migrated
+from sandbox.level.reading.parse import BODY_LIMITS, LEVEL_LIMITS
 
 _NAME = "Untitled"
 _HEAD = {"format": FORMAT, "version": VERSION, "name": _NAME}

@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.level.kinds.wheel import WheelDef
 
 

@@ -5,16 +5,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.build.actuators import add_actuators
-from sandbox.level.build.constraints import add_constraints
-from sandbox.level.build.forms import add_forms
-from sandbox.level.build.materials import coefficients, strain_limits
-from sandbox.level.build.plan import Plan
-from sandbox.level.build.surfaces import surface_of, surfaces_of, terrain_of
-from sandbox.level.build.welds import Slots
+from sandbox.level.document.model import Level, Material, NissenMaterial
 from sandbox.level.faults.validate import check_level
 from sandbox.level.format.limits import DEFAULT_MATERIAL
-from sandbox.level.format.model import Level, Material, NissenMaterial
+from sandbox.level.plan.actuators import add_actuators
+from sandbox.level.plan.constraints import add_constraints
+from sandbox.level.plan.forms import add_forms
+from sandbox.level.plan.materials import coefficients, strain_limits
+from sandbox.level.plan.plan import Plan
+from sandbox.level.plan.surfaces import surface_of, surfaces_of, terrain_of
+from sandbox.level.plan.welds import Slots
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import ROLLING_RESISTANCE
 from sandbox.physics.world import World

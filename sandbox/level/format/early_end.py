@@ -3,7 +3,7 @@
 import json
 import re
 
-from sandbox.level.faults.level_error import json_path
+from sandbox.level.format.level_error import json_path
 
 _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"?|[{}\[\]:,]|[^\s{}\[\]:,"]+', re.DOTALL)
 # What may follow the place of an error in a text that merely stops: part of a word or number.

@@ -7,8 +7,8 @@ import unicodedata
 from collections.abc import Collection, Iterable
 from typing import Any
 
-from sandbox.level.faults.look_alikes import skeleton
 from sandbox.level.format.limits import FAULT_LIMIT
+from sandbox.level.format.look_alikes import skeleton
 
 # Where a fault is (a JSON path such as materials.steel.stiffness, or "line 3, column 5"; "" = the whole) and what.
 Fault = tuple[str, str]

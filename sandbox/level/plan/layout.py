@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from sandbox.level.faults.level_error import shown, suggestion
+from sandbox.level.format.level_error import shown, suggestion
 from sandbox.level.kinds.expansion import Expansion
 
 _INDEX = re.compile(r"0|[1-9][0-9]{0,8}")

@@ -11,11 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.build.actuators import actuators
-from sandbox.level.build.axles import free_wheels
-from sandbox.level.build.build_world import build_world
-from sandbox.level.build.surfaces import DEFAULT_GROUP, TERRAIN_NAME, group_bits
-from sandbox.level.faults.level_error import Fault, LevelError, shown, suggestion
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.model import Level, Material, NissenMaterial
+from sandbox.level.format.level_error import Fault, LevelError, shown, suggestion
 from sandbox.level.format.limits import (
     DEFAULT_MATERIAL,
     DEFINITION_LIMIT,
@@ -27,8 +25,10 @@ from sandbox.level.format.limits import (
     SPRING_LIMIT,
     VERSION,
 )
-from sandbox.level.format.model import Level, Material, NissenMaterial
-from sandbox.level.format.parse import parse_level
+from sandbox.level.plan.actuators import actuators
+from sandbox.level.plan.axles import free_wheels
+from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME, group_bits
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.changing.joining import Place, append_state, equipped
 from sandbox.physics.collision.filter import ALL_GROUPS
 from sandbox.physics.driving import drive_muscles

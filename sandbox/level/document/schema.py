@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.level.kinds.bodies import EXPANSIONS, KINDS
 from sandbox.level.kinds.body_def import file_order
 

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.level.build.layout import Layout
-from sandbox.level.build.welds import Slots, united
-from sandbox.level.format.model import Level
+from sandbox.level.document.model import Level
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.expansion import Expansion
+from sandbox.level.plan.layout import Layout
+from sandbox.level.plan.welds import Slots, united
 
 
 class Plan:

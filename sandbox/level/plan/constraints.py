@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.build.layout import Layout
-from sandbox.level.build.welds import Slots
-from sandbox.level.format.model import Level, Material, NissenMaterial
+from sandbox.level.document.model import Level, Material, NissenMaterial
 from sandbox.level.kinds.expansion import NO_POLYGONS, Expansion
+from sandbox.level.plan.layout import Layout
+from sandbox.level.plan.welds import Slots
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.world import OWN_MATERIAL, World
 

@@ -4,14 +4,14 @@ import os
 import stat
 from pathlib import Path
 
-from sandbox.level.faults.level_error import LevelError, suggestion
+from sandbox.level.document.canonical import level_data, level_text
+from sandbox.level.document.model import Level
 from sandbox.level.faults.validate import check_level
-from sandbox.level.format.canonical import level_data, level_text
+from sandbox.level.format.level_error import LevelError, suggestion
 from sandbox.level.format.limits import FILE_LIMIT
-from sandbox.level.format.model import Level
-from sandbox.level.format.parse import parse_level
 from sandbox.level.format.shipped import shipped_folder
 from sandbox.level.format.writing import refusal_of, write_over
+from sandbox.level.reading.parse import parse_level
 
 __all__ = [
     "LevelError",

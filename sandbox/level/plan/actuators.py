@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.build.plan import Plan
-from sandbox.level.build.welds import Slots
+from sandbox.level.document.model import Level
 from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
-from sandbox.level.format.model import Level
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.expansion import Expansion
+from sandbox.level.plan.plan import Plan
+from sandbox.level.plan.welds import Slots
 from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles
 from sandbox.physics.driving import drive_muscles
 from sandbox.physics.world import World
