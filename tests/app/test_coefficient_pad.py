@@ -53,7 +53,7 @@ def test_a_drag_over_the_pad_sets_both_in_one_gesture_that_is_undone_at_once(pad
     padded.release(pad.pixel_of(0.1, 0.2))
     assert pair(padded) == pytest.approx((0.1, 0.2), rel=0.05)
     assert pair(padded, "pair:0") == (0.02, 0.1)
-    entries = [each for each in padded.playback.session._log if isinstance(each.command, SetCoefficients)]
+    entries = [each for each in padded.playback.session.history.log if isinstance(each.command, SetCoefficients)]
     assert len(entries) >= 4 and len({each.gesture for each in entries}) == 1
     padded.key(pygame.K_z, pygame.KMOD_CTRL)
     assert pair(padded) == (0.3, 0.3)

@@ -79,7 +79,7 @@ def test_the_panel_sets_one_side_and_undo_takes_back_what_was_done_last_in_both(
     assert not np.array_equal(one.position, other.position)
     pair.key(pygame.K_z, pygame.KMOD_CTRL)
     kinds = [
-        {type(entry.command) for entry in each.session._timeline}
+        {type(entry.command) for entry in each.session.history.timeline}
         for each in (pair.app.play.playback, pair.app.play.other)
     ]
     assert not any(Grab in each for each in kinds) and SetCoefficients in kinds[1] - kinds[0]

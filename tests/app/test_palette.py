@@ -40,7 +40,7 @@ def drop(driver, *points):
 
 
 def commands(driver):
-    return [entry.command for entry in driver.playback.session._timeline]
+    return [entry.command for entry in driver.playback.session.history.timeline]
 
 
 def test_the_strip_folds_out_and_every_part_and_deed_has_a_key_a_button_and_a_picture(player):

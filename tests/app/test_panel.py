@@ -24,7 +24,7 @@ def coefficients(driver):
 
 
 def logged(driver):
-    return [entry for entry in driver.playback.session._log if isinstance(entry.command, SetCoefficients)]
+    return [entry for entry in driver.playback.session.history.log if isinstance(entry.command, SetCoefficients)]
 
 
 def test_a_slider_drag_is_one_gesture_and_undone_at_once(driver):
