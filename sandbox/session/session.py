@@ -104,7 +104,7 @@ class Session:
     def apply_pending(self) -> bool:
         """Apply what is due at this tick boundary without stepping: the script's commands, then those submitted.
 
-        Whether anything was due.
+        True: something was due.
         """
         due = bool(self._pending)
         while self.history.scripted is not None and self.history.scripted.tick == self.tick == self.history.last_tick:
@@ -157,11 +157,11 @@ class Session:
         return self.history.keyframes.before(tick).tick
 
     def adopt(self, state: Snapshot) -> None:
-        """Be at a state that a recording of this very run holds, and keep it: what lies between is not stepped.
+        """Go to a state that a recording of this very run holds, without stepping there, and keep it.
 
-        Ahead of the last tick, the script's commands until there count as carried out. Of what lies between the state
-        and the last tick, nothing may be undone, or be an undoing. Raises CommandError, with nothing changed, where a
-        command names what is not there.
+        After the last tick, the script's commands until there count as carried out. No command between the state and
+        the last tick may be undone, or be an undo. Raises CommandError, with nothing changed, where a command names
+        what is not there.
         """
         before = take(self.world)
         self._put_back(state)
@@ -225,12 +225,12 @@ class Session:
         return tuple(self.history.branches)
 
     def going(self) -> list[Command]:
-        """The commands that end what is going on now, as a hand that holds or a part that is driven."""
+        """The commands that end everything that goes on now, such as a hand that holds or a motor that is driven."""
         endings = (entry.command.ending(self.world) for entry in self.history.begun(self.tick))
         return [ending for ending in endings if ending is not None]
 
     def record_to(self, path: Path, state_ticks: int = STATE_TICKS) -> None:
-        """Record this run to a file, from the level's start: what was played until now is played again into it.
+        """Record this run to a file, from the level's start: the run until now is played again into it.
 
         state_ticks: from one stored state to the next; from each the recording can be verified, and each takes room.
         Overwrites the file. Raises OSError where it cannot be written, ValueError for a run that began in the middle.
