@@ -46,6 +46,7 @@ from sandbox.app.window.files import FileActions
 from sandbox.app.window.help import show_help
 from sandbox.app.window.input import Input
 from sandbox.app.window.progress import RunProgress
+from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.reading.files import load_level, read_level
 
 # How often the status figures and the window title change [s].
@@ -245,7 +246,11 @@ class App:
 
     def start_pair(self, path: Path) -> None:
         """Play the level of a file twice side by side, with the pad in the panel."""
-        level = read_level(path)
+        try:
+            level = read_level(path)
+        except LevelError as error:
+            self.show_faults(f"{one_line(path.name)} cannot be opened", error.faults)
+            return
         screen = CompareScreen(self, TwinPlayback(level), TwinPlayback(level), None)
         screen.shape.springs = "pad"
         self.show_screen(screen)
