@@ -573,7 +573,7 @@ class PlayScreen:
         parts.append((f"tick {playback.session.tick:,}", MUTED))
         counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
         world = playback.session.world
-        parts += motor_parts(motor_readings(world), SOLVERS[world.settings.solver].carries)
+        parts += motor_parts(motor_readings(world), SOLVERS[world.settings.solver].joints_bear_load)
         return parts + status_parts(*counts, figures, self.stage.renderer.non_finite, playback.behind)
 
     def _state(self) -> str:
