@@ -93,9 +93,9 @@ def make_layout(world: World) -> SystemLayout:
     kind = np.where(unlimited_active(world), world.law, -1).astype(np.int64)
     a, b = world.particle_a.astype(np.int64), world.particle_b.astype(np.int64)
     chosen = np.flatnonzero((kind == LAW_NISSEN) & (free[a] | free[b]))
-    chosen_constraints = _choose_constraints(world, free)
+    picked = _choose_constraints(world, free)
     used = np.zeros(world.particle_count, dtype=np.bool_)
-    used[a[chosen]] = used[b[chosen]] = used[chosen_constraints.particle] = True
+    used[a[chosen]] = used[b[chosen]] = used[picked.particle] = True
     nodes = np.flatnonzero(used & free)
     anchors = np.flatnonzero(used & ~free)
     # Rows before the elimination order is known; anchors come after every free particle, in any order.
@@ -103,7 +103,7 @@ def make_layout(world: World) -> SystemLayout:
     index[np.concatenate([nodes, anchors])] = np.arange(len(nodes) + len(anchors))
     end_a, end_b = index[a[chosen]], index[b[chosen]]
     link_a, link_b = (
-        np.concatenate([end, more]) for end, more in zip((end_a, end_b), index[chosen_constraints.links], strict=True)
+        np.concatenate([end, more]) for end, more in zip((end_a, end_b), index[picked.links], strict=True)
     )
     links = np.flatnonzero((link_a < len(nodes)) & (link_b < len(nodes)))
     order, label, columns, large = _eliminate(len(nodes), link_a[links], link_b[links], world.origin[nodes])
@@ -120,9 +120,7 @@ def make_layout(world: World) -> SystemLayout:
     in_front = np.append(fronts.of_row, -1)[np.minimum(low, len(nodes))] >= 0
     grouped = np.lexsort((np.where(in_front, low, 0), spring_body))
     matrix, place = lay_out_matrix(len(nodes), columns, rank, fronts)
-    constraints, constraint_body = _lay_out_constraints(
-        chosen_constraints, rank[index[chosen_constraints.particle]], body_number, place
-    )
+    constraints, constraint_body = _lay_out_constraints(picked, rank[index[picked.particle]], body_number, place)
     row_a, row_b, spring_body = row_a[grouped], row_b[grouped], spring_body[grouped]
     anchoring = spring_body[np.maximum(row_a, row_b) >= len(nodes)], constraint_body[_anchored(constraints, len(nodes))]
     rows = _lay_out_rows(np.concatenate([nodes[order], anchors]))
@@ -242,13 +240,13 @@ def _links(start: Slots, particle: Slots, free: NDArray[np.bool_]) -> Slots:
 
 
 def _lay_out_constraints(
-    chosen_constraints: _Chosen, corner_row: Slots, body_of_row: Slots, place: Callable[[Slots, Slots], Slots]
+    picked: _Chosen, corner_row: Slots, body_of_row: Slots, place: Callable[[Slots, Slots], Slots]
 ) -> tuple[Constraints, Slots]:
     """The constraints, grouped by body, ready for a step, and the body of each, ascending.
 
     corner_row (q,): the row of each corner. place: the block that two rows share.
     """
-    count, sizes = len(chosen_constraints.slot), np.diff(chosen_constraints.start)
+    count, sizes = len(picked.slot), np.diff(picked.start)
     owner = np.repeat(np.arange(count), sizes)
     lowest = np.full(count, np.iinfo(np.int64).max)
     np.minimum.at(lowest, owner, corner_row)
@@ -265,12 +263,12 @@ def _lay_out_constraints(
         block[narrow, side] = place(three[:, side], three[:, (side + 1) % 3])
     wide, most = _number_wide(narrow, body[grouped])
     given = {
-        "slot": chosen_constraints.slot[grouped],
-        "kind": chosen_constraints.kind[grouped],
+        "slot": picked.slot[grouped],
+        "kind": picked.kind[grouped],
         "first": first,
         "row": row,
     }
-    given |= {"corner": chosen_constraints.corner[corners], "block": block, "wide": wide}
+    given |= {"corner": picked.corner[corners], "block": block, "wide": wide}
     shapes = {"rest": (count, 2), "weight": len(row), "scale": most}
     shapes |= {name: (len(row), 2) for name in ("place", "gradient", "spare")}
     shapes |= {"response": (most, len(body_of_row) if most else 0, 2)}
