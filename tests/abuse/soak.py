@@ -48,7 +48,7 @@ MOST_GROWTH, WARM_UP = 0.02, 0.35
 # What stretches begin with: an action, and a level to do it in, or "" for one of the ready parts in turn.
 SCREENS = (
     ("gallery", ""), ("palette", "jelly_cube"), ("edit", "rope"), ("settings", ""), ("share", "newtons_cradle"),
-    ("edit", ""), ("help", "truss_bridge"), ("play", "jelly_pile"), ("edit", "suspension_car"), ("edit", ""),
+    ("help", "truss_bridge"), ("edit", ""), ("play", "jelly_pile"), ("edit", "suspension_car"), ("edit", ""),
     ("palette", "wrecking_ball"), ("play", "walker"),
 )  # fmt: skip
 SIZES = ((1280, 720), (640, 480), (900, 700), (1600, 900), (1280, 720))
