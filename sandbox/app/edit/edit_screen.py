@@ -463,10 +463,13 @@ class EditScreen:
             parts.append((f"{x:.3f}, {y:.3f} m", MUTED))
         return [*parts, *counted_parts(len(scene.position), len(scene.particle_a))]
 
-    def title(self) -> list[str]:
-        """Level, * where it is not saved, and the state."""
-        name = self.document.level.name + ("" if self.history.is_saved else "*")
-        words = [name, "editing", self.tool]
+    def title(self) -> str:
+        """Level, * where it is not saved, and that it is edited."""
+        return self.document.level.name + ("" if self.history.is_saved else "*") + " - Level editor"
+
+    def states(self) -> list[str]:
+        """The tool, and how many things are selected."""
+        words = ["editing", self.tool]
         if self.document.selection:
             words.append(f"{len(self.document.selection)} selected")
         return words

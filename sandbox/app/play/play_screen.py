@@ -581,9 +581,13 @@ class PlayScreen:
         clock = self.playback.clock
         return "paused" if clock.paused else state_of(clock.speed)
 
-    def title(self) -> list[str]:
-        """Level, tick and state, so that other programs can follow what happens."""
-        words = [self.playback.level.name, f"tick {self.playback.session.tick}", self._state()]
+    def title(self) -> str:
+        """The level's name."""
+        return self.playback.level.name
+
+    def states(self) -> list[str]:
+        """Tick and state of the run."""
+        words = [f"tick {self.playback.session.tick}", self._state()]
         if self.stage.drag.holds:
             words.append(f"holding {len(self.stage.drag.holds)}")
         if self.playback.session.recording is not None:
