@@ -141,7 +141,7 @@ class EditScreen:
     def step_to(self, index: int) -> None:
         """Show the state after a step of the history."""
         before = self.document.level
-        self.settle()
+        self._give_up()
         self.history.go_to(index)
         self.level_changed(self.history.labels[index], before)
 
@@ -315,7 +315,7 @@ class EditScreen:
     def choose_tool(self, name: str) -> None:
         """Take another tool up."""
         if name != self.tool and isinstance(self.pointer_tool, DrawTool):
-            self.pointer_tool.cancel()
+            self.pointer_tool.put_away()
         self.tool = name
 
     def cancel(self) -> None:
@@ -481,10 +481,16 @@ class EditScreen:
         self.view = View(self)
 
     def settle(self) -> None:
-        """Give up what is under way."""
+        """End what is drawn, and give up what is dragged."""
+        if isinstance(self.pointer_tool, DrawTool):
+            self.pointer_tool.put_away()
+        self._give_up()
+        self.history.end_merge()
+
+    def _give_up(self) -> None:
+        """Give up what is drawn or dragged."""
         if self.pointer_tool.matrix is not None or isinstance(self.pointer_tool, DrawTool):
             self.pointer_tool.cancel()
-        self.history.end_merge()
 
 
 def _is_about(box: Box, view: Box) -> bool:
