@@ -205,8 +205,11 @@ def _ask_parts(screen: Editing) -> None:
     names = ("group", "ungroup", "break_apart", "unjoin")
     labels = ("Group", "Ungroup", "Break bodies apart", "Take joints apart")
     choices = [(label, screen.actions[name]) for label, name in zip(labels, names, strict=True)]
-    choose(screen.ui, "Parts", "A click selects a whole group, a double click one of its members. A body that is broken apart "
-           "becomes loose particles and springs.", choices)  # fmt: skip
+    text = (
+        "A click selects a whole group, a double click one of its members. "
+        "A body that is broken apart becomes loose particles and springs."
+    )
+    choose(screen.ui, "Parts", text, choices)
 
 
 def _ask_material(screen: Editing) -> None:
