@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, half_step_of_network, part_of_network
-from sandbox.physics.forces import Before
+from sandbox.physics.forces import StepStart
 from sandbox.physics.jit import kernel
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import Snapshot
@@ -41,7 +41,7 @@ class Substep(NamedTuple):
     ease: float
     springs: Pair
     constraints: Pair
-    before: Before
+    step_start: StepStart
 
 
 class Cadence(NamedTuple):

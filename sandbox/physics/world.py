@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.actuators import Actuators, StrainLimits, Surface, unlimited
-from sandbox.physics.capacity import Room
+from sandbox.physics.capacity import Capacity
 from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, rest_of_area, rest_of_bend, sides_gone
 from sandbox.physics.equipment import Equipment, Joined
 from sandbox.physics.events import Containment
@@ -65,7 +65,7 @@ class World(StateArrays):
         # Never state: counts the changes of what solvers and collision derive from; whether any may be `unmoved`.
         self.topology_version, self.may_fly = 0, True
         self._derived: dict[Callable[[World], Any], tuple[int, Any]] = {}
-        self._room = Room()
+        self._room = Capacity()
         for column in COLUMNS:
             setattr(self, column.name, column.empty())
         # The last good values of what is guarded; never state.
@@ -101,7 +101,7 @@ class World(StateArrays):
 
     def __getstate__(self) -> dict[str, Any]:
         """What a copy starts from: all but what was derived, which may hold a thread."""
-        return self.__dict__ | {"_derived": {}, "_room": Room()}
+        return self.__dict__ | {"_derived": {}, "_room": Capacity()}
 
     def derived(self, make: Callable[["World"], Derived]) -> Derived:
         """The result of `make` for this world, kept until `topology_version` rises or an array is replaced.

@@ -376,7 +376,7 @@ def test_the_factor_solves_what_a_dense_solver_solves():
     dense = np.diag(np.repeat(rows.mass[:count], 2))
     for k in range(bodies.spring_start[-1]):
         normal, transverse = springs.normal[k], springs.transverse[k]
-        block = transverse * np.eye(2) + (springs.stiff[k] - transverse) * np.outer(normal, normal)
+        block = transverse * np.eye(2) + (springs.K[k] - transverse) * np.outer(normal, normal)
         ends = [2 * r for r in (springs.row_a[k], springs.row_b[k]) if r < count]
         for one in ends:
             for other in ends:

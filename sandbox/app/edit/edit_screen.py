@@ -141,7 +141,7 @@ class EditScreen:
     def step_to(self, index: int) -> None:
         """Show the state after a step of the history."""
         before = self.document.level
-        self.settle()
+        self._give_up()
         self.history.go_to(index)
         self.level_changed(self.history.labels[index], before)
 
@@ -315,7 +315,7 @@ class EditScreen:
     def choose_tool(self, name: str) -> None:
         """Take another tool up."""
         if name != self.tool and isinstance(self.pointer_tool, DrawTool):
-            self.pointer_tool.cancel()
+            self.pointer_tool.put_away()
         self.tool = name
 
     def cancel(self) -> None:
@@ -463,10 +463,13 @@ class EditScreen:
             parts.append((f"{x:.3f}, {y:.3f} m", MUTED))
         return [*parts, *counted_parts(len(scene.position), len(scene.particle_a))]
 
-    def title(self) -> list[str]:
-        """Level, * where it is not saved, and the state."""
-        name = self.document.level.name + ("" if self.history.is_saved else "*")
-        words = [name, "editing", self.tool]
+    def title(self) -> str:
+        """Level, * where it is not saved, and that it is edited."""
+        return self.document.level.name + ("" if self.history.is_saved else "*") + " - Level editor"
+
+    def states(self) -> list[str]:
+        """The tool, and how many things are selected."""
+        words = ["editing", self.tool]
         if self.document.selection:
             words.append(f"{len(self.document.selection)} selected")
         return words
@@ -478,10 +481,16 @@ class EditScreen:
         self.view = View(self)
 
     def settle(self) -> None:
-        """Give up what is under way."""
+        """End what is drawn, and give up what is dragged."""
+        if isinstance(self.pointer_tool, DrawTool):
+            self.pointer_tool.put_away()
+        self._give_up()
+        self.history.end_merge()
+
+    def _give_up(self) -> None:
+        """Give up what is drawn or dragged."""
         if self.pointer_tool.matrix is not None or isinstance(self.pointer_tool, DrawTool):
             self.pointer_tool.cancel()
-        self.history.end_merge()
 
 
 def _is_about(box: Box, view: Box) -> bool:

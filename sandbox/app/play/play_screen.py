@@ -572,7 +572,7 @@ class PlayScreen:
         parts.append((f"tick {playback.session.tick:,}", MUTED))
         counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
         world = playback.session.world
-        parts += motor_parts(motor_readings(world), SOLVERS[world.settings.solver].carries)
+        parts += motor_parts(motor_readings(world), SOLVERS[world.settings.solver].joints_bear_load)
         return parts + status_parts(*counts, figures, self.stage.renderer.non_finite, playback.behind)
 
     def _state(self) -> str:
@@ -580,9 +580,13 @@ class PlayScreen:
         clock = self.playback.clock
         return "paused" if clock.paused else state_of(clock.speed)
 
-    def title(self) -> list[str]:
-        """Level, tick and state, so that other programs can follow what happens."""
-        words = [self.playback.level.name, f"tick {self.playback.session.tick}", self._state()]
+    def title(self) -> str:
+        """The level's name."""
+        return self.playback.level.name
+
+    def states(self) -> list[str]:
+        """Tick and state of the run."""
+        words = [f"tick {self.playback.session.tick}", self._state()]
         if self.stage.drag.holds:
             words.append(f"holding {len(self.stage.drag.holds)}")
         if self.playback.session.recording is not None:

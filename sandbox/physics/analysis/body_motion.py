@@ -36,7 +36,7 @@ class BodyMotion:
     height: float
     gravity: float
     h: float
-    parts: int
+    substeps: int
     solver: str
     iterations: int
 
@@ -45,16 +45,16 @@ class BodyMotion:
         """That of a form; lowest_mode: where it is known."""
         mode = lowest_mode_of(shape) if lowest_mode is None else lowest_mode
         height, gravity = shape.height(settings.gravity), strength_of(settings.gravity)
-        parts = settings.fewest_substeps
-        return cls(mode, height, gravity, substep_time(settings), parts, settings.solver, settings.iterations)
+        substeps = settings.fewest_substeps
+        return cls(mode, height, gravity, substep_time(settings), substeps, settings.solver, settings.iterations)
 
     def of_substep(self, stiffness: Floats, damping: Floats) -> tuple[Floats, Floats]:
         """Cs and Cd (k,) of a substep from those of a tick, as springs get them that have no firmness."""
         pair, none = (np.array(stiffness, np.float64), np.array(damping, np.float64)), np.zeros(len(stiffness))
         if self.solver == "direct":
-            divide(*pair, none, self.parts, True)
+            divide(*pair, none, self.substeps, True)
         else:
-            halve(*pair, none, self.parts)
+            halve(*pair, none, self.substeps)
         return pair
 
     def whole(self, stiffness: Floats, damping: Floats) -> tuple[Floats, Floats]:

@@ -55,7 +55,7 @@ def lowest_mode_of(shape: StiffForm) -> float:
 
 
 @dataclass(frozen=True)
-class Reach:
+class FirmnessRange:
     """The range of firmness of a body whose form has this lowest mode and height [m].
 
     Under gravity [m/s^2], and in ticks of h [s].
@@ -67,7 +67,7 @@ class Reach:
     h: float
 
     @classmethod
-    def of(cls, shape: StiffForm, gravity: tuple[float, float], tick_rate: float) -> "Reach":
+    def of(cls, shape: StiffForm, gravity: tuple[float, float], tick_rate: float) -> "FirmnessRange":
         """That of a form."""
         return cls(lowest_mode_of(shape), shape.height(gravity), strength_of(gravity), 1.0 / tick_rate)
 

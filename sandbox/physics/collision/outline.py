@@ -18,13 +18,13 @@ TERRAIN_OWNER = -2_000_000_000
 class Outline(NamedTuple):
     """The edges of a world's springs and of its terrain, which topology alone decides; see Colliders.
 
-    shielded: particles inside a solid body that no torn spring lays bare; discs do not hit them. held (n,): particles
-    that a spring or a constraint holds. solid (k, 2): first edge and one past the last of each owner's edges where any
-    is solid, terrain's last. dynamic (2,): edges of bodies, and how many of those in solid are bodies'. Shapes are the
-    owners of edges of bodies, in the order of their edges: shape, by vertex, -1: none; solid_of = by shape, the row of
-    solid, -1: lines alone; particles of shape s: member[member_start[s]:member_start[s + 1]]. close: edges
-    of lines alone that were made close to each other. spring_end: one particle of each spring. pins: edges of bodies
-    of which both ends are pinned, as terrain; chain = the edge.
+    shielded: particles inside a solid body that no torn spring lays bare; discs do not hit them. attached (n,):
+    particles that a spring or a constraint holds. solid (k, 2): first edge and one past the last of each owner's edges
+    where any is solid, terrain's last. dynamic (2,): edges of bodies, and how many of those in solid are bodies'.
+    Shapes are the owners of edges of bodies, in the order of their edges: shape, by vertex, -1: none; solid_of = by
+    shape, the row of solid, -1: lines alone; particles of shape s: member[member_start[s]:member_start[s + 1]]. close:
+    edges of lines alone that were made close to each other. spring_end: one particle of each spring. pins: edges of
+    bodies of which both ends are pinned, as terrain; chain = the edge.
     """
 
     edge_a: Slots
@@ -38,7 +38,7 @@ class Outline(NamedTuple):
     solid: Slots
     owner: Slots
     shielded: Flags
-    held: Flags
+    attached: Flags
     dynamic: Slots
     shape: Slots
     solid_of: Slots
@@ -69,8 +69,8 @@ def _make_outline(world: World) -> Outline:
     ends = world.particle_a[joined].astype(np.int64), world.particle_b[joined].astype(np.int64)
     edges = np.arange(len(edge_a))
     near_start, near_of = _listed(np.append(*ends), np.append(*ends[::-1]), count)
-    held = np.diff(near_start) > 0
-    held[world.corner_particle[np.repeat(world.constraint_active, world.constraint_corners)]] = True
+    attached = np.diff(near_start) > 0
+    attached[world.corner_particle[np.repeat(world.constraint_active, world.constraint_corners)]] = True
     solid = _solid(owner[edge_a] if len(edge_a) else edge_a, side)
     shape, solid_of, member_start, member = _shapes(world, owner, a, solid)
     return Outline(
@@ -84,7 +84,7 @@ def _make_outline(world: World) -> Outline:
         solid,
         owner,
         _shielded(world, chosen),
-        held,
+        attached,
         np.array([len(chosen), np.count_nonzero(solid[:, 0] < len(chosen))]),
         shape,
         solid_of,

@@ -190,7 +190,7 @@ def entries() -> list[Kernel]:
     return [kernel for kernel in KERNELS if kernel.role in _ENTRIES]
 
 
-def expect(held: Any, *arguments: Any) -> None:
+def precompile(held: Any, *arguments: Any) -> None:
     """Compile a kernel for such arguments, or load it, as a call would, which is not made."""
     kernel = cast(Kernel, kernel_of(held))
     if _chosen().COMPILED:

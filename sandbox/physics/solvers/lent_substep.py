@@ -38,8 +38,8 @@ class LentSubstep:
             or arrays.damping is not damping
             or arrays.constraint_stiffness is not more_stiffness
             or arrays.constraint_damping is not more_damping
-            or arrays.start is not substep.before.velocity
+            or arrays.start is not substep.step_start.velocity
         ):
-            self.arrays = SubstepArrays(stiffness, damping, more_stiffness, more_damping, substep.before.velocity)
+            self.arrays = SubstepArrays(stiffness, damping, more_stiffness, more_damping, substep.step_start.velocity)
             self.inputs = bundle((self.arrays,))
         return self.inputs

@@ -47,17 +47,17 @@ def _join(contacts: Contacts, count: int, inverse_mass: Floats, label: Slots) ->
 
 
 @inner_kernel
-def find_islands(contacts: Contacts, count: int, inverse_mass: Floats, held: Flags, islands: Islands) -> int:
+def find_islands(contacts: Contacts, count: int, inverse_mass: Floats, attached: Flags, islands: Islands) -> int:
     """The islands of the first `count` contacts; how many contacts are bound.
 
-    held (n,): particles that a spring or a constraint holds.
+    attached (n,): particles that a spring or a constraint holds.
     """
     label = islands.label
     _join(contacts, count, inverse_mass, label)
     for p in range(label.shape[0]):
         islands.is_bound[p] = False
     for p in range(label.shape[0]):
-        if held[p] and inverse_mass[p] > 0.0:
+        if attached[p] and inverse_mass[p] > 0.0:
             islands.is_bound[label[p]] = True
     bound = 0
     for c in range(count):

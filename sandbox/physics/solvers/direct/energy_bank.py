@@ -22,10 +22,10 @@ LAST_HALVINGS = 60
 
 @inner_kernel
 def body_energy(body: int, span: Span, system: System, h: float) -> float:
-    """Energy of one body after the step [J]: kinetic at `trial`, and that of its springs and constraints."""
+    """Energy of one body after the step [J]: kinetic at `v`, and that of its springs and constraints."""
     # H = KE(v') + PE(x + h v')
     rows = system.rows
-    return kinetic_at_end(body, span, system, h) + potential(span, system, rows.position, rows.trial, h, h)
+    return kinetic_at_end(body, span, system, h) + potential(span, system, rows.position, rows.v, h, h)
 
 
 @inner_kernel
@@ -63,23 +63,23 @@ def open_bank(body: int, span: Span, system: System, bank: Floats, moved: float,
         p = rows.particle[r]
         if p != lowest:
             bank[p] = 0.0
-    held = bank[lowest] if begun else 0.0
+    saved = bank[lowest] if begun else 0.0
     if not bodies.underdamped[body]:
-        return held
-    kinetic_after = kinetic(span, rows.mass, rows.target)
+        return saved
+    kinetic_after = kinetic(span, rows.mass, rows.v_star)
     before = kinetic(span, rows.mass, rows.start)
     present = start_potential(span, system, h)
     if not begun:
-        held += UNDERDAMPED_BANK_SHARE * (before + present)
+        saved += UNDERDAMPED_BANK_SHARE * (before + present)
     # Work done by forces, grabs and drives since then counts as energy of the start.
-    return max(0.0, held + UNDERDAMPED_BANK_SHARE * (kinetic_after - before + moved - present))
+    return max(0.0, saved + UNDERDAMPED_BANK_SHARE * (kinetic_after - before + moved - present))
 
 
 @inner_kernel
 def bank_limit(body: int, system: System) -> float:
     """The most that a body's bank may hold after the step [J]."""
     share = UNDERDAMPED_BANK_SHARE if system.bodies.underdamped[body] else BANK_SHARE
-    return share * system.bodies.before[body]
+    return share * system.bodies.energy0[body]
 
 
 @inner_kernel
