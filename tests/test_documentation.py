@@ -327,3 +327,16 @@ def test_the_changelog_says_in_short_entries_under_known_headings_what_was_chang
     entries = re.split(r"^- ", text, flags=re.MULTILINE)[1:]
     assert [entry for entry in entries if len(entry.split("\n\n")[0]) > 330] == []
     assert f"physics version {PHYSICS_VERSION}" in text
+
+
+# Words that plain English has better ones for, and the level format's page, which is made from the models.
+NOT_PLAIN = re.compile(r"\b(anew|deeds?|whatever|so many|stuff|what is held)\b", re.IGNORECASE)
+WRITTEN = [*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
+MADE = ("level-format.md", "gallery.md", "state.md")
+
+
+@pytest.mark.parametrize("page", [page for page in WRITTEN if page.name not in MADE], ids=lambda page: page.name)
+def test_pages_are_in_plain_english(page):
+    text = re.sub(r"```.*?```|`[^`\n]*`", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    prose = "\n".join(line for line in text.splitlines() if not line.startswith("    "))
+    assert [match.group() for match in NOT_PLAIN.finditer(prose)] == []
