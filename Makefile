@@ -1,4 +1,5 @@
 # make play: install into .venv and run the app.    make test: install into .venv and run every test.
+# make quick: run the tests of what differs from main, without slow ones; about a minute.
 # make goldens: run the kept recordings whole, bit for bit; minutes. make goldens-anew: record them anew, which only a
 # change of what a tick computes is a reason to.
 # make bounds: every test, with kernels that look whether an index lies in its array, which they leave to us else.
@@ -24,7 +25,7 @@ ifdef PIP_INDEX_URL
 export UV_DEFAULT_INDEX := $(PIP_INDEX_URL)
 endif
 
-.PHONY: play install test kernels byte-code lint bounds goldens goldens-anew pictures bench abuse soak clean
+.PHONY: play install test quick kernels byte-code lint bounds goldens goldens-anew pictures bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
@@ -34,6 +35,9 @@ install: $(VENV)/installed-dev
 test: $(VENV)/installed-dev
 	$(MAKE) --jobs=2 kernels byte-code
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
+
+quick: $(VENV)/installed-dev
+	$(BIN)/python -m tests.quick -n $(WORKERS)
 
 # Kernels are compiled before tests, or each worker would compile all of them.
 kernels: $(VENV)/installed-dev

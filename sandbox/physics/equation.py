@@ -72,7 +72,7 @@ def implicit_impulse(stiff: float, restoring: float, growth: float, error: float
 
 @scalar_kernel
 def implicit_update(impulse: float, velocity_error: float, response: float, softness: float) -> float:
-    """What a sweep makes of an impulse [N s]: velocity_error [m/s] after it, its bias added; see `gauss_seidel`.
+    """The impulse [N s] after a sweep: velocity_error [m/s] after it, its bias added; see `gauss_seidel`.
 
     response [1/kg] = J W J^T; softness [1/kg] = response (1 - Cd) / Cd = 1 / K.
     """

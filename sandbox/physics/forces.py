@@ -1,4 +1,4 @@
-"""What acts on particles before the springs do: gravity and the air. To the springs it is work from outside."""
+"""Gravity and air, which act on particles before the springs do. To the springs they are work from outside."""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -12,9 +12,9 @@ from sandbox.physics.world import Floats, World
 
 
 class StepStart(NamedTuple):
-    """What a step begins with, before forces and drives: velocity [m/s] (n, 2) and rest_length [m] (m,).
+    """The start of a step, before forces and drives: velocity [m/s] (n, 2) and rest_length [m] (m,).
 
-    A solver that tests energies measures by it what forces and drives have done.
+    A solver that tests energies measures the work of forces and drives by it.
     """
 
     velocity: Floats

@@ -103,7 +103,7 @@ class CollidingParticles(NamedTuple):
 
 
 class CollisionScratch(NamedTuple):
-    """What a step fills in. bounds (k, 5): see bound_solids. bound: the contacts that are left to a solver.
+    """Arrays that a step fills in. bounds (k, 5): see bound_solids. bound: the contacts that are left to a solver.
 
     moved (n,): scratch.
     """
@@ -343,7 +343,7 @@ def _finish(items: Any, moves: bool, h: float) -> int:
 
 @dataclass(eq=False)
 class Collisions:
-    """The scratch of a world's collisions: what topology decides, what a step fills in, and all as one argument.
+    """Scratch of a world's collisions: arrays that follow from topology, arrays that a step fills in, and one bundle.
 
     is_free: whether no spring or constraint holds anything. wanted: the largest counts so far. solved: those
     left to a solver, by their number. kept: the contacts of the last tick, the first of those in room; they are the
@@ -387,7 +387,7 @@ class Collisions:
     def collide(self, has_begun: bool, tick: int, h: float) -> LentContacts | None:
         """Find the contacts of a step of h [s] and solve those of free particles; the others, returned, are a solver's.
 
-        None: there are no others.         has_begun: forces have acted; otherwise they do now.
+        None: there are no others. has_begun: forces have acted already; otherwise they act now.
         """
         count = _collide(self.items, 1 if has_begun else 0, 0, False, tick, h)
         while count == NO_ROOM:
@@ -436,7 +436,7 @@ class Collisions:
 
 
 def collisions_of(world: World) -> Collisions | None:
-    """The scratch of a world's collisions, made anew where topology has changed; None: nothing can touch anything."""
+    """The scratch of a world's collisions, made again after a change of topology; None: nothing can touch."""
     return world.derived(_make_collisions)
 
 

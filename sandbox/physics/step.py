@@ -36,7 +36,8 @@ PHYSICS_VERSION = 9
 
 @dataclass(frozen=True, eq=False)
 class TickPlan:
-    """What topology decides of a tick. folds: there are triangles, which may not turn over; drives: springs are driven.
+    """The part of a tick's plan that follows from topology. folds: there are triangles, which may not turn over;
+    drives: springs are driven.
 
     free: its collisions, where no spring, constraint or joint holds anything. springs, constraints: room for their Cs
     and Cd in a substep.
@@ -67,7 +68,7 @@ def _plan(world: World) -> TickPlan:
 
 
 def precompute(world: World) -> None:
-    """Make what topology decides of the next tick, which else that tick finds first: nothing of a world's state."""
+    """Prepare the plan and the layouts of the next tick ahead of it. This changes nothing of a world's state."""
     world.derived(_plan)
     SOLVERS[world.settings.solver].precompute(world)
 

@@ -1,4 +1,4 @@
-"""Running a level by itself and holding its checks against what is measured."""
+"""Runs a level by itself and compares its checks with measurements."""
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
@@ -136,7 +136,7 @@ class _Gauge:
             self._still[body] = ticks + 1 if bool(np.all(speed <= STILL)) else 0
 
     def value(self, check: CheckDef) -> float:
-        """What a check measures now."""
+        """The value that a check measures now."""
         return float(_VALUES[check.metric](self, self._world, check))
 
     def _shown(self, body: str | None) -> NDArray[np.bool_]:

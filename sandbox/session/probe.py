@@ -18,7 +18,7 @@ MOST_NEAR, MOST_COMPARED = 5, 2_000
 
 
 class Probe:
-    """Follows particles and motors by name during a run and makes a table of tick, seconds, then what each does.
+    """Follows particles and motors by name during a run and makes a table of tick, seconds, then the values of each.
 
     Of a particle x, y, vx, vy, of one that no spring holds angle and spin as well; of a motor, by its wheel's id,
     torque [N m] and share, that of it which is in use. What commands add and remove has empty columns while it is not

@@ -238,6 +238,7 @@ def maker(screen, tmp_path, edit):
         shutil.copytree(folder / "pictures", os.environ["SANDBOX_PICTURES"], dirs_exist_ok=True)
 
 
+@pytest.mark.slow
 def test_three_levels_are_built_by_mouse_saved_reopened_played_and_their_recordings_verify(maker):
     documents = maker.folder.parent / "documents" / "Spring Sandbox"
     # What was drawn in the plain way until then changes once, which is no answer to the person.

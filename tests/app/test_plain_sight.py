@@ -31,6 +31,7 @@ def walk(driver):
     driver.app.ui.blur()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PARTS)
 def test_every_page_shows_every_ready_part_and_all_of_its_materials(edit, name):
     driver = edit(PARTS[name])

@@ -102,6 +102,7 @@ def test_halves_and_the_sparse_factorisation_agree(monkeypatch):
     assert np.abs(play(mesh(4), 8).position - world.position).max() < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("interpreted", ["0", "1"])
 def test_a_fresh_process_computes_the_same_bits_of_halves(interpreted):
     code = "from tests.physics.test_parallel import *; parallel.WORTH_HALVING = 1; print(hash_after_play(8))"

@@ -8,6 +8,7 @@ from typing import Literal
 import pygame
 
 from sandbox.editor.tools.palette import TOOLS
+from sandbox.tools.play_tools import PLAY_TOOLS
 
 Mode = Literal["play", "edit"]
 
@@ -73,22 +74,17 @@ def _tools(group: str) -> tuple[Shortcut, ...]:
     return tuple(Shortcut(tool.action, (tool.key,), tool.label, group, "edit") for tool in tools)
 
 
+def _play_tools(group: str) -> tuple[Shortcut, ...]:
+    """What takes up the tools in play of a group."""
+    tools = (tool for tool in PLAY_TOOLS.values() if tool.group == group)
+    return tuple(Shortcut(tool.action, tool.keys, tool.label, group, "play") for tool in tools)
+
+
 SHORTCUTS = (
-    Shortcut("tool_drag", ("D", "1"), "Drag tool: hold and move particles", "Tools", "play"),
-    Shortcut("tool_pin", ("P", "2"), "Pin tool: pin or unpin a particle", "Tools", "play"),
-    Shortcut("tool_cut", ("C", "3"), "Cut tool: a stroke cuts what it crosses", "Tools", "play"),
+    *_play_tools("Tools"),
     Shortcut("palette", ("B",), "Parts to play with: show or hide them", "Parts", "play"),
-    Shortcut("tool_ball", ("4",), "Ball: click drops it, drag throws it", "Parts", "play"),
-    Shortcut("tool_box", ("5",), "Box", "Parts", "play"),
-    Shortcut("tool_jelly", ("6",), "Jelly", "Parts", "play"),
-    Shortcut("tool_rope", ("7",), "Rope", "Parts", "play"),
-    Shortcut("tool_balloon", ("8",), "Balloon", "Parts", "play"),
-    Shortcut("tool_cart", ("9",), "Cart: Q and W drive it", "Parts", "play"),
+    *_play_tools("Parts"),
     Shortcut("catalogue", ("U",), "Parts of your own, and ready ones", "Parts", "play"),
-    Shortcut("tool_push", ("0",), "Push: click bursts, drag pushes", "Parts", "play"),
-    Shortcut("tool_wind", ("V",), "Wind: it blows along a drag", "Parts", "play"),
-    Shortcut("tool_delete", ("X",), "Delete: click takes a thing out", "Parts", "play"),
-    Shortcut("tool_freeze", ("I",), "Freeze or thaw a body", "Parts", "play"),
     Shortcut("", ("Wheel", "+/-"), "With a part or push: larger, smaller", "Parts", "play"),
     Shortcut("", ("Shift+click",), "Keep hold of a particle; a click lets go", "Tools", "play"),
     Shortcut("lattice", ("L",), "Lattice: springs, coloured by their strain", "View", "play"),

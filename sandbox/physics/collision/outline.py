@@ -1,4 +1,4 @@
-"""What can touch: the edges that springs are, and terrain, as topology alone decides; kept while that stays."""
+"""Outlines: the edges that springs make, and terrain, as topology alone decides; kept until topology changes."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ TERRAIN_OWNER = -2_000_000_000
 
 
 class Outline(NamedTuple):
-    """What the edges of a world's springs are, and of its terrain, which topology alone decides; see Colliders.
+    """The edges of a world's springs and of its terrain, which topology alone decides; see Colliders.
 
     shielded: particles inside a solid body that no torn spring lays bare; discs do not hit them. attached (n,):
     particles that a spring or a constraint holds. solid (k, 2): first edge and one past the last of each owner's edges
@@ -50,7 +50,7 @@ class Outline(NamedTuple):
 
 
 def outline_of(world: World) -> Outline:
-    """The outline of a world's bodies, made anew where topology has changed."""
+    """The outline of a world's bodies, made again after a change of topology."""
     return world.derived(_make_outline)
 
 
@@ -155,9 +155,9 @@ def _solid(owner: Slots, side: Slots) -> Slots:
 
 
 def colliders_of(world: World, outline: Outline, pairs: int) -> Colliders:
-    """The colliders of an outline: terrain is filled in, what is known of particles is left to each tick and step.
+    """The colliders of an outline: terrain is filled in; each tick and step fills in the particles.
 
-    pairs: room for so many pairs of shapes that part.
+    pairs: room for this many pairs of shapes that are separated.
     """
     terrain, count = world.terrain, world.particle_count
     total = count + len(terrain.vertex)

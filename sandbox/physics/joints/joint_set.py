@@ -31,7 +31,7 @@ class JointSet:
 
 
 def joints_of(world: World) -> JointSet | None:
-    """The joints of a world, made anew where its topology has changed; None: it has none."""
+    """The joints of a world, made again after a change of topology; None: it has none."""
     return world.derived(_make_joints)
 
 
@@ -90,5 +90,5 @@ def load_joints(joints: JointSet, world: World, springs: tuple[Floats, Floats], 
 
 
 def keep_joints(joints: JointSet, world: World, h: float) -> None:
-    """Keep what the joints' impulses have become in the state of the world, for the next substep."""
+    """Store the joints' impulses in the state of the world, for the next substep."""
     _keep(joints.lent, _form(world), h)

@@ -106,7 +106,7 @@ def no_joints() -> Joints:
 
 @inner_kernel
 def push_at(joints: Joints, p: int, jx: float, jy: float) -> None:
-    """What an impulse at a particle does to the velocities of rows."""
+    """Add the effect of an impulse at a particle to the velocities of rows."""
     if joints.at.shape[0] == 0:
         return
     for i in range(joints.at_first[p], joints.at_first[p + 1]):
@@ -232,7 +232,7 @@ def _set(joints: Joints, k: int, impulse: float, change: Floats) -> float:
 
 @inner_kernel
 def swept_by(joints: Joints) -> float:
-    """The square of what the last sweep has changed, in the metric of the responses."""
+    """The squared change of impulses in the last sweep, in the metric of the responses."""
     squared = 0.0
     for k in range(joints.rows.limit.shape[0]):
         more = joints.rows.impulse[k] - joints.last_impulse[k]
@@ -242,7 +242,7 @@ def swept_by(joints: Joints) -> float:
 
 @inner_kernel
 def go_on_with_joints(joints: Joints, change: Floats, ratio: float) -> None:
-    """P += ratio p, clamped;  p = ratio p + what the sweep has changed: as contacts do."""
+    """P += ratio p, clamped; p = ratio p + the change of the sweep: as contacts do."""
     rows = joints.rows
     for k in range(rows.limit.shape[0]):
         more = ratio * joints.search_direction[k]
@@ -261,7 +261,7 @@ def go_on_with_joints(joints: Joints, change: Floats, ratio: float) -> None:
 
 @inner_kernel
 def gather_push(joints: Joints) -> None:
-    """What the joints together give each particle, into `push`."""
+    """Sum the impulses of all joints for each particle, into `push`."""
     rows = joints.rows
     for p in range(joints.push.shape[0]):
         joints.push[p, 0] = 0.0

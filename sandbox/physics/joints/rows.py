@@ -1,4 +1,4 @@
-"""Joint rows: velocities that an impulse of bounded size brings to a target, motors and what holds by hand.
+"""Joint rows: velocities that an impulse of bounded size brings to a target; motors and hands are such rows.
 
 A row is u = sum g . v over some particles, and its impulse P gives each of them g P. It obeys the equation in its
 implicit form, K made as large as it likes, and the impulse is clamped:

@@ -1,6 +1,6 @@
 """Solvers: schedules of the one equation, with one signature, by the name that level files use.
 
-A solver, and what it does about contacts, is imported when it is first used: a name needs none of them, a run one.
+A solver is imported when it is first used: a run needs one of them.
 """
 
 from collections.abc import Callable
@@ -38,7 +38,8 @@ class Solver:
     def solve(self) -> "Callable[[World, Substep, LentContacts | None], None]":
         """solve(world, substep, contacts): brings world.velocity from after the forces to the end of a substep.
 
-        contacts: what touches, with the impulses that it brings along and then has; None: nothing does.
+        contacts: the contacts of the substep, with impulses to start from, which the solver replaces; None: nothing
+        touches.
         """
         return self._schedule.solve
 

@@ -96,7 +96,7 @@ class Turning(NamedTuple):
 
 
 class Iteration(NamedTuple):
-    """What steps read of a world and fill in: arrays that stay while its topology does."""
+    """The arrays of a world that steps read and fill in; they stay until its topology changes."""
 
     particles: Particles
     turning: Turning
@@ -279,7 +279,7 @@ class IterationRoom:
     substep: LentSubstep = field(default_factory=LentSubstep)
 
     def grow(self, contacts: int) -> None:
-        """Make room for so many contacts."""
+        """Make room for a number of contacts."""
         if contacts > len(self.terms.bias):
             self.terms = new_contact_constraints(MORE_ROOM * contacts, self.terms.surface)
             self.lent_terms = bundle((self.terms,))

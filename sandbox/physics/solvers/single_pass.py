@@ -27,7 +27,7 @@ JOINT_DAMPING = 0.5
 
 
 class Particles(NamedTuple):
-    """What an explicit solver reads of particles (n,): position [m], velocity [m/s], inverse mass [1/kg]."""
+    """The arrays of particles (n,) that an explicit solver reads: position [m], velocity [m/s], inverse mass [1/kg]."""
 
     position: Floats
     velocity: Floats
@@ -35,7 +35,7 @@ class Particles(NamedTuple):
 
 
 class Ends(NamedTuple):
-    """What an explicit solver reads of springs (m,): see StateArrays; stiffness and damping of the substep.
+    """The arrays of springs (m,) that an explicit solver reads: see StateArrays; stiffness and damping of the substep.
 
     limit [N]: the force that each gives at most.
     """

@@ -1,4 +1,4 @@
-"""Where lines may cross at all: what of a shape is near others, and which shapes cannot cross themselves.
+"""Candidates for crossings: the edges of a shape that are near others, and shapes that cannot cross themselves.
 
 A truss or a wheel that has kept its form crosses itself nowhere but where it was made so, and a car on a bridge meets
 it under its wheels alone. So most edges need not be compared with any other to know where lines cross (overlaps.py).
@@ -67,7 +67,7 @@ def _side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> f
 
 @inner_kernel
 def cross(e: int, f: int, apart: float, position: Floats, colliders: Colliders) -> tuple[float, float]:
-    """Where edge e crosses edge f, which is looked at a little apart: the shares along both; -1: nowhere."""
+    """Where edge e crosses edge f, which is widened a little: the shares along both; -1: they do not cross."""
     a = colliders.edge_a[e]
     b = colliders.edge_b[e]
     c = colliders.edge_a[f]

@@ -1,4 +1,4 @@
-"""Overlaps: which bodies have come to lie in each other, or in themselves, deeper than contacts can undo.
+"""Overlaps: bodies that lie in each other, or in themselves, deeper than contacts can undo.
 
 Contacts push a particle out where it is nearest, and so hold a body that has gone through another just there. Seen are
 edges that cross, found in the grid of the broad phase, and shapes of which one lies in the other. What is pressed
@@ -51,7 +51,7 @@ class Overlaps(NamedTuple):
 
 
 def new_overlaps(shapes: int, crossings: int, pairs: int) -> Overlaps:
-    """Overlaps to be filled in, with room for so many."""
+    """Empty overlaps, with room for a number of them."""
     return Overlaps(
         np.zeros((crossings, 2), np.int64), np.zeros((crossings, 2)), np.zeros(crossings, np.int64),
         np.zeros((pairs, 2), np.int64), np.zeros(pairs, np.int64), np.zeros(pairs, np.bool_),
@@ -115,7 +115,7 @@ def find_crossings(
     shape_bounds: ShapeBounds,
     found: Overlaps,
 ) -> int:
-    """Where outlines cross others or themselves; the number of crossings, counted on where there is no room."""
+    """Find where outlines cross each other or themselves; the number of crossings, even if there is no room for all."""
     count = 0
     # As of the last step some may not touch.
     colliders.parted_count[0] = 0
@@ -286,7 +286,9 @@ def _is_inside_deep(s: int, t: int, outline: Outline, bounds: Floats, colliders:
 def mark_separating(
     pair: int, colliders: Colliders, outline: Outline, bounds: Floats, found: Overlaps, flags: Flags
 ) -> None:
-    """Flag the particles that part: all of solid bodies; of a line what is inside, and the ends of what crosses."""
+    """Flag the particles that are separated: all of solid bodies; of a line those inside, and the ends of crossing
+    edges.
+    """
     for side in range(2):
         s = found.shape[pair, side]
         other = outline.solid_of[found.shape[pair, 1 - side]]

@@ -1,4 +1,4 @@
-"""Parting: bodies whose outlines have come to overlap come apart, whoever pushed them, and keep their form.
+"""Parting: bodies whose outlines overlap come apart and keep their form.
 
 Both are moved as wholes, away from what they share, while contacts between them are left out (overlaps.py): nothing
 holds them, so their springs restore them, until nothing crosses. A line that crosses a solid body, a rope or a cloth,
@@ -29,7 +29,9 @@ LEAST_LENGTH = 1e-12
 
 
 class MovedParticles(NamedTuple):
-    """What parting reads and changes of particles, see StateArrays; start [m/s] (n, 2): before forces acted."""
+    """The arrays of particles that parting reads and changes, see StateArrays; start [m/s] (n, 2): before forces
+    acted.
+    """
 
     velocity: Floats
     start: Floats
@@ -40,7 +42,7 @@ class MovedParticles(NamedTuple):
 
 
 class Moved(NamedTuple):
-    """What moves as a whole: mass [kg], centre [m], velocity [m/s]; fixed 1: something pinned is in it."""
+    """A shape that moves as a whole: mass [kg], centre [m], velocity [m/s]; fixed 1: a particle of it is pinned."""
 
     mass: float
     x: float

@@ -1,4 +1,4 @@
-"""The triangle clamp, last of all in a step: whatever the solver has left, no triangle of an area turns over in it.
+"""The triangle clamp, the last phase of a step: after any solver, no triangle of an area turns over in the step.
 
 A jelly of which no triangle is turned over at the start of a step has none at the end, at any Cs and Cd, in every
 solver. Nor do those about a particle of its outline close round that and go on (inversion.py): the gap that they leave,

@@ -1,4 +1,4 @@
-"""One run of a sweep, and what is measured of it."""
+"""One run of a sweep, and its measurements."""
 
 import math
 from collections.abc import Sequence

@@ -59,8 +59,8 @@ SOLVED = 0
 
 @inner_kernel
 def _bias(bounce: float, gap: float, rate: float, hardness: float, pushes: bool) -> tuple[float, float]:
-    # The velocity b [m/s] by which a contact is to end apart from its surfaces staying together, and how hard it is,
-    # 1 / (1 + soft); rate: small steps in a second.
+    # The velocity b [m/s] with which the surfaces of a contact are to separate (0: they stay together), and its
+    # hardness, 1 / (1 + soft); rate: small steps in a second.
     if bounce >= 0.0:
         return -bounce, 1.0
     if gap > 0.0:

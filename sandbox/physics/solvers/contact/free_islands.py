@@ -1,6 +1,6 @@
-"""Islands of contacts: which hang together by what can move, and which of those a solver's bodies belong to.
+"""Islands of contacts: contacts that movable particles connect.
 
-An island in which a spring or a constraint holds anything that can move is the solver's; the others are free.
+An island with a particle that a spring or a constraint holds belongs to the solver; the other islands are free.
 """
 
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""Where free contacts are within a small step, how fast, and what impulses change of that."""
+"""Position and velocity of free contacts within a small step, and how impulses change them."""
 
 import math
 
@@ -76,7 +76,7 @@ def meet(work: FreeContactScratch, i: int, p: int, q: int, small: float) -> floa
 
 @inner_kernel
 def look(work: FreeContactScratch, first: int, last: int) -> None:
-    """Where contacts are by now: their gaps, and of discs the normals and arms, which follow the centres."""
+    """Update the gaps of contacts, and the normals and arms of discs, which follow the centres."""
     row, end, motion = work.constraint, work.end, work.motion
     for c in range(first, last):
         i = unsigned(c)

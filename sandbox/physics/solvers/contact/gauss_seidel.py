@@ -1,9 +1,9 @@
 """Projected Gauss-Seidel: contacts as springs that only push, in sweeps with accumulated, clamped impulses.
 
 Along the normal a contact is the spring of Cs and Cd below whose impulse cannot pull; across it is one that stops the
-surfaces, whose impulse is at most friction times the push (Coulomb). Both answer to the effective mass of what they
-terms, 1 / (J W J^T): W of a free particle is 1 / m, of a body that the direct solver has factored its Delassus block.
-What is kept of the last step starts the next, so that what rests is at rest from the first sweep on.
+surfaces, whose impulse is at most friction times the push (Coulomb). Both act on the effective mass at the contact, 1 /
+(J W J^T): W is 1 / m for a free particle, and the Delassus block for a body that the direct solver has factored. Sweeps
+start with the impulses of the last step, so a body at rest is at rest from the first sweep on.
 """
 
 import math
@@ -47,7 +47,8 @@ STALLS_BELOW = 1e-3
 
 
 class Delassus(NamedTuple):
-    """Delassus delassus W of bodies: block and place in it of each particle (n,), -1: free, it answers by its own mass.
+    """The Delassus operator W of bodies: block and place in it of each particle (n,); -1: free, it answers by its own
+    mass.
 
     Points of block k: point[start[k]:start[k + 1]]; its numbers [1/kg], two rows of a square for each point, from
     base[k] on. columns: scratch of one block. joints: those of the bodies and particles.
@@ -84,7 +85,7 @@ class ContactConstraints(NamedTuple):
 
 
 def new_contact_constraints(count: int, surface: Floats) -> ContactConstraints:
-    """Room for so many contacts, of particles whose surfaces move so fast."""
+    """Terms with room for a number of contacts, of particles whose surfaces have these velocities."""
     numbers, pairs = np.zeros((6, count)), np.zeros((2, count, 2))
     return ContactConstraints._make([*numbers[:4], *pairs, numbers[4], surface, numbers[5]])
 
@@ -119,7 +120,7 @@ def lent_masses(world: World) -> Any:
 
 @inner_kernel
 def relative_velocity(contacts: Contacts, c: int, velocity: Floats, change: Floats) -> tuple[float, float]:
-    """Velocity of the particle against what it touches, from velocity + change."""
+    """Velocity of the particle relative to the other side of the contact, from velocity + change."""
     p = contacts.particle[c]
     ux = velocity[p, 0] + change[p, 0]
     uy = velocity[p, 1] + change[p, 1]
@@ -324,7 +325,9 @@ def load_responses(contacts: Contacts, terms: ContactConstraints, inverse_mass: 
 
 @inner_kernel
 def load_biases(contacts: Contacts, terms: ContactConstraints, h: float) -> None:
-    """What each contact adds to its velocity, its gap, its penetration or its bounce; sweeps have led nowhere yet."""
+    """Set the bias of each contact, from its gap, its penetration or its bounce, and clear the direction of the
+    sweeps.
+    """
     for c in range(contacts.particle.shape[0]):
         terms.search_direction[c, 0] = 0.0
         terms.search_direction[c, 1] = 0.0

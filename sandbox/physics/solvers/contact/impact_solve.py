@@ -218,7 +218,9 @@ def _resist(work: FreeContactScratch, hits: int) -> None:
 
 @inner_kernel
 def solve_pass(work: FreeContactScratch, hits: int, left: int) -> int:
-    """Push the hits of a pass until each leaves as fast as is wanted; how many pushes it took, of so many left."""
+    """Push the hits of a pass until each leaves as fast as wanted; how many pushes that took. left: how many are
+    allowed.
+    """
     row = work.constraint
     rubs = False
     for k in range(hits):

@@ -136,7 +136,7 @@ def _mark(work: FreeContactScratch, hits: int, passed: int) -> None:
 
 @inner_kernel
 def collide_fast(work: FreeContactScratch, hits: int, rows: int, besides: int, small: float) -> bool:
-    """Let what has been found to meet fast in this small step do so, and what that pushes; whether all is done."""
+    """Carry out the fast impacts of this small step, and those that they cause; True: all are done."""
     for b in range(besides):
         g = work.beside[b]
         for k in range(work.begin[g], work.begin[g + 1]):

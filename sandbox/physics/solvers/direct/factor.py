@@ -31,7 +31,7 @@ def solve_linear(span: Span, system: System) -> None:
 
 @inner_kernel
 def refine(span: Span, system: System) -> None:
-    """Solve for what is left of the right side, with the impulses found so far; it is left in `change`."""
+    """Solve for the rest of the right side, with the impulses found so far; the solution is in `change`."""
     load_residual(span, system)
     solve_again(span, system)
 

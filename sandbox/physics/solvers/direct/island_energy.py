@@ -1,4 +1,4 @@
-"""The energy test of islands: bodies that touch each other together never have more than they had and have saved.
+"""The energy test of islands: bodies that touch never have more energy together than they had and have saved.
 
 The norm is H = KE(v') + PE(x + h v') of bodies and free particles, less 1/2 sum m (v* - v).(v' - v*): then the work of
 forces in the step is that of their impulses at the mean of the velocities v and v', as in free fall. What a step loses
@@ -92,7 +92,9 @@ def clamp_free(islands: BodyIslands, state: State, h: float) -> None:
 
 @inner_kernel
 def work_of_forces(span: Span, rows: Rows, underdamped: bool) -> float:
-    """What the norm of a body takes off its energy after the step [J]; underdamped ones are topped up by its work."""
+    """The work of forces in the step [J], by which the norm of a body is below its energy; it tops up underdamped
+    bodies.
+    """
     total = 0.0
     for r in range(span.first_row, span.last_row):
         total += rows.mass[r] * (
@@ -131,7 +133,7 @@ def _work_at_ends(body: int, span: Span, system: System, workspace: IslandWorksp
 
 @inner_kernel
 def measure_body(k: int, span: Span, system: System, workspace: IslandWorkspace, energy: float, h: float) -> None:
-    """Note the norm of one body after the step, whose motion and springs then hold so much [J]."""
+    """Store the norm of one body after the step; its motion and springs then have this energy [J]."""
     islands, rows = workspace.islands, system.rows
     underdamped = system.bodies.underdamped[islands.body[k]]
     islands.energy[k] = energy - work_of_forces(span, rows, underdamped)
@@ -182,7 +184,9 @@ def _stored(c: int, contacts: Contacts, terms: ContactConstraints, h: float) -> 
 
 @inner_kernel
 def credit_penetration(contacts: Contacts, workspace: IslandWorkspace, inverse_mass: Floats, h: float) -> None:
-    """Where a bank is begun, what it costs to part what penetrates then and there counts as energy of the start."""
+    """Where a new bank begins, count the energy that separates bodies which overlap at that moment as energy of the
+    start.
+    """
     islands = workspace.islands
     for c in range(contacts.particle.shape[0]):
         for end in range(3):
@@ -207,7 +211,7 @@ def _draw(k: int, wanted: float, workspace: IslandWorkspace, system: System, sta
 
 @inner_kernel
 def draw_on_reserves(contacts: Contacts, workspace: IslandWorkspace, system: System, state: State) -> None:
-    """Where two bodies lie deep in each other, let them pay for being pushed apart as they would for parting."""
+    """Where two bodies overlap deeply, pay for pushing them apart from their parting reserves."""
     islands = workspace.islands
     for c in range(contacts.particle.shape[0]):
         if not contacts.gap[c] < -DEEP * state.radius[contacts.particle[c]]:
@@ -380,7 +384,7 @@ def _load_limits(contacts: Contacts, workspace: IslandWorkspace, system: System,
 
 @inner_kernel
 def store_energies(contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, h: float) -> None:
-    """Store what each island has left of what it was allowed, up to the limits of its banks."""
+    """Store the rest of each island's allowed energy, up to the limits of its banks."""
     islands, bodies = workspace.islands, system.bodies
     _load_limits(contacts, workspace, system, state, h)
     for k in range(islands.counts[MEMBERS]):

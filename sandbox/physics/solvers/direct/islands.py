@@ -81,7 +81,7 @@ class IslandScratch:
     no_contacts: Any
 
     def grow(self, contacts: int) -> None:
-        """Make room for what the islands want that were found, and for so many contacts."""
+        """Make room for the islands that were found, and for a number of contacts."""
         islands, delassus, terms = self.workspace
         numbers, columns = int(islands.counts[NUMBERS]), int(islands.counts[COLUMNS])
         if numbers > len(delassus.numbers):
@@ -95,7 +95,7 @@ class IslandScratch:
 
 
 def new_islands(system: System, particle_count: int, rows: JointRows | None) -> IslandScratch:
-    """Room for the islands of a system in a world of so many particles; rows: those of its joints."""
+    """Empty islands for a system, in a world with a number of particles; rows: those of its joints."""
     bodies, free_rows = len(system.bodies.lowest), len(system.matrix.diagonal)
     members = bodies + particle_count
     row = np.full(particle_count, -1, dtype=np.int64)

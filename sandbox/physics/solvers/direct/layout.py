@@ -1,6 +1,6 @@
-"""Layout of the direct solver's system: what springs and constraints join, in what order particles are eliminated.
+"""Layout of the direct solver's system: which rows springs and constraints join, and the order of elimination.
 
-Symbolic work alone: made anew when topology or pins change, kept on the World meanwhile, no part of its state.
+Symbolic work alone: made again when topology or pins change, kept on the World meanwhile, no part of its state.
 """
 
 from collections.abc import Callable
@@ -62,7 +62,7 @@ class SystemLayout:
 
 
 def layout_of(world: World) -> SystemLayout:
-    """The layout of a world's system, made anew where topology or pins have changed since the last step."""
+    """The layout of a world's system, made again after a change of topology or pins."""
     return world.derived(_hired_layout)
 
 

@@ -1,4 +1,5 @@
-"""Shape matching of jellies out of shape: what springs and areas cannot find alone, since a step up lies before it.
+"""Shape matching brings tangled jellies back to their form, which springs and areas cannot find: the energy rises on
+the way.
 
 While a jelly is inverted or wound (inversion.py), each of its particles is joined by a spring of the jelly's own Cs
 and Cd to its target: its place in the form, moved and turned to fit the particles (Mueller and others 2005). Those push

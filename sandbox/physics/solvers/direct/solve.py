@@ -82,7 +82,8 @@ def precompute(world: World) -> None:
 def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None:
     """Bring the velocities to the end of a substep; slow_velocity, energy_bank and tension go with them.
 
-    contacts: what touches, with the impulses that it brings along and then has; None: nothing does.
+    contacts: the contacts of the substep, with impulses to start from, which the solver replaces; None: nothing
+    touches.
     """
     layout, lent, joints = layout_of(world), world.derived(_lent), joints_of(world)
     if layout.has_hooke:

@@ -1,4 +1,4 @@
-"""One body's step in the direct solver, where nothing touches it.
+"""One body's step in the direct solver, where no contact and no joint acts on it.
 
 A step is one linear solve with the springs' directions taken ahead of the present ones, less the slow part of the
 velocity: that damps fast vibration and leaves slow turning alone. It is taken only if the body's energy stays within

@@ -1,4 +1,4 @@
-"""The system of a world: what the direct solver solves, as one bundle of arrays that every kernel takes.
+"""The system of a world, which the direct solver solves: one bundle of arrays that every kernel takes.
 
 Rows are particles, springs and constraints join them, bodies are the blocks of rows that nothing joins to others. Where
 things lie is decided when topology or pins change (layout.py); all else is scratch of a step, no part of the state.
@@ -53,7 +53,7 @@ class State(NamedTuple):
 
 
 class Inputs(NamedTuple):
-    """What a substep is given: Cs and Cd of springs (m,) and constraints (t,) in it, and its start.
+    """The input of a substep: Cs and Cd of springs (m,) and constraints (t,) in it, and its start.
 
     start [m/s] (n, 2), start_length [m] (m,): velocities and rest lengths before forces and drives. ease: 1 + drag h.
     """

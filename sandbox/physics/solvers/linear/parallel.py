@@ -142,5 +142,5 @@ def _processor_count() -> int:
 
 
 def warm_up(fronts: Fronts, change: Floats) -> None:
-    """Compile what a second thread runs."""
+    """Compile the kernels that a second thread runs."""
     precompile(_help, fronts, change)
