@@ -9,8 +9,8 @@ from sandbox.level.reading.files import level_data, parse_level
 from sandbox.session.bisect import BisectError, Tried, checks_hold, deciding_edits, deciding_value
 from sandbox.session.commands import CutSprings, Pin
 from sandbox.session.level_edits import edits_between, with_value
-from sandbox.session.replay.divergence import Divergence
 from sandbox.session.replay.difference import ComparedRun, difference
+from sandbox.session.replay.divergence import Divergence
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
 from tests.support.rope_level import rope_level

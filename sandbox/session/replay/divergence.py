@@ -12,7 +12,6 @@ from sandbox.physics.state import BY_STORED, Family
 from sandbox.physics.world import World
 from sandbox.session.probe import ADDED
 
-
 # What holds a hand is named by this and the hand's number.
 HAND = "+hand"
 
