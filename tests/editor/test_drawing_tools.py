@@ -291,7 +291,15 @@ def test_circles_and_polygons_are_fitted_finer_where_they_are_thin_and_left_to_a
 
 @pytest.mark.parametrize(
     ("width", "height", "cells"),
-    [(2.0, 2.0, None), (3.0, 0.5, None), (3.0, 0.5, 4), (10.0, 0.2, None), (0.2, 10.0, None), (1.3, 0.7, 3), (2, 0.9, 7)],
+    [
+        (2.0, 2.0, None),
+        (3.0, 0.5, None),
+        (3.0, 0.5, 4),
+        (10.0, 0.2, None),
+        (0.2, 10.0, None),
+        (1.3, 0.7, 3),
+        (2, 0.9, 7),
+    ],
 )
 def test_a_box_of_jelly_has_the_size_drawn_and_the_size_typed_and_no_more_particles_than_it_needs(
     empty, width, height, cells
