@@ -172,7 +172,8 @@ _ACTUATORS = """\
   does not yield, but breaks.
 - A hydraulic and a motor are driven by a value of -1..1: 1 while the `key` is held down, -1 while the `reverse_key`
   is, 0 otherwise; the command `set_drive` gives any value between. A hydraulic's rest length changes by `rate` times
-  the value a second, within `shortest` and `longest`. A motor without keys has the value 1 from the start.
+  the value a second, within `shortest` and `longest`. One that `returns` goes back to its first length at `rate` while
+  the value is 0, as a flipper of a pinball table does. A motor without keys has the value 1 from the start.
 - A muscle or hydraulic with a `force` pulls and pushes with no more than that, damping included, and gives way beyond.
   Where it is held back its rest length waits for it, so that it does not leap when it is let go.
 - A motor brings the wheel's turning rate, against that of its mount, to `speed` times the value, with at most `torque`;

@@ -85,17 +85,16 @@ def test_nothing_selected_has_no_properties(level):
 def test_every_field_of_every_kind_of_item_can_be_reached(level):
     for item, part in zip(items_of(level), definitions(level), strict=True):
         shown = {name.partition(".")[0] for name in fields(Document(level, frozenset([item])))}
-        hidden = {"extras"} if not isinstance(part, BodyDef) or expansion(part).may_be_stiff else {"extras", "firmness"}
+        hidden = set() if not isinstance(part, BodyDef) or expansion(part).may_be_stiff else {"firmness"}
         assert type(part).model_fields.keys() - shown - {"type", "polyline", "polygon"} <= hidden, item
-    assert "extras" in fields(chosen(level, "mesh"))
     assert {type(part) for part in level.bodies} == set(KINDS.values())
 
 
 def test_every_field_of_the_level_and_its_settings_can_be_reached(level):
-    first, second, third = level_properties(Document(level))
+    first, second, third, fourth = level_properties(Document(level))
     parts = {"format", "version", "settings", "materials", "bodies", "particles", "springs", "welds", "checks"}
-    shown = {each.field.partition(".")[0] for section in (first, third) for each in section.properties}
-    assert shown == set(Level.model_fields) - parts - {"extras", "terrain"}
+    shown = {each.field.partition(".")[0] for section in (first, third, fourth) for each in section.properties}
+    assert shown == set(Level.model_fields) - parts - {"terrain"}
     assert {each.field for each in second.properties} == set(Settings.model_fields)
 
 
@@ -313,7 +312,7 @@ def test_a_hydraulic_begins_as_long_as_its_spring(level):
     document = Document(level, frozenset([Item("spring", 0)]))
     driven = fields(document)["hydraulic"].set(document, True)
     assert driven.level.springs[0].hydraulic.__dict__ == {
-        "key": None, "reverse_key": None, "shortest": 3.0, "longest": 4.5, "rate": 1.5, "force": None,
+        "key": None, "reverse_key": None, "shortest": 3.0, "longest": 4.5, "rate": 1.5, "force": None, "returns": False,
     }  # fmt: skip
     with pytest.raises(EditError, match="is above longest"):
         changed(driven, "hydraulic.shortest", "5")

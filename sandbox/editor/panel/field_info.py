@@ -29,6 +29,7 @@ Kind = Literal[
     "colour",
     "touches",
     "extras",
+    "thing",
 ]
 
 # What can be picked on the sheet in place of typing it.
@@ -48,7 +49,7 @@ _RADIANS, DEGREES = "rad", "°"
 # Fields that are shown as nothing else is.
 _OWN_KINDS: dict[str, Kind] = {
     "material": "material", "shape": "form", "holes": "outlines", "extras": "extras", "skin": "choice",
-    "always": "list", "eventually": "list",
+    "follow": "thing", "always": "list", "eventually": "list",
     "line": "choice", "ball": "choice", "colour": "colour", "panel": "colour",
 }  # fmt: skip
 # Names to choose from that the format takes as text, since one that it does not know counts as automatic.

@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from sandbox.editor.document import Document, EditError, first_fault
 from sandbox.editor.edits.fields import set_level_field, set_setting
 from sandbox.editor.edits.materials import set_material
+from sandbox.editor.panel.extra_values import extras_properties
 from sandbox.editor.panel.field_info import abouts
 from sandbox.editor.panel.property import Property, Section, part_properties, with_axes
 from sandbox.editor.scene import make_scene
@@ -28,8 +29,6 @@ def level_properties(document: Document) -> tuple[Section, ...]:
     level = document.level
     about = abouts(Level)
     of_level = [Property(name, about[name], getattr(level, name), partial(_set_level, name)) for name in _LEVEL_FIELDS]
-    if level.extras:
-        of_level.append(Property("extras", about["extras"], level.extras))
     settings = []
     for name, each in abouts(Settings).items():
         value = getattr(level.settings, name)
@@ -38,7 +37,12 @@ def level_properties(document: Document) -> tuple[Section, ...]:
         Section("Level", (*of_level, *_object(document, "look"))),
         Section("Time and solver", tuple(settings)),
         Section("Contacts", tuple(_object(document, "contacts") + _object(document, "walls"))),
+        Section("Other", tuple(extras_properties(about["extras"], [level.extras], _change_extras))),
     )
+
+
+def _change_extras(document: Document, change: Callable[[dict[str, Any]], dict[str, Any]]) -> Document:
+    return set_level_field(document, "extras", change(document.level.extras))
 
 
 def _object(document: Document, name: str) -> list[Property]:
