@@ -212,6 +212,7 @@ def _drives(world: World) -> dict[str, Any]:
                 spring=int(hydraulics.spring[k]), shortest=float(hydraulics.shortest[k]),
                 longest=float(hydraulics.longest[k]), rate=float(hydraulics.rate[k]),
                 value=float(value[hydraulics.part[k]]), force=_force(hydraulics.force, k),
+                returns=bool(hydraulics.returns[k]),
             )
             for k in range(len(hydraulics.spring))
         ),

@@ -141,6 +141,9 @@ class FlatHydraulic(Description):
     rate: float = Field(description="How fast it grows at a value of 1.", json_schema_extra=unit("m/s"))
     value: float = Field(description="How it is driven at the start, -1..1.", json_schema_extra=NUMBER)
     force: float | None = Field(default=None, description="Largest force; null = any.", json_schema_extra=unit("N"))
+    returns: bool = Field(
+        default=False, description="Whether it goes back to the length where it began, as fast, while its value is 0."
+    )
 
 
 class FlatMotor(Description):

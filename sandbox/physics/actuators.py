@@ -55,6 +55,10 @@ def _slots() -> Slots:
     return np.zeros(0, dtype=np.int64)
 
 
+def _flags() -> NDArray[np.bool_]:
+    return np.zeros(0, dtype=np.bool_)
+
+
 def _floats() -> Floats:
     return np.zeros(0)
 
@@ -75,7 +79,8 @@ class Muscles:
 class Hydraulics:
     """Springs whose rest length goes from shortest to longest [m] at rate [m/s] times their part's value.
 
-    force [N] at most; each (k,), force also (0,): without limits.
+    force [N] at most; returns: whether it goes back to its natural length at that rate while the value is 0. Each (k,);
+    force also (0,): without limits; returns not given: none does.
     """
 
     spring: Slots = field(default_factory=_slots)
@@ -84,6 +89,11 @@ class Hydraulics:
     rate: Floats = field(default_factory=_floats)
     part: Slots = field(default_factory=_slots)
     force: Floats = field(default_factory=_floats)
+    returns: NDArray[np.bool_] = field(default_factory=_flags)
+
+    def __post_init__(self) -> None:
+        if len(self.returns) != len(self.spring):
+            object.__setattr__(self, "returns", np.zeros(len(self.spring), dtype=np.bool_))
 
 
 @dataclass(frozen=True, eq=False)

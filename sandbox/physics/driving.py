@@ -5,6 +5,7 @@ asks for, so that it does not leap when it is let go.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sandbox.physics.jit import kernel, scalar_kernel
 from sandbox.physics.solvers import SOLVERS
@@ -34,12 +35,17 @@ def _contract(
 
 @kernel
 def _extend(
-    spring: Slots, shortest: Floats, longest: Floats, rate: Floats, part: Slots, actuator_value: Floats,
-    rest_length: Floats, h: float, lengths: Floats,
+    spring: Slots, shortest: Floats, longest: Floats, rate: Floats, part: Slots, returns: NDArray[np.bool_],
+    actuator_value: Floats, natural_length: Floats, rest_length: Floats, h: float, lengths: Floats,
 ) -> None:  # fmt: skip
-    # L += value rate h, within shortest..longest
+    # L += value rate h, within shortest..longest;  where it returns and the value is 0, towards L0 by rate h at most
     for k in range(spring.shape[0]):
-        wanted = rest_length[spring[k]] + actuator_value[part[k]] * rate[k] * h
+        value, wanted = actuator_value[part[k]], rest_length[spring[k]]
+        if returns[k] and value == 0.0:
+            first = natural_length[spring[k]]
+            wanted = min(max(first, wanted - rate[k] * h), wanted + rate[k] * h)
+        else:
+            wanted += value * rate[k] * h
         lengths[k] = min(max(wanted, shortest[k]), longest[k])
 
 
@@ -102,7 +108,8 @@ def drive_springs(world: World) -> Floats:
     lengths = np.zeros(len(hydraulics.spring))
     _extend(
         hydraulics.spring, hydraulics.shortest, hydraulics.longest, hydraulics.rate, hydraulics.part,
-        world.actuator_value, world.rest_length, 1.0 / world.settings.tick_rate, lengths,
+        hydraulics.returns, world.actuator_value, world.natural_length, world.rest_length,
+        1.0 / world.settings.tick_rate, lengths,
     )  # fmt: skip
     if len(hydraulics.force):
         stride = hydraulics.rate / world.settings.tick_rate

@@ -103,32 +103,38 @@ def canonical_bytes(array: NDArray[Any]) -> bytes:
     return array.astype(array.dtype.newbyteorder("<"), copy=False).tobytes()
 
 
-# The bytes of each array that was hashed last, by its name in files, and their hash, None where the array is as usual:
-# most arrays are those of the tick before. Arrays larger than so much [bytes] are hashed anew rather than kept.
-_LAST: dict[str, tuple[bytes, str | None]] = {}
+# Arrays larger than so much [bytes] are hashed each time rather than kept.
 _LARGEST_KEPT = 1_000_000
 _NOTHING: tuple[bytes | None, str | None] = (None, None)
 _COLUMNS = tuple((column.name, column.stored, column) for column in COLUMNS)
 
 
-def _digest(column: Column, array: NDArray[Any], present: bytes) -> str | None:
-    """Hash of an array; None: it has its usual values and is left out. present: its bytes, which are kept."""
+def _digest(column: Column, array: NDArray[Any]) -> str | None:
+    """Hash of an array; None: it has its usual values and is left out."""
     is_usual = column.sparse and not (array != column.usual).any()
-    digest = None if is_usual else hashlib.blake2b(canonical_bytes(array), digest_size=8).hexdigest()
-    if len(present) <= _LARGEST_KEPT:
-        _LAST[column.stored] = present, digest
-    return digest
+    return None if is_usual else hashlib.blake2b(canonical_bytes(array), digest_size=8).hexdigest()
+
+
+def _hashed(_: World) -> dict[str, tuple[bytes, str | None]]:
+    """Bytes and hash of each array of a world that was hashed last, by its name in files."""
+    return {}
 
 
 def hash_by_array(world: World | Snapshot) -> dict[str, str]:
-    """blake2b of each state array in use, 16 hexadecimal digits, by its name in files."""
+    """blake2b of each state array in use, 16 hexadecimal digits, by its name in files.
+
+    Of a world, what was hashed last is kept: most arrays are those of the tick before.
+    """
     arrays, hashes = vars(world), {}
+    kept = world.derived(_hashed) if isinstance(world, World) else {}
     for name, stored, column in _COLUMNS:
         array = arrays[name]
         present = array.tobytes()
-        last, digest = _LAST.get(stored, _NOTHING)
+        last, digest = kept.get(stored, _NOTHING)
         if present != last:
-            digest = _digest(column, array, present)
+            digest = _digest(column, array)
+            if len(present) <= _LARGEST_KEPT:
+                kept[stored] = present, digest
         if digest is not None:
             hashes[stored] = digest
     return hashes

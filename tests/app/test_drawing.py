@@ -22,7 +22,7 @@ from sandbox.app.draw.themes import THEMES
 from sandbox.app.run.playback import Playback, interpolated
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
-from sandbox.level.kinds.jelly import BoxShape, JellyDef
+from sandbox.level.kinds.jelly import BoxShape, JellyDef, PolygonShape
 from sandbox.level.kinds.ring import RingDef
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.snapshot import take
@@ -288,6 +288,28 @@ def test_a_jelly_and_a_balloon_are_filled_and_a_crushed_jelly_is_bluer():
     world.cut(range(world.spring_count))
     torn = [colour_at(level, world, (x, 0.7 * y)) for x, y in spots]
     assert all((colour == stage).all() for colour, stage in zip(torn, bare, strict=True))
+
+
+def filled_share(shape, spacing, box, mesh="grid"):
+    """How much of a box [m] of a jelly is not as it is without the jelly."""
+    jelly = JellyDef(type="jelly", id="one", shape=shape, spacing=spacing, mesh=mesh)
+    camera, pictures = Camera((0.0, 0.0), 100.0, (0, 0, 400, 400)), []
+    for bodies in ((jelly,), ()):
+        level = Level(format="spring-sandbox/level", version=2, name="One", bodies=bodies)
+        surface = pygame.Surface((400, 400), 0, 32)
+        snapshot = take(build_world(level))
+        Renderer(level=level).draw(surface, camera, snapshot, snapshot, 1.0)
+        pictures.append(pygame.surfarray.array3d(surface).astype(int))
+    differs = np.abs(pictures[0] - pictures[1]).max(axis=2) > 24
+    half = [round(50 * side) for side in box]
+    return differs[200 - half[0] : 200 + half[0], 200 - half[1] : 200 + half[1]].mean()
+
+
+@pytest.mark.parametrize(("box", "spacing"), [((2.0, 2.0), 2.0), ((3.0, 1.0), 1.0), ((2.0, 2.0), 0.25)])
+def test_a_jelly_of_few_cells_has_the_corners_that_it_was_drawn_with(box, spacing):
+    assert filled_share(BoxShape(box=box), spacing, box) > 0.965
+    triangle = PolygonShape(polygon=((-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)))
+    assert 0.49 < filled_share(triangle, 2.0, (2.0, 2.0), "fitted") < 0.56
 
 
 def test_drawing_changes_nothing_in_the_snapshot():

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from sandbox.editor.document import Document, EditError, empty_level
+from sandbox.editor.edits.fields import set_field
+from sandbox.editor.edits.moving import scale
 from sandbox.editor.items import Item
 from sandbox.editor.kinds.rope import RopeOptions
 from sandbox.editor.scene import make_scene
@@ -285,6 +287,33 @@ def test_circles_and_polygons_are_fitted_finer_where_they_are_thin_and_left_to_a
     assert [body.mesh for body in found] == ["fitted", "fitted", "grid"]
     assert found[0].spacing == 0.375 and found[1].spacing <= 0.5
     assert len(make_scene(empty_level().model_copy(update={"bodies": (found[1],)})).position) < 1_500
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "cells"),
+    [
+        (2.0, 2.0, None),
+        (3.0, 0.5, None),
+        (3.0, 0.5, 4),
+        (10.0, 0.2, None),
+        (0.2, 10.0, None),
+        (1.3, 0.7, 3),
+        (2, 0.9, 7),
+    ],
+)
+def test_a_box_of_jelly_has_the_size_drawn_and_the_size_typed_and_no_more_particles_than_it_needs(
+    empty, width, height, cells
+):
+    document = drawn("box", empty, (1.0, 1.0), (1.0 + width, 1.0 + height), cells=cells)
+    left, bottom, right, top = make_scene(document.level).bounds()
+    assert (right - left, top - bottom) == (pytest.approx(width, abs=1e-9), pytest.approx(height, abs=1e-9))
+    assert cells is not None or len(make_scene(document.level).mass) < 400
+    typed = set_field(document, [Item("body", document.level.bodies[0].id)], "shape", {"box": [width + 0.37, height]})
+    left, bottom, right, top = make_scene(typed.level).bounds()
+    assert (right - left, top - bottom) == (pytest.approx(width + 0.37, abs=1e-9), pytest.approx(height, abs=1e-9))
+    wider = scale(document, 1.17, 1.0, (0.0, 0.0))
+    left, bottom, right, top = make_scene(wider.level).bounds()
+    assert (right - left, top - bottom) == (pytest.approx(1.17 * width, abs=1e-9), pytest.approx(height, abs=1e-9))
 
 
 def test_a_box_without_height_is_refused(empty):

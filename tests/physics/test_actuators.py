@@ -240,3 +240,44 @@ def test_springs_of_limited_force_give_a_violent_network_no_energy(speed):
         for _ in range(scaled(120, 15)):
             step(world)
             assert stored(world, springs, force) <= energy * (1.0 + 1e-9)
+
+
+def returning(world, first=1.0):
+    """The world with its last spring as a hydraulic of 0.5 to 2 m at 3 m/s that goes back to its first length."""
+    last = np.array([world.spring_count - 1])
+    one = np.array([0])
+    hydraulics = Hydraulics(last, np.array([0.5]), np.array([2.0]), np.array([3.0]), one, returns=np.array([True]))
+    world.fit(Actuators(("jack",), Muscles(), hydraulics), [0.0])
+    assert world.natural_length[last[0]] == first
+    return world
+
+
+@pytest.mark.parametrize("value", [1.0, -1.0, 0.25])
+@pytest.mark.parametrize("solver", list(SOLVERS))
+def test_a_hydraulic_that_returns_goes_back_to_its_first_length_at_its_rate_and_stays_there(solver, value):
+    world = returning(chain(solver))
+    world.actuator_value[0] = value
+    run(world, 8)
+    driven_to = world.rest_length[-1]
+    assert driven_to == pytest.approx(min(max(1.0 + 8 * value * 3.0 / 60.0, 0.5), 2.0))
+    world.actuator_value[0] = 0.0
+    lengths = []
+    for _ in range(40):
+        step(world)
+        lengths.append(world.rest_length[-1])
+    steps = np.abs(np.diff([driven_to, *lengths]))
+    assert steps.max() <= 3.0 / 60.0 + 1e-12
+    assert lengths[-1] == 1.0 and np.argmax(np.array(lengths) == 1.0) <= 20
+    assert all(length == 1.0 for length in lengths[20:])
+
+
+def test_a_hydraulic_that_does_not_return_runs_bit_for_bit_as_one_that_was_never_asked():
+    worlds = [chain(), returning(chain())]
+    for world in worlds:
+        world.actuator_value[0] = 1.0
+        run(world, 30)
+    assert worlds[0].rest_length[-1] == worlds[1].rest_length[-1] == 2.0
+    for world in worlds:
+        world.actuator_value[0] = 0.0
+        run(world, 10)
+    assert worlds[0].rest_length[-1] == 2.0 > worlds[1].rest_length[-1]

@@ -10,6 +10,7 @@ from sandbox.session.bisect import BisectError, Tried, checks_hold, deciding_edi
 from sandbox.session.commands import CutSprings, Pin
 from sandbox.session.level_edits import edits_between, with_value
 from sandbox.session.replay.difference import ComparedRun, difference
+from sandbox.session.replay.divergence import Divergence
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
 from tests.support.rope_level import rope_level
@@ -144,3 +145,28 @@ def test_what_cannot_be_bisected_is_said_in_a_line(tmp_path, capsys):
     with pytest.raises(BisectError, match="fails already"):
         list(deciding_value(variant(), "settings.gravity.1", -40.0, -1.0, checks_hold([])))
     assert parse_level(json.dumps(level_data(variant())).encode(), "x").checks
+
+
+@pytest.mark.parametrize(
+    ("name", "owner"),
+    [
+        ("jelly.12", "body jelly, particle 12"),
+        ("jelly:3", "body jelly, spring 3"),
+        (":4", "loose spring 4"),
+        ("ball", "particle ball"),
+        ("corner at jelly.12", "corner of body jelly, particle 12"),
+        ("area at jelly.3", "area of body jelly, particle 3"),
+        ("bend at rope.1", "bend of body rope, particle 1"),
+        ("contact of ball", "contact of particle ball"),
+        ("contact of jelly.2", "contact of body jelly, particle 2"),
+        ("+.0", "added particle 0"),
+        ("+:1", "added spring 1"),
+        ("+2.7", "added body 2, particle 7"),
+        ("corner at +2.7", "corner of added body 2, particle 7"),
+        ("+hand.1", "hand 1"),
+        ("hand 1", "hand 1"),
+        ("", ""),
+    ],
+)
+def test_the_owner_of_a_difference_is_told_by_kind_and_number(name, owner):
+    assert Divergence(1, "position", 0, 1.0, 2.0, name).owner() == owner

@@ -108,8 +108,7 @@ def _skin(body: BodyDef, stuff: str, firm: float) -> str:
     if body.type == "ring":
         return "balloon" if getattr(body, "inflation", None) else "rubber"
     if body.type == "wheel":
-        # One that is posed otherwise is no wheel any more.
-        return "" if body.pose is not None else "steel wheel" if stuff in ("steel", "brass") else "tyre"
+        return "steel wheel" if stuff in ("steel", "brass") else "tyre"
     return ""
 
 

@@ -1,6 +1,7 @@
 """Baking: what a played world leaves in its level, where the maker wants to keep it: coefficients, pose, cuts, pins."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from sandbox.editor.edits.materials import set_material
 from sandbox.editor.edits.placing import repinned, without_springs
 from sandbox.editor.items import Definition, Selection, changed, items_of, with_same
 from sandbox.editor.scene import Mask, Scene, Slots, make_scene
-from sandbox.editor.tools.snap import PLACE_DECIMALS
+from sandbox.editor.tools.snap import PLACE_DECIMALS, SHOWN_DECIMALS
 from sandbox.level.document.model import NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL
 from sandbox.level.format.quantities import replaced, significant
@@ -109,7 +110,9 @@ def _posed(document: Document, scene: Scene, now: Points, angle: Points) -> Docu
 
     def posed(index: int, body: AnyBody) -> AnyBody:
         mine = slice(firsts[index], firsts[index + 1])
-        return replaced(body, pose=_points(now[mine])) if np.any(moved[mine]) else body
+        if not np.any(moved[mine]):
+            return body
+        return replaced(body, pose=_points(now[mine]), **_followed(body, scene.position[mine], now[mine]))
 
     def placed(index: int, particle: ParticleDef) -> ParticleDef:
         slot = firsts[-1] + index
@@ -133,6 +136,16 @@ def _posed(document: Document, scene: Scene, now: Points, angle: Points) -> Docu
         springs=tuple(measured(index, spring) for index, spring in enumerate(level.springs)),
     )
     return document if level is document.level else replace(document, level=checked(level))
+
+
+def _followed(body: AnyBody, before: Points, now: Points) -> dict[str, Any]:
+    """The position of a body that has one, which goes where the middle of its pose goes."""
+    if "position" not in body.__dict__:
+        return {}
+    middles = [(points.min(axis=0) + points.max(axis=0)) / 2.0 for points in (before, now)]
+    shift = (middles[1] - middles[0]).tolist()
+    x, y = (round(a + by, SHOWN_DECIMALS) + 0.0 for a, by in zip(body.__dict__["position"], shift, strict=True))
+    return {"position": (x, y)}
 
 
 def keep_cuts(document: Document, world: World) -> Document:

@@ -70,7 +70,7 @@ def change_items(
     """Give a field of each item, which all have it, what `change` makes of the whole item. Raises EditError."""
 
     def with_change(part: Definition) -> Definition:
-        value = with_tuples(change(part))
+        value = change(part) if field == "extras" else with_tuples(change(part))
         new = getattr(validated(replaced(part, **{field: value})), field)
         return part if getattr(part, field) == new else _with_field(part, field, new)
 
@@ -104,6 +104,10 @@ def rename(document: Document, item: Item, new_id: str) -> Document:
 
     level = changed(level, frozenset([item]), with_id)
     level, _ = rewired(level, renamed({part.id: new_id}))
+    look = level.look
+    if item.kind == "terrain" and look is not None and part.id in look.ground:
+        ground = {new_id if name == part.id else name: stuff for name, stuff in look.ground.items()}
+        level = replaced(level, look=replaced(look, ground=ground))
     selection = document.selection
     if item in selection:
         selection = selection - {item} | {Item(item.kind, new_id)}
@@ -115,7 +119,8 @@ def set_level_field(document: Document, field: str, value: Any) -> Document:
     if field in _NO_FIELDS:
         raise EditError(f"{field} is not changed here")
     level = document.level
-    data = {"format": level.format, "version": VERSION, "name": level.name, field: with_tuples(value)}
+    data = {"format": level.format, "version": VERSION, "name": level.name}
+    data[field] = value if field == "extras" else with_tuples(value)
     new = getattr(_read(data, 0), field)
     if new == getattr(level, field):
         return document

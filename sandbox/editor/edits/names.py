@@ -58,7 +58,7 @@ def renamed(ids: dict[str, str]) -> Rewire:
 
 
 def rewired(level: Level, change: Rewire) -> tuple[Level, list[int]]:
-    """Change every reference of springs, welds and checks; also the indices of the springs that stay."""
+    """Change every reference of springs, welds, checks and the camera; also the indices of the springs that stay."""
     springs, kept = [], []
     for index, spring in enumerate(level.springs):
         a, b = change(spring.a), change(spring.b)
@@ -78,4 +78,15 @@ def rewired(level: Level, change: Rewire) -> tuple[Level, list[int]]:
             checks.append(check)
         elif None not in new.values():
             checks.append(replaced(check, **new))
-    return replaced(level, springs=tuple(springs), welds=tuple(welds), checks=tuple(checks)), kept
+    level = replaced(level, springs=tuple(springs), welds=tuple(welds), checks=tuple(checks))
+    return _with_companion(level, change), kept
+
+
+def _with_companion(level: Level, change: Rewire) -> Level:
+    """The level with what its camera goes along with: of a body that is gone its first particle, or nothing."""
+    look = level.look
+    if look is None or look.follow is None:
+        return level
+    there = {part.id for parts in (level.bodies, level.particles) for part in parts}
+    wanted = next((name for name in (change(look.follow), change(f"{look.follow}.0")) if name in there), None)
+    return level if wanted == look.follow else replaced(level, look=replaced(look, follow=wanted))

@@ -21,9 +21,10 @@ from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.fitting import Loop, fitting_spacing
 from sandbox.level.kinds.jelly import BoxShape, CircleShape, JellyDef, PolygonShape
 
-# Cells across the shorter side, and about how many cells the whole of one has at most.
+# Cells across the shorter side, and about how many cells the whole of one has at most: a plank of 10 x 0.2 m is two
+# cells thick. A large one has as many as a small one: they are as large as it is.
 CELLS_ACROSS = 8
-JELLY_CELLS = 1_000
+JELLY_CELLS = 256
 # Particles of a fitted one, about, where a finer mesh is tried; the ghost at the pointer waits for that.
 FITTED_MOST = 1_500
 # Digits of a spacing that is found so; a person reads it.

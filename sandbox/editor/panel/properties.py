@@ -1,7 +1,7 @@
 """Properties of the selection: what can be changed of the items, field by field."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -12,6 +12,7 @@ from sandbox.editor.edits.fields import change_field, set_field, with_tuples
 from sandbox.editor.edits.names import owner_of
 from sandbox.editor.edits.terrain import FORMS, Form, corners_of, form_of, outlined, with_corners
 from sandbox.editor.items import Definition, Item, Selection, chosen_definitions, chosen_items
+from sandbox.editor.panel.extra_values import extras_properties
 from sandbox.editor.panel.field_info import FieldInfo, abouts
 from sandbox.editor.panel.firmness import firmness_properties
 from sandbox.editor.panel.property import MIXED, Property, Section, part_properties, same, with_axes
@@ -153,12 +154,18 @@ def _made(selection: Selection, parts: Sequence[Definition], name: str, about: F
         return [Property(name, about, states, partial(_set_flags, selection, name, about.choices))]
     value = same([part.__dict__[name] for part in parts])
     if about.kind == "extras":
-        return [Property(name, about, value)] if value else []
+        return extras_properties(about, [part.extras for part in parts], partial(_change_extras, selection))
 
     def write(document: Document, value: Any) -> Document:
         return set_field(document, selection, name, value)
 
     return [Property(name, about, value, write)]
+
+
+def _change_extras(
+    selection: Selection, document: Document, change: Callable[[dict[str, Any]], dict[str, Any]]
+) -> Document:
+    return change_field(document, selection, "extras", change)
 
 
 def _set_axes(selection: Selection, field: str, document: Document, value: Any) -> Document:

@@ -1,6 +1,5 @@
 """Property: a field that a panel shows and changes, of the selected items, of the level or of its checks."""
 
-import json
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -49,6 +48,7 @@ class Property:
 
     write: makes a document with another value; None where it is only shown. axes: names of the numbers of a point.
     remark: what to say of a value in a document that is taken otherwise than it was asked for; "" = nothing.
+    remove: makes a document without the field, where it can be taken away.
     """
 
     field: str
@@ -57,6 +57,7 @@ class Property:
     write: Callable[[Document, Any], Document] | None = None
     axes: tuple[str, str] = _AXES
     remark: Callable[[Document, Any], str] | None = None
+    remove: Callable[[Document], Document] | None = None
 
     @property
     def editable(self) -> bool:
@@ -123,8 +124,6 @@ def _text(about: FieldInfo, value: Any) -> str:
         return list_text(value)
     if about.kind == "touches":
         return touched_text(value)
-    if about.kind == "extras":
-        return json.dumps(value, ensure_ascii=False)
     return line_text(str(value))
 
 

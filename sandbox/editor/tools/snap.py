@@ -23,6 +23,8 @@ ANGLE_REACH = 3.0  # [degrees]
 EDGE_SHARE = 0.5
 # Places are rounded to micrometres, so that files hold 0.3 and not 0.30000000000000004.
 PLACE_DECIMALS = 6
+# Places are told to a tenth of a millimetre where nobody typed them.
+SHOWN_DECIMALS = 4
 
 
 @dataclass(frozen=True)

@@ -42,6 +42,11 @@ class HydraulicDef(_KeyedDef):
     longest: Size = Field(description="Largest rest length.")
     rate: Rate = Field(description="How fast the rest length grows while driven forward.")
     force: Force | None = Field(default=None, description="Largest force; null = any.")
+    returns: bool = Field(
+        default=False,
+        description="Whether it goes back to the length where it began, as fast, while nothing drives it; false = it "
+        "stays.",
+    )
 
 
 class MotorDef(_KeyedDef):

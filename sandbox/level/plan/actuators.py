@@ -81,6 +81,7 @@ def add_actuators(world: World, level: Level, plan: Plan, slots: Slots) -> None:
         rate=np.array([hydraulic.rate for hydraulic in hydraulics], dtype=np.float64),
         part=len(motors) + np.arange(len(hydraulics), dtype=np.int64),
         force=_forces([hydraulic.force for hydraulic in hydraulics]),
+        returns=np.array([hydraulic.returns for hydraulic in hydraulics], dtype=np.bool_),
     )
     names = tuple(each.name for each in found)
     equipment = Actuators(names, _muscles(level, plan.bodies), lifting, turning)

@@ -10,6 +10,10 @@ from sandbox.physics.analysis.query import slot_name
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.state import BY_STORED, Family
 from sandbox.physics.world import World
+from sandbox.session.probe import ADDED
+
+# What holds a hand is named by this and the hand's number.
+HAND = "+hand"
 
 
 @dataclass(frozen=True)
@@ -50,11 +54,11 @@ class Divergence:
 
     def owner(self) -> str:
         """Whose value it is: body and particle or spring by number, where the name says them; else the name."""
-        for sign, kind in ((".", "particle"), (":", "spring")):
-            body, found, number = self.name.partition(sign)
-            if found and " " not in kind and not body.startswith("contact of "):
-                return f"body {body}, {kind} {number}" if body else f"loose {kind} {number}"
-        return f"particle {self.name}" if self.name and " " not in self.name else self.name
+        for between in (" at ", " of "):
+            kind, found, name = self.name.partition(between)
+            if found:
+                return f"{kind} of {_owner_of(name)}"
+        return _owner_of(self.name)
 
     def lines(self, expected: str = "expected", actual: str = "actual") -> list[str]:
         """All that is known, a line each: place, owner, both values in decimal and hexadecimal, and the note."""
@@ -67,6 +71,23 @@ class Divergence:
             *(f"{side:<{wide}}  {number_text(value)}" for side, value in shown),
             *([self.note] if self.note else []),
         ]
+
+
+def _owner_of(name: str) -> str:
+    """A particle or spring in words, by its name; what joined a running world is called "added"."""
+    if not name or " " in name:
+        return name
+    for sign, kind in ((".", "particle"), (":", "spring")):
+        body, found, number = name.partition(sign)
+        if not found:
+            continue
+        if body == HAND:
+            return f"hand {number}"
+        if body.startswith(ADDED):
+            body = body.removeprefix(ADDED)
+            return f"added body {body}, {kind} {number}" if body else f"added {kind} {number}"
+        return f"body {body}, {kind} {number}" if body else f"loose {kind} {number}"
+    return f"particle {name}"
 
 
 def number_text(value: Any) -> str:

@@ -14,6 +14,7 @@ from sandbox.app.draw.themes import SQUEEZED_FLUSH, STRETCHED_FLUSH, outline_of
 from sandbox.app.draw.things.borders import starts_of
 from sandbox.app.draw.things.cast import Actor
 from sandbox.app.draw.things.frame import FLUSH_FROM, FLUSH_RANGE, Frame
+from sandbox.level.kinds.jelly import CircleShape, JellyDef
 
 Slots = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -22,6 +23,8 @@ Floats = NDArray[np.float64]
 ROUNDING = {"balloon": 0.30, "tyre": 0.16, "wood": 0.05, "stone": 0.07, "brick": 0.07, "window": 0.2}
 USUAL_ROUNDING, LEAST_ROUNDING, MOST_ROUNDING = 0.17, 6.0, 34.0
 LINE_HALF = 0.75
+# A corner is cut by this part of a side at each end, or by that of the body's breadth where that is less.
+CUT_OF_SIDE, CUT_OF_BREADTH = 0.25, 1.0 / 12.0
 # Widest that a skin stands out beyond the particles [pixels].
 MOST_GROWN = 40.0
 # Particles with less of a flush than this are not drawn with one.
@@ -42,7 +45,7 @@ class Shape:
     grown: float = 0.0
     extra: float = 0.0
     rounds: int = 2
-    keep: float = 0.25
+    keep: float = CUT_OF_SIDE
     line: bool = True
     flushed: tuple[Slots, Slots, float] | None = None
 
@@ -80,7 +83,26 @@ def shape_of(actor: Actor, loops: list[Slots], springs: NDArray[np.bool_], radiu
     flushed = (actor.springs[springs], actor.ends[springs], actor.cell) if look.skin in ("jelly", "rubber") else None
     if is_laid:
         return Shape(loops, look.skin, look.colour, 0, radius, rounds=1, keep=0.12, line=False)
-    return Shape(loops, look.skin, look.colour, 1, radius, flushed=flushed)
+    keep = min((_cut_of(actor, loop) for loop in loops), default=CUT_OF_SIDE) if _has_corners(actor) else CUT_OF_SIDE
+    return Shape(loops, look.skin, look.colour, 1, radius, keep=keep, flushed=flushed)
+
+
+def _has_corners(actor: Actor) -> bool:
+    """Whether a body was drawn with corners: what is round is so by few particles as well."""
+    return isinstance(actor.body, JellyDef) and not isinstance(actor.body.shape, CircleShape)
+
+
+def _cut_of(actor: Actor, loop: Slots) -> float:
+    """Which part of its sides a cut of the corners of a loop takes, so that a body of few cells keeps its form."""
+    order = np.argsort(actor.slots, kind="stable")
+    corners = actor.form[order[np.searchsorted(actor.slots[order], loop)]]
+    side = np.roll(corners, -1, axis=0) - corners
+    length = np.sqrt(np.sum(side * side, axis=1))
+    area = 0.5 * abs(float(np.sum(corners[:, 0] * side[:, 1] - corners[:, 1] * side[:, 0])))
+    around, longest = float(np.sum(length)), float(np.max(length, initial=0.0))
+    # A square is as broad as its sides are long.
+    breadth = 4.0 * area / around if around > 0.0 else 0.0
+    return min(CUT_OF_SIDE, CUT_OF_BREADTH * breadth / longest) if longest > 0.0 else CUT_OF_SIDE
 
 
 @dataclass(eq=False)

@@ -73,7 +73,7 @@ class DriveMarks:
         pygame.draw.lines(surface, TEXT, False, wave, max(1, round(1.6 * scale)))
 
     def _draw_hydraulic(self, surface: pygame.Surface, a: Point, b: Point, hydraulic: HydraulicDef) -> None:
-        """A cylinder on the first part of the spring, with its piston."""
+        """A cylinder on the first part of the spring, with its piston, and an arrow back where it returns."""
         scale, length = self._ui.scale, math.dist(a, b)
         if length < SHORTEST * scale:
             return
@@ -90,6 +90,14 @@ class DriveMarks:
         piston = [at(0.46, -half), at(0.5, -half), at(0.5, half), at(0.46, half)]
         pygame.draw.polygon(surface, DRIVE, piston)
         pygame.draw.line(surface, DRIVE, at(0.5, 0.0), at(0.85, 0.0), max(1, round(WIDTH * scale)))
+        if hydraulic.returns:
+            # An arrow back along the cylinder.
+            tip, tail = at(0.15, -2.4 * half), at(0.4, -2.4 * half)
+            pygame.draw.line(surface, DRIVE, tail, tip, max(1, round(WIDTH * scale)))
+            head = 1.8 * half
+            sides = [(tip[0] + head * (along[0] - side * along[1]), tip[1] + head * (along[1] + side * along[0]))
+                     for side in (-0.7, 0.7)]  # fmt: skip
+            pygame.draw.polygon(surface, DRIVE, [tip, *sides])
         self._draw_keys(surface, at(0.5, 4.2 * half), hydraulic)
 
     def _draw_motor(self, surface: pygame.Surface, hub: Point, rim: float, motor: MotorDef) -> None:

@@ -22,9 +22,12 @@ from sandbox.app.widgets.rows import Picker, Row
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.collision_groups import collision_groups
+from sandbox.editor.panel.extra_values import HOW_TO_ADD
 from sandbox.editor.panel.property import MIXED, Property, Section
 from sandbox.editor.panel.typed import EVERYTHING, NOTHING
+from sandbox.level.document.model import ParticleDef
 from sandbox.level.format.look import COLOUR_PATTERN, colour_of
+from sandbox.level.kinds.body_def import BodyDef
 
 # Sizes in layout units.
 ROW = 28.0
@@ -32,6 +35,7 @@ GAP = 5.0
 LABEL_WIDTH = 108.0
 HEADING = 24.0
 SECTION_GAP = 10.0
+PICK_WIDTH = 44.0
 NOTE_LINES = 3
 NOTE_LINE = 15.0
 # Characters of a line to type into; what is longer is copied and pasted as a whole.
@@ -53,7 +57,13 @@ def _choice_text(each: Property) -> str:
     """What a menu shows of a value."""
     if each.value is None:
         return each.about.empty or NONE
+    if each.about.labels and each.value in each.about.choices:
+        return each.about.labels[each.about.choices.index(each.value)]
     return next((text for text, value in YES_NO.items() if value is each.value), str(each.value))
+
+
+def _kind_of(part: BodyDef | ParticleDef) -> str:
+    return part.type if isinstance(part, BodyDef) else "particle"
 
 
 def _listed(collides: Any) -> Sequence[str]:
@@ -78,6 +88,7 @@ class Form:
         self.boxes: dict[str, dict[str, CheckBox]] = {}
         self.choices: dict[str, Any] = {}
         self.buttons: dict[str, Any] = {}
+        self.removers: dict[str, Any] = {}
         self.keys: dict[str, KeyBox] = {}
         self.scrubs: dict[str, Scrub] = {}
         self._notes: dict[str, TextBlock] = {}
@@ -123,7 +134,18 @@ class Form:
     def _structure_of(self, each: Property) -> tuple[object, ...]:
         about = each.about
         lines = self._lines(each) if not each.editable else 0
-        return each.field, about.kind, about.title, about.unit, about.choices, each.axes, lines, self._is_long(each)
+        removable = each.remove is not None
+        return (
+            each.field,
+            removable,
+            about.kind,
+            about.title,
+            about.unit,
+            about.choices,
+            each.axes,
+            lines,
+            self._is_long(each),
+        )
 
     def _is_long(self, each: Property) -> bool:
         return each.about.kind in ("list", "pairs", "outlines", "words") and len(each.texts[0]) > TEXT_LENGTH
@@ -142,7 +164,7 @@ class Form:
         focused = next((name for name, widget in self._named.items() if widget is ui.focus), "")
         self.close()
         self.fields, self.pickers, self.boxes, self.choices, self._notes = {}, {}, {}, {}, {}
-        self.buttons, self.keys, self.scrubs = {}, {}, {}
+        self.buttons, self.removers, self.keys, self.scrubs = {}, {}, {}, {}
         self._y = self._above
         if not sections and self._empty:
             place = ui.rect(0, self._y + 4, self._inside, 120)
@@ -176,6 +198,11 @@ class Form:
         content = self.area.content
         self._add_label(each)
         width = self._inside - LABEL_WIDTH
+        if each.remove is not None:
+            width -= ROW + GAP
+            place, tip = self._rect(self._inside - ROW, ROW), f"Take {escape(about.title, quote=False)} away"
+            button = ui.button(place, "\u00d7", partial(self._remove, each.field), content, style="@segment", tip=tip)
+            self.removers[each.field] = self._keep(button, f"{each.field} remove")
         if not each.editable:
             height = max(ROW - 8, self._lines(each) * NOTE_LINE + 2)
             place = ui.rect(LABEL_WIDTH, self._y + 7, width, height)
@@ -189,11 +216,16 @@ class Form:
             )  # fmt: skip
         elif about.kind == "flags" or (about.kind == "yes_no" and not about.optional):
             self._add_boxes(each, width)
-        elif about.kind in ("choice", "material", "touches", "colour", "yes_no"):
+        elif about.kind in ("choice", "material", "touches", "colour", "thing", "yes_no"):
             self._add_choice(each, width)
         elif about.kind == "part":
             press = partial(self._press_object, each.field)
             button = ui.button(self._rect(LABEL_WIDTH, width), "", press, content, style="@segment", tip=about.tooltip)
+            self.buttons[each.field] = self._keep(button, each.field)
+        elif about.kind == "extras":
+            press = partial(self._ask_for_entry, each.field)
+            tip = about.tooltip
+            button = ui.button(self._rect(LABEL_WIDTH, width), "Add\u2026", press, content, style="@segment", tip=tip)
             self.buttons[each.field] = self._keep(button, each.field)
         elif about.kind == "key":
             self._add_key(each, width)
@@ -203,7 +235,13 @@ class Form:
             button = ui.button(place, text, partial(self._offer_text, each.field), content, tip=about.tooltip)
             self._keep(button, each.field)
         else:
-            self.fields[each.field] = (self._entry(each, LABEL_WIDTH, width, 0),)
+            room = PICK_WIDTH + GAP if about.pick else 0.0
+            self.fields[each.field] = (self._entry(each, LABEL_WIDTH, width - room, 0),)
+            if about.pick:
+                press = partial(self._screen.pick, about.pick, partial(self._set, each.field))
+                place = self._rect(self._inside - PICK_WIDTH, PICK_WIDTH)
+                tip = "Drag it on the sheet" if about.pick == "box" else f"Click the {about.pick} on the sheet"
+                self._keep(ui.button(place, "Pick", press, content, style="@segment", tip=tip), f"{each.field} pick")
         self._y += ROW + GAP
 
     def _add_label(self, each: Property) -> None:
@@ -269,7 +307,7 @@ class Form:
         for label, box in self.boxes.get(name, {}).items():
             state = each.value[label] if each.about.kind == "flags" else each.value
             box.show_state(state is True, state is MIXED)
-        if name in self.buttons and self.buttons[name].text != OBJECT_TEXTS[each.value]:
+        if each.about.kind == "part" and self.buttons[name].text != OBJECT_TEXTS[each.value]:
             self.buttons[name].set_text(OBJECT_TEXTS[each.value])
         if name in self.keys:
             self.keys[name].show_key(MIXED.value if is_mixed else each.value)
@@ -288,11 +326,14 @@ class Form:
             return [Row(EVERYTHING), Row(NOTHING), *(Row(name, self._toggle_of(each, name)) for name in self._groups)]
         about = each.about
         first = [Row(about.empty or NONE, colour=MUTED)] if about.optional else []
+        if about.kind == "thing":
+            level = self._screen.document.level
+            return [*first, *(Row(part.id, _kind_of(part)) for part in (*level.bodies, *level.particles))]
         if about.kind != "material":
             if about.kind == "colour":
                 palette = [Row(name, swatch=rgb_of(colour_of(name))) for name in about.choices]
                 return [*first, *palette, Row(OTHER_COLOUR)]
-            return first + [Row(value) for value in (YES_NO if about.kind == "yes_no" else about.choices)]
+            return first + [Row(text) for text in (YES_NO if about.kind == "yes_no" else about.labels or about.choices)]
         colours = material_colours(self._screen.document.level.materials)
         return [*first, *(Row(name, swatch=colour) for name, colour in colours.items())]
 
@@ -368,6 +409,8 @@ class Form:
             self._ask_for_colour(name)
         elif each.about.kind == "yes_no":
             self._set(name, YES_NO[text])
+        elif each.about.labels:
+            self._set(name, each.about.choices[index - each.about.optional])
         elif each.about.kind != "touches":
             self._set(name, text)
         elif index < 2:
@@ -375,6 +418,24 @@ class Form:
         else:
             kept = [group for group in _listed(each.value) if group != text]
             self._set(name, kept if len(kept) < len(_listed(each.value)) else [*kept, text])
+
+    def _remove(self, name: str) -> None:
+        each = self.properties[name]
+        if each.remove is not None:
+            self._screen.edit(f"Remove: {each.about.title}", each.remove)
+
+    def _ask_for_entry(self, name: str) -> None:
+        each = self.properties[name]
+
+        def take(typed: str) -> str | None:
+            try:
+                document = each.set(self._screen.document, typed)
+            except EditError as error:
+                return sentence(error)
+            self._screen.apply(f"Add: {typed.partition('=')[0].strip()}", document)
+            return None
+
+        ask(self._ui, each.about.title, HOW_TO_ADD, "", "Add", take)
 
     def _ask_for_colour(self, name: str) -> None:
         each = self.properties[name]

@@ -17,7 +17,7 @@ from sandbox.editor.document import EditError
 from sandbox.editor.edits.moving import move, rotate, scale
 from sandbox.editor.tools.drawing_options import OptionInfo, described, stepped
 from sandbox.editor.tools.palette import TOOLS
-from sandbox.editor.tools.snap import PLACE_DECIMALS
+from sandbox.editor.tools.snap import PLACE_DECIMALS, SHOWN_DECIMALS
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 
 # Sizes in layout units.
@@ -219,7 +219,8 @@ class OptionsRow:
         values = {"x": (left + right) / 2, "y": (bottom + top) / 2, "width": right - left, "height": top - bottom}
         for name, value in values.items():
             if name in self.fields:
-                self.fields[name].show(f"{round(value, PLACE_DECIMALS) + 0.0:.6g}")
+                decimals = SHOWN_DECIMALS if name in ("x", "y") else PLACE_DECIMALS
+                self.fields[name].show(f"{round(value, decimals) + 0.0:.8g}")
 
     # Changing.
 
