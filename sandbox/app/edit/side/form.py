@@ -328,7 +328,8 @@ class Form:
         first = [Row(about.empty or NONE, colour=MUTED)] if about.optional else []
         if about.kind == "thing":
             level = self._screen.document.level
-            return [*first, *(Row(part.id, _kind_of(part)) for part in (*level.bodies, *level.particles))]
+            return [*first, *(Row(body.id, _kind_of(body)) for body in level.bodies),
+                    *(Row(particle.id, _kind_of(particle)) for particle in level.particles)]  # fmt: skip
         if about.kind != "material":
             if about.kind == "colour":
                 palette = [Row(name, swatch=rgb_of(colour_of(name))) for name in about.choices]
