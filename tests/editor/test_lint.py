@@ -115,12 +115,24 @@ def test_a_loose_spring_is_called_by_its_name_or_by_its_ends():
     ]  # fmt: skip
 
 
-def test_a_flood_of_findings_ends_in_one_line_that_counts_the_rest():
+def test_findings_of_one_kind_are_one_line_with_all_that_they_hit_and_one_remedy():
     balls = tuple(ParticleDef(id=f"ball {index}", position=(float(index), 0.0)) for index in range(50))
-    lines = found(level_of(particles=balls))
-    assert len(lines) == LISTED + 1
-    assert lines[-1].text.startswith("And 30 more")
-    assert len(lines[-1].items) == 50 - LISTED
+    (line,) = found(level_of(particles=balls))
+    assert line.text.startswith("50 things will fall out of sight") and len(line.items) == 50
+    mended = line.remedy.edit(Document(level_of(particles=balls))).level
+    assert mended.has_contacts and len(mended.terrain) == 1 and texts(mended) == []
+
+
+def test_a_few_findings_of_one_kind_stand_each_for_itself():
+    balls = tuple(ParticleDef(id=f"ball {index}", position=(float(index), 0.0)) for index in range(LISTED))
+    assert len(texts(level_of(particles=balls))) == LISTED
+
+
+def test_pinned_particles_that_hold_nothing_are_deleted_by_one_remedy():
+    pins = tuple(ParticleDef(id=f"pin {index}", position=(float(index), 0.0), pinned=True) for index in range(9))
+    (line,) = found(level_of(particles=pins))
+    assert line.remedy.label == "Delete them"
+    assert line.remedy.edit(Document(level_of(particles=pins))).level.particles == ()
 
 
 def test_springs_and_pins_that_do_nothing_are_found():
@@ -197,7 +209,8 @@ def test_overlaps_are_those_that_comparing_every_pair_finds():
     expected = int(np.sum(np.triu(apart <= 0.025, 1)))
     assert expected > LISTED
     last = found(level)[-1]
-    assert last.text.startswith(f"And {expected - LISTED} more")
+    assert last.text.startswith(f"{expected} pairs lie on each other")
+    assert not any("lie" in text for text in texts(last.remedy.edit(Document(level)).level))
 
 
 def test_bodies_that_cross_are_found_where_they_cross_and_joined_or_touching_ones_are_left_in_peace():

@@ -85,7 +85,8 @@ def _buried(scene: Scene, slots: Slots, out: Floats, where: str) -> Rule:
         text = f"{called(scene.level, item)} starts{some} {where}, and will be pushed out; move it"
         x, y = (out[worst] + ROOM * np.sign(out[worst])).tolist()
         remedy = Remedy("Move it out", _moved(item, x, y))
-        yield Finding("warning", text, frozenset([item]), place_of(scene, int(slots[worst])), remedy)
+        yield Finding("warning", text, frozenset([item]), place_of(scene, int(slots[worst])), remedy,
+                      f"{{count}} things start {where}, and will be pushed out; move them")  # fmt: skip
         yield None
 
 
@@ -122,7 +123,9 @@ def overlapping_discs(level: Level, scene: Scene) -> Rule:
                 f'"{scene.names(slot)}" and "{scene.names(other)}" overlap at the start, and will be pushed apart; '
                 "move one away, or join them"
             )
-            yield Finding("warning", text, frozenset([scene.items[a], scene.items[b]]), place_of(scene, slot))
+            both = frozenset([scene.items[a], scene.items[b]])
+            many = "{count} pairs overlap at the start, and will be pushed apart; move them, or join them"
+            yield Finding("warning", text, both, place_of(scene, slot), many=many)
         yield None
 
 
@@ -139,10 +142,14 @@ def turning_in_vain(level: Level, scene: Scene) -> Rule:
                 f"{called(level, item)} has a rolling resistance of {particle.rolling:g}: with more than "
                 f"{MOST_ROLLING:g} heaps do not come to rest; lower it, or let it not roll"
             )
-            yield Finding("warning", text, frozenset([item]), place_of(scene, slot))
+            many = (
+                f"{{count}} discs have a rolling resistance above {MOST_ROLLING:g}: no heap comes to rest; lower it"
+            )
+            yield Finding("warning", text, frozenset([item]), place_of(scene, slot), many=many)
         if particle.spin != 0.0 and held[slot]:
             text = f"{called(level, item)} is held and does not turn; its spin of {particle.spin:g} rad/s is lost"
-            yield Finding("hint", text, frozenset([item]), place_of(scene, slot))
+            many = "{count} particles are held and do not turn; their spin is lost"
+            yield Finding("hint", text, frozenset([item]), place_of(scene, slot), many=many)
     yield None
 
 

@@ -7,55 +7,92 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.document import Document
+from sandbox.editor.document import Document, EditError
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 
 Severity = Literal["error", "warning", "hint"]
+# The gravest first.
+SEVERITIES: tuple[Severity, ...] = ("error", "warning", "hint")
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
 # What a rule gives: findings, and None where it has worked for long enough to let the window draw.
 Rule = Iterator["Finding | None"]
 
-# Findings of one kind that are listed one by one; the rest is told in one line.
-LISTED = 20
+# Findings of one kind that are listed one by one; more of them are one line.
+LISTED = 3
+Edit = Callable[[Document], Document]
 
 
 class Remedy(NamedTuple):
-    """An edit that mends what was found, and what its button says."""
+    """An edit that mends what was found, and what its button says.
+
+    many: the same for several things, whose edit is made from all of them; None: each is mended by its own edit.
+    """
 
     label: str
-    edit: Callable[[Document], Document]
+    edit: Edit
+    many: tuple[str, Callable[[Selection], Edit]] | None = None
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A sentence that says what is so and what to do, the items it is about, where [m], and what mends it."""
+    """A sentence that says what is so and what to do, the items it is about, where [m], and what mends it.
+
+    many: what is said of several of its kind, with {count}; "": each stands for itself.
+    """
 
     severity: Severity
     text: str
     items: Selection
     place: tuple[float, float] | None
     remedy: Remedy | None = None
+    many: str = ""
 
 
 def listed(rule: Rule) -> Rule:
-    """The first findings of a rule, and one line for all others of it."""
-    count, rest = 0, 0
-    items: set[Item] = set()
-    last: Finding | None = None
+    """The findings of a rule; of a kind that is found more often than LISTED times, one for all."""
+    kinds: dict[str, list[Finding]] = {}
     for finding in rule:
-        if finding is not None:
-            count += 1
-            if count > LISTED:
-                rest += 1
-                items |= finding.items
-                last, finding = finding, None
-        yield finding
-    if last is not None:
-        yield Finding(last.severity, f"And {rest} more, such as: {last.text}", frozenset(items), last.place)
+        if finding is None or not finding.many:
+            yield finding
+        else:
+            kinds.setdefault(finding.many, []).append(finding)
+            yield None
+    for found in kinds.values():
+        yield from found if len(found) <= LISTED else [_of_all(found)]
+
+
+def _of_all(found: list[Finding]) -> Finding:
+    """One finding for several of a kind."""
+    items = frozenset[Item]().union(*(each.items for each in found))
+    severity = min((each.severity for each in found), key=SEVERITIES.index)
+    text, remedies = found[0].many.format(count=len(found)), [each.remedy for each in found if each.remedy is not None]
+    return Finding(severity, text, items, found[0].place, _remedy_of_all(remedies, items))
+
+
+def _remedy_of_all(remedies: list[Remedy], items: Selection) -> Remedy | None:
+    if not remedies:
+        return None
+    first = remedies[0]
+    if first.many is not None:
+        return Remedy(first.many[0], first.many[1](items))
+
+    def each(document: Document) -> Document:
+        before, error = document, EditError("nothing is left to mend")
+        for remedy in remedies:
+            try:
+                document = remedy.edit(document)
+            except EditError as fault:
+                # One may have mended another: what is joined to both ends of a third is joined already.
+                error = fault
+        if document is before:
+            raise error
+        return document
+
+    return Remedy(f"{first.label}, all {len(remedies)}", each)
 
 
 def called(level: Level, item: Item) -> str:

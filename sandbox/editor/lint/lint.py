@@ -14,6 +14,7 @@ from sandbox.editor.lint.finding import Finding, Rule, called, falling_particles
 from sandbox.editor.lint.looks import unknown_looks
 from sandbox.editor.lint.motors import motors_in_vain
 from sandbox.editor.lint.places import crossing_bodies, overlapping_particles
+from sandbox.editor.lint.remedies import GROUND, deletion
 from sandbox.editor.lint.solver import springs_past_limits
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
@@ -61,7 +62,8 @@ def falling_parts(level: Level, scene: Scene) -> Rule:
                 f" and what it is joined to, {len(items)} items," if len(items) > 1 else ""
             )
         text = f"{subject} will fall out of sight: nothing holds it; pin a particle of it or join it to something"
-        yield Finding("warning", text, frozenset(items), place_of(scene, int(slots[0])))
+        many = "{count} things will fall out of sight: nothing holds them; pin them, join them, or draw ground below"
+        yield Finding("warning", text, frozenset(items), place_of(scene, int(slots[0])), GROUND, many)
         yield None
 
 
@@ -73,7 +75,9 @@ def idle_items(scene: Scene) -> Rule:
     for spring in idle.tolist():
         item = scene.items[int(scene.spring_item[spring])]
         text = f"{called(scene.level, item)} does nothing: both its ends are pinned; unpin one or delete it"
-        yield Finding("hint", text, frozenset([item]), middle_of(scene, spring))
+        many = "{count} springs do nothing: both their ends are pinned; unpin one or delete them"
+        chosen = frozenset([item])
+        yield Finding("hint", text, chosen, middle_of(scene, spring), deletion(chosen), many)
     yield None
     used = np.zeros(len(scene.position), dtype=np.bool_)
     for slots in (scene.particle_a, scene.particle_b, scene.welds.ravel()):
@@ -83,5 +87,7 @@ def idle_items(scene: Scene) -> Rule:
     for slot in np.flatnonzero(scene.pinned & ~used & (scene.particle_item >= bodies)).tolist():
         item = scene.items[int(scene.particle_item[slot])]
         text = f"{called(scene.level, item)} is pinned and holds nothing; join something to it or delete it"
-        yield Finding("hint", text, frozenset([item]), place_of(scene, slot))
+        many = "{count} particles are pinned and hold nothing; join something to them or delete them"
+        chosen = frozenset([item])
+        yield Finding("hint", text, chosen, place_of(scene, slot), deletion(chosen), many)
     yield None

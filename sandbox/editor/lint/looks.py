@@ -21,7 +21,8 @@ def unknown_looks(level: Level) -> Rule:
     for subject, item, look in [*subjects, *balls]:
         for field, name in _unknown(look):
             text = f"{subject} has the {field} {shown(name)}, which is none" + suggestion(name, _KNOWN[field])
-            yield Finding("warning", text, frozenset() if item is None else frozenset([item]), None)
+            many = f"{{count}} things have a {field} that there is none of; choose it from the menu"
+            yield Finding("warning", text, frozenset() if item is None else frozenset([item]), None, many=many)
     yield None
     for piece, ground in (level.look.ground if level.look is not None else {}).items():
         if ground not in GROUNDS:

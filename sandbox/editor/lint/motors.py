@@ -4,6 +4,7 @@ import numpy as np
 
 from sandbox.editor.items import Item
 from sandbox.editor.lint.finding import Finding, Rule, called, connected_parts, place_of
+from sandbox.editor.lint.remedies import DIRECT
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 from sandbox.level.kinds.wheel import WheelDef
@@ -26,7 +27,7 @@ def motors_in_vain(level: Level, scene: Scene) -> Rule:
             f"the {level.settings.solver.replace('_', ' ')} solver cannot carry wheels under a load, so motors turn "
             "them on the spot; use the direct or the iterative solver"
         )
-        yield Finding("warning", text, items, place_of(scene, scene.slot(f"{driven[0][1].id}.hub")))
+        yield Finding("warning", text, items, place_of(scene, scene.slot(f"{driven[0][1].id}.hub")), DIRECT)
     if level.has_contacts:
         yield None
         yield from _weak(level, scene, driven)
@@ -39,13 +40,15 @@ def _idle(scene: Scene, driven: list[tuple[int, WheelDef]]) -> Rule:
         item = Item("body", body.id)
         if not _joined(scene, int(first[hub]), index, True):
             text = f"the motor of {called(scene.level, item)} turns nothing: no spoke joins its rim to its hub"
-            yield Finding("warning", text, frozenset([item]), place_of(scene, hub))
+            many = "the motors of {count} wheels turn nothing: no spoke joins rim and hub"
+            yield Finding("warning", text, frozenset([item]), place_of(scene, hub), many=many)
         elif not scene.pinned[hub] and not _joined(scene, int(first[hub]), index, False):
             text = (
                 f"the motor of {called(scene.level, item)} does nothing: its hub is fixed to nothing; "
                 "pin it, or join a spring to it"
             )
-            yield Finding("warning", text, frozenset([item]), place_of(scene, hub))
+            many = "the motors of {count} wheels do nothing: their hubs are fixed to nothing; pin them, or join springs"
+            yield Finding("warning", text, frozenset([item]), place_of(scene, hub), many=many)
         yield None
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.editor.lint.finding import Finding, Rule, called, place_of
+from sandbox.editor.lint.remedies import joint
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import BODY_RADIUS
@@ -59,7 +60,9 @@ def overlapping_particles(scene: Scene) -> Rule:
             "weld them or move one away"
         )
         both = frozenset(scene.items[index] for index in divmod(pair, len(scene.items)))
-        yield Finding("warning", text, both, place_of(scene, slot))
+        remedy = None if several else joint(str(scene.names(slot)), str(scene.names(other)))
+        many = "{count} pairs lie on each other and are not joined; join them or move them away"
+        yield Finding("warning", text, both, place_of(scene, slot), remedy, many)
         yield None
 
 
@@ -111,7 +114,8 @@ def crossing_bodies(level: Level, scene: Scene) -> Rule:
             collide = level.has_contacts and bool(scene.collision.meet(int(p), int(q)))
             then = "and will be pushed apart" if collide else "and will pass through each other"
             text = f"{called(level, items[0])} and {called(level, items[1])} cross, {then}; move one away, or join them"
-            yield Finding("warning" if collide else "hint", text, frozenset(items), crossing)
+            many = f"{{count}} pairs cross, {then}; move them away, or join them"
+            yield Finding("warning" if collide else "hint", text, frozenset(items), crossing, many=many)
 
 
 def _joined_bodies(scene: Scene, count: int) -> Generator[None, None, set[tuple[int, int]]]:

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.editor.lint.finding import Finding, Rule, called, called_spring, middle_of, place_of
+from sandbox.editor.lint.remedies import DIRECT
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level, NissenMaterial
 from sandbox.level.plan.constraints import add_constraints
@@ -71,7 +72,8 @@ def _constraints_past_proven(level: Level, scene: Scene, world: World, load: NDA
             "the direct solver"
         )
         slot = int(world.corner_particle[world.constraint_first[worst]])
-        yield Finding("warning", text, frozenset([item]), place_of(scene, slot))
+        many = "areas or angles of {count} bodies are past what the solver is proven to hold; use the direct solver"
+        yield Finding("warning", text, frozenset([item]), place_of(scene, slot), DIRECT, many)
         yield None
 
 
@@ -96,7 +98,8 @@ def _past_proven(level: Level, scene: Scene, load: NDArray[np.float64]) -> Rule:
             f"{load[spring]:.3g} at {called_spring(scene, spring)}, stable is below {BOUND:g}; lower the coefficients "
             f'of material "{scene.materials[int(scene.material[spring])]}", use more substeps or the direct solver'
         )
-        yield Finding("warning", text, frozenset([item]), middle_of(scene, spring))
+        many = "springs of {count} things are past what the solver is proven to hold; use the direct solver"
+        yield Finding("warning", text, frozenset([item]), middle_of(scene, spring), DIRECT, many)
         yield None
 
 
@@ -117,4 +120,4 @@ def _past_published(level: Level, scene: Scene, world: World) -> Rule:
         f"{coefficient[worst]:g} above {limit[worst]:.2g}; the {level.settings.solver} solver often holds them and "
         "cannot promise it, the direct solver can"
     )
-    yield Finding("hint", text, items, middle_of(scene, worst))
+    yield Finding("hint", text, items, middle_of(scene, worst), DIRECT)

@@ -9,9 +9,9 @@ from sandbox.app.draw.colours import ACCENT, DANGER, WARNING, Colour
 from sandbox.app.edit.side.form import GAP, ROW
 from sandbox.app.widgets.rows import Row, RowList
 from sandbox.editor.items import items_of
-from sandbox.editor.lint.finding import Finding, Remedy
+from sandbox.editor.lint.finding import SEVERITIES, Finding, Remedy
 
-SEVERITIES: dict[str, Colour] = {"error": DANGER, "warning": WARNING, "hint": ACCENT}
+COLOURS: dict[str, Colour] = {"error": DANGER, "warning": WARNING, "hint": ACCENT}
 NOTHING = "Nothing to complain about."
 LINES = 6
 NO_REMEDY = "Choose one to see it"
@@ -40,7 +40,7 @@ class FindingsPage:
         self._shown = found
         grades = list(SEVERITIES)
         self.findings = sorted(found, key=lambda finding: grades.index(finding.severity))
-        rows = [Row(each.text, each.severity, SEVERITIES[each.severity]) for each in self.findings]
+        rows = [Row(each.text, each.severity, COLOURS[each.severity]) for each in self.findings]
         self.list.show_rows(rows, None)
         self._offer(None)
 
