@@ -15,8 +15,8 @@ from sandbox.level.kinds.geometry import Points
 
 Placed = TypeVar("Placed", AnyBody, TerrainDef)
 Described = TypeVar("Described", bound=Description)
-# Lengths, angles and speeds that an edit works out are rounded to a millionth of a millionth, far below what is seen, so
-# that a file holds 2.28 and not 2.2800000000000002.
+# Lengths, angles and speeds that an edit works out are rounded to 1e-12, far below what is seen, so that
+# a file holds 2.28 and not 2.2800000000000002.
 DECIMALS = 12
 _MEASURES = ("m", "rad", "m/s")
 

@@ -25,9 +25,7 @@ from sandbox.editor.edits.collision_groups import collision_groups
 from sandbox.editor.panel.extra_values import HOW_TO_ADD
 from sandbox.editor.panel.property import MIXED, Property, Section
 from sandbox.editor.panel.typed import EVERYTHING, NOTHING
-from sandbox.level.document.model import ParticleDef
 from sandbox.level.format.look import COLOUR_PATTERN, colour_of
-from sandbox.level.kinds.body_def import BodyDef
 
 # Sizes in layout units.
 ROW = 28.0
@@ -57,10 +55,6 @@ def _choice_text(each: Property) -> str:
     if each.value is None:
         return each.about.empty or NONE
     return next((text for text, value in YES_NO.items() if value is each.value), str(each.value))
-
-
-def _kind_of(part: BodyDef | ParticleDef) -> str:
-    return part.type if isinstance(part, BodyDef) else "particle"
 
 
 def _listed(collides: Any) -> Sequence[str]:
@@ -319,7 +313,8 @@ class Form:
         first = [Row(about.empty or NONE, colour=MUTED)] if about.optional else []
         if about.kind == "thing":
             level = self._screen.document.level
-            return [*first, *(Row(part.id, _kind_of(part)) for part in (*level.bodies, *level.particles))]
+            bodies = [Row(body.id, body.type) for body in level.bodies]
+            return [*first, *bodies, *(Row(particle.id, "particle") for particle in level.particles)]
         if about.kind != "material":
             if about.kind == "colour":
                 palette = [Row(name, swatch=rgb_of(colour_of(name))) for name in about.choices]
