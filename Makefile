@@ -1,20 +1,21 @@
 # make play: install into .venv and run the app.    make test: install into .venv and run every test.
-# make goldens: run the kept recordings whole, bit for bit; minutes. make goldens-anew: record them anew, which only a
-# change of what a tick computes is a reason to.
-# make bounds: every test, with kernels that look whether an index lies in its array, which they leave to us else.
-# make abuse: what stirring, throwing and driving does to things, in figures; hours.
-# make soak: random mouse and keyboard at the app for minutes, and a while in a window on a virtual screen.
-# make pictures: draw the gallery's pictures of shipped levels anew, after one was changed, and those of docs/.
+# make quick: run the tests of what differs from main, without slow ones; about a minute.
+# make goldens: run the kept recordings whole, bit for bit; minutes. make goldens-record: record them again, after a
+# change of a tick's arithmetic or of a shipped level; never to make a failing test pass.
+# make bounds: run every test with kernels that check each index; usual kernels do not.
+# make abuse: stir, throw and drive bodies, and print figures; hours.
+# make soak: random mouse and keyboard at the app for minutes, on a dummy driver and on a virtual screen.
+# make pictures: draw the pictures of the gallery and of docs/ again, after a level or the look was changed.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
-# One more than two processors: tests wait for windows and processes a tenth of their time.
+# One more than two processors: tests spend a tenth of their time waiting for windows and processes.
 WORKERS ?= 3
-# Byte code is kept whatever the environment says, or each of many processes would compile the package anew.
+# Byte code is always kept: else each of many processes would compile the package again.
 unexport PYTHONDONTWRITEBYTECODE
-# What pip says of newer ones of itself is no concern of whoever plays or tests.
+# pip shall not announce its newer versions here.
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
-# uv installs in a tenth of pip's time; pip does where there is no uv, or uv does not find what pip is set up to find.
+# uv installs in a tenth of pip's time. pip installs where there is no uv, or where uv does not know pip's settings.
 UV := $(BIN)/python -m uv pip install --quiet --python $(BIN)/python
 PIP := $(BIN)/python -m pip install --quiet
 ifdef PIP_CONSTRAINT
@@ -24,7 +25,7 @@ ifdef PIP_INDEX_URL
 export UV_DEFAULT_INDEX := $(PIP_INDEX_URL)
 endif
 
-.PHONY: play install test kernels byte-code lint bounds goldens goldens-anew pictures bench abuse soak clean
+.PHONY: play install test quick kernels byte-code lint bounds goldens goldens-record pictures bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
@@ -35,11 +36,14 @@ test: $(VENV)/installed-dev
 	$(MAKE) --jobs=2 kernels byte-code
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
+quick: $(VENV)/installed-dev
+	$(BIN)/python -m tests.quick -n $(WORKERS)
+
 # Kernels are compiled before tests, or each worker would compile all of them.
 kernels: $(VENV)/installed-dev
 	-$(BIN)/python -m sandbox prepare
 
-# As is the byte code of tests. What is wrong with them is for the run itself to say.
+# The byte code of tests, too. The run itself reports broken tests.
 byte-code: $(VENV)/installed-dev
 	-$(BIN)/python -m pytest --collect-only --quiet > $(VENV)/collected
 
@@ -56,7 +60,7 @@ bounds: test
 goldens: kernels
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal tests/determinism/goldens
 
-goldens-anew: kernels
+goldens-record: kernels
 	$(BIN)/python -m tests.determinism.make_goldens --processes $(WORKERS)
 
 pictures: $(VENV)/installed-dev
@@ -84,7 +88,7 @@ $(VENV)/installed: $(BIN)/python pyproject.toml
 	$(BIN)/python -m compileall -q sandbox
 	touch $@
 
-# Byte code is made of what is imported, when it is; most of what is installed here never is.
+# Byte code is made at the first import; most installed modules are never imported.
 $(VENV)/installed-dev: $(BIN)/python pyproject.toml
 	$(UV) --editable ".[dev]" 2> $(VENV)/uv.log || $(PIP) --no-compile --editable ".[dev]"
 	touch $(VENV)/installed $@

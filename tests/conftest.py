@@ -9,6 +9,7 @@ import pytest
 
 from sandbox.physics.state import COLUMNS
 from sandbox.physics.world import World
+from tests.support.compiling_once import compile_before_tests
 
 with suppress(ImportError):
     import resource
@@ -38,6 +39,11 @@ def memory_held():
         return 0.0
     with open("/proc/self/statm") as figures:
         return resource.getpagesize() * float(figures.read().split()[1])
+
+
+def pytest_sessionstart(session):
+    """Compile kernels once and say so, before workers begin."""
+    compile_before_tests(session.config)
 
 
 def pytest_runtest_logfinish():

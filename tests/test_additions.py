@@ -120,11 +120,155 @@ def _draw_triangle(pen: IconPen) -> None:
 TRIANGLE = EditorTool("triangle", "Shift+A", "Triangle", _draw_triangle, TriangleDrawing)
 '''
 
+LIFT = '''
+"""LiftTool: a click throws what it hits up."""
+
+from sandbox.physics.snapshot import Snapshot
+from sandbox.session.commands import Command, Push
+from sandbox.tools.play_tool import PlayTool
+from sandbox.tools.tool import NOTHING, PlacedTool, PointerEvent, Response, Submission
+
+
+class LiftTool(PlacedTool):
+    """Throw up what is within a circle; size [m]: its radius."""
+
+    def __init__(self, new_gesture):
+        self.size, self._new_gesture = 1.0, new_gesture
+
+    def handle(self, event, snapshot):
+        if event.kind != "down":
+            return NOTHING
+        return Response((Submission(Push(event.position, self.size, (0.0, 50.0)), self._new_gesture()),))
+
+    def cancel(self):
+        return NOTHING
+
+    def take_up(self, size, height):
+        self.size = size
+
+    @property
+    def size_to_share(self):
+        return self.size
+
+    def resize(self, steps):
+        self.size *= 2.0
+        return True
+
+    @property
+    def ghost(self):
+        return [] if self.place is None else [[self.place, (self.place[0], self.place[1] + self.size)]]
+
+
+def draw_lift(pen):
+    pen.line((12, 20), (12, 4))
+
+
+LIFT = PlayTool("lift", ("Shift+I",), "Lift: click throws up", "Parts", LiftTool, draw_lift)
+'''
+
+GENTLE = '''
+"""Gentle: half of each impulse of the single pass."""
+
+from sandbox.physics.solvers import single_pass
+from sandbox.physics.solvers.single_pass import spring_constant
+
+__all__ = ["solve", "spring_constant"]
+
+
+def solve(world, substep, contacts):
+    before = world.velocity.copy()
+    single_pass.solve(world, substep, contacts)
+    world.velocity[:] = 0.5 * (before + world.velocity)
+'''
+
+GREET = '''
+"""`sandbox greet`."""
+
+from sandbox.cli.command import add_command
+from sandbox.cli.inputs import EXIT_OK, Refused, level_of
+
+
+def add(commands):
+    parser = add_command(commands, "greet", greet, "say the name of a level")
+    parser.add_argument("level")
+
+
+def greet(options):
+    level = level_of(options.level)
+    if not level.bodies:
+        raise Refused(f"{options.level}: there is nobody to greet")
+    print(f"Hello, {level.name}")
+    return EXIT_OK
+'''
+
+COUNTS = '''
+"""CountsPage: how many bodies there are."""
+
+from sandbox.app.widgets.rows import Row, RowList
+
+
+class CountsPage:
+    def __init__(self, screen, place, container):
+        self._screen = screen
+        self.list = RowList(screen.ui, place, lambda index: None, container)
+
+    def refresh(self):
+        self.list.show_rows([Row(f"{len(self._screen.document.level.bodies)} bodies")], 0)
+
+    def close(self):
+        self._screen.ui.remove(self.list)
+'''
+
+CLOCK = '''
+"""ClockRows: how far the run is, and a field that sets gravity upside down."""
+
+from sandbox.app.panel.panel_rows import ROW
+from sandbox.app.panel.panel_section import PanelSection
+from sandbox.session.commands import SetGravity
+
+
+class ClockRows:
+    def __init__(self, panel):
+        self.playback = panel.playback
+
+    def build(self, rows):
+        self.tick = rows.named_field("Tick", "Ticks so far", lambda text: False)
+        self.flip = rows.ui.button(rows.row(ROW, 6), "Upside down", self._flip, rows.back)
+
+    def refresh(self, is_look):
+        self.tick.show(str(self.playback.session.tick))
+
+    def _flip(self):
+        x, y = self.playback.session.world.settings.gravity
+        self.playback.submit(SetGravity((x, -y)))
+
+
+CLOCK = PanelSection("Clock", ClockRows)
+'''
+
+# What a script that drives the window begins with.
+WINDOW = f"""
+import sys
+sys.path.append({str(ROOT)!r})
+import pytest
+from tests.app.conftest import Driver
+import pygame
+from sandbox.app.base.shortcuts import tip_of
+for name in ("user_data_dir", "user_documents_dir", "user_cache_dir"):
+    pytest.MonkeyPatch().setattr(f"platformdirs.{{name}}", lambda *_, **__: "person")
+driver = Driver(parse_level(level(), "level"))
+"""
+
 
 @pytest.fixture
 def package(tmp_path):
     """A copy of the package."""
     return copy_of_the_package(tmp_path)
+
+
+def with_assets(package):
+    """Give the copy the files that the window needs."""
+    shutil.copytree(ROOT / "assets", package / "_shipped/assets", dirs_exist_ok=True)
 
 
 def put(path, text, before=None):
@@ -221,21 +365,12 @@ assert state_hash(world) != before and list(hash_by_array(world))[15] == "charge
 
 
 def test_an_editor_tool_is_one_file_and_its_place_in_the_palette(package):
-    shutil.copytree(ROOT / "assets", package / "_shipped/assets", dirs_exist_ok=True)
+    with_assets(package)
     put(package / "editor/tools/drawing_triangle.py", TRIANGLE)
     palette = package / "editor/tools/palette.py"
     put(palette, "from sandbox.editor.tools.drawing_triangle import TRIANGLE\n", before="import LASSO")
     palette.write_text(palette.read_text(encoding="utf-8").replace(" PIN, WAVE", " TRIANGLE, PIN, WAVE"))
-    script = f"""
-import sys
-sys.path.append({str(ROOT)!r})
-import pytest
-from tests.app.conftest import Driver
-import pygame
-from sandbox.app.base.shortcuts import tip_of
-for name in ("user_data_dir", "user_documents_dir", "user_cache_dir"):
-    pytest.MonkeyPatch().setattr(f"platformdirs.{{name}}", lambda *_, **__: "person")
-driver = Driver(parse_level(level(), "level"))
+    script = """
 driver.app.documents.new()
 driver.frames(2)
 driver.click_widget(driver.editor.palette.tools["triangle"])
@@ -251,8 +386,122 @@ assert [particle.mass for particle in drawn.particles] == [3.0] * 6 and len(draw
 driver.app.close()
 print(tip_of("tool_triangle", "edit"), driver.editor.history.labels, sep="\\n")
 """
-    assert play(package, script).splitlines() == [
+    assert play(package, WINDOW + script).splitlines() == [
         "Triangle  [Shift+A]",
         "['New', 'Draw triangle', 'Draw triangle']",
     ]
     assert changed(package) == ["editor/tools/drawing_triangle.py", "editor/tools/palette.py"]
+
+
+def test_a_tool_in_play_is_one_file_and_its_line_in_the_table(package):
+    with_assets(package)
+    put(package / "tools/lifting.py", LIFT)
+    table = package / "tools/play_tools.py"
+    put(table, "from sandbox.tools.lifting import LIFT\n", before="import PIN")
+    table.write_text(table.read_text(encoding="utf-8").replace("WIND, DELETE", "WIND, LIFT, DELETE"))
+    script = """
+driver.key(pygame.K_b)
+palette = driver.app.play.palette
+assert list(palette.buttons).index("lift") + 1 == list(palette.buttons).index("delete")
+driver.click_widget(palette.buttons["lift"])
+assert driver.stage.tool_name == "lift"
+driver.key(pygame.K_i, pygame.KMOD_SHIFT)
+assert driver.stage.tool_name == "drag"
+driver.key(pygame.K_i, pygame.KMOD_SHIFT)
+size = driver.stage.tool.size
+driver.app.play.turn_wheel((300, 300), 1)
+assert driver.stage.tool.size == 2 * size and driver.stage.size == 2 * size
+driver.move(driver.pixel_of("r.end"))
+assert driver.stage.tool.ghost and driver.stage.pointed is None
+driver.key(pygame.K_0)
+assert driver.stage.tool_name == "push" and driver.stage.tool.size == 2 * size
+driver.key(pygame.K_i, pygame.KMOD_SHIFT)
+driver.click(driver.pixel_of("r.end"))
+(entry,) = driver.playback.session.gestures
+assert entry.command.type == "push"
+driver.app.close()
+print(tip_of("tool_lift", "play"))
+"""
+    assert play(package, WINDOW + script) == "Lift: click throws up  [Shift+I]"
+    assert changed(package) == ["tools/lifting.py", "tools/play_tools.py"]
+
+
+def test_a_solver_is_one_file_its_line_in_the_table_and_its_name(package):
+    put(package / "physics/solvers/gentle.py", GENTLE)
+    table = package / "physics/solvers/__init__.py"
+    settings = package / "physics/settings.py"
+    settings.write_text(settings.read_text(encoding="utf-8").replace('"direct")\n', '"direct", "gentle")\n', 1))
+    put(table, '    "gentle": Solver("gentle", proven_limit=False, bounded=False),\n', before='    "direct": Solver(')
+    script = """
+text = level().replace(b'"iterative"', b'"gentle"')
+gentle, single = played(text), played(level().replace(b'"iterative"', b'"single_pass"'))
+assert gentle.settings.solver == "gentle" and (gentle.position != single.position).any()
+try:
+    parse_level(level().replace(b'"iterative"', b'"gentler"'), "level")
+except ValueError as error:
+    print(error)
+"""
+    assert "gentle" in play(package, script)
+    assert changed(package) == ["physics/settings.py", "physics/solvers/__init__.py", "physics/solvers/gentle.py"]
+
+
+def test_a_command_of_the_shell_is_one_file_and_its_name_in_the_table(package):
+    put(package / "cli/greet.py", GREET)
+    table = package / "cli/__init__.py"
+    put(table, "    greet,\n", before="    play,")
+    table.write_text(table.read_text(encoding="utf-8").replace("    play, toy", "    greet, play, toy"))
+    script = """
+from sandbox.cli import main
+Path("two.json").write_bytes(level())
+Path("none.json").write_text('{"format": "spring-sandbox/level", "version": 2, "name": "Nobody"}')
+assert main(["greet", "two.json"]) == 0 and main(["greet", "none.json"]) == 2
+"""
+    assert play(package, script) == "Hello, Two"
+    assert changed(package) == ["cli/__init__.py", "cli/greet.py"]
+
+
+def test_a_page_of_the_editors_side_is_one_file_and_its_line_in_the_table(package):
+    with_assets(package)
+    put(package / "app/edit/side/counts.py", COUNTS)
+    side = package / "app/edit/side/side.py"
+    put(side, "from sandbox.app.edit.side.counts import CountsPage\n", before="import FindingsPage")
+    put(side, '    "counts": ("Counts", "How many there are", CountsPage),\n', before='    "history": ("History"')
+    script = """
+driver.app.documents.edit_level(parse_level(level(), "level"))
+driver.frames(2)
+side = driver.editor.side
+driver.click_widget(side._tab_button("counts"))
+print(side.page.list.rows[0].text)
+driver.key(pygame.K_TAB, pygame.KMOD_CTRL)
+print(side.tab)
+driver.app.close()
+"""
+    assert play(package, WINDOW + script).splitlines() == ["1 bodies", "history"]
+    assert changed(package) == ["app/edit/side/counts.py", "app/edit/side/side.py"]
+
+
+def test_a_section_of_the_play_panel_is_one_file_and_its_line_in_the_table(package):
+    with_assets(package)
+    put(package / "app/panel/clock_rows.py", CLOCK)
+    panel = package / "app/panel/panel.py"
+    put(panel, "from sandbox.app.panel.clock_rows import CLOCK\n", before="import STIFFNESSES")
+    put(panel, '    "clock": CLOCK,\n', before='    "world": PanelSection(')
+    script = """
+panel = driver.panel
+assert not panel.is_open("clock") and not panel.sections["clock"].flip.visible
+low = panel.rows.y
+driver.app.play.fold("clock")
+driver.frames(2)
+assert driver.panel.is_open("clock") and driver.panel.rows.y > low
+rows = driver.panel.sections["clock"]
+before = driver.world.settings.gravity
+driver.app.ui.focus_on(rows.flip)
+driver.key(pygame.K_RETURN)
+driver.frames(2)
+assert driver.world.settings.gravity == (before[0], -before[1]), driver.world.settings.gravity
+assert int(rows.tick.text) == driver.playback.session.tick
+driver.app.close()
+print("played")
+"""
+    assert play(package, WINDOW + script) == "played"
+    assert changed(package) == ["app/panel/clock_rows.py", "app/panel/panel.py"]

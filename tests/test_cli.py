@@ -659,6 +659,7 @@ sys.exit(code)
 """
 
 
+@pytest.mark.slow
 def test_a_headless_run_loads_no_drawing_and_without_contacts_nothing_that_finds_or_solves_them(rope, tmp_path):
     def loaded(*arguments: str) -> set[str]:
         """Modules that a run has loaded, and the kernels that it has made."""

@@ -17,7 +17,7 @@ from sandbox.physics.analysis.firmness import lowest_mode_of
 from sandbox.physics.analysis.stability import report
 from sandbox.physics.equation import of_body, of_springs
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.step import step
+from sandbox.physics.step import PHYSICS_VERSION, step
 from sandbox.physics.substeps import halve
 from sandbox.physics.world import World
 from sandbox.session.check_run import run_checks
@@ -315,3 +315,28 @@ def test_the_glossary_has_each_word_once():
 def test_a_search_for_a_word_of_the_glossary_leads_to_its_file(term, file):
     text = " ".join((ROOT / file).read_text(encoding="utf-8").lower().replace("_", " ").split())
     assert term.lower() in text
+
+
+def test_the_changelog_says_in_short_entries_under_known_headings_what_was_changed_and_what_recordings_must_expect():
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    known = {"Recordings and levels made before", "Added", "Changed", "Fixed"}
+    for release in re.split(r"^## ", text, flags=re.MULTILINE)[1:]:
+        headings = re.findall(r"^### (.*)$", release, re.MULTILINE)
+        assert headings and set(headings) <= known
+        assert "Recordings" in headings[0] or f"physics version {PHYSICS_VERSION}" not in release
+    entries = re.split(r"^- ", text, flags=re.MULTILINE)[1:]
+    assert [entry for entry in entries if len(entry.split("\n\n")[0]) > 330] == []
+    assert f"physics version {PHYSICS_VERSION}" in text
+
+
+# Words that plain English has better ones for, and the level format's page, which is made from the models.
+NOT_PLAIN = re.compile(r"\b(anew|deeds?|whatever|so many|stuff|what is held)\b", re.IGNORECASE)
+WRITTEN = [*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
+MADE = ("level-format.md", "gallery.md", "state.md")
+
+
+@pytest.mark.parametrize("page", [page for page in WRITTEN if page.name not in MADE], ids=lambda page: page.name)
+def test_pages_are_in_plain_english(page):
+    text = re.sub(r"```.*?```|`[^`\n]*`", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    prose = "\n".join(line for line in text.splitlines() if not line.startswith("    "))
+    assert [match.group() for match in NOT_PLAIN.finditer(prose)] == []

@@ -25,6 +25,13 @@ def add_look_options(app: argparse.ArgumentParser) -> None:
     app.add_argument("--theme", choices=("dark", "light", "system"), help="for this time; default: as in the settings")
 
 
+def add_window_options(app: argparse.ArgumentParser) -> None:
+    """What the app's own window takes."""
+    add_look_options(app)
+    text = "say in the window's title what happens, for programs that follow it"
+    app.add_argument("--states", action="store_true", help=text)
+
+
 def add_length_options(run: argparse.ArgumentParser, text: str) -> None:
     """How long a run is, in one of two units; text: of what, and how long without them."""
     length = run.add_mutually_exclusive_group()

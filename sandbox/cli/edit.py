@@ -2,7 +2,7 @@
 
 import argparse
 
-from sandbox.cli.command import Commands, add_command, add_look_options
+from sandbox.cli.command import Commands, add_command, add_window_options
 from sandbox.cli.inputs import Refused
 
 
@@ -10,7 +10,7 @@ def add(commands: Commands) -> None:
     """The command."""
     parser = add_command(commands, "edit", edit, "open the level editor: a level, or an empty sheet")
     parser.add_argument("level", nargs="?", metavar="LEVEL")
-    add_look_options(parser)
+    add_window_options(parser)
 
 
 def edit(options: argparse.Namespace) -> int:
@@ -22,4 +22,7 @@ def edit(options: argparse.Namespace) -> int:
     from sandbox.app.base.start_request import StartRequest
     from sandbox.app.window.opening import open_app
 
-    return open_app(lambda: StartRequest(edit=options.level or ""), scale=options.scale, theme=options.theme)
+    def find() -> StartRequest:
+        return StartRequest(edit=options.level or "")
+
+    return open_app(find, scale=options.scale, theme=options.theme, says_states=options.states)

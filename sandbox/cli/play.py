@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.cli.command import Commands, add_command, add_look_options
+from sandbox.cli.command import Commands, add_command, add_window_options
 from sandbox.cli.inputs import EXIT_OK, level_or_replay
 from sandbox.cli.running import run_with_bar
 from sandbox.terminal import seconds
@@ -25,7 +25,7 @@ def add(commands: Commands) -> None:
     )
     parser.add_argument("--profile", action="store_true", help="print where a frame's time goes, at the end")
     parser.add_argument("--seconds", type=seconds, help="close the app after so many seconds")
-    add_look_options(parser)
+    add_window_options(parser)
 
 
 def play(options: argparse.Namespace) -> int:
@@ -45,7 +45,10 @@ def play(options: argparse.Namespace) -> int:
         source = Path(options.level) if not replay and Path(options.level).is_file() else None
         return StartRequest(None if replay else level, replay, source)
 
-    return open_app(find, profile=options.profile, seconds=options.seconds, scale=options.scale, theme=options.theme)
+    return open_app(
+        find, profile=options.profile, seconds=options.seconds, scale=options.scale, theme=options.theme,
+        says_states=options.states,
+    )  # fmt: skip
 
 
 def _play_headless(level: "Level", replay: "Replay | None") -> int:

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from sandbox.level.format.quantities import Coordinate, Description, Name, Seconds
+from sandbox.level.format.quantities import Coordinate, Description, Key, Name, Seconds
 
 Metric = Literal[
     "max_strain",
@@ -26,47 +26,69 @@ Metric = Literal[
     "settled",
 ]
 Box = tuple[Coordinate, Coordinate, Coordinate, Coordinate]
+# Keys that a check may hold.
+HOLD_LIMIT = 20
 # A body that is no faster [m/s] has settled.
 STILL = 0.05
 
 
 @dataclass(frozen=True)
 class Measured:
-    """What a metric is measured of: fields that it needs, and those that it may have; its unit.
+    """What a metric is measured of: fields that it needs, one of which it needs, and those that it may have; its unit.
 
-    words: a check of it as a sentence; {owner}, {of} and {other} stand for what it is measured of, {bounds} for what it
-    must keep. at_least: the bound that holds where a check names none; momentary: whether it has a value at every tick.
+    label: what people call it. words: a check of it as a sentence; {owner}, {of} and {other} stand for what it is
+    measured of, {bounds} for what it must keep. at_least: the bound that holds where a check names none; momentary:
+    whether it has a value at every tick. usual: the least and the largest value that a new check of it lets pass.
     """
 
+    label: str
     words: str
     unit: str = ""
     needs: tuple[str, ...] = ()
+    needs_one: tuple[str, ...] = ()
     may_have: tuple[str, ...] = ()
     at_least: float | None = None
     momentary: bool = True
+    usual: tuple[float | None, float | None] = (None, 0.0)
 
     def takes(self, field: str) -> bool:
         """Whether a field means anything to it."""
-        return field in self.needs or field in self.may_have
+        return field in (*self.needs, *self.needs_one, *self.may_have)
 
 
+_OWNER = ("particle", "body")
 METRICS: dict[str, Measured] = {
-    "max_strain": Measured("the largest strain of the last 2 s is {bounds}", momentary=False),
-    "rms_strain": Measured("the root mean square strain of the last 2 s is {bounds}", momentary=False),
-    "strain": Measured("the largest strain{of} is {bounds}", may_have=("body",)),
-    "kinetic_energy": Measured("the energy of motion is {bounds}", "J"),
-    "potential_energy": Measured("the energy of springs and height is {bounds}", "J"),
-    "energy": Measured("the energy is {bounds}", "J"),
-    "max_speed": Measured("the speed of the fastest particle is {bounds}", "m/s"),
-    "non_finite": Measured("{bounds} particles have no place or speed"),
-    "broken_springs": Measured("{bounds} springs{of} break", may_have=("body",)),
-    "x": Measured("x{of} is {bounds}", "m", ("particle",)),
-    "y": Measured("y{of} is {bounds}", "m", ("particle",)),
-    "speed": Measured("the speed{of} is {bounds}", "m/s", ("particle",)),
-    "distance": Measured("the distance from {owner} to {other} is {bounds}", "m", ("particle", "other")),
-    "inside": Measured("{owner} is inside the box by {bounds}", "m", ("box",), ("particle", "body"), at_least=0.0),
-    "settled": Measured("{owner} stands still for {bounds}", "s", (), ("body",), at_least=1.0),
-}
+    "x": Measured("x", "x{of} is {bounds}", "m", needs_one=_OWNER, usual=(0.0, None)),
+    "y": Measured("height y", "y{of} is {bounds}", "m", needs_one=_OWNER, usual=(0.0, None)),
+    "speed": Measured("speed", "the speed{of} is {bounds}", "m/s", needs_one=_OWNER, usual=(None, 0.1)),
+    "inside": Measured(
+        "inside a box", "{owner} is inside the box by {bounds}", "m", ("box",), may_have=_OWNER, at_least=0.0,
+        usual=(0.0, None),
+    ),
+    "settled": Measured(
+        "stands still", "{owner} stands still for {bounds}", "s", may_have=("body",), at_least=1.0, usual=(1.0, None)
+    ),
+    "distance": Measured(
+        "distance", "the distance from {owner} to {other} is {bounds}", "m", ("particle", "other"), usual=(None, 1.0)
+    ),
+    "strain": Measured("largest strain", "the largest strain{of} is {bounds}", may_have=("body",), usual=(None, 0.1)),
+    "max_strain": Measured(
+        "largest strain, last 2 s", "the largest strain of the last 2 s is {bounds}", momentary=False, usual=(None, 0.1)
+    ),
+    "rms_strain": Measured(
+        "mean strain, last 2 s", "the root mean square strain of the last 2 s is {bounds}", momentary=False,
+        usual=(None, 0.1),
+    ),
+    "broken_springs": Measured("broken springs", "{bounds} springs{of} break", may_have=("body",)),
+    "max_speed": Measured("speed of the fastest", "the speed of the fastest particle is {bounds}", "m/s",
+                          usual=(None, 100.0)),
+    "kinetic_energy": Measured("energy of motion", "the energy of motion is {bounds}", "J", usual=(None, 1.0)),
+    "potential_energy": Measured(
+        "energy of springs and height", "the energy of springs and height is {bounds}", "J", usual=(None, 1.0)
+    ),
+    "energy": Measured("energy", "the energy is {bounds}", "J", usual=(None, 1.0)),
+    "non_finite": Measured("places that are no number", "{bounds} particles have no place or speed"),
+}  # fmt: skip
 # What people say of some metrics with bounds that most checks of them have: the least and the largest value.
 PROMISES = {
     ("non_finite", -math.inf, 0.0): "every place and speed is a number",
@@ -77,6 +99,13 @@ PROMISES = {
 SUBJECTS = ("particle", "other", "body", "box")
 
 
+class HoldDef(Description):
+    """A key that is held while a check runs."""
+
+    key: Key = Field(description="A key that drives a motor or a hydraulic.")
+    during: tuple[Seconds, Seconds] = Field(description="From when to when it is held.")
+
+
 class CheckDef(Description):
     """A metric of the level's run and the bounds that it must keep, at a time, always or eventually."""
 
@@ -84,7 +113,10 @@ class CheckDef(Description):
     metric: Metric = Field(description="What is measured, see [Checks](#checks).")
     particle: Name | None = Field(default=None, description="The particle that is measured.")
     other: Name | None = Field(default=None, description="The particle that `distance` is measured to.")
-    body: Name | None = Field(default=None, description="The body that is measured; null = the whole level.")
+    body: Name | None = Field(
+        default=None,
+        description="The body that is measured, of x, y and speed its centre of mass; null = the whole level.",
+    )
     box: Box | None = Field(
         default=None,
         description="What it must be inside of: left, bottom, right, top.",
@@ -101,6 +133,9 @@ class CheckDef(Description):
     at_least: float | None = Field(
         default=None,
         description="Lower bound, in the metric's unit; of `inside` 0, of `settled` 1 where none is.",
+    )
+    hold: tuple[HoldDef, ...] = Field(
+        default=(), max_length=HOLD_LIMIT, description="Keys that are held while it runs; without them none is pressed."
     )
 
 
@@ -148,6 +183,11 @@ def time_text(check: CheckDef) -> str:
     if check.always or check.eventually:
         return f"{'always' if check.always else 'eventually'} from {start:g} to {end:g} s"
     return f"after {check.after:g} s"
+
+
+def held_text(check: CheckDef) -> str:
+    """The keys that a check holds: "D from 1 to 8 s"; empty where it holds none."""
+    return ", ".join(f"{hold.key.upper()} from {hold.during[0]:g} to {hold.during[1]:g} s" for hold in check.hold)
 
 
 def wanted_text(check: CheckDef) -> str:

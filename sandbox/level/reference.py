@@ -204,21 +204,23 @@ _CHECKS = f"""\
 A check measures one thing of the level as it runs by itself, and holds it against `at_most`, `at_least` or both. It is
 measured once, `after` so many seconds; with `always` at every tick of a span of time, all of which must hold; with
 `eventually` likewise, of which one must hold. `sandbox check` and the editor's Checks page run them, and so does
-[pytest](testing.md). Four examples:
+[pytest](testing.md). Nobody presses a key meanwhile, but those that `hold` names. Five examples:
 
 ```
 {{"name": "the rope never tears", "metric": "strain", "body": "rope", "always": [0, 10], "at_most": 0.2}}
 {{"name": "in the cup", "metric": "inside", "particle": "ball", "box": [4, 0, 5, 2], "eventually": [0, 20]}}
 {{"name": "the cube stands still", "metric": "settled", "body": "cube", "after": 15}}
 {{"name": "it stays together", "metric": "distance", "particle": "a", "other": "b", "always": [0, 10], "at_most": 1.5}}
+{{"name": "it crosses", "metric": "x", "body": "car", "eventually": [0, 9], "at_least": 12,
+  "hold": [{{"key": "d", "during": [0, 8]}}]}}
 ```
 
 | metric | unit | measured of | is |
 |---|---|---|---|
 | `strain` | 1 | the level, or a `body` | largest strain of a spring, stretched or compressed, that bears a load |
 | `max_strain`, `rms_strain` | 1 | the level | largest strain and root mean square of the last 2 s; with `after` only |
-| `x`, `y` | m | a `particle` | where it is |
-| `speed` | m/s | a `particle` | how fast it is |
+| `x`, `y` | m | a `particle` or a `body` | where it is; of a body its centre of mass |
+| `speed` | m/s | a `particle` or a `body` | how fast it is; of a body its centre of mass |
 | `max_speed` | m/s | the level | the speed of the fastest |
 | `distance` | m | a `particle` | how far it is from the `other` |
 | `inside` | m | a `particle`, a `body`, all | how far the outermost centre is inside the `box`, below 0 outside |

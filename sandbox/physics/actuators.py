@@ -36,14 +36,14 @@ class StrainLimits:
 
 
 def unlimited(materials: int) -> StrainLimits:
-    """Limits of so many materials that neither break nor yield."""
+    """Limits of a number of materials that neither break nor yield."""
     never = np.full(materials, NEVER)
     return StrainLimits(never, never, never, np.zeros(materials))
 
 
 @dataclass(frozen=True)
 class Surface:
-    """What a particle is like to the touch: friction, restitution, group and collides, see StateArrays."""
+    """How a particle behaves at contacts: friction, restitution, group and collides, see StateArrays."""
 
     friction: float = 0.0
     restitution: float = 0.0
@@ -113,7 +113,7 @@ class Motors:
 
 @dataclass(frozen=True, eq=False)
 class Actuators:
-    """Everything that is driven; names: what the parts that a command can drive are called."""
+    """Everything that is driven; names: of the motors and hydraulics that a command can drive."""
 
     names: tuple[str, ...] = ()
     muscles: Muscles = field(default_factory=Muscles)

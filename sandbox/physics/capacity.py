@@ -12,7 +12,7 @@ Array = NDArray[Any]
 GROWTH, LEAST = 1.5, 16
 
 
-class Room:
+class Capacity:
     """Larger arrays, by name, of which those in use are the first rows."""
 
     def __init__(self) -> None:

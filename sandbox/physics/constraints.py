@@ -36,7 +36,7 @@ Floats = NDArray[np.float64]
 
 
 class ConstraintArrays(NamedTuple):
-    """ConstraintArrays as kernels read them: t constraints, whose corners lie one after another in the q of all.
+    """Constraints as kernels read them: t of them, whose corners lie one after another in q rows.
 
     kind (t,), first (t,) and corners (t,) = where its corners begin and how many they are, rest (t, 2) = area wanted
     and area of the form [m^2], or cosine and sine of the angle at rest; active (t,); particle (q,) = slots, weight
@@ -194,8 +194,7 @@ def sides_gone(
     spring_active: NDArray[np.bool_],
     springs: NDArray[np.int64],
 ) -> NDArray[np.int32]:
-    """ConstraintArrays, each at least once, of which one of these springs was a side that no active spring holds any
-    more."""
+    """The constraints, each at least once, that lost a side with these springs: no active spring is there any more."""
     cut = _sides(particle_a[springs], particle_b[springs])
     loose = np.setdiff1d(cut, _sides(particle_a[spring_active], particle_b[spring_active]))
     owner = np.repeat(np.arange(len(constraints.kind)), constraints.corners)

@@ -72,7 +72,7 @@ def implicit_impulse(stiff: float, restoring: float, growth: float, error: float
 
 @scalar_kernel
 def implicit_update(impulse: float, velocity_error: float, response: float, softness: float) -> float:
-    """What a sweep makes of an impulse [N s]: velocity_error [m/s] after it, its bias added; see `gauss_seidel`.
+    """The impulse [N s] after a sweep: velocity_error [m/s] after it, its bias added; see `gauss_seidel`.
 
     response [1/kg] = J W J^T; softness [1/kg] = response (1 - Cd) / Cd = 1 / K.
     """
@@ -153,38 +153,38 @@ def half_step_of_network(stiffness: float, damping: float, lowest_mode: float) -
 
 
 @scalar_kernel
-def part_of_network(stiffness: float, damping: float, lowest_mode: float, parts: int) -> tuple[float, float]:
-    """Cs and Cd of one of so many parts of a tick, a power of two, that leave k = Cs m_r / ((1 - Cd) h^2) as it was.
+def part_of_network(stiffness: float, damping: float, lowest_mode: float, substeps: int) -> tuple[float, float]:
+    """Cs and Cd of one substep of a tick, a power of two, that leave k = Cs m_r / ((1 - Cd) h^2) as it was.
 
-    So the energy of a network does not depend on the parts. Damping is the greater of what `half_step_of_network` makes
-    of it and of c = (Cd - Cs) m_r / ((1 - Cd) h) as it was. Cs <= Cd stays so.
+    So the energy of a network does not depend on the substeps. Damping is the greater of what `half_step_of_network`
+    makes of it and of c = (Cd - Cs) m_r / ((1 - Cd) h) as it was. Cs <= Cd stays so.
     """
     # S = Cs / (1 - Cd), D = Cd / (1 - Cd):  k = S m_r / h^2,  c = (D - S) m_r / h,  1 + a D = 1 / (1 - Cd_a)
     stiffness, damping = capped(stiffness, damping, HIGHEST_COEFFICIENT)
     mode = lowest_mode if lowest_mode > 0.0 else 1.0
     restoring = stiffness / (1.0 - damping)
     stiff = damping / (1.0 - damping)
-    while parts > 1:
+    while substeps > 1:
         halved = stiff / (1.0 + math.sqrt(1.0 + mode * stiff))
         # Of Cs > Cd, c is below 0, and no less than a quarter of D is kept: Cs / Cd never rises.
         stiff = max(halved, 0.25 * max(stiff, 2.0 * stiff - restoring))
         restoring *= 0.25
-        parts //= 2
+        substeps //= 2
     return restoring / (1.0 + stiff), stiff / (1.0 + stiff)
 
 
-def whole_of_parts(stiffness: float, damping: float, parts: int) -> tuple[float, float]:
-    """Cs and Cd of a tick of which `part_of_network` makes these of one of its parts, for a spring of its own: Cd < 1.
+def whole_of_parts(stiffness: float, damping: float, substeps: int) -> tuple[float, float]:
+    """Cs and Cd of a tick of which `part_of_network` makes these of a substep, for a spring of its own: Cd < 1.
 
     The inverse of the map, but for digits: of three lines that all rise the greatest counts there, so here the least of
     their inverses.
     """
     # One doubling: S = 4 S';  D = min(D'^2 + 2 D', 4 D', 2 D' + S / 2)
     restoring, stiff = stiffness / (1.0 - damping), damping / (1.0 - damping)
-    while parts > 1:
+    while substeps > 1:
         restoring *= 4.0
         stiff = min(stiff * (stiff + 2.0), 4.0 * stiff, 2.0 * stiff + 0.5 * restoring)
-        parts //= 2
+        substeps //= 2
     return restoring / (1.0 + stiff), stiff / (1.0 + stiff)
 
 

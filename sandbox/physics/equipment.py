@@ -1,4 +1,4 @@
-"""What a world has beside its state: constant but where bodies join it while it runs, and then replaced as a whole."""
+"""The constant part of a world, beside its state; replaced as a whole when a body joins or leaves."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ class Joined:
 
 
 class Equipment(NamedTuple):
-    """What a world has beside its state, by the names that World has for it.
+    """The constant part of a world, by the names that World has for it.
 
     Names of materials and the strains that each bears; driven parts; bodies that keep areas, and the constraints of
     each; bodies that may be stiff by their form; what joined the world while it ran, in order.

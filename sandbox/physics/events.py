@@ -1,11 +1,13 @@
-"""What a tick tells of besides its state."""
+"""Events of a tick, beside its state."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Containment:
-    """What was taken back: at a tick, in the array `array` of the particle, spring or constraint `name`."""
+    """An impossible value that was taken back: at a tick, in the array `array` of the particle, spring or constraint
+    `name`.
+    """
 
     tick: int
     array: str

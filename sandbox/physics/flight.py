@@ -17,7 +17,8 @@ from sandbox.physics.world import World
 
 
 def begin_flight(world: World, touched: Slots, h: float) -> None:
-    """Take back half of what gravity has added in a step of h [s] to what has not moved before and flies.
+    """Take back half of the velocity that gravity added in a first step of h [s] to free particles that no contact
+    pushed.
 
     touched: particles that contacts have pushed.
     """

@@ -1,4 +1,4 @@
-"""What acts on particles before the springs do: gravity and the air. To the springs it is work from outside."""
+"""Gravity and air, which act on particles before the springs do. To the springs they are work from outside."""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -11,10 +11,10 @@ from sandbox.physics.settings import WorldSettings
 from sandbox.physics.world import Floats, World
 
 
-class Before(NamedTuple):
-    """What a step begins with, before forces and drives: velocity [m/s] (n, 2) and rest_length [m] (m,).
+class StepStart(NamedTuple):
+    """The start of a step, before forces and drives: velocity [m/s] (n, 2) and rest_length [m] (m,).
 
-    A solver that tests energies measures by it what forces and drives have done.
+    A solver that tests energies measures the work of forces and drives by it.
     """
 
     velocity: Floats
@@ -24,14 +24,14 @@ class Before(NamedTuple):
 class ForcedParticles(NamedTuple):
     """The arrays of a world that gravity and the air read and change, see StateArrays.
 
-    before [m/s] (n, 2): the velocities at the start of the step. numbers (5,): gravity [m/s^2], wind [m/s], drag [1/s].
+    start [m/s] (n, 2): the velocities at the start of the step. numbers (5,): gravity [m/s^2], wind [m/s], drag [1/s].
     """
 
     velocity: Floats
     inverse_mass: Floats
     gravity_scale: Floats
     particle_active: NDArray[np.bool_]
-    before: Floats
+    start: Floats
     numbers: Floats
 
 
@@ -59,8 +59,8 @@ def add_gravity_and_air(particles: ForcedParticles, h: float) -> None:
     drag = particles.numbers[4]
     share = drag * h / (1.0 + drag * h)
     for p in range(particles.inverse_mass.shape[0]):
-        particles.before[p, 0] = velocity[p, 0]
-        particles.before[p, 1] = velocity[p, 1]
+        particles.start[p, 0] = velocity[p, 0]
+        particles.start[p, 1] = velocity[p, 1]
         if particles.particle_active[p] and particles.inverse_mass[p] > 0.0:
             velocity[p, 0] += gravity_x * particles.gravity_scale[p] * h
             velocity[p, 1] += gravity_y * particles.gravity_scale[p] * h

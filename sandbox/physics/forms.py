@@ -14,7 +14,8 @@ USUAL_GRAVITY = 9.81
 
 @dataclass(frozen=True)
 class Firmness:
-    """What is asked of a body: its sag, a share of its height; or the frequency [Hz] and damping ratio of its wobble.
+    """The wanted firmness of a body: its sag, a share of its height; or the frequency [Hz] and damping ratio of its
+    wobble.
 
     A sag of 0 is complete rigidity.
     """

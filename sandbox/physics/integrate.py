@@ -1,4 +1,4 @@
-"""Where velocities take particles: the last part of a step."""
+"""Velocities change positions: the last phase of a step."""
 
 import math
 

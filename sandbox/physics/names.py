@@ -1,4 +1,4 @@
-"""Names: what the slots of one kind are called, and the slots of those names."""
+"""Names: the names of the slots of one kind, and the slot of each name."""
 
 import bisect
 from collections.abc import Sequence

@@ -45,15 +45,15 @@ from sandbox.physics.forces import Forces, add_gravity_and_air, forces_of
 from sandbox.physics.integrate import advance, follow, turn
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
 from sandbox.physics.sanitise import LOST, UNSOUND, CheckedArrays, are_sound, checked_arrays, keep_if_sound
-from sandbox.physics.solvers.contact.free_constraints import Work, new_work
+from sandbox.physics.solvers.contact.free_constraints import FreeContactScratch, new_work
 from sandbox.physics.solvers.contact.free_contacts import solve_free_contacts
 from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, new_islands, sort_free_contacts
 from sandbox.physics.solvers.contact.small_steps import small_steps
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.substeps import Cadence
 from sandbox.physics.terrain import Terrain
+from sandbox.physics.untangling.crossing_candidates import ShapeBounds, new_shape_bounds
 from sandbox.physics.untangling.inversion import Inversions, Triangles, find_inverted, new_inversions, triangles_of
-from sandbox.physics.untangling.meeting import Meetings, new_meetings
 from sandbox.physics.untangling.overlaps import (
     CROSSINGS,
     OVERLAPS,
@@ -102,8 +102,8 @@ class CollidingParticles(NamedTuple):
     constraint_rest: Floats
 
 
-class CollisionRoom(NamedTuple):
-    """What a step fills in. bounds (k, 5): see bound_solids. bound: the contacts that are left to a solver.
+class CollisionScratch(NamedTuple):
+    """Arrays that a step fills in. bounds (k, 5): see bound_solids. bound: the contacts that are left to a solver.
 
     moved (n,): scratch.
     """
@@ -117,16 +117,16 @@ class CollisionRoom(NamedTuple):
     bound: Contacts
     kept: KeptContacts
     islands: Islands
-    work: Work
+    work: FreeContactScratch
     inversions: Inversions
-    meetings: Meetings
+    shape_bounds: ShapeBounds
     overlaps: Overlaps
     moved: Flags
     counts: Slots
 
 
 @inner_kernel
-def _load_particles(particles: CollidingParticles, held: Flags, colliders: Colliders) -> None:
+def _load_particles(particles: CollidingParticles, attached: Flags, colliders: Colliders) -> None:
     for p in range(particles.radius.shape[0]):
         for axis in range(2):
             colliders.position[p, axis] = particles.position[p, axis]
@@ -139,7 +139,7 @@ def _load_particles(particles: CollidingParticles, held: Flags, colliders: Colli
         colliders.collides[p] = particles.collides[p] if particles.particle_active[p] else 0
         colliders.inverse_mass[p] = particles.inverse_mass[p]
         colliders.rolling[p] = particles.rolling[p]
-        turns = particles.rolls[p] and not held[p] and particles.radius[p] > 0.0
+        turns = particles.rolls[p] and not attached[p] and particles.radius[p] > 0.0
         colliders.turning[p] = SURFACE_WEIGHT * particles.inverse_mass[p] if turns else 0.0
 
 
@@ -151,11 +151,11 @@ def _bound_terrain(items: Any) -> None:
 
 
 @inner_kernel
-def _find_overlaps(outline: Outline, colliders: Colliders, room: CollisionRoom, larges: int) -> bool:
+def _find_overlaps(outline: Outline, colliders: Colliders, room: CollisionScratch, larges: int) -> bool:
     # Which bodies part in this step; whether there is room for them.
     overlaps = room.overlaps
     room.counts[CROSSED] = find_crossings(
-        room.boxes, room.grid, larges, colliders, outline, room.meetings, overlaps
+        room.boxes, room.grid, larges, colliders, outline, room.shape_bounds, overlaps
     )  # fmt: skip
     if overlaps.counts[CROSSINGS] > overlaps.edge.shape[0]:
         return False
@@ -168,10 +168,10 @@ def _find_overlaps(outline: Outline, colliders: Colliders, room: CollisionRoom, 
 @inner_kernel
 def _detect(
     particles: CollidingParticles, outline: Outline, terrain: Terrain, triangles: Triangles, colliders: Colliders,
-    room: CollisionRoom, tick: int, h: float,
+    room: CollisionScratch, tick: int, h: float,
 ) -> int:  # fmt: skip
     # Broad and narrow phase: the contacts of the step, but for bounces and impulses; their number, or NO_ROOM.
-    _load_particles(particles, outline.held, colliders)
+    _load_particles(particles, outline.attached, colliders)
     if triangles.constraint.shape[0] > 0:
         find_inverted(
             particles.position, particles.constraint_rest, triangles, room.inversions, colliders.inverted
@@ -223,7 +223,7 @@ def _copy_bound(contacts: Contacts, count: int, bound: Flags, to: Contacts) -> N
 @inner_kernel
 def _before_solver(
     particles: CollidingParticles, outline: Outline, terrain: Terrain, triangles: Triangles, colliders: Colliders,
-    room: CollisionRoom, start: Floats, tick: int, h: float,
+    room: CollisionScratch, start: Floats, tick: int, h: float,
 ) -> int:  # fmt: skip
     # Find contacts and solve the free ones; how many are left to a solver, or NO_ROOM.
     count = _detect(particles, outline, terrain, triangles, colliders, room, tick, h)
@@ -236,9 +236,9 @@ def _before_solver(
             particles.parting_reserve,
         )  # fmt: skip
         part_overlaps(outline, colliders, room.bounds, moved, room.overlaps, room.moved)
-    find_bounces(contacts, count, start, particles.velocity, outline.held, h, h / small_steps(h))
+    find_bounces(contacts, count, start, particles.velocity, outline.attached, h, h / small_steps(h))
     carry_over(contacts, count, room.kept, room.counts[KEPT])
-    bound = find_islands(contacts, count, particles.inverse_mass, outline.held, room.islands)
+    bound = find_islands(contacts, count, particles.inverse_mass, outline.attached, room.islands)
     found = sort_free_contacts(count, room.islands) if bound < count else 0
     solve_free_contacts(
         contacts, room.islands, found, colliders, start, particles.velocity, particles.spin, h, room.work
@@ -251,7 +251,7 @@ def _before_solver(
 
 @inner_kernel
 def _after_solver(
-    particles: CollidingParticles, terrain: Terrain, room: CollisionRoom, moves: bool, h: float
+    particles: CollidingParticles, terrain: Terrain, room: CollisionScratch, moves: bool, h: float
 ) -> int:  # fmt: skip
     # Keep the contacts, clamp at terrain, move if asked to; how many contacts there are.
     contacts = room.contacts
@@ -286,7 +286,7 @@ def _after_solver(
 
 
 @kernel
-def _collide(items: Any, first: int, last: int, follows: bool, tick: int, h: float) -> int:
+def _collide(items: Any, first: int, last: int, tracks_slow_velocity: bool, tick: int, h: float) -> int:
     # last 0: what comes before the solver of a substep, forces included if first is 0; how many contacts are left to
     # it. Else substeps first..last of a tick in which nothing is held, and what is to come before and after them; how
     # many contacts there are.
@@ -300,16 +300,16 @@ def _collide(items: Any, first: int, last: int, follows: bool, tick: int, h: flo
     while True:
         if last > 0 or first == 0:
             add_gravity_and_air(forced, h)
-        bound = _before_solver(particles, outline, terrain, triangles, colliders, room, forced.before, tick, h)
+        bound = _before_solver(particles, outline, terrain, triangles, colliders, room, forced.start, tick, h)
         if last == 0:
             return bound
         if bound == NO_ROOM:
-            for p in range(forced.before.shape[0]):
-                particles.velocity[p, 0] = forced.before[p, 0]
-                particles.velocity[p, 1] = forced.before[p, 1]
+            for p in range(forced.start.shape[0]):
+                particles.velocity[p, 0] = forced.start[p, 0]
+                particles.velocity[p, 1] = forced.start[p, 1]
             room.counts[DONE] = substep
             return NO_ROOM
-        if follows:
+        if tracks_slow_velocity:
             follow(particles.velocity, particles.slow_velocity, particles.slow_change, particles.particle_active)
         count = _after_solver(particles, terrain, room, True, h)
         substep += 1
@@ -343,7 +343,7 @@ def _finish(items: Any, moves: bool, h: float) -> int:
 
 @dataclass(eq=False)
 class Collisions:
-    """The scratch of a world's collisions: what topology decides, what a step fills in, and all as one argument.
+    """Scratch of a world's collisions: arrays that follow from topology, arrays that a step fills in, and one bundle.
 
     is_free: whether no spring or constraint holds anything. wanted: the largest counts so far. solved: those
     left to a solver, by their number. kept: the contacts of the last tick, the first of those in room; they are the
@@ -355,7 +355,7 @@ class Collisions:
     terrain: Terrain
     triangles: Triangles
     colliders: Colliders
-    room: CollisionRoom
+    room: CollisionScratch
     forces: Forces
     checked: CheckedArrays
     is_free: bool
@@ -387,7 +387,7 @@ class Collisions:
     def collide(self, has_begun: bool, tick: int, h: float) -> LentContacts | None:
         """Find the contacts of a step of h [s] and solve those of free particles; the others, returned, are a solver's.
 
-        None: there are no others.         has_begun: forces have acted; otherwise they do now.
+        None: there are no others. has_begun: forces have acted already; otherwise they act now.
         """
         count = _collide(self.items, 1 if has_begun else 0, 0, False, tick, h)
         while count == NO_ROOM:
@@ -398,16 +398,17 @@ class Collisions:
             self.solved[count] = LentContacts(arrays, bundle((arrays,)))
         return self.solved[count] if count else None
 
-    def step_free(self, substeps: int, follows: bool, tick: int, h: float) -> int:
+    def step_free(self, substeps: int, tracks_slow_velocity: bool, tick: int, h: float) -> int:
         """A tick of substeps of h [s], forces included, of a world in which no spring or constraint holds anything.
 
         What it begins with is looked at, and what it ends with kept as good: UNSOUND, LOST, or how many contacts there
-        are. follows: whether the solver keeps the slow part of velocities, the only thing that is left to it.
+        are. tracks_slow_velocity: whether the solver keeps the slow part of velocities, the only thing that is left to
+        it.
         """
-        count = _collide(self.items, 0, substeps, follows, tick, h)
+        count = _collide(self.items, 0, substeps, tracks_slow_velocity, tick, h)
         while count == NO_ROOM:
             _grow(self)
-            count = _collide(self.items, int(self.room.counts[DONE]), substeps, follows, tick, h)
+            count = _collide(self.items, int(self.room.counts[DONE]), substeps, tracks_slow_velocity, tick, h)
         self.count = count if count >= 0 else int(self.room.counts[KEPT])
         return count
 
@@ -435,7 +436,7 @@ class Collisions:
 
 
 def collisions_of(world: World) -> Collisions | None:
-    """The scratch of a world's collisions, made anew where topology has changed; None: nothing can touch anything."""
+    """The scratch of a world's collisions, made again after a change of topology; None: nothing can touch."""
     return world.derived(_make_collisions)
 
 
@@ -449,7 +450,8 @@ def _make_collisions(world: World) -> Collisions | None:
     wanted[ENTRIES] = world.particle_count
     made = Collisions(
         particles, outline, world.terrain, triangles, colliders_of(world, outline, _room(wanted)[OVERLAPPING]),
-        _make_room(outline, triangles, wanted), forces_of(world), checked_arrays(world), not outline.held.any(), wanted,
+        _make_room(outline, triangles, wanted), forces_of(world), checked_arrays(world), not outline.attached.any(),
+        wanted,
     )  # fmt: skip
     _bundle_up(made)
     return made
@@ -459,16 +461,16 @@ def _room(wanted: Slots) -> list[int]:
     return (MORE_ROOM * wanted + LEAST_ROOM).tolist()
 
 
-def _make_room(outline: Outline, triangles: Triangles, wanted: Slots) -> CollisionRoom:
-    particles = len(outline.held)
+def _make_room(outline: Outline, triangles: Triangles, wanted: Slots) -> CollisionScratch:
+    particles = len(outline.attached)
     objects = particles + int(outline.dynamic[0])
     contacts, kept, entries, pairs, terrain_pairs, crossings, overlaps = _room(wanted)
     contacts, boxes = max(contacts, kept), new_boxes(particles, objects)
     candidates = Candidates(new_pairs(particles, pairs), new_pairs(particles, terrain_pairs), boxes.box)
-    return CollisionRoom(
+    return CollisionScratch(
         boxes, new_grid(objects, entries), candidates, np.zeros((len(outline.solid), 5)), room_near(),
         room_for(contacts), room_for(contacts), room_to_keep(contacts), new_islands(particles, contacts),
-        new_work(particles, contacts), new_inversions(triangles), new_meetings(len(outline.solid_of)),
+        new_work(particles, contacts), new_inversions(triangles), new_shape_bounds(len(outline.solid_of)),
         new_overlaps(len(outline.solid_of), crossings, overlaps), np.zeros(particles, np.bool_),
         np.zeros(DONE + 1, np.int64),
     )  # fmt: skip

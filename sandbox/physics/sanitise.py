@@ -173,7 +173,7 @@ def _lent_arrays(world: World) -> Any:
 
 
 def contain_inputs(world: World) -> None:
-    """Before a tick: take back whatever something outside the physics has put there."""
+    """Before a tick: take back impossible values that code outside the physics has written."""
     if _are_sound(world.derived(_lent_arrays), world.contact_impulse, world.contact_impact):
         return
     for name in ("contact_impulse", "contact_impact"):
@@ -198,7 +198,9 @@ def contain_inputs(world: World) -> None:
 
 
 def contain_outcome(world: World) -> None:
-    """After a tick: take back what the tick itself has blown up, and keep the rest as good."""
+    """After a tick: take back values that the tick itself made impossible, and keep the others as the last good
+    ones.
+    """
     if _keep_if_sound(world.derived(_lent_arrays)):
         return
     for name in _MOTION:

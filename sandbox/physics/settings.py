@@ -16,10 +16,10 @@ DEFAULT_SOLVER = "direct"
 
 @dataclass(frozen=True)
 class WorldSettings:
-    """What a tick needs besides arrays: gravity [m/s^2], tick rate [1/s], substeps, solver, wind [m/s], drag [1/s].
+    """The settings of a tick: gravity [m/s^2], tick rate [1/s], substeps, solver, wind [m/s], drag [1/s].
 
-    Drag is the rate at which every free particle takes on the wind's velocity, whatever its mass.
-    Raises ValueError, one line, for a value that means nothing.
+    Drag is the rate at which every free particle takes on the wind's velocity, for all masses. Raises ValueError, one
+    line, for a value without meaning.
     """
 
     gravity: tuple[float, float] = (0.0, -9.81)

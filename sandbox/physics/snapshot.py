@@ -110,7 +110,7 @@ _COLUMNS = tuple((column.name, column.stored, column) for column in COLUMNS)
 
 
 def _digest(column: Column, array: NDArray[Any]) -> str | None:
-    """Hash of an array, None of one that is left out as it is as usual."""
+    """Hash of an array; None: it has its usual values and is left out."""
     is_usual = column.sparse and not (array != column.usual).any()
     return None if is_usual else hashlib.blake2b(canonical_bytes(array), digest_size=8).hexdigest()
 

@@ -102,7 +102,7 @@ class StateArrays:
     gravity_scale = _array("gravity_scale", P, F64, "1", "how many times the world's gravity pulls at it", guarded=True)
     particle_active = _array("particle_active", P, BOOL, "", "whether its slot is in use", topology=True)
     slow_velocity = _array("slow_velocity", P, F64, "m/s", "the slow part of the velocity, for the direct solver", width=2)
-    energy_bank = _array("energy_bank", P, F64, "J", "what a body's earlier losses still allow it, at its free particle of lowest slot; -1: to be begun anew, -2: with nothing")
+    energy_bank = _array("energy_bank", P, F64, "J", "what a body's earlier losses still allow it, at its free particle of lowest slot; -1: a new one begins, -2: a new one begins empty")
     friction = _array("friction", P, F64, "1", "of two that touch the geometric mean counts", guarded=True)
     restitution = _array("restitution", P, F64, "1", "of two that touch the larger counts", guarded=True)
     owner = _array("owner", P, I32, "", "the body that it belongs to, negative: its own", topology=True)
@@ -155,7 +155,7 @@ class StateArrays:
     contact_impact = _array("contact_impact", T, F64, "N s", "along, of its impacts in the last tick, which `contact_impulse` is without; it is heard and shown", sparse=True)
 
     hand_strength = _array("hand_strength", H, F64, "m/s^2", "largest force over the mass of the body held; 0: it holds nothing", sparse=True)
-    hand_radius = _array("hand_radius", H, F64, "m", "what of a body is so near to the particle held bears the force with it; 0: nothing", sparse=True)
+    hand_radius = _array("hand_radius", H, F64, "m", "particles of the body within this distance of the held one share the force; 0: the held one bears it all", sparse=True)
     hand_force = _array("hand_force", H, F64, "N", "what it pulled with in the last substep", width=2, sparse=True)
     # fmt: on
 

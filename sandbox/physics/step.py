@@ -8,7 +8,7 @@ import numpy as np
 from sandbox.physics.breaking import yield_and_break
 from sandbox.physics.driving import drive_springs, drives_springs
 from sandbox.physics.flight import begin_flight
-from sandbox.physics.forces import Before, apply_forces, forces_of
+from sandbox.physics.forces import StepStart, apply_forces, forces_of
 from sandbox.physics.integrate import integrate
 from sandbox.physics.joints.joint_set import JointSet, joints_of, keep_joints, load_joints
 from sandbox.physics.sanitise import LOST, UNSOUND, contain_inputs, contain_outcome
@@ -36,7 +36,8 @@ PHYSICS_VERSION = 9
 
 @dataclass(frozen=True, eq=False)
 class TickPlan:
-    """What topology decides of a tick. folds: there are triangles, which may not turn over; drives: springs are driven.
+    """The part of a tick's plan that follows from topology. folds: there are triangles, which may not turn over;
+    drives: springs are driven.
 
     free: its collisions, where no spring, constraint or joint holds anything. springs, constraints: room for their Cs
     and Cd in a substep.
@@ -66,10 +67,10 @@ def _plan(world: World) -> TickPlan:
     )  # fmt: skip
 
 
-def expect(world: World) -> None:
-    """Make what topology decides of the next tick, which else that tick finds first: nothing of a world's state."""
+def precompute(world: World) -> None:
+    """Prepare the plan and the layouts of the next tick ahead of it. This changes nothing of a world's state."""
     world.derived(_plan)
-    SOLVERS[world.settings.solver].expect(world)
+    SOLVERS[world.settings.solver].precompute(world)
 
 
 def step(world: World) -> None:
@@ -90,7 +91,7 @@ def _step_free(world: World, collisions: "Collisions") -> bool:
     if cadence is None or cadence.settings is not settings:
         cadence = collisions.cadence = cadence_of(settings)
     collisions.begin(world)
-    count = collisions.step_free(cadence.substeps, SOLVERS[settings.solver].follows, world.tick, cadence.h)
+    count = collisions.step_free(cadence.substeps, SOLVERS[settings.solver].tracks_slow_velocity, world.tick, cadence.h)
     if count == UNSOUND:
         return False
     collisions.end(world)
@@ -122,14 +123,14 @@ def _step_held(world: World, flies: bool) -> None:
         collisions.begin(world)
         collisions.forget_impacts()
     forces = forces_of(world)
-    before = forces.particles.before
+    start = forces.particles.start
     for _ in range(count):
         if collisions is None or joints is not None:
             apply_forces(forces, h)
         if joints is not None:
             load_joints(joints, world, springs, h)
         contacts = None if collisions is None else collisions.collide(joints is not None, world.tick, h)
-        solver.solve(world, Substep(h, count, ease, springs, constraints, Before(before, rest_length)), contacts)
+        solver.solve(world, Substep(h, count, ease, springs, constraints, StepStart(start, rest_length)), contacts)
         if flies:
             flies = False
             begin_flight(world, np.zeros(0, np.int64) if collisions is None else collisions.touched(), h)
@@ -138,7 +139,7 @@ def _step_held(world: World, flies: bool) -> None:
         if collisions is not None:
             collisions.finish(h, not plan.folds)
         if plan.folds:
-            clamp_world(world, solver.follows, h)
+            clamp_world(world, solver.tracks_slow_velocity, h)
         has_moved = collisions is not None and not plan.folds
         if solver.settle is not None:
             solver.settle(world, not has_moved, h)

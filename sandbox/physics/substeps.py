@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, half_step_of_network, part_of_network
-from sandbox.physics.forces import Before
+from sandbox.physics.forces import StepStart
 from sandbox.physics.jit import kernel
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import Snapshot
@@ -31,9 +31,9 @@ Pair = tuple[Floats, Floats]
 
 
 class Substep(NamedTuple):
-    """What a solver is given: time step h [s] of one of so many substeps, Cs and Cd of springs and constraints in it.
+    """The input of a solver: time step h [s] of one substep, their count, Cs and Cd of springs and constraints in it.
 
-    ease: 1 + drag h, see `ease_of`. before: what the substep began with.
+    ease: 1 + drag h, see `ease_of`. before: the start of the substep.
     """
 
     h: float
@@ -41,11 +41,11 @@ class Substep(NamedTuple):
     ease: float
     springs: Pair
     constraints: Pair
-    before: Before
+    step_start: StepStart
 
 
 class Cadence(NamedTuple):
-    """How ticks go by some settings: in so many substeps, the fewest, of h [s] each."""
+    """The substeps of a tick by some settings: the fewest, and the h [s] of each."""
 
     settings: WorldSettings
     substeps: int
@@ -122,7 +122,7 @@ def _of_substep(
 
 @kernel
 def weigh_down(stiffness: Floats, damping: Floats, ease: float) -> None:
-    """Turn Cs and Cd (m,) into those of springs of the same k and c whose ends are so many times as heavy, in place.
+    """Turn Cs and Cd (m,), in place, into those of springs of the same k and c whose ends are heavier by a factor.
 
     The air takes part in every step: (1 + drag h) m (v' - v*) = J.
     """

@@ -39,9 +39,9 @@ class Chain:
 class Terrain(NamedTuple):
     """Edges of all chains and the grid that finds them.
 
-    vertex [m] (k, 2); edge_a, edge_b (e,) = vertices, what is solid lies on the left of the way from a to b where solid
-    (e,); chain (e,); friction, restitution (e,). Grid: corner [m] (2,), cell [m] (1,), size (2,) = columns, rows;
-    edges by cell, row by row: cell_edge[cell_start[c]:cell_start[c + 1]].
+    vertex [m] (k, 2); edge_a, edge_b (e,) = vertices, where solid (e,), the ground lies on the left of the way from a
+    to b; chain (e,); friction, restitution (e,). Grid: corner [m] (2,), cell [m] (1,), size (2,) = columns, rows; edges
+    by cell, row by row: cell_edge[cell_start[c]:cell_start[c + 1]].
 
     tip (t,): the vertices that stand out, at which an edge of a body can be hit: no seams, no hollows. The ways along
     all terrain that begins there, of length 1: way[way_start[i]:way_start[i + 1]] of tip i; tips by cell (their places

@@ -52,5 +52,5 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
         # That is too small a body to be dissected by itself, or to need a second thread.
         dissect(np.array([0]), np.array([1]), world.position)
         system = layout_of(world).system
-        parallel.warm_up(system.fronts, system.rows.change)
+        parallel.warm_up(system.fronts, system.rows.delta_v)
         lowest_mode.warm_up()

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.actuators import Actuators, StrainLimits, Surface, unlimited
-from sandbox.physics.capacity import Room
+from sandbox.physics.capacity import Capacity
 from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, rest_of_area, rest_of_bend, sides_gone
 from sandbox.physics.equipment import Equipment, Joined
 from sandbox.physics.events import Containment
@@ -65,7 +65,7 @@ class World(StateArrays):
         # Never state: counts the changes of what solvers and collision derive from; whether any may be `unmoved`.
         self.topology_version, self.may_fly = 0, True
         self._derived: dict[Callable[[World], Any], tuple[int, Any]] = {}
-        self._room = Room()
+        self._room = Capacity()
         for column in COLUMNS:
             setattr(self, column.name, column.empty())
         # The last good values of what is guarded; never state.
@@ -101,12 +101,12 @@ class World(StateArrays):
 
     def __getstate__(self) -> dict[str, Any]:
         """What a copy starts from: all but what was derived, which may hold a thread."""
-        return self.__dict__ | {"_derived": {}, "_room": Room()}
+        return self.__dict__ | {"_derived": {}, "_room": Capacity()}
 
     def derived(self, make: Callable[["World"], Derived]) -> Derived:
-        """What `make` makes of this world, kept until `topology_version` goes up or one of its arrays is another.
+        """The result of `make` for this world, kept until `topology_version` rises or an array is replaced.
 
-        The place for layouts, scratch and pointers that outlive a step: the same of the same arrays, so no state.
+        For layouts, scratch and pointers that outlive a step; they follow from the arrays, so they are no state.
         """
         version, kept = self._derived.get(make, (-1, None))
         if version != self.topology_version:
@@ -150,17 +150,17 @@ class World(StateArrays):
         assert not arrays, f"no arrays of {family}: {', '.join(arrays)}"
 
     def disturb(self, *particles: NDArray[np.integer] | int) -> None:
-        """Begin the energy banks anew of the bodies of these particles, which something outside has changed."""
+        """Begin new energy banks for the bodies of these particles, which something outside has changed."""
         for slots in particles:
             self.energy_bank[slots] = BANK_UNOPENED
 
     def drop_caches(self) -> None:
-        """Forget what was derived, which holds for interpreted kernels or for compiled ones alone."""
+        """Forget all derived objects: they hold for interpreted kernels or for compiled ones, not for both."""
         self._derived.clear()
 
     @property
     def settings(self) -> WorldSettings:
-        """Settings of a tick, replaced as a whole; another solver begins anew what solvers keep, auto the banks."""
+        """Settings of a tick, replaced as a whole; another solver resets what solvers keep, auto the energy banks."""
         return self._settings
 
     @settings.setter
@@ -193,7 +193,7 @@ class World(StateArrays):
 
     @property
     def equipment(self) -> Equipment:
-        """What it has beside its state, replaced as a whole."""
+        """Its constant part, beside its state; replaced as a whole."""
         return Equipment(*(getattr(self, name) for name in Equipment._fields))
 
     @equipment.setter
@@ -497,7 +497,7 @@ class World(StateArrays):
         self.disturb(self.particle_a[slots], self.particle_b[slots])
 
     def break_springs(self, springs: Slots) -> None:
-        """Take springs out that broke by themselves: what is left of a body goes on with the energy that it has."""
+        """Take out springs that broke by themselves: the pieces of a body keep its energy."""
         self._take_out(springs)
         self.broken = springs
 
@@ -521,7 +521,7 @@ class World(StateArrays):
         self.actuator_value[part] = value
 
     def set_rest_lengths(self, springs: Slots, lengths: Floats) -> None:
-        """Give springs other rest lengths [m]; what they yielded by stays what it was."""
+        """Give springs other rest lengths [m]; the length by which they have yielded does not change."""
         self.rest_length[springs] = lengths
         self.good["rest_length"][springs] = lengths
 
@@ -531,8 +531,8 @@ class World(StateArrays):
     ) -> None:  # fmt: skip
         """Let a hand hold a particle and draw it to its cursor, at target [m]: a mouse joint (joints/hands.py).
 
-        strength [m/s^2]: largest force over the mass of the body held. radius [m]: what of the body is nearer to the
-        particle bears the force with it; 0: it bears all of it.
+        strength [m/s^2]: largest force over the mass of the body held. radius [m]: particles of the body that
+        are nearer to this one share the force; 0: it bears all of it.
         """
         self.reserve_grabs()
         cursor, spring = self.grab_particle + grab, self.grab_spring + grab
@@ -568,7 +568,7 @@ class World(StateArrays):
             self.velocity[self.grab_particle : self.grab_particle + GRAB_COUNT] = 0.0
 
     def release(self, grab: int) -> None:
-        """Let go; the grab's slots wait for its next use. Nothing spends what a hand's work has put into banks."""
+        """Let go; the hand's slots wait for its next use. No bank keeps energy that the hand's work put into it."""
         cursor, spring = self.grab_particle + grab, self.grab_spring + grab
         self.change("particle_active", False, cursor)
         # Not begun anew: what overlaps where a hand lets go is no start, at which parting costs nothing.

@@ -25,7 +25,7 @@ class BisectError(ValueError):
 
 @dataclass(frozen=True)
 class Tried:
-    """A level that was tried: what it was, and whether it did what it should; None of one that is no level."""
+    """A level that was tried, and whether it passed; None: it is no valid level."""
 
     what: str
     holds: bool | None

@@ -1,16 +1,18 @@
-"""Running a level by itself and holding its checks against what is measured."""
+"""Runs a level by itself and compares its checks with measurements."""
 
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.checks import STILL, CheckDef, CheckResult, excess, judge, window_of
+from sandbox.level.checks import STILL, CheckDef, CheckResult, HoldDef, excess, judge, window_of
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.analysis.query import load_bearing, shown_particles, shown_springs, strain
+from sandbox.physics.geometry.sums import sum_in_order
 from sandbox.physics.world import World
+from sandbox.session.held_keys import HeldKeys
 from sandbox.session.session import Session
 from sandbox.session.summary import STRAIN_WINDOW, particle_metric, strain_sample
 
@@ -22,26 +24,51 @@ def run_checks(level: Level) -> list[CheckResult]:
 
 
 def checks_as_they_end(level: Level) -> Iterator[tuple[int, CheckResult] | None]:
-    """Run the level by itself and give each check's place and result as soon as it is known; None after every tick."""
-    session = Session(level)
-    watch = CheckWatch(level, session.world)
-    while True:
-        with np.errstate(over="ignore", invalid="ignore"):
-            yield from watch.look()
-            if not watch.waiting:
-                return
-            session.advance()
-        yield None
+    """Run the level by itself and give each check's place and result as soon as it is known; None after every tick.
+
+    Checks that hold the same keys share a run.
+    """
+    for run in check_runs(level):
+        while True:
+            with np.errstate(over="ignore", invalid="ignore"):
+                yield from run.watch.look()
+                if not run.watch.waiting:
+                    break
+                run.advance()
+            yield None
+
+
+class CheckRun:
+    """A run of a level with the keys that some of its checks hold, and these checks."""
+
+    def __init__(self, level: Level, holds: tuple[HoldDef, ...], numbers: Sequence[int]) -> None:
+        self.session = Session(level)
+        self.watch = CheckWatch(level, self.session.world, numbers)
+        self._keys = HeldKeys(level, holds)
+
+    def advance(self) -> None:
+        """One tick, with the keys that are held."""
+        self._keys.press(self.session)
+        self.session.advance()
+
+
+def check_runs(level: Level) -> Iterator[CheckRun]:
+    """A run for all checks of a level that hold no key, then one for each other choice of keys."""
+    groups: dict[tuple[HoldDef, ...], list[int]] = {(): []}
+    for number, check in enumerate(level.checks):
+        groups.setdefault(check.hold, []).append(number)
+    return (CheckRun(level, holds, numbers) for holds, numbers in groups.items())
 
 
 class CheckWatch:
-    """Holds a level's checks against a run of it, from the first tick on."""
+    """Holds some of a level's checks, by their places, against a run of it, from the first tick on."""
 
-    def __init__(self, level: Level, world: World) -> None:
+    def __init__(self, level: Level, world: World, numbers: Sequence[int]) -> None:
         self._world = world
-        self._gauge = _Gauge(world, level)
+        checks = [level.checks[number] for number in numbers]
+        self._gauge = _Gauge(world, checks)
         rate = level.settings.tick_rate
-        self._waiting = {number: _Waiting(check, rate) for number, check in enumerate(level.checks)}
+        self._waiting = {number: _Waiting(level.checks[number], rate) for number in numbers}
 
     @property
     def waiting(self) -> int:
@@ -87,17 +114,17 @@ class _Waiting:
 class _Gauge:
     """Measures a running level; what depends on more than the present tick is followed from the first one on."""
 
-    def __init__(self, world: World, level: Level) -> None:
+    def __init__(self, world: World, checks: Sequence[CheckDef]) -> None:
         self._world = world
-        metrics = {check.metric for check in level.checks}
+        metrics = {check.metric for check in checks}
         self._follows_strain = bool(metrics & {"max_strain", "rms_strain"})
-        samples = max(1, round(STRAIN_WINDOW * level.settings.tick_rate))
+        samples = max(1, round(STRAIN_WINDOW * world.settings.tick_rate))
         self._strains: deque[tuple[float, float, int]] = deque(maxlen=samples)
-        bodies = {check.body for check in level.checks}
+        bodies = {check.body for check in checks}
         self._particles = {body: _of_body(world.particle_names, body, ".") for body in bodies}
         self._springs = {body: _of_body(world.spring_names, body, ":") for body in bodies}
         # For how many ticks each has been still.
-        self._still = {check.body: -1 for check in level.checks if check.metric == "settled"}
+        self._still = {check.body: -1 for check in checks if check.metric == "settled"}
         self._started = world.tick
 
     def look(self, world: World) -> None:
@@ -109,7 +136,7 @@ class _Gauge:
             self._still[body] = ticks + 1 if bool(np.all(speed <= STILL)) else 0
 
     def value(self, check: CheckDef) -> float:
-        """What a check measures now."""
+        """The value that a check measures now."""
         return float(_VALUES[check.metric](self, self._world, check))
 
     def _shown(self, body: str | None) -> NDArray[np.bool_]:
@@ -144,8 +171,17 @@ class _Gauge:
         hands = np.array([world.is_grab_spring(slot) for slot in range(world.spring_count)], dtype=np.bool_)
         return int(np.count_nonzero(of_body & ~hands) - np.count_nonzero(shown_springs(world) & of_body))
 
-    def _of_particle(self, world: World, check: CheckDef) -> float:
-        return particle_metric(world, str(check.particle), check.metric)
+    def _of_owner(self, world: World, check: CheckDef) -> float:
+        """Of a particle, or of a body's centre of mass."""
+        if check.particle is not None:
+            return particle_metric(world, check.particle, check.metric)
+        shown = self._shown(check.body)
+        mass = world.mass[shown]
+        x, y = (sum_in_order(mass * world.position[shown, axis]) / sum_in_order(mass) for axis in (0, 1))
+        if check.metric != "speed":
+            return x if check.metric == "x" else y
+        u, v = (sum_in_order(mass * world.velocity[shown, axis]) / sum_in_order(mass) for axis in (0, 1))
+        return float(np.hypot(u, v))
 
     def _distance(self, world: World, check: CheckDef) -> float:
         ends = [world.position[world.particle_slot(str(name))] for name in (check.particle, check.other)]
@@ -174,9 +210,9 @@ _VALUES: dict[str, Callable[[_Gauge, World, CheckDef], float]] = {
     "max_speed": _Gauge._max_speed,
     "non_finite": _Gauge._non_finite,
     "broken_springs": _Gauge._broken_springs,
-    "x": _Gauge._of_particle,
-    "y": _Gauge._of_particle,
-    "speed": _Gauge._of_particle,
+    "x": _Gauge._of_owner,
+    "y": _Gauge._of_owner,
+    "speed": _Gauge._of_owner,
     "distance": _Gauge._distance,
     "inside": _Gauge._inside,
     "settled": _Gauge._settled,

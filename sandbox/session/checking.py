@@ -1,4 +1,4 @@
-"""Checking: what is to be said of level files, one after another or in processes."""
+"""Checks level files and reports on each, one after another or in processes."""
 
 from collections.abc import Generator, Sequence
 from dataclasses import asdict, dataclass
@@ -15,9 +15,9 @@ from sandbox.session.worker_pool import interrupts_ignored, worker_pool
 
 @dataclass(frozen=True)
 class LevelReport:
-    """What came of a level: lines about it, or the faults for which it was refused; passed: whether its checks held.
+    """The report on a level: lines about it, or the faults for which it was refused.
 
-    data: all of that for programs, ready for JSON.
+    passed: whether its checks held. data: the same for programs, ready for JSON.
     """
 
     data: dict[str, Any]
@@ -59,7 +59,7 @@ def _told(result: CheckResult) -> dict[str, Any]:
 
 
 def check_levels(names: Sequence[str], processes: int) -> Generator[LevelReport, None, None]:
-    """What came of each level, in order, as soon as it is known; with one process, in this one.
+    """The report on each level, in order, as soon as it is known; with one process, in this one.
 
     Close it if not all of them are wanted: processes would work on otherwise.
     Raises OSError where a process cannot be started, or is gone before it has answered.

@@ -52,7 +52,7 @@ class Keyframes:
 
     @property
     def first(self) -> Keyframe:
-        """Where the run began."""
+        """The state in which the run began."""
         return self._kept[0]
 
     def copy(self) -> "Keyframes":
@@ -114,7 +114,7 @@ class Keyframes:
         self._unkept = 0
 
     def drop_after(self, order: int) -> None:
-        """Forget those that hold what a command of this order, or a later one, did."""
+        """Forget the states after a command of this order or a later one."""
         self._drop([kept for kept in self._kept if kept.order <= order])
 
     def drop_beyond(self, tick: int) -> None:

@@ -1,4 +1,4 @@
-"""Edits of a level's data by the places of its fields: what lies between two levels, and single values set."""
+"""Edits of a level's data by the paths of its fields: the difference of two levels, and single values that are set."""
 
 import copy
 import json
@@ -34,7 +34,7 @@ def path_text(path: Sequence[str | int]) -> str:
 
 
 def edits_between(before: Any, after: Any, path: tuple[str | int, ...] = ()) -> list[Edit]:
-    """What has to be changed, value by value, to come from one level's data to another's; what only shows is left."""
+    """The edits, value by value, that lead from one level's data to another's; looks are left out."""
     if before == after and type(before) is type(after):
         return []
     if isinstance(before, dict) and isinstance(after, dict):

@@ -1,4 +1,4 @@
-"""Log of a run: what was done at which tick, and some states with the history that led to them."""
+"""Log of a run: the commands with their ticks, and some states with the history that led to them."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -13,10 +13,11 @@ REACHED_KEPT = 6
 
 @dataclass
 class LogEntry:
-    """A command that was applied at a tick, before that tick's step; order: its place among all that ever were.
+    """A command that was applied at a tick, before that tick's step.
 
-    in_effect: False while the command cannot be carried out because what it needed is undone. implied: the end of a
-    drag or drive that an Undo brings about by itself, so that a recording of that Undo does not hold it.
+    order: its place among all entries ever. in_effect: False while the command cannot be carried out, since a command
+    that it needs is undone. implied: the end of a drag or drive that an Undo brings about by itself, so that a
+    recording of that Undo does not hold it.
     """
 
     order: int
@@ -42,7 +43,7 @@ class Branch:
 
 @dataclass(frozen=True, eq=False)
 class Reached:
-    """A state that a run was in once its history was this, whose tick is the last; idle: what of it had no effect.
+    """A state that a run had when this was its whole history. idle: the entries of it that had no effect.
 
     breaks: ticks until then in which springs broke.
     """
@@ -68,7 +69,7 @@ class Reached:
 
 
 class ReachedStates:
-    """The last such states of a run: as history is undone and redone it comes to be again what it was."""
+    """The last such states of a run: undo and redo lead back to them."""
 
     def __init__(self) -> None:
         self._kept: deque[Reached] = deque(maxlen=REACHED_KEPT)
@@ -84,7 +85,7 @@ class ReachedStates:
         return bool(self._kept) and self._kept[-1].state.tick == tick
 
     def keep(self, reached: Reached) -> None:
-        """Keep one, in place of that which was kept first."""
+        """Keep one, in place of the oldest."""
         self._kept.append(reached)
 
     def last_of(self, history: list[LogEntry], tick: int) -> Reached | None:

@@ -18,7 +18,7 @@ MOST_NEAR, MOST_COMPARED = 5, 2_000
 
 
 class Probe:
-    """Follows particles and motors by name during a run and makes a table of tick, seconds, then what each does.
+    """Follows particles and motors by name during a run and makes a table of tick, seconds, then the values of each.
 
     Of a particle x, y, vx, vy, of one that no spring holds angle and spin as well; of a motor, by its wheel's id,
     torque [N m] and share, that of it which is in use. What commands add and remove has empty columns while it is not
@@ -27,7 +27,7 @@ class Probe:
 
     def __init__(self, world: World, names: Sequence[str], every: int = 1) -> None:
         motors = [reading.name for reading in motor_readings(world)]
-        held = outline_of(world).held
+        held = outline_of(world).attached
         self._every = every
         self._followed: list[_Followed] = []
         for name in names:
@@ -105,7 +105,7 @@ def dump(world: World) -> dict[str, Any]:
 
     Of particles that no spring holds also the angle [rad] and the spin [rad/s].
     """
-    shown, held = shown_particles(world), outline_of(world).held
+    shown, held = shown_particles(world), outline_of(world).attached
     motors = {each.name: finite({"torque": each.torque, "share": each.share}) for each in motor_readings(world)}
     return {
         "tick": world.tick,

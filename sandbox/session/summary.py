@@ -1,4 +1,4 @@
-"""Summary: what a headless run measures, for `sandbox run --json`."""
+"""Summary: the measurements of a headless run, for `sandbox run --json`."""
 
 import time
 from collections.abc import Callable

@@ -6,12 +6,15 @@ from collections.abc import Callable
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Push, SetAir
-from sandbox.tools.parts import ROUND, Loop, Point
+from sandbox.tools.parts import ROUND
+from sandbox.tools.play_tool import PlayTool
 from sandbox.tools.sizing import resized
-from sandbox.tools.tool import CLICK_SHARE, NOTHING, PointerEvent, Response, Submission
+from sandbox.tools.tool import CLICK_SHARE, NOTHING, Loop, PlacedTool, Point, PointerEvent, Response, Submission
 
 # Speed [m/s] that a click gives what is near, on the average, and a push for each radius that its arrow is long.
 BURST_SPEED, ARROW_SPEED = 4.0, 4.0
+# Wind speed [m/s] of a drag over the whole height of the view.
+WIND_SPEED = 40.0
 # The least drag [1/s] of an air that moves things.
 LEAST_DRAG = 0.8
 # The head of an arrow: its length as a share of the arrow's, and its half angle [rad].
@@ -28,7 +31,7 @@ def arrow(start: Point, end: Point) -> list[Loop]:
     return [[start, end], [tips[0], end, tips[1]]]
 
 
-class PushTool:
+class PushTool(PlacedTool):
     """Push what is within the ring; size [m] is its radius. Each push is a gesture.
 
     A click drives all that is near away from the place; a drag pushes along its arrow, the harder the longer it is.
@@ -36,7 +39,6 @@ class PushTool:
 
     def __init__(self, new_gesture: Callable[[], int]) -> None:
         self.size = 1.0
-        self.place: Point | None = None
         self._new_gesture = new_gesture
         self._pressed_at: Point | None = None
 
@@ -62,9 +64,19 @@ class PushTool:
             command = Push(at, self.size, (speed * dx * mass, speed * dy * mass))
         return Response((Submission(command, self._new_gesture()),))
 
-    def resize(self, steps: float) -> None:
-        """Make the ring larger, by so many steps of the wheel."""
+    def take_up(self, size: float, height: float) -> None:
+        """The ring has a size that the view has room for."""
+        self.size = size
+
+    @property
+    def size_to_share(self) -> float | None:
+        """The radius of the ring [m]."""
+        return self.size
+
+    def resize(self, steps: float) -> bool:
+        """Make the ring larger."""
         self.size = resized(self.size, steps)
+        return True
 
     @property
     def ghost(self) -> list[Loop]:
@@ -81,11 +93,8 @@ class PushTool:
         self._pressed_at = self.place = None
         return NOTHING
 
-    def reconcile(self, snapshot: Snapshot) -> None:
-        """Nothing is remembered."""
 
-
-class WindTool:
+class WindTool(PlacedTool):
     """Let the wind blow along a drag while it is held; strength [1/s]: its speed for each metre of the drag."""
 
     def __init__(self, new_gesture: Callable[[], int]) -> None:
@@ -111,6 +120,10 @@ class WindTool:
         drag = max(self._before.drag or 0.0, LEAST_DRAG)
         return Response((Submission(SetAir((wind[0], wind[1]), drag), self._gesture),))
 
+    def take_up(self, size: float, height: float) -> None:
+        """A drag over all of the view makes the strongest wind."""
+        self.strength = WIND_SPEED / height
+
     @property
     def ghost(self) -> list[Loop]:
         """An arrow [m] along the wind."""
@@ -121,5 +134,6 @@ class WindTool:
         gesture, self._gesture = self._gesture, None
         return NOTHING if gesture is None else Response((Submission(self._before, gesture),))
 
-    def reconcile(self, snapshot: Snapshot) -> None:
-        """Nothing is remembered that can vanish."""
+
+PUSH = PlayTool("push", ("0",), "Push: click bursts, drag pushes", "Parts", PushTool)
+WIND = PlayTool("wind", ("V",), "Wind: it blows along a drag", "Parts", WindTool)

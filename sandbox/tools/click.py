@@ -6,10 +6,10 @@ from typing import ClassVar
 from sandbox.physics.analysis.query import nearest_particle
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command
-from sandbox.tools.tool import NOTHING, PointerEvent, Response, Submission
+from sandbox.tools.tool import NOTHING, PointerEvent, Response, Submission, Tool
 
 
-class ClickTool:
+class ClickTool(Tool):
     """A tool whose clicks are a gesture each; reach: how many pick radii away a particle is hit."""
 
     reach: ClassVar[float] = 1.0
@@ -34,6 +34,3 @@ class ClickTool:
     def cancel(self) -> Response:
         """Nothing is ever under way."""
         return NOTHING
-
-    def reconcile(self, snapshot: Snapshot) -> None:
-        """Nothing is remembered."""

@@ -7,10 +7,9 @@ from sandbox.physics.analysis.query import free_particle_at, grip_radius, neares
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import GRAB_COUNT, HAND_STRENGTH
 from sandbox.session.commands import Grab, MoveBody, MoveGrab, Release
-from sandbox.tools.tool import NOTHING, Point, PointerEvent, Response, Submission
+from sandbox.tools.play_tool import PlayTool
+from sandbox.tools.tool import CLICK_SHARE, NOTHING, Point, PointerEvent, Response, Submission, Tool
 
-# A press that moves less than this part of the pick radius is a click. Larger: short drags turn into clicks.
-CLICK_SHARE = 0.35
 # How strong a hand can be: its largest force over the mass of the body that it holds [m/s^2]. Gentle carries three
 # times a body's weight and spares what tears, strong moves what stands under a load.
 STRENGTHS = {"gentle": 30.0, "normal": HAND_STRENGTH, "strong": 300.0}
@@ -37,7 +36,7 @@ class Carried:
     at: Point
 
 
-class DragTool:
+class DragTool(Tool):
     """Drag particles; a Shift+click keeps hold after the release, a click on a held particle or cancel lets go.
 
     holds: hand number (0..9) to what it holds. A drag from grab to release is one gesture. strength: of STRENGTHS, that
@@ -72,6 +71,10 @@ class DragTool:
         if event.kind == "move":
             return self._move(event)
         return self._release(event) if event.kind == "up" and event.button == 1 else NOTHING
+
+    def target(self, place: Point, within: float, snapshot: Snapshot) -> int | None:
+        """The particle that a press would take; none during a drag."""
+        return None if self.dragging else free_particle_at(snapshot, place, within)
 
     def take_click(self) -> int | None:
         """The particle that was clicked since this was asked last; None: none was."""
@@ -161,3 +164,6 @@ def _beside(snapshot: Snapshot, particle: int, event: PointerEvent) -> Point:
     dx, dy = x - event.position[0], y - event.position[1]
     near = event.pick_radius + float(snapshot.radius[particle])
     return (0.0, 0.0) if dx * dx + dy * dy <= near * near else (dx, dy)
+
+
+DRAG = PlayTool("drag", ("D", "1"), "Drag tool: hold and move particles", "Tools", DragTool)

@@ -1,13 +1,26 @@
 """Dropping: a click drops a part under the pointer, a drag throws it."""
 
 from collections.abc import Callable
+from functools import partial
 
+from sandbox.level.document.model import Level
 from sandbox.level.format.quantities import significant
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command
-from sandbox.tools.parts import COLOURS, PARTS, Loop, Point, in_pace
+from sandbox.tools.parts import COLOURS, PARTS, in_pace
+from sandbox.tools.play_tool import PlayTool
 from sandbox.tools.sizing import SMALLEST, resized
-from sandbox.tools.tool import CLICK_SHARE, NOTHING, PointerEvent, Response, Submission
+from sandbox.tools.tool import (
+    CLICK_SHARE,
+    NOTHING,
+    DropPicture,
+    Loop,
+    PlacedTool,
+    Point,
+    PointerEvent,
+    Response,
+    Submission,
+)
 
 # What the pointer did in this last part of a drag decides how fast the part flies [s]; longer makes throws sluggish.
 THROW_SECONDS = 0.08
@@ -17,11 +30,12 @@ FASTEST_THROW = 25.0
 TIMES_DIGITS = 4
 
 
-class ThrowTool:
-    """Drops or throws what subclasses make; place [m]: where its ghost is, None = nowhere. Each drop is a gesture."""
+class ThrowTool(PlacedTool):
+    """Drops or throws what subclasses make. Each drop is a gesture."""
+
+    adds = True
 
     def __init__(self, new_gesture: Callable[[], int]) -> None:
-        self.place: Point | None = None
         self._new_gesture = new_gesture
         self._pressed_at: Point | None = None
         self._trail: list[tuple[float, Point]] = []
@@ -66,9 +80,6 @@ class ThrowTool:
         self._pressed_at = self.place = None
         return NOTHING
 
-    def reconcile(self, snapshot: Snapshot) -> None:
-        """Nothing is remembered."""
-
 
 class DropTool(ThrowTool):
     """Drop the part of that name; size [m]. Parts take the toys' colours in turn."""
@@ -89,9 +100,24 @@ class DropTool(ThrowTool):
         """The colour of what is dropped next."""
         return COLOURS[self.count % len(COLOURS)]
 
-    def resize(self, steps: float) -> None:
-        """Make what is dropped larger, by so many steps of the wheel."""
+    def take_up(self, size: float, height: float) -> None:
+        """The part has a size that the view has room for."""
+        self.size = size
+
+    @property
+    def size_to_share(self) -> float | None:
+        """The size of the part [m]."""
+        return self.size
+
+    def resize(self, steps: float) -> bool:
+        """Make the part larger."""
         self.size = resized(self.size, steps)
+        return True
+
+    @property
+    def preview(self) -> DropPicture | None:
+        """The part in its present size and colour."""
+        return DropPicture(self.part.name, self.size, self.colour)
 
     @property
     def ghost(self) -> list[Loop]:
@@ -106,14 +132,15 @@ class DropTool(ThrowTool):
 class CatalogueTool(ThrowTool):
     """Drop a part of the catalogue; make: see `made`, with how many times as large; box: width and height [m] as kept.
 
-    times: how many times as large as it was kept what is dropped is.
+    times: how many times as large as it was kept the part is.
     """
 
     def __init__(
-        self, new_gesture: Callable[[], int], make: Callable[[Point, Point, float], tuple[Command, ...]], box: Point
-    ) -> None:
+        self, new_gesture: Callable[[], int], part: Level,
+        make: Callable[[Point, Point, float], tuple[Command, ...]], box: Point,
+    ) -> None:  # fmt: skip
         super().__init__(new_gesture)
-        self._make, self._box = make, box
+        self.part, self._make, self._box = part, make, box
         self._size = max(*box, SMALLEST)
         self.times = 1.0
 
@@ -121,11 +148,17 @@ class CatalogueTool(ThrowTool):
         """The part in its present size."""
         return self._make(place, velocity, self.times)
 
-    def resize(self, steps: float) -> None:
-        """Make what is dropped larger, by so many steps of the wheel."""
+    def resize(self, steps: float) -> bool:
+        """Make the part larger."""
         kept = max(*self._box, SMALLEST)
         self._size = resized(self._size, steps)
         self.times = significant(self._size / kept, TIMES_DIGITS)
+        return True
+
+    @property
+    def preview(self) -> DropPicture | None:
+        """The part in its present size."""
+        return DropPicture(self.part, self.times, replaces_ghost=True)
 
     @property
     def ghost(self) -> list[Loop]:
@@ -135,3 +168,13 @@ class CatalogueTool(ThrowTool):
         (x, y), (width, height) = self.place, (self.times * side for side in self._box)
         corners = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5))
         return [[(x + dx * width, y + dy * height) for dx, dy in corners]]
+
+
+# Keys and lines of the parts.
+_LINES = {
+    "ball": ("4", "Ball: click drops it, drag throws it"), "box": ("5", "Box"), "jelly": ("6", "Jelly"),
+    "rope": ("7", "Rope"), "balloon": ("8", "Balloon"), "cart": ("9", "Cart: Q and W drive it"),
+}  # fmt: skip
+DROPS = tuple(
+    PlayTool(part, (_LINES[part][0],), _LINES[part][1], "Parts", partial(DropTool, part=part)) for part in PARTS
+)

@@ -9,9 +9,8 @@ from sandbox.level.format.look import PALETTE
 from sandbox.level.format.quantities import significant
 from sandbox.physics.equation import at_other_step
 from sandbox.session.commands import AddBody, AddParticle, Command
+from sandbox.tools.tool import Loop, Point
 
-Point = tuple[float, float]
-Loop = list[Point]
 Maker = Callable[[float, Point, Point, str], Command]
 
 # Mass of a square metre of a part [kg/m^2], so that what is larger is heavier, as all things are.

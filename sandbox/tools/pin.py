@@ -3,6 +3,7 @@
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command, Pin, Unpin
 from sandbox.tools.click import ClickTool
+from sandbox.tools.play_tool import PlayTool
 
 
 class PinTool(ClickTool):
@@ -11,3 +12,6 @@ class PinTool(ClickTool):
     def commands(self, particle: int, snapshot: Snapshot) -> list[Command]:
         """Pin or unpin it."""
         return [Pin(particle) if snapshot.inverse_mass[particle] > 0.0 else Unpin(particle)]
+
+
+PIN = PlayTool("pin", ("P", "2"), "Pin tool: pin or unpin a particle", "Tools", PinTool)

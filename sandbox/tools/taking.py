@@ -6,6 +6,7 @@ from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command, Pin, Remove, Unpin
 from sandbox.tools.click import ClickTool
+from sandbox.tools.play_tool import PlayTool
 
 # The middle of a coarse body has no particle that is nearer.
 REACH = 2.5
@@ -31,3 +32,7 @@ class FreezeTool(ClickTool):
         body = np.flatnonzero(shown_particles(snapshot) & (snapshot.owner == snapshot.owner[particle]))
         free = body[snapshot.inverse_mass[body] > 0.0].tolist()
         return [Pin(slot) for slot in free] or [Unpin(slot) for slot in body.tolist()]
+
+
+DELETE = PlayTool("delete", ("X",), "Delete: click takes a thing out", "Parts", DeleteTool)
+FREEZE = PlayTool("freeze", ("I",), "Freeze or thaw a body", "Parts", FreezeTool)

@@ -49,7 +49,7 @@ def main(arguments: list[str] | None = None) -> int:
         for seed in range(given.seeds):
             path = Path(folder) / f"{seed}.replay"
             session = play(seed, given.ticks, path)
-            counts.update(entry.command.type for entry in session._log)
+            counts.update(entry.command.type for entry in session.history.log)
             found = verify(read_replay(path))
             if found is not None:
                 failed += 1

@@ -14,7 +14,7 @@ import sys
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from sandbox.physics.analysis.firmness import Reach
+from sandbox.physics.analysis.firmness import FirmnessRange
 from sandbox.physics.forms import Firmness
 from sandbox.physics.step import step
 from tests.support.wobbles import firm_world, height, measured_wobble, standing_box
@@ -45,7 +45,7 @@ def wobble_errors(size: float, cells: int, substeps: int) -> tuple[float, float]
     """How far frequency and damping ratio are from what was asked, as shares, measured from motion."""
     gravity: Any = {"gravity": [0, -9.81]}
     box = {"shape": {"box": [size, size]}, "spacing": size / cells}
-    reach = Reach.of(firm_world({"sag": SAG}, gravity, **box).forms[0].shape, (0.0, -9.81), 60)
+    reach = FirmnessRange.of(firm_world({"sag": SAG}, gravity, **box).forms[0].shape, (0.0, -9.81), 60)
     _, hz, ratio = reach.reading(*reach.coefficients(Firmness(sag=SAG)))
     world = firm_world({"hz": hz, "ratio": ratio}, {"substeps": substeps}, **box)
     measured = measured_wobble(world)

@@ -10,6 +10,7 @@ import argparse
 import contextlib
 import ctypes
 import gc
+import itertools
 import os
 import random
 import shutil
@@ -25,10 +26,14 @@ import pygame
 
 from sandbox.app.base.display import SCALE_RANGE, Display
 from sandbox.app.base.start_request import StartRequest
+from sandbox.app.edit.edit_screen import EditScreen
+from sandbox.app.edit.side.side import PAGES
 from sandbox.app.kernels.compiling import warm_up_rest
 from sandbox.app.run.playback import Playback
 from sandbox.app.settings.chosen import SETTINGS
 from sandbox.app.window.app import App
+from sandbox.editor.items import items_of
+from sandbox.editor.storage.part_files import catalogue
 from sandbox.level.reading.files import load_level
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.warm_up import warm_up
@@ -40,11 +45,11 @@ FRAME = 1 / 60
 STRETCH = 600
 # Memory may grow by this part after so much of the frames.
 MOST_GROWTH, WARM_UP = 0.02, 0.35
-# What stretches begin with: an action, and a level to do it in.
+# What stretches begin with: an action, and a level to do it in, or "" for one of the ready parts in turn.
 SCREENS = (
     ("gallery", ""), ("palette", "jelly_cube"), ("edit", "rope"), ("settings", ""), ("share", "newtons_cradle"),
-    ("help", "truss_bridge"), ("play", "jelly_pile"), ("edit", "suspension_car"), ("palette", "wrecking_ball"),
-    ("play", "walker"),
+    ("help", "truss_bridge"), ("edit", ""), ("play", "jelly_pile"), ("edit", "suspension_car"), ("edit", ""),
+    ("palette", "wrecking_ball"), ("play", "walker"),
 )  # fmt: skip
 SIZES = ((1280, 720), (640, 480), (900, 700), (1600, 900), (1280, 720))
 # What is typed, and never a name of a folder.
@@ -75,6 +80,7 @@ class Monkey:
         self.app.open(StartRequest())
         self.done: deque[str] = deque(maxlen=40)
         self.seen: Counter[str] = Counter()
+        self._parts = itertools.cycle(part.level for part in catalogue() if part.level is not None)
         self._held: set[int] = set()
         self._path: list[tuple[int, int]] = []
         self._keys = [getattr(pygame, f"K_{name}") for name in KEYS]
@@ -85,7 +91,8 @@ class Monkey:
         ]  # fmt: skip
         self._deeds = (
             (self._move, 30), (self._press, 14), (self._click_button, 8), (self._press_key, 14), (self._type, 3),
-            (self._turn_wheel, 5), (self._rest, 25), (self._escape, 3), (self._resize, 0.15),
+            (self._turn_wheel, 5), (self._rest, 25), (self._escape, 3), (self._resize, 0.15), (self._turn_page, 2),
+            (self._select, 2),
         )  # fmt: skip
 
     # Deeds.
@@ -149,6 +156,23 @@ class Monkey:
     def _escape(self) -> None:
         self.tap(pygame.K_ESCAPE)
 
+    @property
+    def _editor(self) -> EditScreen | None:
+        """The editor, where it is what the window shows."""
+        editor = self.app.documents.editor
+        return editor if editor is not None and self.app.screen is editor else None
+
+    def _turn_page(self) -> None:
+        editor = self._editor
+        if editor is not None and editor.side is not None:
+            editor.side.choose(self._random.choice(sorted(PAGES)))
+
+    def _select(self) -> None:
+        """Select something in the editor: its fields and materials are shown."""
+        editor = self._editor
+        if editor is not None and (items := list(items_of(editor.document.level))):
+            editor.select(frozenset(self._random.choices(items, k=self._random.choice((1, 1, 2, 9)))))
+
     def _resize(self) -> None:
         self.app.display.window.size = self._random.choice(SIZES)
 
@@ -206,7 +230,7 @@ class Monkey:
             self.app.start(Playback(load_level(level)))
             self.frame()
         if screen == "edit":
-            self.app.documents.edit_level(load_level(level))
+            self.app.documents.edit_level(load_level(level) if level else next(self._parts))
         elif screen == "gallery":
             self.app.open_gallery()
         elif screen != "play":

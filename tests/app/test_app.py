@@ -372,6 +372,8 @@ def test_keys_with_ctrl_and_shift_are_told_apart():
 def test_the_title_says_level_tick_and_state(driver):
     driver.app.act("pause")
     driver.frames()
+    assert driver.app.title() == "Small - Spring Sandbox"
+    driver.app.says_states = True
     assert driver.app.title() == f"Small - tick {driver.playback.session.tick} - paused - Spring Sandbox"
 
 

@@ -53,7 +53,7 @@ def test_a_drag_over_the_pad_sets_both_in_one_gesture_that_is_undone_at_once(pad
     padded.release(pad.pixel_of(0.1, 0.2))
     assert pair(padded) == pytest.approx((0.1, 0.2), rel=0.05)
     assert pair(padded, "pair:0") == (0.02, 0.1)
-    entries = [each for each in padded.playback.session._log if isinstance(each.command, SetCoefficients)]
+    entries = [each for each in padded.playback.session.history.log if isinstance(each.command, SetCoefficients)]
     assert len(entries) >= 4 and len({each.gesture for each in entries}) == 1
     padded.key(pygame.K_z, pygame.KMOD_CTRL)
     assert pair(padded) == (0.3, 0.3)
@@ -72,8 +72,8 @@ def test_arrow_keys_move_the_focused_pad_along_one_axis_alone(padded):
 
 def test_numbers_hz_and_pad_show_the_same_pair(unfolded):
     padded, panel = unfolded, unfolded.panel
-    padded.fill(panel.frequency, "3")
-    padded.fill(panel.ratio, "0.5")
+    padded.fill(panel.engineers.frequency, "3")
+    padded.fill(panel.engineers.ratio, "0.5")
     assert (panel.pad.state.stiffness, panel.pad.state.damping) == pair(padded)
     assert frequency_from_coefficients(*pair(padded), 1 / 60) == pytest.approx((3.0, 0.5))
     panel.choose_material(None)
@@ -98,11 +98,11 @@ def test_the_pad_is_whole_in_the_smallest_window_and_the_world_folds(padded):
         padded.app.act("panel")
         padded.frames(2)
     panel = padded.panel
-    assert not panel.is_open("engineers") and not panel.solving.solver.buttons["direct"].visible
+    assert not panel.is_open("engineers") and not panel.engineers.solving.solver.buttons["direct"].visible
     assert panel.area.view.rect.contains(panel.pad.rect)
     padded.app.play.fold("engineers")
     padded.frames(2)
-    assert padded.panel.solving.solver.buttons["direct"].visible
+    assert padded.panel.engineers.solving.solver.buttons["direct"].visible
 
 
 def test_who_chose_the_pad_finds_it_in_the_next_run(padded):

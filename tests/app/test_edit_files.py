@@ -47,11 +47,11 @@ def lose(level, path=None):
 
 
 def test_an_edit_shows_in_the_title_and_saving_writes_it_as_it_is(driver, path):
-    assert "Small - editing" in driver.app.title()
+    assert "Small - Level editor" in driver.app.title()
     draw(driver)
-    assert "Small* - editing" in driver.app.title()
+    assert "Small* - Level editor" in driver.app.title()
     driver.key(pygame.K_s, CTRL)
-    assert "Small - editing" in driver.app.title()
+    assert "Small - Level editor" in driver.app.title()
     assert read_level(path) == driver.editor.document.level
     driver.key(pygame.K_z, CTRL)
     assert "Small*" in driver.app.title()

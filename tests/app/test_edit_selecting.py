@@ -4,7 +4,10 @@ import numpy as np
 import pygame
 import pytest
 
+from sandbox.editor.document import Document, empty_level
+from sandbox.editor.edits.parts import place_part
 from sandbox.editor.items import Item
+from sandbox.editor.storage.part_files import catalogue
 from tests.app.conftest import small_level
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
@@ -50,15 +53,58 @@ def test_a_lasso_selects_what_lies_inside(driver):
     assert selected(driver) == {PAIR}
 
 
-def test_a_double_click_selects_the_whole_group(driver):
+def grouped(driver):
+    """Everything in one group, and nothing selected."""
     driver.key(pygame.K_a, CTRL)
     driver.key(pygame.K_g, CTRL)
     driver.key(pygame.K_ESCAPE)
+
+
+def test_a_click_takes_the_whole_group_and_a_double_click_enters_it(driver):
+    grouped(driver)
     driver.click_at(1, 0)
-    assert selected(driver) == {ROPE}
-    driver.click(driver.at(1, 0))
-    driver.click(driver.at(1, 0))
     assert selected(driver) == {ROPE, PAIR}
+    driver.click(driver.at(1, 0))
+    driver.click(driver.at(1, 0))
+    assert selected(driver) == {ROPE}
+    assert "In group" in driver.editor.pointer_tool.hint
+    driver.rest()
+    driver.click_at(0.5, 2.2)
+    assert selected(driver) == {PAIR}
+    driver.key(pygame.K_ESCAPE)
+    assert selected(driver) == {ROPE, PAIR} and "In group" not in driver.editor.pointer_tool.hint
+    driver.key(pygame.K_ESCAPE)
+    assert selected(driver) == set()
+
+
+def test_a_click_in_the_open_leaves_the_group(driver):
+    grouped(driver)
+    for _ in range(2):
+        driver.click(driver.at(1, 0))
+    assert selected(driver) == {ROPE}
+    driver.rest()
+    driver.click_at(-1, -1)
+    driver.rest()
+    driver.click_at(1, 0)
+    assert selected(driver) == {ROPE, PAIR}
+
+
+def test_a_box_around_a_member_takes_the_whole_group(driver):
+    grouped(driver)
+    driver.drag((-0.5, 1.5), (0, 1.8), (1.5, 2.5))
+    assert selected(driver) == {ROPE, PAIR}
+
+
+@pytest.mark.parametrize("name", [part.path.stem for part in catalogue()])
+def test_a_ready_part_is_dragged_whole(edit, name):
+    part = next(part for part in catalogue() if part.path.stem == name)
+    driver = edit(place_part(Document(empty_level()), part.level, (0.0, 0.0)).level)
+    before = driver.editor.scene.position.copy()
+    x, y = before[np.argmax(before[:, 0])]
+    driver.drag((x, y), (x + 0.7, y + 0.2), (x + 1.5, y + 0.5))
+    moved = driver.editor.scene.position - before
+    assert len(selected(driver)) == len(driver.editor.scene.items) and np.abs(moved).max() > 0.4
+    assert moved == pytest.approx(np.broadcast_to(moved[0], moved.shape), abs=1e-9)
 
 
 def test_dragging_an_item_moves_it_by_the_grid_and_undo_brings_the_very_level_back(driver):

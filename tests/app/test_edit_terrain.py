@@ -6,6 +6,7 @@ import pytest
 from sandbox.editor.items import Item
 from tests.app.conftest import small_level
 
+CTRL = pygame.KMOD_CTRL
 GROUND = {"id": "ground", "polygon": [[-2, -2], [4, -2], [4, -1], [-2, -1]]}
 PIECE = Item("terrain", "ground")
 
@@ -21,6 +22,37 @@ def terrain(driver):
 
 def labels(driver):
     return driver.editor.history.labels[1:]
+
+
+def test_ctrl_z_takes_corners_back_one_by_one_before_it_undoes_an_edit(driver):
+    driver.key(pygame.K_d)
+    before = driver.editor.document.level
+    for corner in ((-3, -2), (-1, -2), (-1, -3)):
+        driver.click_at(*corner)
+    drawing = driver.editor.pointer_tool.drawing
+    assert len(drawing.points) == 3
+    driver.key(pygame.K_z, CTRL)
+    assert len(drawing.points) == 2
+    driver.key(pygame.K_y, CTRL)
+    assert len(drawing.points) == 3
+    for left in (2, 1, 0):
+        driver.key(pygame.K_z, CTRL)
+        assert len(drawing.points) == left and driver.editor.document.level is before
+
+
+def test_another_tool_ends_an_outline_that_is_sound_and_tells_of_one_that_is_not(driver):
+    driver.key(pygame.K_d)
+    pieces = len(driver.editor.document.level.terrain)
+    for corner in ((-3, -2), (-1, -2), (-1, -3)):
+        driver.click_at(*corner)
+    driver.key(pygame.K_v)
+    assert len(driver.editor.document.level.terrain) == pieces + 1 and driver.editor.tool == "select"
+    driver.key(pygame.K_d)
+    driver.click_at(-3, 1)
+    driver.click_at(-2, 1)
+    driver.key(pygame.K_v)
+    assert len(driver.editor.document.level.terrain) == pieces + 1
+    assert any("Not drawn" in notice and "three corners" in notice for notice in driver.notices)
 
 
 @pytest.mark.parametrize("end", ["first corner", "enter", "double click"])

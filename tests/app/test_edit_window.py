@@ -117,7 +117,7 @@ class Maker:
         self.person.click(self.place_of_label("Save"))
         self.twin.type(name)
         self.twin.choose("Save")
-        self.person.wait_for(f"{name} - editing", without="dialog")
+        self.person.wait_for(f"{name} - Level editor", without="dialog")
 
     def reopen(self, name):
         """Begin a new level, and open the saved one among the person's own."""
@@ -135,7 +135,7 @@ class Maker:
         card = self.twin.app.gallery.cards[0]
         self.person.click(card.rect.center)
         self.twin.click_widget(card)
-        self.person.wait_for(f"{name} - editing")
+        self.person.wait_for(f"{name} - Level editor")
         self.picture(f"{name} reopened")
 
     def record(self, name, particle):
@@ -165,7 +165,7 @@ class Maker:
         self.press("edit")
         self.twin.app.act("edit")
         self.twin.frames(2)
-        self.person.wait_for(f"{name} - editing")
+        self.person.wait_for(f"{name} - Level editor")
 
 
 def advance_to_rest(session):
@@ -238,10 +238,11 @@ def maker(screen, tmp_path, edit):
         shutil.copytree(folder / "pictures", os.environ["SANDBOX_PICTURES"], dirs_exist_ok=True)
 
 
+@pytest.mark.slow
 def test_three_levels_are_built_by_mouse_saved_reopened_played_and_their_recordings_verify(maker):
     documents = maker.folder.parent / "documents" / "Spring Sandbox"
     # What was drawn in the plain way until then changes once, which is no answer to the person.
-    maker.person.wait_for("Untitled - editing", without="preparing")
+    maker.person.wait_for("Untitled - Level editor", without="preparing")
     maker.picture("the tour is offered")
     maker.person.click(maker.place_of_label("Skip"))
     maker.twin.choose("Skip")

@@ -4,9 +4,11 @@ import pygame
 import pytest
 
 from sandbox.app.base.display import _guessed_scale
-from sandbox.app.base.shortcuts import _combination, combination_of
+from sandbox.app.base.shortcuts import Shortcut, _combination, combination_of
+from sandbox.app.window import files
 from sandbox.app.window.failure import MOST, FrameGuard, reports_folder
 from sandbox.app.window.input import by_place
+from sandbox.level.format.level_error import LevelError
 from sandbox.level.reading.files import load_level
 from tests.app.conftest import small_level
 
@@ -54,7 +56,7 @@ def test_faults_without_an_end_end_the_program(open_app):
     guard = FrameGuard(open_app(small_level()).app)
     for _ in range(MOST - 1):
         guard.take(ValueError("again"))
-    with pytest.raises(ValueError, match="again"):
+    with pytest.raises(SystemExit, match=r"Your work is kept. A report is in .*txt"):
         guard.take(ValueError("again"))
 
 
@@ -87,3 +89,34 @@ def test_a_scale_that_is_no_number_is_passed_over(monkeypatch, value):
     monkeypatch.setenv("GDK_SCALE", value)
     monkeypatch.delenv("QT_SCALE_FACTOR", raising=False)
     assert _guessed_scale((1920, 1080)) == 1.0
+
+
+@pytest.mark.parametrize("key", ["Alt+O", "SS", "Ctrl+", ""])
+def test_a_key_that_is_none_is_refused_where_its_action_is_declared(key):
+    with pytest.raises(ValueError, match=r"act: .* is no key"):
+        Shortcut("act", ("A", key), "Act", "View")
+
+
+@pytest.mark.parametrize("is_edited", [False, True])
+def test_a_level_that_goes_while_its_name_is_typed_is_told_in_a_line(open_app, edit, monkeypatch, is_edited):
+    driver = edit(load_level("rope")) if is_edited else open_app(small_level())
+    mode = driver.app.mode
+    driver.app.files.ask_to_open()
+    driver.frames(2)
+    driver.type("rope")
+    real = files.load_level
+    found = iter([real])
+
+    def gone(name):
+        reading = next(found, None)
+        if reading is None:
+            raise LevelError(name, [("", "cannot be read: it is not there")])
+        return reading(name)
+
+    told = []
+    monkeypatch.setattr(files, "load_level", gone)
+    monkeypatch.setattr(driver.app, "show_faults", lambda title, lines: told.append((title, lines)))
+    driver.key(pygame.K_RETURN)
+    driver.frames(2)
+    assert driver.app.mode == mode
+    assert told == [("rope cannot be opened", ["rope: cannot be read: it is not there"])]

@@ -69,11 +69,11 @@ def test_cs_and_cd_end_the_firmness_and_the_rows_read_what_they_amount_to(jelly)
     jelly.frames(2)
     assert not jelly.world.lowest_mode.any()
     assert texts(jelly)[0] not in ("10", "mixed")
-    kinds = [type(entry.command) for entry in jelly.playback.session._log]
+    kinds = [type(entry.command) for entry in jelly.playback.session.history.log]
     assert kinds == [SetCoefficients]
     jelly.click_widget(panel.firmness.words.buttons["soft"])
     jelly.frames(2)
-    assert [type(entry.command) for entry in jelly.playback.session._log] == [SetCoefficients, SetFirmness]
+    assert [type(entry.command) for entry in jelly.playback.session.history.log] == [SetCoefficients, SetFirmness]
     assert texts(jelly) == ["10", "2.32", "0.15"]
 
 
@@ -89,7 +89,7 @@ def test_all_bodies_are_set_in_one_gesture_and_one_alone_where_it_is_chosen(open
     driver.click_widget(rows.words.buttons["hard"])
     driver.frames(2)
     assert texts(driver)[0] == "0.3"
-    entries = driver.playback.session._log
+    entries = driver.playback.session.history.log
     assert len(entries) == 2 and len({entry.gesture for entry in entries}) == 1
     driver.panel.choose_body("other")
     driver.click_widget(rows.words.buttons["jelly"])

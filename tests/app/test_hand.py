@@ -24,7 +24,7 @@ def soft_level():
 
 
 def grabs(driver):
-    return [entry.command for entry in driver.playback.session._log if isinstance(entry.command, Grab)]
+    return [entry.command for entry in driver.playback.session.history.log if isinstance(entry.command, Grab)]
 
 
 def test_a_key_makes_the_hand_gentle_normal_or_strong_and_the_next_hold_is_so(driver):

@@ -75,7 +75,7 @@ def test_stiffer_again_and_again_ends_in_words_and_a_button_and_harms_nothing(le
     assert np.abs(screen.other.session.world.position).max() < 3.0
     lesson.app.display.window.size = (640, 480)
     lesson.frames(30)
-    assert "exploded" in lesson.app.play.title()
+    assert "exploded" in lesson.app.play.states()
     lesson.click_widget(screen.again)
     lesson.frames(1)
     assert screen.playback.session.tick < 9

@@ -12,6 +12,7 @@ from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.session.commands import AddBody, AddParticle, Push, Remove, SetAir
 from sandbox.tools.parts import PARTS
+from sandbox.tools.tool import DropPicture
 from tests.support.parts import furnished
 
 KEYS = dict(zip(NAMES, "4567890vxi", strict=True))
@@ -39,7 +40,7 @@ def drop(driver, *points):
 
 
 def commands(driver):
-    return [entry.command for entry in driver.playback.session._timeline]
+    return [entry.command for entry in driver.playback.session.history.timeline]
 
 
 def test_the_strip_folds_out_and_every_part_and_deed_has_a_key_a_button_and_a_picture(player):
@@ -107,10 +108,10 @@ def test_a_ghost_is_a_pale_picture_of_the_part_as_large_as_it_and_an_outline_whe
     wood = player.app.display.surface.get_at((round(place[0]), round(place[1])))[:3]
     assert wood[0] > before[0] + 30 and wood[0] > wood[2] + 20
     ghost, renderer = PartGhost(), player.stage.renderer
-    picture = ghost.picture("box", 1.0, "coral", 50.0, renderer)
+    picture = ghost.picture(DropPicture("box", 1.0, "coral"), 50.0, renderer)
     assert picture.get_at(picture.get_rect().center).a > 100 and picture.get_at((0, 0)).a == 0
-    assert ghost.picture("box", 1.0, "coral", 50.0, renderer) is picture
-    assert ghost.picture("box", 1000.0, "coral", 50.0, renderer) is None
+    assert ghost.picture(DropPicture("box", 1.0, "coral"), 50.0, renderer) is picture
+    assert ghost.picture(DropPicture("box", 1000.0, "coral"), 50.0, renderer) is None
 
 
 def test_the_wheel_and_keys_size_a_part_and_zoom_with_the_hand(player):

@@ -170,11 +170,11 @@ def test_a_ghost_is_the_part_itself_and_its_outline_where_that_is_huge(player):
     player.move((x, y))
     player.frames(2)
     ghost, renderer = player.stage._ghost, player.stage.renderer
-    picture = ghost.picture_of_level(player.stage.part, player.stage.camera.zoom, renderer)
+    picture = ghost.picture(player.stage.tool.preview, player.stage.camera.zoom, renderer)
     # The ball is in the middle of the upper half.
     wide, high = picture.get_size()
     assert picture.get_at((wide // 2, high // 3)).a > 60 and picture.get_at((0, 0)).a == 0
-    assert ghost.picture_of_level(player.stage.part, 10_000.0, renderer) is None
+    assert ghost.picture(player.stage.tool.preview, 10_000.0, renderer) is None
     (outline,) = player.stage.tool.ghost
     assert outline[0] == outline[-1] and len(outline) == 5
 

@@ -5,6 +5,7 @@ import pytest
 
 from sandbox.editor.items import items_of
 from sandbox.editor.storage.part_files import catalogue
+from sandbox.level.checks import METRICS
 from sandbox.level.reading.files import load_level, shipped_levels
 
 PARTS = {part.path.stem: part.level for part in catalogue() if not part.is_own}
@@ -30,6 +31,7 @@ def walk(driver):
     driver.app.ui.blur()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PARTS)
 def test_every_page_shows_every_ready_part_and_all_of_its_materials(edit, name):
     driver = edit(PARTS[name])
@@ -79,7 +81,7 @@ def test_the_wheel_scrolls_a_menu_and_the_last_metric_is_chosen_by_mouse(edit):
     driver.press(at)
     driver.release(at)
     driver.frames(2)
-    assert not menu.alive() and driver.editor.document.level.checks[0].metric == wanted
+    assert not menu.alive() and METRICS[driver.editor.document.level.checks[0].metric].label == wanted
 
 
 def test_the_thumb_of_a_menu_scrolls_and_chooses_nothing(edit):

@@ -68,7 +68,7 @@ def test_the_button_cancels_a_recording_of_what_was_played_and_leaves_no_file(dr
 def test_a_window_that_is_to_be_closed_does_not_wait_for_a_run_to_be_played_again(driver, monkeypatch):
     session = _played(driver)
     tick = session.tick
-    session._keyframes.drop_beyond(0)
+    session.history.keyframes.drop_beyond(0)
     drawn = _cancel_while_it_is_played_again(driver, monkeypatch, lambda button: driver.post(pygame.QUIT))
     driver.playback.seek(tick - 2)
     assert len(drawn) == 1 and session.tick == tick and driver.playback.clock.paused

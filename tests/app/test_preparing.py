@@ -219,6 +219,7 @@ print(json.dumps([ticks, jit.COMPILED, str(verify(replay)), replay.ticks]))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not preparing.jit.COMPILED, reason="nothing is compiled here")
 def test_a_run_in_the_window_is_switched_between_two_ticks_and_its_recording_verifies(tmp_path):
     environment = {

@@ -193,9 +193,9 @@ def test_a_replay_that_was_watched_to_its_end_can_be_gone_back_in_and_ends_there
     playback.seek(playback.length)
     while not playback.verdict:
         watching.frames()
-    assert "verified" in " ".join(watching.app.play.title())
+    assert "verified" in " ".join(watching.app.play.states())
     playback.seek(20)
-    assert watching.app.play.title()[-1] == "watching"
+    assert watching.app.play.states()[-1] == "watching"
     playback.clock.paused = False
     watching.frames(playback.length + 30)
     assert playback.session.tick == playback.length and playback.watching

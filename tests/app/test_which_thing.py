@@ -96,7 +96,7 @@ def test_a_drag_while_paused_moves_a_body_and_one_while_time_goes_on_holds_it(pi
     pile.press((x, y))
     pile.move((x + 30, y - 50))
     pile.release((x + 30, y - 50))
-    kinds = {type(entry.command) for entry in pile.playback.session._log}
+    kinds = {type(entry.command) for entry in pile.playback.session.history.log}
     assert kinds == {MoveBody}
     moved = np.abs(pile.world.position - place).max(axis=1) > 1e-9
     assert 0 < moved.sum() < len(moved) / 4
@@ -105,4 +105,4 @@ def test_a_drag_while_paused_moves_a_body_and_one_while_time_goes_on_holds_it(pi
     pile.app.act("pause")
     pile.press(middle_of(pile, "cube 1"))
     pile.frames(2)
-    assert any(isinstance(entry.command, Grab) for entry in pile.playback.session._log)
+    assert any(isinstance(entry.command, Grab) for entry in pile.playback.session.history.log)

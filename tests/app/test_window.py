@@ -2,6 +2,7 @@
 
 import numpy as np
 import pygame
+import pytest
 
 from sandbox.app.base.display import WINDOW_SIZE
 from sandbox.level.reading.files import write_level
@@ -14,6 +15,7 @@ from tests.support.person import DEADLINE, Person, needs_a_screen
 pytestmark = needs_a_screen
 
 
+@pytest.mark.slow
 def test_a_person_drags_slides_pauses_records_and_saves_and_the_replay_verifies(screen, tmp_path, open_app):
     level = small_level()
     write_level(level, tmp_path / "small.json")

@@ -1,6 +1,6 @@
 """Makes the goldens anew: of every shipped level, or of those that are named.
 
-python -m tests.determinism.make_goldens [LEVEL ...]        (all: make goldens-anew)
+python -m tests.determinism.make_goldens [LEVEL ...]        (all: make goldens-record)
 
 Only a change of what a tick computes (a new physics version) or of a level's meaning is a reason to.
 """

@@ -12,7 +12,7 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import NissenMaterial, ParticleDef
 from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.analysis.firmness import Reach, set_firmness
+from sandbox.physics.analysis.firmness import FirmnessRange, set_firmness
 from sandbox.physics.forms import Firmness
 from sandbox.physics.step import step
 from tests.support.wobbles import firm_level
@@ -91,7 +91,8 @@ def test_firmness_is_kept_by_body_and_ends_where_cs_or_cd_ended_it():
     document = Document(parse_level(firm_level({"sag": 0.1}, floor=True, **jelly), "firm"))
     world = build_world(document.level)
     assert keep_coefficients(document, world) is document
-    set_firmness(world, 0, *Reach.of(world.forms[0].shape, (0.0, -9.81), 60).coefficients(Firmness(hz=4.0, ratio=0.4)))
+    reach = FirmnessRange.of(world.forms[0].shape, (0.0, -9.81), 60)
+    set_firmness(world, 0, *reach.coefficients(Firmness(hz=4.0, ratio=0.4)))
     level = keep_coefficients(document, world).level
     assert level.bodies[0].firmness == FirmnessDef(hz=4.0, ratio=0.4)
     assert build_world(level).stiffness == pytest.approx(world.stiffness, rel=1e-5)

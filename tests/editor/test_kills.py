@@ -68,6 +68,7 @@ def test_a_large_file_whose_writing_in_place_is_killed_is_whole_itself_or_in_its
     print(f"{torn} of {SAVES // 2} files were torn and had a copy")
 
 
+@pytest.mark.slow
 def test_of_work_that_is_killed_at_most_one_edit_or_ten_seconds_are_lost(tmp_path):
     moments = random.Random(7)
     worst = 0.0

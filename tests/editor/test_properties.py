@@ -9,11 +9,13 @@ from hypothesis import strategies as st
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.items import Item, definitions, items_of
+from sandbox.editor.panel.check_form import add_check, check_properties, delete_check
 from sandbox.editor.panel.field_info import abouts
-from sandbox.editor.panel.level_properties import add_check, check_properties, delete_check, level_properties
+from sandbox.editor.panel.level_properties import level_properties
 from sandbox.editor.panel.properties import properties
 from sandbox.editor.panel.property import MIXED, Property
 from sandbox.editor.panel.typed import line_text, list_text, number_text, read_line, read_pairs, read_words
+from sandbox.level.checks import METRICS
 from sandbox.level.document.canonical import level_text
 from sandbox.level.document.model import Level, ParticleDef, Settings, SpringDef
 from sandbox.level.kinds.bodies import KINDS, expansion
@@ -364,14 +366,54 @@ def test_a_check_takes_a_box_a_body_or_a_span_of_time_by_what_it_measures(level)
 
     document = of_check()["metric"].set(document, "inside")
     assert {"particle", "body", "box"} <= of_check().keys() and "other" not in of_check()
-    for field, text in (("box", "0, 0, 5, 5"), ("always", "0, 3"), ("eventually", "1, 2")):
-        document = of_check()[field].set(document, of_check()[field].typed(text))
+    assert "after" in of_check() and "span" not in of_check()
+    document = of_check()["box"].set(document, of_check()["box"].typed("5, 0, 0, 5"))
+    document = of_check()["when"].set(document, "always")
+    assert "after" not in of_check()
+    for axis, text in enumerate(("1", "3")):
+        document = of_check()["span"].set(document, of_check()["span"].typed(text, axis))
     check = document.level.checks[1]
-    assert (check.box, check.always, check.eventually) == ((0.0, 0.0, 5.0, 5.0), None, (1.0, 2.0))
+    assert (check.box, check.always, check.eventually) == ((0.0, 0.0, 5.0, 5.0), (1.0, 3.0), None)
+    document = of_check()["span"].set(document, of_check()["span"].typed("4", 0))
+    assert document.level.checks[1].always == (4.0, 6.0)
+    document = of_check()["when"].set(document, "eventually")
+    assert (document.level.checks[1].always, document.level.checks[1].eventually) == (None, (4.0, 6.0))
     document = of_check()["metric"].set(document, "max_strain")
     assert (document.level.checks[1].box, document.level.checks[1].eventually) == (None, None)
-    with pytest.raises(EditError, match="always"):
-        of_check()["always"].set(document, (1.0, 2.0, 3.0))
+    with pytest.raises(EditError, match="four numbers"):
+        document = of_check()["metric"].set(document, "inside")
+        of_check()["box"].set(document, (1.0, 2.0, 3.0))
+
+
+@pytest.mark.parametrize("metric", METRICS)
+def test_a_metric_brings_bounds_of_its_own(level, metric):
+    document = add_check(chosen(level, "rope"))
+
+    def of_check():
+        return {each.field: each for each in check_properties(document, 1)[0].properties}
+
+    document = of_check()["metric"].set(document, "max_speed")
+    document = of_check()["metric"].set(document, metric)
+    check = document.level.checks[1]
+    assert (check.at_least, check.at_most) == METRICS[metric].usual
+    # No bound is a dead end: the other one goes where the two contradict each other.
+    document = of_check()["at_most"].set(document, -3.0)
+    said = of_check()["at_least"].remark(document, 10.0)
+    document = of_check()["at_least"].set(document, 10.0)
+    check = document.level.checks[1]
+    assert said == "at most -3 is gone" and (check.at_least, check.at_most) == (10.0, None)
+
+
+def test_a_check_of_a_particle_is_one_of_a_body_once_that_is_named(level):
+    document = add_check(chosen(level, "rope"))
+
+    def of_check():
+        return {each.field: each for each in check_properties(document, 1)[0].properties}
+
+    document = of_check()["metric"].set(document, "x")
+    assert document.level.checks[1].body == "rope"
+    document = of_check()["particle"].set(document, "rope.1")
+    assert (document.level.checks[1].particle, document.level.checks[1].body) == ("rope.1", None)
 
 
 def test_a_check_gets_a_particle_with_a_metric_that_needs_one_and_loses_it_again(level):
@@ -383,8 +425,10 @@ def test_a_check_gets_a_particle_with_a_metric_that_needs_one_and_loses_it_again
 
     assert "particle" not in of_check()
     document = of_check()["metric"].set(document, "speed")
+    assert document.level.checks[1].body == "rope"
+    assert {"particle", "body"} <= of_check().keys()
+    document = of_check()["metric"].set(document, "distance")
     assert document.level.checks[1].particle == "rope.4"
-    assert "particle" in of_check()
     document = of_check()["metric"].set(document, "max_strain")
     assert document.level.checks[1].particle is None
     with pytest.raises(EditError, match="needs a bound"):

@@ -101,6 +101,7 @@ def test_the_largest_pair_has_three_digits_and_stays_below_4_over_n_eff(stiffnes
     assert (found[0] + 2.0 * found[1]) * n_eff < 4.0
 
 
+@pytest.mark.slow
 def test_every_shipped_level_with_springs_can_be_taken_home_to_everywhere():
     for path in shipped_levels():
         world = build_world(load_level(path.stem))

@@ -249,6 +249,7 @@ def test_what_is_counted_before_is_what_is_built(index):
     assert built.count == (len(built.mass), len(built.pairs))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "body",
     [

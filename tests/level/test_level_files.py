@@ -335,6 +335,7 @@ def levels(draw):
     }
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(levels())
 def test_any_level_is_loaded_as_it_was_saved(data):

@@ -96,8 +96,8 @@ def test_terrain_of_neither_form_and_of_both_is_beyond_the_schema():
 
 def test_the_schema_completes_what_things_can_look_like():
     found = schema()["$defs"]
-    for model, field, names in (("BodyLook", "skin", SKINS), ("BodyLook", "line", LINES), ("ParticleLook", "ball", BALLS),
-                                ("BodyLook", "colour", PALETTE)):  # fmt: skip
+    looks = {"BodyLook": {"skin": SKINS, "line": LINES, "colour": PALETTE}, "ParticleLook": {"ball": BALLS}}
+    for model, field, names in [(model, *each) for model, fields in looks.items() for each in fields.items()]:
         assert found[model]["properties"][field]["anyOf"][0]["examples"] == list(names)
     ground = found["LevelLook"]["properties"]["ground"]["patternProperties"]
     assert next(iter(ground.values()))["examples"] == list(GROUNDS)

@@ -62,6 +62,7 @@ def refuse_enormous(kind: str) -> None:
             raise AssertionError(name) from error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [each.__name__ for each in ENORMOUS])
 def test_every_enormous_malformed_level_is_refused_in_clear_lines(kind):
     # Some hundred MB that this process would not give back.

@@ -56,6 +56,7 @@ def test_in_random_scenes_of_the_softest_springs_no_energy_appears(seed):
 # third a plank was wound in itself, in the fourth a box whose corner had been drawn through it could not come back. In
 # the fifth friction of the floor held what had come through itself; in the last nothing paid for the way out of a rope
 # that a box lay on.
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("stiffness", "damping", "speed", "seed"),
     [(0.1, 0.5, 20.0, 0), (0.9, 0.99, 20.0, 0), (0.02, 0.1, 80.0, 128), (0.02, 0.1, 20.0, 1228), (0.1, 0.5, 5.0, 51008),

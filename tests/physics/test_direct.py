@@ -76,6 +76,7 @@ def test_one_spring_along_its_line_moves_as_the_article_says(damping_range):
     assert worst < 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", energy_gate.BOUNDS)
 @pytest.mark.parametrize("span", energy_gate.MASS_SPANS)
 def test_energy_of_violent_random_graphs_stays_bounded(kind, span):
@@ -84,6 +85,7 @@ def test_energy_of_violent_random_graphs_stays_bounded(kind, span):
     assert energy_gate.highest_energies(graphs, count, steps).max() <= energy_gate.BOUNDS[kind]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", energy_gate.BOUNDS)
 @pytest.mark.parametrize("substeps", [1, AUTO])
 def test_energy_of_violent_random_graphs_with_areas_and_bends_stays_bounded(kind, substeps):
@@ -374,7 +376,7 @@ def test_the_factor_solves_what_a_dense_solver_solves():
     dense = np.diag(np.repeat(rows.mass[:count], 2))
     for k in range(bodies.spring_start[-1]):
         normal, transverse = springs.normal[k], springs.transverse[k]
-        block = transverse * np.eye(2) + (springs.stiff[k] - transverse) * np.outer(normal, normal)
+        block = transverse * np.eye(2) + (springs.K[k] - transverse) * np.outer(normal, normal)
         ends = [2 * r for r in (springs.row_a[k], springs.row_b[k]) if r < count]
         for one in ends:
             for other in ends:

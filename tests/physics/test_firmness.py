@@ -5,7 +5,7 @@ import random
 import numpy as np
 import pytest
 
-from sandbox.physics.analysis.firmness import WORDS, OutOfReach, Reach, least_ratio, lowest_mode_of
+from sandbox.physics.analysis.firmness import WORDS, FirmnessRange, OutOfReach, least_ratio, lowest_mode_of
 from sandbox.physics.equation import of_body, of_springs
 from sandbox.physics.forms import Firmness, StiffForm
 from sandbox.physics.jit import COMPILED
@@ -105,7 +105,7 @@ def test_substeps_leave_a_body_as_high_as_it_was():
 
 
 def test_what_is_asked_is_refused_with_the_nearest_that_can_be_had():
-    reach = Reach(0.06, 1.0, 9.81, TICK)
+    reach = FirmnessRange(0.06, 1.0, 9.81, TICK)
     for asked in (
         Firmness(hz=10.0, ratio=0.15), Firmness(hz=900.0, ratio=0.2), Firmness(sag=1e-9), Firmness(hz=500.0, ratio=1.0)
     ):  # fmt: skip
@@ -117,7 +117,7 @@ def test_what_is_asked_is_refused_with_the_nearest_that_can_be_had():
         assert reach.nearest(asked) == nearest
         assert reach.nearest(nearest) == nearest
     with pytest.raises(OutOfReach, match="no height"):
-        Reach(0.06, 0.0, 9.81, TICK).coefficients(Firmness(sag=0.1))
+        FirmnessRange(0.06, 0.0, 9.81, TICK).coefficients(Firmness(sag=0.1))
 
 
 @pytest.mark.parametrize(
@@ -131,7 +131,7 @@ def test_the_least_damping_ratio_is_that_at_which_nothing_gains_energy(ratio, hi
 
 @pytest.mark.parametrize("hz", [0.3, 2.3, 12.0])
 def test_the_reading_of_a_body_is_what_was_asked_of_it(hz):
-    reach = Reach(0.01, 2.0, 9.81, TICK)
+    reach = FirmnessRange(0.01, 2.0, 9.81, TICK)
     asked = reach.nearest(Firmness(hz=hz, ratio=0.2))
     pair = reach.coefficients(asked)
     assert reach.reading(*pair) == pytest.approx((reach.sag_of(*pair), hz, asked.ratio), rel=1e-6)

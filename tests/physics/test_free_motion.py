@@ -158,6 +158,7 @@ def test_what_flies_is_where_the_parabola_is(solver, contacts):
         assert session.world.position[slots_of(session, "r"), 1] == pytest.approx(fallen, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("solver", "substeps"), [*((solver, 1) for solver in SOLVERS), *(("direct", parts) for parts in (2, 4, 8))]
 )

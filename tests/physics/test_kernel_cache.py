@@ -62,6 +62,7 @@ def outcome(folder, cache, *options):
     return float(value), int(loaded), int(compiled), ended.stderr
 
 
+@pytest.mark.slow
 def test_a_change_in_what_a_kernel_calls_reaches_its_machine_code_and_the_way_back_is_kept(tmp_path):
     seen = []
     for factor in (3.0, 5.0, 3.0):

@@ -143,6 +143,7 @@ def test_a_run_of_a_large_body_continues_from_a_snapshot_with_the_same_bits():
     assert len(set(ends)) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("interpreted", ["0", "1"])
 def test_a_fresh_process_computes_the_same_bits_of_a_large_body(interpreted):
     code = "from tests.physics.test_large import *; print(state_hash(play(mesh(8), 8)))"

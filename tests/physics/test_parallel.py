@@ -37,13 +37,13 @@ def small_bodies_have_halves(monkeypatch):
 @pytest.fixture
 def hired(monkeypatch):
     """The second threads that a test brings about."""
-    threads, hire = [], parallel.hire
+    threads, start_helper = [], parallel.start_helper
 
     def hire_and_tell(*arguments):
-        threads.append(hire(*arguments))
+        threads.append(start_helper(*arguments))
         return threads[-1]
 
-    monkeypatch.setattr(layout, "hire", hire_and_tell)
+    monkeypatch.setattr(layout, "start_helper", hire_and_tell)
     return threads
 
 
@@ -102,6 +102,7 @@ def test_halves_and_the_sparse_factorisation_agree(monkeypatch):
     assert np.abs(play(mesh(4), 8).position - world.position).max() < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("interpreted", ["0", "1"])
 def test_a_fresh_process_computes_the_same_bits_of_halves(interpreted):
     code = "from tests.physics.test_parallel import *; parallel.WORTH_HALVING = 1; print(hash_after_play(8))"
@@ -128,7 +129,7 @@ def test_the_second_thread_ends_with_the_pattern_that_it_serves(hired):
 def test_the_second_thread_takes_the_half_that_is_offered_and_touches_no_other_row():
     world, alone = mesh(14), mesh(14)
     fronts = layout_of(world).system.fronts
-    change = layout_of(world).system.rows.change
+    change = layout_of(world).system.rows.delta_v
     run(world, 1)
     run(alone, 1)
     body = len(fronts.first) - 1

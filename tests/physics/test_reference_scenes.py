@@ -15,6 +15,7 @@ ALLOWED = {
 RIGID = 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes for ten seconds")
 @pytest.mark.parametrize("reference", REFERENCES, ids=lambda reference: reference.name)
 def test_a_reference_scene_stays_together_and_stiffer_than_it_is_known_for(reference):

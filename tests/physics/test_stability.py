@@ -62,6 +62,7 @@ def spectral_radius(world):
     return float(np.max(np.abs(np.linalg.eigvals(np.block([[np.eye(len(pull)) - pull, drag], [-pull, drag]])))))
 
 
+@pytest.mark.slow
 def test_n_eff_is_never_below_the_largest_eigenvalue_nor_above_the_article_s_n():
     generator = np.random.default_rng(1)
     for _ in range(scaled(300, 300)):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.analysis.firmness import Reach, lowest_mode_of
+from sandbox.physics.analysis.firmness import FirmnessRange, lowest_mode_of
 from sandbox.physics.equation import of_body
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify
@@ -79,7 +79,7 @@ def test_firmness_of_one_body_leaves_others_alone_and_outlives_gravity():
     world = session_of({"hz": 4.0, "ratio": 0.3}).world
     others = firm_world({"hz": 4.0, "ratio": 0.3}, {"gravity": [0.0, -3.0]}, shape={"box": [1, 1]}, spacing=0.25)
     assert np.array_equal(world.stiffness, others.stiffness)
-    reach = Reach.of(world.forms[0].shape, (0.0, -3.0), 60.0)
+    reach = FirmnessRange.of(world.forms[0].shape, (0.0, -3.0), 60.0)
     assert reach.reading(*body_pair(world))[1:] == pytest.approx((4.0, 0.3), rel=1e-9)
 
 

@@ -5,10 +5,15 @@ from typing import get_args
 
 import pytest
 
-from sandbox.level.checks import METRICS, Metric, promise_text
+from sandbox.level.checks import METRICS, HoldDef, Metric, promise_text
+from sandbox.level.document.canonical import level_text
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.reading.files import parse_level
 from sandbox.session.check_run import checks_as_they_end, run_checks
+from sandbox.session.held_keys import HeldKeys
+from sandbox.session.session import Session
+from sandbox.session.sweep.case import run_case
+from sandbox.session.sweep.grid import SweepRequest
 
 # A ball falls 4 m onto the ground in 0.9 s; a rope of two springs hangs beside it, of which the lower one is slack.
 LEVEL = {
@@ -114,8 +119,11 @@ FAULTS = {
     '"distance" is measured of a second particle': {"metric": "distance", "particle": "ball", "at_most": 1},
     '"inside" is measured of a box': {"metric": "inside", "particle": "ball"},
     '"energy" is measured of the whole level; take the body out': {"metric": "energy", "body": "rope", "at_most": 1},
-    '"speed" is measured of a particle; take the body out': {
-        "metric": "speed", "particle": "ball", "body": "rope", "at_most": 1},
+    '"speed" is measured of a particle or a body, name one': {"metric": "speed", "at_most": 1},
+    '"distance" is measured of a particle; take the body out': {
+        "metric": "distance", "particle": "ball", "other": "ball", "body": "rope", "at_most": 1},
+    'nothing in the level has the key "d"': {
+        "metric": "speed", "particle": "ball", "at_most": 1, "hold": [{"key": "d", "during": [0, 1]}]},
     'there is no body "ropes"; did you mean "rope"?': {"metric": "strain", "body": "ropes", "at_most": 1},
     'there is no body "ball"': {"metric": "strain", "body": "ball", "at_most": 1},
     "not both; make two": {"metric": "strain", "always": [0, 1], "eventually": [0, 1], "at_most": 1},
@@ -132,3 +140,61 @@ def test_a_check_that_makes_no_sense_is_refused_in_a_line(words):
     with pytest.raises(LevelError) as refused:
         level(FAULTS[words])
     assert len(refused.value.faults) == 1 and words in refused.value.faults[0], refused.value.faults
+
+
+CAR = {
+    "format": "spring-sandbox/level", "version": 2, "name": "Cart",
+    "materials": {"steel": {"stiffness": 1.0, "damping": 1.0}}, "contacts": {"friction": 1.0},
+    "terrain": [{"id": "ground", "polygon": [[-9, -2], [99, -2], [99, 0], [-9, 0]]}],
+    "bodies": [
+        {"type": "wheel", "id": side, "position": [x, 0.5], "radius": 0.5, "thickness": 0.2, "segments": 12,
+         "material": "steel", "motor": {"speed": -6.0, "torque": 60.0, "key": "d", "reverse_key": "a"}}
+        for side, x in (("rear", 0.0), ("front", 2.0))
+    ],
+    "springs": [{"a": "rear.hub", "b": "front.hub", "material": "steel"}],
+}  # fmt: skip
+
+
+def cart(*checks):
+    named = [{"name": f"c{k}", **each} for k, each in enumerate(checks)]
+    return parse_level(json.dumps({**CAR, "checks": named}).encode(), "cart.json")
+
+
+def test_a_check_holds_keys_and_others_of_the_level_run_without():
+    x = {"metric": "x", "body": "rear", "after": 3}
+    drives, stays = run_checks(
+        cart(
+            {**x, "at_least": 0.9, "hold": [{"key": "d", "during": [0, 3]}]},
+            {**x, "at_least": -0.1, "at_most": 0.1},
+        )
+    )
+    assert drives.passed and stays.passed
+
+
+def test_a_key_that_is_let_go_drives_no_more_and_the_one_pressed_last_counts():
+    def driven(*hold):
+        session, keys = Session(cart()), HeldKeys(cart(), [HoldDef(key=key, during=span) for key, span in hold])
+        values = []
+        for _ in range(180):
+            keys.press(session)
+            session.advance()
+            values.append(float(session.world.actuator_value[0]))
+        return values
+
+    assert driven(("d", (1.0, 2.0))) == [0.0] * 60 + [1.0] * 60 + [0.0] * 60
+    assert driven(("d", (0.0, 3.0)), ("a", (1.0, 2.0))) == [1.0] * 60 + [-1.0] * 60 + [1.0] * 60
+
+
+def test_the_centre_of_a_body_is_measured():
+    now = {"body": "front", "after": 0}
+    measured = run_checks(
+        cart(*({**now, "metric": metric, "at_least": 0, "at_most": 9} for metric in ("x", "y", "speed")))
+    )
+    assert [each.value for each in measured] == [pytest.approx(2.0), pytest.approx(0.5), 0.0]
+
+
+def test_a_sweep_measures_checks_that_hold_keys_as_they_are_measured_by_themselves():
+    x = {"metric": "x", "body": "rear", "after": 3}
+    level = cart({**x, "at_least": 0.9, "hold": [{"key": "d", "during": [0, 3]}]}, {**x, "at_most": 0.1})
+    *_, drives, stays = run_case(SweepRequest(level_text(level), ("cs",), 60, None), (1.0,))
+    assert (drives, stays) == (1, 1)

@@ -192,6 +192,7 @@ def _slightly_wrong_step(world):
         world.velocity[9, 0] += 1e-9
 
 
+@pytest.mark.slow
 def test_any_changed_byte_is_refused_with_its_line(recorded, tmp_path):
     data = recorded.read_bytes()
     starts = [0, *(place + 1 for place, byte in enumerate(data) if byte == 10)]

@@ -306,7 +306,7 @@ def test_keyframes_are_thinned_within_their_budget_and_undo_still_works(session,
     monkeypatch.setattr("sandbox.session.keyframes.KEYFRAME_BUDGET", 40_000)
     session.submit(Pin(3))
     _advance(session, 1500)
-    assert len(session._keyframes) < 15
+    assert len(session.history.keyframes) < 15
     session.undo()
     session.apply_pending()
     plain = Session(rope_level())
@@ -327,8 +327,8 @@ def test_long_re_stepping_reports_its_progress(session):
 
 def _all_of(session):
     """All of a run that somebody can come across."""
-    log = [(entry.tick, entry.gesture, entry.command, entry.in_effect, entry.implied) for entry in session._log]
-    kept = [(kept.order, kept.tick) for kept in session._keyframes]
+    log = [(entry.tick, entry.gesture, entry.command, entry.in_effect, entry.implied) for entry in session.history.log]
+    kept = [(kept.order, kept.tick) for kept in session.history.keyframes]
     ends = session.tick, session.last_tick, session.can_undo, session.can_redo, session.branches, session.breaks
     return state_hash(session.world), log, session.gestures, kept, ends
 
@@ -356,7 +356,7 @@ def _played_to_and_fro():
 @pytest.mark.parametrize("deed", ["undo", "redo", "seek", "return", "save"])
 def test_what_is_given_up_while_ticks_are_stepped_again_changes_nothing(deed, tmp_path):
     session = _played_to_and_fro()
-    session._reached = ReachedStates()
+    session.history.reached = ReachedStates()
 
     def do():
         if deed in ("undo", "redo"):

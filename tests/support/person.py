@@ -86,7 +86,7 @@ class Person:
             "SDL_VIDEODRIVER": "x11",
             "PYTHONPATH": os.pathsep.join(sys.path),
         }
-        command = [sys.executable, "-m", "sandbox", *arguments, "--scale", "1"]
+        command = [sys.executable, "-m", "sandbox", *arguments, "--scale", "1", "--states"]
         self.app = subprocess.Popen(
             command, env=self.environment, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
         )

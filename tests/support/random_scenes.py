@@ -164,7 +164,7 @@ def energies(world: World, drags: list[Drag], after: int) -> Energies:
     weight = (world.mass * world.gravity_scale)[live, None] * np.array(world.settings.gravity)
     lowest, h = float(np.sum(weight[:, 1])) * BOX[1], substep_time(world.settings)
     # What nothing holds falls in small steps.
-    half = np.where(outline_of(world).held[live], 0.5 * h, 0.5 * h / small_steps(h))[:, None]
+    half = np.where(outline_of(world).attached[live], 0.5 * h, 0.5 * h / small_steps(h))[:, None]
     rows = []
     for tick in range(after + 1):
         if tick:

@@ -8,15 +8,47 @@ from typing import Literal
 import pygame
 
 from sandbox.editor.tools.palette import TOOLS
+from sandbox.tools.play_tools import PLAY_TOOLS
 
 Mode = Literal["play", "edit"]
+
+_NAMES = {
+    "Escape": pygame.K_ESCAPE, "Space": pygame.K_SPACE, "Enter": pygame.K_RETURN, "Home": pygame.K_HOME,
+    **{f"F{number}": pygame.K_F1 + number - 1 for number in range(1, 13)},
+    ".": pygame.K_PERIOD, "+": pygame.K_PLUS, "-": pygame.K_MINUS, "=": pygame.K_EQUALS,
+    "Delete": pygame.K_DELETE, "Backspace": pygame.K_BACKSPACE,
+    "PageUp": pygame.K_PAGEUP, "PageDown": pygame.K_PAGEDOWN, "Tab": pygame.K_TAB,
+}  # fmt: skip
+_TWINS = {
+    pygame.K_KP_ENTER: pygame.K_RETURN, pygame.K_KP_PLUS: pygame.K_PLUS, pygame.K_KP_MINUS: pygame.K_MINUS,
+    pygame.K_KP_PERIOD: pygame.K_PERIOD,
+}  # fmt: skip
+# Keys that mean the same with Shift or without: on some keyboards they are typed with it.
+_WITHOUT_SHIFT = (pygame.K_PLUS, pygame.K_EQUALS, pygame.K_MINUS, pygame.K_RETURN)
+# Keys that no action can have: they go from widget to widget, or move the cursor.
+_FIXED = (pygame.K_TAB, pygame.K_LEFT, pygame.K_RIGHT, pygame.K_UP, pygame.K_DOWN)
+
+
+def _combination(text: str) -> tuple[int, bool, bool]:
+    """Key, Ctrl and Shift of "Ctrl+Shift+Z"."""
+    ctrl, rest = text.startswith("Ctrl+"), text.removeprefix("Ctrl+")
+    shift, name = rest.startswith("Shift+"), rest.removeprefix("Shift+")
+    return _NAMES.get(name) or ord(name.lower() if len(name.lower()) == 1 else name), ctrl, shift
+
+
+def _is_known(text: str) -> bool:
+    try:
+        _combination(text)
+    except TypeError:  # no single letter
+        return False
+    return True
 
 
 @dataclass(frozen=True)
 class Shortcut:
     """An action, the keys that start it, what it does, and the mode that it belongs to, None = every one.
 
-    An action of "" is a gesture that the help page explains.
+    An action of "" is a gesture that the help page explains. Raises ValueError where a key of an action is none.
     """
 
     action: str
@@ -24,6 +56,11 @@ class Shortcut:
     label: str
     group: str
     mode: Mode | None = None
+
+    def __post_init__(self) -> None:
+        wrong = [text for text in self.keys if self.action and not _is_known(text)]
+        if wrong:
+            raise ValueError(f"{self.action}: {', '.join(wrong)} is no key, alone or with Ctrl and Shift")
 
     @property
     def name(self) -> str:
@@ -37,22 +74,17 @@ def _tools(group: str) -> tuple[Shortcut, ...]:
     return tuple(Shortcut(tool.action, (tool.key,), tool.label, group, "edit") for tool in tools)
 
 
+def _play_tools(group: str) -> tuple[Shortcut, ...]:
+    """What takes up the tools in play of a group."""
+    tools = (tool for tool in PLAY_TOOLS.values() if tool.group == group)
+    return tuple(Shortcut(tool.action, tool.keys, tool.label, group, "play") for tool in tools)
+
+
 SHORTCUTS = (
-    Shortcut("tool_drag", ("D", "1"), "Drag tool: hold and move particles", "Tools", "play"),
-    Shortcut("tool_pin", ("P", "2"), "Pin tool: pin or unpin a particle", "Tools", "play"),
-    Shortcut("tool_cut", ("C", "3"), "Cut tool: a stroke cuts what it crosses", "Tools", "play"),
+    *_play_tools("Tools"),
     Shortcut("palette", ("B",), "Parts to play with: show or hide them", "Parts", "play"),
-    Shortcut("tool_ball", ("4",), "Ball: click drops it, drag throws it", "Parts", "play"),
-    Shortcut("tool_box", ("5",), "Box", "Parts", "play"),
-    Shortcut("tool_jelly", ("6",), "Jelly", "Parts", "play"),
-    Shortcut("tool_rope", ("7",), "Rope", "Parts", "play"),
-    Shortcut("tool_balloon", ("8",), "Balloon", "Parts", "play"),
-    Shortcut("tool_cart", ("9",), "Cart: Q and W drive it", "Parts", "play"),
+    *_play_tools("Parts"),
     Shortcut("catalogue", ("U",), "Parts of your own, and ready ones", "Parts", "play"),
-    Shortcut("tool_push", ("0",), "Push: click bursts, drag pushes", "Parts", "play"),
-    Shortcut("tool_wind", ("V",), "Wind: it blows along a drag", "Parts", "play"),
-    Shortcut("tool_delete", ("X",), "Delete: click takes a thing out", "Parts", "play"),
-    Shortcut("tool_freeze", ("I",), "Freeze or thaw a body", "Parts", "play"),
     Shortcut("", ("Wheel", "+/-"), "With a part or push: larger, smaller", "Parts", "play"),
     Shortcut("", ("Shift+click",), "Keep hold of a particle; a click lets go", "Tools", "play"),
     Shortcut("lattice", ("L",), "Lattice: springs, coloured by their strain", "View", "play"),
@@ -174,25 +206,6 @@ SHORTCUTS = (
     Shortcut("", ("Left", "Right"), "Move the slider; Shift: fine", "Keyboard"),
 )
 
-
-_NAMES = {
-    "Escape": pygame.K_ESCAPE, "Space": pygame.K_SPACE, "Enter": pygame.K_RETURN, "Home": pygame.K_HOME,
-    **{f"F{number}": pygame.K_F1 + number - 1 for number in range(1, 13)},
-    ".": pygame.K_PERIOD, "+": pygame.K_PLUS, "-": pygame.K_MINUS, "=": pygame.K_EQUALS,
-    "Delete": pygame.K_DELETE, "Backspace": pygame.K_BACKSPACE,
-    "PageUp": pygame.K_PAGEUP, "PageDown": pygame.K_PAGEDOWN, "Tab": pygame.K_TAB,
-}  # fmt: skip
-_TWINS = {
-    pygame.K_KP_ENTER: pygame.K_RETURN, pygame.K_KP_PLUS: pygame.K_PLUS, pygame.K_KP_MINUS: pygame.K_MINUS,
-    pygame.K_KP_PERIOD: pygame.K_PERIOD,
-}  # fmt: skip
-
-
-# Keys that mean the same with Shift or without: on some keyboards they are typed with it.
-_WITHOUT_SHIFT = (pygame.K_PLUS, pygame.K_EQUALS, pygame.K_MINUS, pygame.K_RETURN)
-# Keys that no action can have: they go from widget to widget, or move the cursor.
-_FIXED = (pygame.K_TAB, pygame.K_LEFT, pygame.K_RIGHT, pygame.K_UP, pygame.K_DOWN)
-
 # Keys of a person's own, by the names of entries.
 _own: dict[str, tuple[str, ...]] = {}
 
@@ -248,21 +261,6 @@ def combination_of(key: int, modifiers: int) -> str | None:
     shift = bool(modifiers & pygame.KMOD_SHIFT) and key not in _WITHOUT_SHIFT
     ctrl = bool(modifiers & (pygame.KMOD_CTRL | pygame.KMOD_META))
     return ("Ctrl+" if ctrl else "") + ("Shift+" if shift else "") + name
-
-
-def _combination(text: str) -> tuple[int, bool, bool]:
-    """Key, Ctrl and Shift of "Ctrl+Shift+Z"."""
-    ctrl, rest = text.startswith("Ctrl+"), text.removeprefix("Ctrl+")
-    shift, name = rest.startswith("Shift+"), rest.removeprefix("Shift+")
-    return _NAMES.get(name) or ord(name.lower() if len(name.lower()) == 1 else name), ctrl, shift
-
-
-def _is_known(text: str) -> bool:
-    try:
-        _combination(text)
-    except TypeError:  # no single letter
-        return False
-    return True
 
 
 @cache

@@ -291,6 +291,6 @@ class CompareScreen(PlayScreen):
         """What each is set to, in one line that holds for all that was seen."""
         return [lines[0] for lines in self.captions()]
 
-    def title(self) -> list[str]:
-        """Words of the window's title."""
-        return [*super().title(), "two settings"]
+    def title(self) -> str:
+        """What the window is called."""
+        return f"{super().title()}, two settings"

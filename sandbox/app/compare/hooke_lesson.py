@@ -111,7 +111,6 @@ class HookeLesson(CompareScreen):
     def _settings_words(self) -> list[str]:
         return ["   ".join(lines) for lines in self.captions()]
 
-    def title(self) -> list[str]:
-        """Words of the window's title."""
-        state = [] if self.exploded_at is None else ["exploded"]
-        return [*super().title(), "lesson", *state]
+    def states(self) -> list[str]:
+        """The states of the run, and whether a spring has exploded."""
+        return [*super().states(), *([] if self.exploded_at is None else ["exploded"])]

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 import pygame
@@ -15,6 +15,7 @@ from sandbox.editor.document import Document
 from sandbox.editor.history import History
 from sandbox.editor.items import Selection
 from sandbox.editor.lint.finding import Finding
+from sandbox.editor.panel.field_info import Pick
 from sandbox.editor.scene import Scene
 from sandbox.editor.storage.level_file import LevelFile
 from sandbox.editor.tools.snap import Snap
@@ -173,6 +174,14 @@ class Editing(Protocol):
 
     def choose_tool(self, name: str) -> None:
         """Take another tool up."""
+        ...
+
+    def pick(self, kind: Pick, then: Callable[[Any], object]) -> None:
+        """Let a particle, a body or a box be picked on the sheet, and hand it on."""
+        ...
+
+    def show_box(self, box: Box | None) -> None:
+        """Draw the box [m] of what a panel shows on the sheet; None = none."""
         ...
 
     def cancel(self) -> None:

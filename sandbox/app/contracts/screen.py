@@ -88,8 +88,12 @@ class Screen(Protocol):
         """The status line's parts."""
         ...
 
-    def title(self) -> list[str]:
-        """Words of the window's title."""
+    def title(self) -> str:
+        """What the window is called: the level's name, and * where it is not saved."""
+        ...
+
+    def states(self) -> list[str]:
+        """Words on the state of it, for programs that follow what happens."""
         ...
 
     def leave(self) -> None:

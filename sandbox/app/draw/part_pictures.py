@@ -16,6 +16,7 @@ from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.session import Session
 from sandbox.tools.parts import COLOURS, PARTS
+from sandbox.tools.tool import DropPicture
 
 # Half of what a part's picture shows [m], of a part of 1 m.
 SHOWN = {"rope": 1.1, "cart": 0.8}
@@ -48,11 +49,19 @@ class PartGhost:
         # What is in hand of the catalogue: a level, its state, and the box around it.
         self._known: tuple[Level, Snapshot, Box] | None = None
 
-    def picture(self, part: str, size: float, colour: str, zoom: float, like: Renderer) -> pygame.Surface | None:
-        """A part of a size [m], in the middle of its picture; None where that would be too large.
+    def picture(self, preview: DropPicture, zoom: float, like: Renderer) -> pygame.Surface | None:
+        """What would be added, in the middle of its picture; None where that would be too large.
 
-        zoom [pixels/m]; like: a renderer of the run, whose theme and scale it has.
+        zoom [pixels/m]; like: a renderer of the run, whose theme and scale the picture has.
         """
+        if isinstance(preview.part, str):
+            return self._picture_of_part(preview.part, preview.size, preview.colour, zoom, like)
+        # A part that is twice as large as it was kept looks like one that is seen from half as far.
+        return self._picture_of_level(preview.part, zoom * preview.size, like)
+
+    def _picture_of_part(
+        self, part: str, size: float, colour: str, zoom: float, like: Renderer
+    ) -> pygame.Surface | None:
         key = part, size, colour, zoom, like.scale, like.theme.name, like.compiled
         if key != self._key:
             half, self._key = _half(part) * size, key
@@ -61,8 +70,7 @@ class PartGhost:
                 self._picture = self._drawn(*_alone(part, size, colour), (-half, -half, half, half), zoom, like)
         return self._picture
 
-    def picture_of_level(self, part: Level, zoom: float, like: Renderer) -> pygame.Surface | None:
-        """A part of the catalogue, in the middle of its picture; None where that would be too large."""
+    def _picture_of_level(self, part: Level, zoom: float, like: Renderer) -> pygame.Surface | None:
         if self._known is None or self._known[0] is not part:
             state = Session(part).snapshot()
             self._known = part, state, box_of(state)

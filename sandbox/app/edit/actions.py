@@ -128,6 +128,14 @@ def _edit_selection(screen: Editing, label: str, function: Callable[[Document], 
 
 
 def _step(screen: Editing, by: int) -> None:
+    """Take the last point of what is drawn back or put it in its place again, else undo or redo a step."""
+    if isinstance(screen.pointer_tool, DrawTool):
+        drawing = screen.pointer_tool.drawing
+        if by < 0 and drawing.under_way:
+            drawing.back()
+            return
+        if by > 0 and drawing.again():
+            return
     history = screen.history
     if not (history.can_undo if by < 0 else history.can_redo):
         screen.say(f"There is nothing to {'undo' if by < 0 else 'redo'}.")
@@ -197,8 +205,11 @@ def _ask_parts(screen: Editing) -> None:
     names = ("group", "ungroup", "break_apart", "unjoin")
     labels = ("Group", "Ungroup", "Break bodies apart", "Take joints apart")
     choices = [(label, screen.actions[name]) for label, name in zip(labels, names, strict=True)]
-    choose(screen.ui, "Parts", "A double click selects a whole group. A body that is broken apart "
-           "becomes loose particles and springs.", choices)  # fmt: skip
+    text = (
+        "A click selects a whole group, a double click one of its members. "
+        "A body that is broken apart becomes loose particles and springs."
+    )
+    choose(screen.ui, "Parts", text, choices)
 
 
 def _ask_material(screen: Editing) -> None:

@@ -4,6 +4,7 @@ import math
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pygame
@@ -21,6 +22,7 @@ from sandbox.app.edit.actions import edit_actions
 from sandbox.app.edit.bar import Bar, Palette, palette_width
 from sandbox.app.edit.canvas.canvas import SNAP_STEP
 from sandbox.app.edit.canvas.overlay import draw_snap
+from sandbox.app.edit.canvas.picking import PickTool
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.edit.canvas.rulers import RULER, Rulers
 from sandbox.app.edit.canvas.view import View
@@ -38,6 +40,7 @@ from sandbox.editor.edits.moving import can_scale_unevenly, move
 from sandbox.editor.history import History
 from sandbox.editor.items import Selection
 from sandbox.editor.lint.finding import Finding
+from sandbox.editor.panel.field_info import Pick
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.storage.level_file import LevelFile
 from sandbox.editor.tools.palette import TOOLS
@@ -77,6 +80,8 @@ class EditScreen:
         self.view = View(self)
         self.tool = "select"
         self.snapping = True
+        # What is picked on the sheet now, in place of what the tool does.
+        self._picking: PickTool | None = None
         self.cursor: Point | None = None
         self.pointer: Pixel | None = None
         self._scenes: deque[Scene] = deque(maxlen=SCENES_KEPT)
@@ -141,7 +146,7 @@ class EditScreen:
     def step_to(self, index: int) -> None:
         """Show the state after a step of the history."""
         before = self.document.level
-        self.settle()
+        self._give_up()
         self.history.go_to(index)
         self.level_changed(self.history.labels[index], before)
 
@@ -186,6 +191,10 @@ class EditScreen:
         if not pygame.Rect(left, top, width, height).inflate(-width // 5, -height // 5).collidepoint(pixel):
             self.camera.centre = place
         self.view.point_out(place)
+
+    def show_box(self, box: Box | None) -> None:
+        """Draw the box [m] of what a panel shows on the sheet; None = none."""
+        self.view.shown_box = box
 
     # Layout.
 
@@ -310,12 +319,18 @@ class EditScreen:
     @property
     def pointer_tool(self) -> PointerTool:
         """What the pointer does."""
-        return self.pointer_tools[self.tool]
+        return self._picking or self.pointer_tools[self.tool]
+
+    def pick(self, kind: Pick, then: Callable[[Any], object]) -> None:
+        """Let a particle, a body or a box be picked on the sheet, and hand it on."""
+        self.settle()
+        self._picking = PickTool(self, kind, then)
 
     def choose_tool(self, name: str) -> None:
         """Take another tool up."""
         if name != self.tool and isinstance(self.pointer_tool, DrawTool):
-            self.pointer_tool.cancel()
+            self.pointer_tool.put_away()
+        self._picking = None
         self.tool = name
 
     def cancel(self) -> None:
@@ -323,6 +338,7 @@ class EditScreen:
         self.cursor = None
         if not self.pointer_tool.cancel() and self.tool != "select":
             self.choose_tool("select")
+        self._end_picking()
 
     @property
     def reach(self) -> float:
@@ -362,6 +378,11 @@ class EditScreen:
             self.pointer_tool.move(point, modifiers)
         else:
             self.pointer_tool.up(point, modifiers)
+        self._end_picking()
+
+    def _end_picking(self) -> None:
+        if self._picking is not None and self._picking.is_over:
+            self._picking = None
 
     def press_key(self, key: int, modifiers: int) -> bool:
         """No key of a level works while it is edited."""
@@ -397,6 +418,7 @@ class EditScreen:
         if self.cursor is not None:
             tool.down(self.cursor, 0, 1)
             tool.up(self.cursor, 0)
+            self._end_picking()
         elif isinstance(tool, DrawTool):
             tool.finish()
 
@@ -463,10 +485,13 @@ class EditScreen:
             parts.append((f"{x:.3f}, {y:.3f} m", MUTED))
         return [*parts, *counted_parts(len(scene.position), len(scene.particle_a))]
 
-    def title(self) -> list[str]:
-        """Level, * where it is not saved, and the state."""
-        name = self.document.level.name + ("" if self.history.is_saved else "*")
-        words = [name, "editing", self.tool]
+    def title(self) -> str:
+        """Level, * where it is not saved, and that it is edited."""
+        return self.document.level.name + ("" if self.history.is_saved else "*") + " - Level editor"
+
+    def states(self) -> list[str]:
+        """The tool, and how many things are selected."""
+        words = ["editing", self.tool]
         if self.document.selection:
             words.append(f"{len(self.document.selection)} selected")
         return words
@@ -478,10 +503,16 @@ class EditScreen:
         self.view = View(self)
 
     def settle(self) -> None:
-        """Give up what is under way."""
+        """End what is drawn, and give up what is dragged."""
+        if isinstance(self.pointer_tool, DrawTool):
+            self.pointer_tool.put_away()
+        self._give_up()
+        self.history.end_merge()
+
+    def _give_up(self) -> None:
+        """Give up what is drawn or dragged."""
         if self.pointer_tool.matrix is not None or isinstance(self.pointer_tool, DrawTool):
             self.pointer_tool.cancel()
-        self.history.end_merge()
 
 
 def _is_about(box: Box, view: Box) -> bool:

@@ -135,7 +135,7 @@ def warm_up_rest() -> None:
     """Compile what the app needs beside ticks: measures, drawing, Cs and Cd of substeps; or load it."""
     import numpy as np
 
-    from sandbox.app.draw.raster.painter import expect_painting
+    from sandbox.app.draw.raster.painter import precompile_painting
     from sandbox.physics.analysis.energy import total_energy
     from sandbox.physics.constraints import AREA
     from sandbox.physics.settings import WorldSettings
@@ -150,7 +150,7 @@ def warm_up_rest() -> None:
     for keeps_constant in (False, True):
         substep_coefficients(world, 2, keeps_constant=keeps_constant)
         constraint_coefficients(world, 2, keeps_constant=keeps_constant)
-    expect_painting()
+    precompile_painting()
 
 
 class Child:

@@ -16,7 +16,7 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
 from sandbox.physics import jit
 from sandbox.physics.analysis.body_motion import BodyMotion, BodyReading, present_coefficients, read_body, word_for
-from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, OutOfReach, Reach, lowest_mode_of
+from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach, lowest_mode_of
 from sandbox.physics.analysis.stability import BOUND, spring_loads
 from sandbox.physics.analysis.standing import StandingRun
 from sandbox.physics.forms import Firmness
@@ -233,7 +233,7 @@ class FirmnessRows:
         for slot in chosen:
             wanted, world = asked(slot), self.playback.session.world
             name = world.forms[slot].name
-            reach = Reach.of(world.forms[slot].shape, world.settings.gravity, world.settings.tick_rate)
+            reach = FirmnessRange.of(world.forms[slot].shape, world.settings.gravity, world.settings.tick_rate)
             try:
                 given = reach.nearest(wanted)
             except OutOfReach as error:

@@ -1,21 +1,20 @@
 """Panel: how firm bodies are, Cs and Cd by a pad or sliders and what is proven of them; solver, gravity, settings."""
 
-import math
 from collections.abc import Callable, Mapping, Set
 from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
 
-from sandbox.app.base.sentences import sentence
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.panel.coefficient_pad import STIFFNESSES, CoefficientPad, PadState
+from sandbox.app.panel.engineers_rows import EngineersRows
 from sandbox.app.panel.firmness_rows import ALL_BODIES, FirmnessRows
 from sandbox.app.panel.panel_rows import ENTRY_WIDTH, INSIDE, MARGIN, PANEL_WIDTH, ROW, PanelRows
+from sandbox.app.panel.panel_section import PanelSection
 from sandbox.app.panel.readings import number, stability_words
 from sandbox.app.panel.response_curve import ResponseCurve
-from sandbox.app.panel.solver_rows import SolverRows
 from sandbox.app.panel.sweeps.pad_maps import PadMaps
 from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps
 from sandbox.app.panel.touching import Touching
@@ -32,21 +31,18 @@ from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
 from sandbox.physics.analysis.firmness import WORDS
 from sandbox.physics.analysis.stability import CoefficientLimits, coefficient_limits
-from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
 from sandbox.physics.world import LAW_HOOKE, Floats
 from sandbox.session.commands import Command, SetCoefficients
 
 # Sizes in layout units.
-# From this height of the panel on Cs and Cd are set by the pad, and from this on the world is open.
-PAD_FROM, WORLD_FROM = 470.0, 840.0
+# From this height of the panel on Cs and Cd are set by the pad.
+PAD_FROM = 470.0
 PAD_HEIGHT, CURVE_HEIGHT = 214.0, 84.0
 SPRINGS_CHOICE = 118.0
 SIDES_HEIGHT = 38.0
 # Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
 LOOK_EVERY = 15
 ALL_MATERIALS = "All springs"
-# Sections that fold, by what they are called.
-SECTIONS = {"engineers": "For engineers", "world": "World"}
 CS_TIP = "Cs: part of its error that a spring takes back in a tick; more is stiffer. 0 to 1"
 CD_TIP = "Cd: part of its speed that a spring takes away in a tick; more is calmer. 0 to 1"
 
@@ -78,7 +74,7 @@ class Panel:
         self, ui: Ui, playback: Playback, say: Callable[[str], None], choose: Mapping[str, Callable[[str], None]],
         top: float, height: float, shape: PanelShape, touch: Callable[[Touching], None],
     ) -> None:  # fmt: skip
-        self._ui, self.playback, self._say, self._choose = ui, playback, say, choose
+        self._ui, self.playback, self.say, self.choose = ui, playback, say, choose
         self.pad: CoefficientPad | None = None
         self.curve: ResponseCurve | None = None
         self.maps: PadMaps | None = None
@@ -92,7 +88,7 @@ class Panel:
         self._refreshes = -1
         self._refreshed_at: tuple[object, ...] = ()
         self.firmness = FirmnessRows(playback, say)
-        self.solving = SolverRows(playback, say, choose["rate"])
+        self.engineers = EngineersRows(playback, say, choose["rate"], self.firmness, self._set_both)
         self.world = WorldRows(playback, say, choose, touch)
         self._offered = self._present()
         self._scale_of: tuple[object, ...] = ()
@@ -100,8 +96,11 @@ class Panel:
         self._body: BodyMotion | None = None
         self.by_pad = height >= PAD_FROM if shape.springs is None else shape.springs == "pad"
         # What the level's text points at is open, unless the person has folded it.
-        said = {name: title in playback.level.description for name, title in SECTIONS.items()}
-        self._open = {**said, "world": said["world"] or height >= WORLD_FROM, **shape.open}
+        self._open = {
+            name: section.title in playback.level.description
+            or (section.open_from is not None and height >= section.open_from)
+            for name, section in SECTIONS.items()
+        } | shape.open
         background = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
         # What does not fit is scrolled to.
         self.area = ScrollArea(ui, ui.rect(0, 0, PANEL_WIDTH, height), background)
@@ -111,31 +110,31 @@ class Panel:
         if self.firmness.shown:
             self._build_firmness()
         self._build_springs()
-        sections: dict[str, Callable[[], None]] = {
-            "engineers": self._build_engineers,
-            "world": partial(self.world.build, rows),
-        }
-        for name, build in sections.items():
-            rows.section(SECTIONS[name], self._open[name], partial(choose["fold"], name), build)
+        self.sections = {name: section.make(self) for name, section in SECTIONS.items()}
+        for name, made in self.sections.items():
+            fold = partial(choose["fold"], name)
+            rows.section(SECTIONS[name].title, self._open[name], fold, partial(made.build, rows))
         self.area.set_height(ui.px(rows.y))
         self.refresh()
 
     # Building.
 
     def is_open(self, name: str) -> bool:
-        """Whether a section, "engineers" or "world", is unfolded."""
+        """Whether a section, by its name in SECTIONS, is unfolded."""
         return self._open[name]
 
     def _build_sides(self, side: str) -> None:
         """Which of two runs all below is of."""
         rows = self.rows
         options = [(name, name, f"Show and set the springs and the solver of {name}") for name in ("A", "B")]
-        self.sides = self._ui.choice(rows.row(SIDES_HEIGHT - 8, 8), options, self._choose["side"], rows.back)
+        self.sides = self._ui.choice(rows.row(SIDES_HEIGHT - 8, 8), options, self.choose["side"], rows.back)
         self.sides.show(side)
 
     def follow(self, playback: Playback) -> None:
         """Show and change another run of the same level."""
-        self.playback = self.firmness.playback = self.solving.playback = self.world.playback = playback
+        self.playback = self.firmness.playback = playback
+        for section in self.sections.values():
+            section.playback = playback
 
     def _build_firmness(self) -> None:
         ui, rows, firmness = self._ui, self.rows, self.firmness
@@ -158,7 +157,7 @@ class Panel:
         ui.label(rows.place(MARGIN, 2, INSIDE - SPRINGS_CHOICE, 18), "SPRINGS", rows.back, "@heading")
         ways = [("pad", "Pad", "Cs and Cd on a map of what they do"), ("sliders", "Sliders", "Cs and Cd one by one")]
         place = rows.row(22, 6, MARGIN + INSIDE - SPRINGS_CHOICE, SPRINGS_CHOICE)
-        self.ways = ui.choice(place, ways, self._choose["springs"], rows.back)
+        self.ways = ui.choice(place, ways, self.choose["springs"], rows.back)
         self.ways.show("pad" if self.by_pad else "sliders")
         names = [ALL_MATERIALS, *self._material_names()]
         chosen = ALL_MATERIALS if self.material is None else self._material_names()[self.material]
@@ -174,7 +173,7 @@ class Panel:
         self.note = TextBlock(ui, rows.row(30, 4), "", rows.back)
         tip, half = tip_of("melt", "play"), (INSIDE - 8) / 2
         place = rows.place(MARGIN, 0, half, ROW)
-        self.melt = ui.button(place, "Melt", lambda: self._choose["melt"](""), rows.back, tip=tip)
+        self.melt = ui.button(place, "Melt", lambda: self.choose["melt"](""), rows.back, tip=tip)
         tip = "What these springs are in your own loop or engine: numbers and code to copy"
         place = rows.row(ROW, 10, MARGIN + half + 8, half)
         self.take_home = ui.button(place, "Take home", self._take_home, rows.back, tip=tip)
@@ -212,21 +211,6 @@ class Panel:
         made.set_tooltip(tip)
         return made
 
-    def _build_engineers(self) -> None:
-        ui, rows, firmness = self._ui, self.rows, self.firmness
-        if firmness.shown:
-            ui.label(rows.row(16, 2), "Of the body", rows.back)
-            firmness.frequency, firmness.ratio = rows.beside(
-                ("Wobble [Hz]", "Swings a second of the body's slowest wobble, undamped", firmness.type_frequency),
-                ("Damping ratio", "Below 1 the body swings, above 1 it creeps back", firmness.type_ratio),
-            )
-        ui.label(rows.row(16, 2), "Of one spring, alone", rows.back)
-        self.frequency, self.ratio = rows.beside(
-            ("Frequency [Hz]", "Swings a second of one spring, undamped", self._type_frequency),
-            ("Damping ratio", "Below 1 one spring swings, above 1 it creeps back", self._type_ratio),
-        )
-        self.solving.build(rows)
-
     def _first_material(self) -> int | None:
         """The material that the level's text speaks of, else that of the most springs; None: there is none."""
         world, look = self.playback.session.world, self.playback.level.look
@@ -245,11 +229,12 @@ class Panel:
         world = self.playback.session.world
         settings = world.settings
         self._follow_what_joins()
-        self.solving.refresh()
         words = "Make whole" if settings.solver == "single_pass" else "Melt"
         if words != self.melt.text:
             self.melt.set_text(words)
-        self.world.refresh(self._refreshes % LOOK_EVERY == 0 or self.playback.clock.paused)
+        is_look = self._refreshes % LOOK_EVERY == 0 or self.playback.clock.paused
+        for section in self.sections.values():
+            section.refresh(is_look)
         self._refreshes += 1
         if self.maps is not None and self.pad is not None:
             self.maps.refresh(self.playback, self.material, self.pad)
@@ -287,11 +272,10 @@ class Panel:
         for values, entry in ((stiffness, self.stiffness_field), (damping, self.damping_field)):
             entry.show(DASH if not len(values) else MIXED if values.min() != values.max() else f"{values[0]:.6g}")
         if not len(chosen):
-            self.frequency.show(DASH)
-            self.ratio.show(DASH)
+            self.engineers.show_spring(None)
             self.note.show_text(self._no_spring_note())
             return
-        self._show_reading(stiffness, damping)
+        self.engineers.show_spring((stiffness, damping))
         self.note.show_text(stability_words(world.settings.solver, limits, stiffness, damping))
 
     def _show_on_sliders(self, stiffness: np.ndarray, damping: np.ndarray, limits: CoefficientLimits) -> None:
@@ -354,15 +338,6 @@ class Panel:
         else:
             self.curve.show_spring(pair, self.playback.session.world.settings.tick_rate)
 
-    def _show_reading(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
-        if stiffness.min() != stiffness.max() or damping.min() != damping.max():
-            self.frequency.show(MIXED)
-            self.ratio.show(MIXED)
-            return
-        frequency, ratio = frequency_from_coefficients(float(stiffness[0]), float(damping[0]), self._tick_time())
-        self.frequency.show(number(frequency))
-        self.ratio.show(number(ratio))
-
     def _no_spring_note(self) -> str:
         world = self.playback.session.world
         hooke = (world.law == LAW_HOOKE) & ((world.material == self.material) | (self.material is None))
@@ -374,8 +349,12 @@ class Panel:
 
     # Changing.
 
-    def _tick_time(self) -> float:
-        return 1.0 / self.playback.session.world.settings.tick_rate
+    def _set_both(self, stiffness: float, damping: float) -> bool:
+        """Set Cs and Cd of the chosen springs; False: there are none, which is said."""
+        if not self._has_springs():
+            return False
+        self._submit(SetCoefficients(stiffness=stiffness, damping=damping, material=self.material))
+        return True
 
     def _submit(self, command: Command, gesture: int | None = None) -> None:
         self.playback.submit(command, gesture)
@@ -409,7 +388,7 @@ class Panel:
         from sandbox.app.panel.take_home_page import show_take_home
 
         world, slot = self.playback.session.world, self.firmness.body_of(self.material)
-        show_take_home(self._ui, world, self._say, None if slot is None else world.forms[slot].name)
+        show_take_home(self._ui, world, self.say, None if slot is None else world.forms[slot].name)
 
     def choose_body(self, name: str) -> None:
         """Show and change a body, by its name, or all, and the springs that it is made of."""
@@ -470,13 +449,13 @@ class Panel:
         """Say how a change of all springs is taken back, where there are several materials."""
         count = len(np.unique(self.playback.session.world.material[self._chosen()]))
         if self.material is None and count > 1:
-            self._say(f"This changes the springs of all {count} materials; Ctrl+Z takes it back.")
+            self.say(f"This changes the springs of all {count} materials; Ctrl+Z takes it back.")
 
     def _end_gesture(self) -> None:
         self._gesture = None
 
     def _type_coefficient(self, text: str, is_stiffness: bool) -> bool:
-        value = typed_number(self._say, text, "Cs" if is_stiffness else "Cd", 0.0, 1.0)
+        value = typed_number(self.say, text, "Cs" if is_stiffness else "Cd", 0.0, 1.0)
         if value is None or not self._has_springs():
             return False
         self._set(value, is_stiffness)
@@ -484,38 +463,8 @@ class Panel:
 
     def _has_springs(self) -> bool:
         if not len(self._chosen()):
-            self._say("There is no spring here that Cs and Cd apply to.")
+            self.say("There is no spring here that Cs and Cd apply to.")
             return False
-        return True
-
-    def _type_frequency(self, text: str) -> bool:
-        frequency = typed_number(self._say, text, "Frequency", 0.0, math.inf)
-        if frequency is None:
-            return False
-        ratio = _typed_or_none(self.ratio.text)
-        if ratio is None:
-            self._say("The springs had different damping ratios; all are now 1.")
-        return self._set_frequency(frequency, 1.0 if ratio is None else ratio)
-
-    def _type_ratio(self, text: str) -> bool:
-        ratio = typed_number(self._say, text, "Damping ratio", 0.0, math.inf)
-        if ratio is None:
-            return False
-        frequency = _typed_or_none(self.frequency.text)
-        if frequency is None:
-            self._say("These springs differ in frequency. Set the frequency first.")
-            return False
-        return self._set_frequency(frequency, ratio)
-
-    def _set_frequency(self, frequency: float, ratio: float) -> bool:
-        try:
-            stiffness, damping = coefficients_from_frequency(frequency, ratio, self._tick_time())
-        except ValueError as error:
-            self._say(sentence(error))
-            return False
-        if not self._has_springs():
-            return False
-        self._submit(SetCoefficients(stiffness=stiffness, damping=damping, material=self.material))
         return True
 
 
@@ -529,9 +478,8 @@ def _word_tip(sag: float) -> str:
     return f"Sags by {100.0 * sag:g} % of its height" if sag else "Perfectly rigid: it gives way to nothing"
 
 
-def _typed_or_none(text: str) -> float | None:
-    try:
-        value = float(text)
-    except ValueError:
-        return None
-    return value if math.isfinite(value) else None
+# Sections that fold, in the order in which the panel shows them.
+SECTIONS = {
+    "engineers": PanelSection("For engineers", lambda panel: panel.engineers),
+    "world": PanelSection("World", lambda panel: panel.world, open_from=840.0),
+}

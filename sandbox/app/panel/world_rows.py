@@ -57,8 +57,8 @@ class WorldRows:
         self.energies = [TextBlock(ui, place, "", back) for place in columns]
         rows.row(40)
 
-    def refresh(self, energies: bool) -> None:
-        """Show what the world has now, and its energies if asked to."""
+    def refresh(self, is_look: bool) -> None:
+        """Show what the world has now; its energies at a look."""
         gravity = self.playback.session.world.settings.gravity
         self.gravity_x.show(f"{gravity[0]:g}")
         self.gravity_y.show(f"{gravity[1]:g}")
@@ -66,7 +66,7 @@ class WorldRows:
         self.touch.show("on" if touching.is_on else "off")
         self.friction.show(f"{touching.friction:g}" if touching.is_on else DASH)
         self.bounce.show(f"{touching.restitution:g}" if touching.is_on else DASH)
-        if energies:
+        if is_look:
             self._show_energies()
 
     def show_choices(self, strength: str, views: Set[str]) -> None:

@@ -1,4 +1,4 @@
-"""Palette: a strip at the left of the world with parts to drop and deeds to do while it runs."""
+"""Palette: a strip at the left of the world with parts to drop and tools to use while it runs."""
 
 import functools
 from collections.abc import Callable
@@ -16,6 +16,7 @@ from sandbox.app.widgets.icons import ICONS, painted_icon
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.tools.icons import Icon, IconPen
 from sandbox.tools.parts import PARTS
+from sandbox.tools.play_tools import PLAY_TOOLS
 
 # Sizes in layout units.
 LEFT, TOP, BUTTON, GAP, EDGE = 10.0, 10.0, 34.0, 3.0, 5.0
@@ -62,11 +63,13 @@ def _catalogue(pen: IconPen) -> None:
     pen.line((13.6, 17.2), (20.8, 17.2))
 
 
-DEEDS: dict[str, Icon] = {"push": _push, "wind": _wind, "delete": _delete, "freeze": _freeze}
-NAMES = (*PARTS, *DEEDS)
+NAMES = tuple(name for name, tool in PLAY_TOOLS.items() if tool.group == "Parts")
 # The button of the catalogue goes by the name of the tool that has a part of it in hand.
 MORE = "more"
-DRAWN = {**DEEDS, CATALOGUE: _catalogue, MORE: ICONS[MORE]}
+DRAWN: dict[str, Icon] = {
+    "push": _push, "wind": _wind, "delete": _delete, "freeze": _freeze, CATALOGUE: _catalogue, MORE: ICONS[MORE],
+    **{name: tool.icon for name, tool in PLAY_TOOLS.items() if tool.icon is not None},
+}  # fmt: skip
 
 
 def _action_of(name: str) -> str:

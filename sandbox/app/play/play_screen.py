@@ -19,7 +19,7 @@ from sandbox.app.draw.views.overlays import NAMES as OVERLAYS
 from sandbox.app.film.film import Film, last_ticks
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.graphs.graph_dock import GraphDock
-from sandbox.app.panel.panel import Panel, PanelShape
+from sandbox.app.panel.panel import SECTIONS, Panel, PanelShape
 from sandbox.app.panel.panel_rows import PANEL_WIDTH
 from sandbox.app.panel.rate_choice import ask_for_pace
 from sandbox.app.panel.side_panel import ROOM_FOR_PANEL, SidePanel
@@ -35,7 +35,7 @@ from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.out_of_view import OutOfView, put_back
 from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
 from sandbox.app.play.speeds import state_of
-from sandbox.app.play.stage import Stage
+from sandbox.app.play.stage import HAND_TOOL, Stage
 from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
 from sandbox.app.play.stuck import NOTICE, StuckBodies
 from sandbox.app.play.time_bar import TimeBar
@@ -49,7 +49,8 @@ from sandbox.physics.joints.readings import motor_readings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.session.commands import Free
 from sandbox.tools.drag import STRENGTHS
-from sandbox.tools.parts import PARTS
+from sandbox.tools.play_tool import PlayTool
+from sandbox.tools.play_tools import PLAY_TOOLS
 
 # Where the button is that frees what is stuck, below the bar, and its size [layout units].
 FREE_PLACE, FREE_SIZE = (16.0, 12.0), (110.0, 34.0)
@@ -97,7 +98,7 @@ class PlayScreen:
         self.stage.place(self.viewport, app.ui.scale)
         kept = preference(SPRINGS)
         self.shape = PanelShape(kept if kept in ("pad", "sliders") else None)
-        for section in ("engineers", "world"):
+        for section in SECTIONS:
             is_open = preference(f"{FOLD}{section}")
             if isinstance(is_open, bool):
                 self.shape.open[section] = is_open
@@ -265,10 +266,7 @@ class PlayScreen:
     def _actions(self) -> dict[str, Callable[[], object]]:
         stage, files = self.stage, self._app.files
         return {
-            "tool_drag": lambda: stage.choose_tool("drag"),
-            "tool_pin": lambda: stage.choose_tool("pin"),
-            "tool_cut": lambda: stage.choose_tool("cut"),
-            **{f"tool_{name}": lambda name=name: self._take_up(name) for name in NAMES},  # type: ignore[misc]
+            **{tool.action: partial(self._take_up, tool) for tool in PLAY_TOOLS.values()},
             "palette": self._toggle_palette,
             "catalogue": self._open_catalogue,
             "let_go": stage.let_go,
@@ -317,19 +315,20 @@ class PlayScreen:
     def _toggle_palette(self) -> None:
         self.show_palette = not self.show_palette
         if self.stage.tool_name in NAMES:
-            self.stage.choose_tool("drag")
+            self.stage.choose_tool(HAND_TOOL)
         self._app.rebuild()
 
-    def _take_up(self, name: str) -> None:
-        """Take up a part or a deed of the palette; again: back to the hand."""
-        if self.stage.tool_name == name:
-            self.stage.choose_tool("drag")
+    def _take_up(self, tool: PlayTool) -> None:
+        """Take up a tool; again, with one of the strip: back to the hand."""
+        is_on_strip = tool.name in NAMES
+        if is_on_strip and self.stage.tool_name == tool.name:
+            self.stage.choose_tool(HAND_TOOL)
             return
-        self.stage.choose_tool(name)
-        if not self.show_palette:
+        self.stage.choose_tool(tool.name)
+        if is_on_strip and not self.show_palette:
             self.show_palette = True
             self._app.rebuild()
-        if name in PARTS:
+        if self.stage.tool.adds:
             self._say_what_touches()
 
     def _open_catalogue(self, offset: float = 0.0) -> None:
@@ -573,7 +572,7 @@ class PlayScreen:
         parts.append((f"tick {playback.session.tick:,}", MUTED))
         counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
         world = playback.session.world
-        parts += motor_parts(motor_readings(world), SOLVERS[world.settings.solver].carries)
+        parts += motor_parts(motor_readings(world), SOLVERS[world.settings.solver].joints_bear_load)
         return parts + status_parts(*counts, figures, self.stage.renderer.non_finite, playback.behind)
 
     def _state(self) -> str:
@@ -581,9 +580,13 @@ class PlayScreen:
         clock = self.playback.clock
         return "paused" if clock.paused else state_of(clock.speed)
 
-    def title(self) -> list[str]:
-        """Level, tick and state, so that other programs can follow what happens."""
-        words = [self.playback.level.name, f"tick {self.playback.session.tick}", self._state()]
+    def title(self) -> str:
+        """The level's name."""
+        return self.playback.level.name
+
+    def states(self) -> list[str]:
+        """Tick and state of the run."""
+        words = [f"tick {self.playback.session.tick}", self._state()]
         if self.stage.drag.holds:
             words.append(f"holding {len(self.stage.drag.holds)}")
         if self.playback.session.recording is not None:

@@ -20,34 +20,29 @@ from sandbox.app.run.stability_paint import StabilityPaint
 from sandbox.editor.edits.joining import joining_commands
 from sandbox.editor.edits.sizing import sized
 from sandbox.level.document.model import Level
-from sandbox.physics.analysis.query import free_particle_at, nearest_particle, shown_particles
+from sandbox.physics.analysis.query import nearest_particle, shown_particles
 from sandbox.physics.joints.pulls import Pull, pulls_of
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command
 from sandbox.session.session import Session
-from sandbox.tools.blowing import PushTool, WindTool
-from sandbox.tools.cut import CutTool
-from sandbox.tools.drag import DragTool
-from sandbox.tools.dropping import CatalogueTool, DropTool, ThrowTool
-from sandbox.tools.parts import PARTS
-from sandbox.tools.pin import PinTool
-from sandbox.tools.taking import DeleteTool, FreezeTool
+from sandbox.tools.drag import DRAG, DragTool
+from sandbox.tools.dropping import CatalogueTool
+from sandbox.tools.play_tools import PLAY_TOOLS
 from sandbox.tools.tool import PointerEvent, Tool
 
 # How far off a particle a press still hits it, and a step of the keyboard cursor [layout units].
 PICK_RADIUS = 14.0
 CURSOR_STEP, CURSOR_LEAP = 4.0, 24.0
 
-# How large what is dropped is at first, as a share of the height that is seen; and the wind [m/s] of a drag over all
-# of that height.
-SIZE_SHARE, WIND_SPEED = 0.12, 40.0
+# How large a dropped part is at first, as a share of the height of the view.
+SIZE_SHARE = 0.12
 
 # A run in which nothing is seen to move for so long [s] is at rest.
 AT_REST_AFTER = 1.0
 
 Pixel = tuple[float, float]
-# The tool that has a part of the catalogue in hand.
-CATALOGUE = "part"
+# The tool that is in use at first, and the one that has a part of the catalogue in hand.
+HAND_TOOL, CATALOGUE = DRAG.name, "part"
 
 
 class Stage:
@@ -80,13 +75,11 @@ class Stage:
 
     def _make_tools(self, strength: str) -> None:
         new_gesture = self.playback.session.new_gesture
-        self.drag, self.cut, self.pin = DragTool(new_gesture, strength), CutTool(new_gesture), PinTool(new_gesture)
-        self.tools: dict[str, Tool] = {
-            "drag": self.drag, "pin": self.pin, "cut": self.cut, "push": PushTool(new_gesture),
-            "wind": WindTool(new_gesture), "delete": DeleteTool(new_gesture), "freeze": FreezeTool(new_gesture),
-            **{part: DropTool(new_gesture, part) for part in PARTS},
-        }  # fmt: skip
-        self.tool_name = "drag"
+        # The hand is there whichever tool is in use.
+        self.drag = DragTool(new_gesture, strength)
+        self.tools: dict[str, Tool] = {name: tool.make(new_gesture) for name, tool in PLAY_TOOLS.items()}
+        self.tools[HAND_TOOL] = self.drag
+        self.tool_name = HAND_TOOL
         if self.part is not None:
             self.tools[CATALOGUE] = self._catalogue_tool(self.part)
 
@@ -99,7 +92,7 @@ class Stage:
             at = place[0] - times * (left + right) / 2, place[1] - times * (bottom + top) / 2
             return joining_commands(sized(part, times), self.playback.session.world, at, velocity)
 
-        return CatalogueTool(self.playback.session.new_gesture, make, size)
+        return CatalogueTool(self.playback.session.new_gesture, part, make, size)
 
     def take_part(self, part: Level) -> None:
         """Have a part of the catalogue in hand."""
@@ -118,26 +111,14 @@ class Stage:
             self.playback.respond(self.tool.cancel())
         self.tool_name = name
         self.pressed_by_key = False
-        tool = self.tool
-        if isinstance(tool, (DropTool, PushTool)):
-            tool.size = self._usual_size
-        if isinstance(tool, WindTool):
-            tool.strength = WIND_SPEED / (self.camera.viewport[3] / self.camera.zoom)
-
-    @property
-    def _usual_size(self) -> float:
-        """A size [m] that the view has room for, the same until a wheel has turned."""
-        return self.size or float(f"{SIZE_SHARE * self.camera.viewport[3] / self.camera.zoom:.2g}")
+        height = self.camera.viewport[3] / self.camera.zoom
+        self.tool.take_up(self.size or float(f"{SIZE_SHARE * height:.2g}"), height)
 
     def resize(self, steps: float) -> bool:
         """Make larger what the tool drops or reaches; whether it has a size."""
-        tool = self.tool
-        if not isinstance(tool, (DropTool, PushTool, CatalogueTool)):
-            return False
-        tool.resize(steps)
-        if not isinstance(tool, CatalogueTool):
-            self.size = tool.size
-        return True
+        has_size = self.tool.resize(steps)
+        self.size = self.tool.size_to_share or self.size
+        return has_size
 
     def _follow_as_the_level_says(self) -> None:
         look, names = self.playback.level.look, self.playback.session.world.particle_names
@@ -212,7 +193,7 @@ class Stage:
     def share(self, other: "Stage") -> None:
         """Have the tools and the overlays that another stage has."""
         self.tools, self.tool_name = other.tools, other.tool_name
-        self.drag, self.cut, self.pin = other.drag, other.cut, other.pin
+        self.drag = other.drag
         self.renderer.overlays.shown = other.renderer.overlays.shown
 
     def point(
@@ -242,7 +223,7 @@ class Stage:
         """Give up what the tools do and hold."""
         for tool in self.tools.values():
             self.playback.respond(tool.cancel())
-        self.tool_name = "drag"
+        self.tool_name = HAND_TOOL
         self.pressed_by_key = False
         self.cursor = None
 
@@ -324,34 +305,23 @@ class Stage:
             self.following.update(self.camera, self.playback.session.world, self.playback.current, frame_time)
         self.playback.liveliness.note(self.playback.current)
         self.stillness.follow(self.playback.current, self.camera.zoom, frame_time + passed)
-        self._hovered = None
-        tool = self.tool
-        if isinstance(tool, (ThrowTool, PushTool)):
-            # A ghost follows the mouse before anything is pressed.
-            at = self.cursor if self.cursor is not None else None if pointer is None else self.camera.to_world(pointer)
-            tool.place = at
-        elif pointer is not None and self.tool_name not in ("cut", "wind") and not self.drag.dragging:
-            within = PICK_RADIUS * self.renderer.scale / self.camera.zoom
-            # What a press there would take.
-            take = free_particle_at if self.tool is self.drag else nearest_particle
-            self._hovered = take(self.playback.current, self.camera.to_world(pointer), within)
+        at = None if pointer is None else self.camera.to_world(pointer)
+        self.tool.hover(at if self.cursor is None else self.cursor)
+        within = PICK_RADIUS * self.renderer.scale / self.camera.zoom
+        self._hovered = None if at is None else self.tool.target(at, within, self.playback.current)
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw the world into the viewport."""
         surface.set_clip(self.camera.viewport)
         playback = self.playback
-        overlay = Overlay(self._hovered, self.cut.trail, self.cursor, self.pulls(), lit=self.lit)
-        overlay.ghost = getattr(self.tool, "ghost", [])
-        if isinstance(self.tool, DropTool) and self.tool.place is not None:
-            part, size, colour = self.tool.part.name, self.tool.size, self.tool.colour
-            picture = self._ghost.picture(part, size, colour, self.camera.zoom, self.renderer)
-            overlay.ghost_picture = None if picture is None else (picture, self.tool.place)
-        if isinstance(self.tool, CatalogueTool) and self.tool.place is not None and self.part is not None:
-            # From so much nearer, what is as large as it was kept looks so.
-            zoom = self.camera.zoom * self.tool.times
-            picture = self._ghost.picture_of_level(self.part, zoom, self.renderer)
+        tool = self.tool
+        overlay = Overlay(self._hovered, tool.trail, self.cursor, self.pulls(), lit=self.lit)
+        overlay.ghost = tool.ghost
+        if tool.place is not None and tool.preview is not None:
+            picture = self._ghost.picture(tool.preview, self.camera.zoom, self.renderer)
             if picture is not None:
-                overlay.ghost, overlay.ghost_picture = [], (picture, self.tool.place)
+                overlay.ghost_picture = picture, tool.place
+                overlay.ghost = [] if tool.preview.replaces_ghost else overlay.ghost
         if "stability" in self.renderer.overlays.shown:
             overlay.stability = self._paint.shares(playback.session.world, playback.revision)
         alpha = playback.clock.alpha(playback.session.world.settings.tick_rate)

@@ -15,7 +15,7 @@ from sandbox.app.run.travel import Travel
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import Dissipation
 from sandbox.physics.snapshot import Snapshot, state_hash
-from sandbox.physics.step import expect
+from sandbox.physics.step import precompute
 from sandbox.physics.world import World
 from sandbox.session.breaks import break_lines
 from sandbox.session.commands import Command, CommandError, Redo, Undo
@@ -299,7 +299,7 @@ class Playback:
         """Let a frame do one part of what joining takes: adding and drawing it anew, what its ticks need, a tick."""
         self._making_room -= 1
         if self._making_room == 0:
-            expect(self.session.world)
+            precompute(self.session.world)
 
     def _hurry(self, target: int) -> int:
         """Make as many ticks towards a tick as a frame has time for."""

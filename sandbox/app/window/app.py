@@ -46,6 +46,7 @@ from sandbox.app.window.files import FileActions
 from sandbox.app.window.help import show_help
 from sandbox.app.window.input import Input
 from sandbox.app.window.progress import RunProgress
+from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.reading.files import load_level, read_level
 
 # How often the status figures and the window title change [s].
@@ -74,6 +75,8 @@ class App:
         self._description = ""
         self.running = True
         self.ready = False
+        # Whether the window's title says what happens, too.
+        self.says_states = False
         self.screen: Screen | None = None
         # What was on it when a frame ended last.
         self._seen: Screen | None = None
@@ -245,7 +248,11 @@ class App:
 
     def start_pair(self, path: Path) -> None:
         """Play the level of a file twice side by side, with the pad in the panel."""
-        level = read_level(path)
+        try:
+            level = read_level(path)
+        except LevelError as error:
+            self.show_faults(f"{one_line(path.name)} cannot be opened", error.faults)
+            return
         screen = CompareScreen(self, TwinPlayback(level), TwinPlayback(level), None)
         screen.shape.springs = "pad"
         self.show_screen(screen)
@@ -453,11 +460,13 @@ class App:
         self.display.window.title = self.title()
 
     def title(self) -> str:
-        """The window's title, so that other programs can follow what happens."""
+        """The window's title; with the states of the run where it says them, for programs that follow what happens."""
         if self.screen is None or self.gallery is not None:
             return f"{'Levels' if self.gallery is None else self.gallery.title} - Spring Sandbox"
-        words = [*self.screen.title(), *(["dialog"] if self.ui.has_sheet else [])]
-        words += [] if self.ready else ["preparing"]
+        words = [self.screen.title()]
+        if self.says_states:
+            words += [*self.screen.states(), *(["dialog"] if self.ui.has_sheet else [])]
+            words += [] if self.ready else ["preparing"]
         return " - ".join([*words, "Spring Sandbox"])
 
 
@@ -468,14 +477,17 @@ def run_app(
     seconds: float | None,
     given: Mapping[str, Any],
     show_progress: Callable[[], object] = lambda: None,
+    says_states: bool = False,
 ) -> None:
     """Show what is wanted in the window and run until it is closed, or for so many seconds.
 
-    given: see `Chosen`. show_progress: called now and then until there is something to show.
+    given: see `Chosen`. show_progress: called now and then until there is something to show. says_states: the window's
+    title says what happens.
     """
     # What is imported stays: whoever looks for garbage passes it over, which takes a tenth of a second less.
     gc.freeze()
     app = App(display, profile, Chosen(**given))
+    app.says_states = says_states
     show_progress()
     app.guide.may_offer = True
     app.open(wanted)

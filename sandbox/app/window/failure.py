@@ -34,16 +34,16 @@ class FrameGuard:
         self.report = ""
 
     def take(self, error: Exception) -> None:
-        """Write a fault down and tell of it. Raises it where one follows another: then nothing else helps."""
+        """Write a fault down and tell of it. Raises SystemExit where one follows another: then nothing else helps."""
         now = time.monotonic()
         self._times = [*(each for each in self._times if now - each < WITHIN), now]
         self.report = _report(error)
         path = _kept(self.report)
+        where = f" A report is in {path}." if path is not None else ""
         if len(self._times) >= MOST:
-            raise error
+            raise SystemExit(f"The program met one fault after another and ends. Your work is kept.{where}") from error
         # What the frame was at may be half done.
         self._app.rebuild()
-        where = f" A report is in {path}." if path is not None else ""
         text = (
             f"The program met a fault of its own ({one_line(f'{type(error).__name__}: {error}')[:120]}). "
             f"Your work is kept.{where}"

@@ -103,10 +103,17 @@ class FileActions:
         path = os.path.expanduser(typed)
         if os.path.isfile(path):
             self.open_path(path)
-        elif self.app.mode == "edit":
-            self.app.documents.edit_level(load_level(typed))
+            return
+        try:
+            # It may have gone, or have changed, since it was typed.
+            level = load_level(typed)
+        except LevelError as error:
+            self._refuse(typed, error.faults)
+            return
+        if self.app.mode == "edit":
+            self.app.documents.edit_level(level)
         else:
-            self.app.start(Playback(load_level(typed)))
+            self.app.start(Playback(level))
             remember_played(shipped_folder("levels") / f"{typed}.json")
 
     def _refuse(self, path: str | Path, faults: list[str]) -> None:

@@ -88,11 +88,13 @@ def open_app(
     seconds: float | None = None,
     scale: float | None = None,
     theme: str | None = None,
+    says_states: bool = False,
 ) -> int:
     """Open the window and run until it is closed, or for so many seconds; returns the exit code.
 
     find: says what to show, called once the window is there; what it raises is raised here, with the window closed.
     profile: print where a frame's time went, at the end. scale, theme: in place of what is remembered of the person.
+    says_states: the window's title says what happens, for programs that follow it.
     """
     began = time.perf_counter()
     times = Profile()
@@ -108,7 +110,7 @@ def open_app(
         return 0
     from sandbox.app.window.app import run_app
 
-    run_app(display, wanted, times, seconds, {"scale": scale, "theme": theme}, words.show)
+    run_app(display, wanted, times, seconds, {"scale": scale, "theme": theme}, words.show, says_states)
     if profile:
         print(times.table(began))
     return 0

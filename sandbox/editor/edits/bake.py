@@ -17,7 +17,7 @@ from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.kinds.geometry import Points
-from sandbox.physics.analysis.firmness import Reach
+from sandbox.physics.analysis.firmness import FirmnessRange
 from sandbox.physics.equation import of_body, of_springs
 from sandbox.physics.forms import Firmness
 from sandbox.physics.world import World
@@ -52,7 +52,7 @@ def _keep_firmness(document: Document, world: World) -> tuple[Document, Mask]:
         form = forms.get(body.id)
         if form is None:
             return body
-        reach = Reach.of(form.shape, level.settings.gravity, level.settings.tick_rate)
+        reach = FirmnessRange.of(form.shape, level.settings.gravity, level.settings.tick_rate)
         mode = float(world.lowest_mode[form.springs[0]])
         present = float(world.stiffness[form.springs[0]]), float(world.damping[form.springs[0]])
         if body.firmness is not None:

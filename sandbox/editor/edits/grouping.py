@@ -5,7 +5,17 @@ from typing import Literal
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.names import free_ids
-from sandbox.editor.items import Definition, Selection, changed, definitions, items_of, kept_springs, keys, with_same
+from sandbox.editor.items import (
+    Definition,
+    Item,
+    Selection,
+    changed,
+    definitions,
+    items_of,
+    kept_springs,
+    keys,
+    with_same,
+)
 from sandbox.level.document.model import Level
 from sandbox.level.format.quantities import replaced
 
@@ -24,9 +34,14 @@ def ungroup(document: Document) -> Document:
     return _grouped(document, None)
 
 
+def groups_of(level: Level) -> dict[Item, str]:
+    """The names of groups by the items that are in one."""
+    return {item: part.group for item, part in zip(items_of(level), definitions(level), strict=True) if part.group}
+
+
 def with_groups(level: Level, selection: Selection) -> Selection:
     """A selection with the whole of every group that one of it is in."""
-    groups = {item: part.group for item, part in zip(items_of(level), definitions(level), strict=True) if part.group}
+    groups = groups_of(level)
     wanted = {groups[item] for item in selection if item in groups}
     return selection | {item for item, name in groups.items() if name in wanted} if wanted else selection
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -88,12 +89,17 @@ def set_checks(document: Document, checks: Iterable[CheckDef]) -> Document:
     checks = tuple(checks)
     if checks == level.checks:
         return document
-    data = {"format": level.format, "version": VERSION, "name": "-", "checks": tuple(dict(c.__dict__) for c in checks)}
+    data = {"format": level.format, "version": VERSION, "name": "-", "checks": tuple(map(_plain, checks))}
     try:
         checks = Level.model_validate(data).checks
     except ValidationError as error:
         raise EditError(first_fault(error, "a check")) from None
     return replace(document, level=checked(replaced(level, checks=checks)))
+
+
+def _plain(check: CheckDef) -> dict[str, Any]:
+    """The fields of a check; an object inside would be taken over unseen."""
+    return {**check.__dict__, "hold": tuple(dict(hold.__dict__) for hold in check.hold)}
 
 
 def _exists(level: Level, name: str) -> None:

@@ -1,10 +1,11 @@
 """Checks that no run of their level can pass, or none can fail."""
 
-from sandbox.editor.items import Selection
+from sandbox.editor.items import Item, Selection
 from sandbox.editor.lint.finding import Finding, Rule, Severity, place_of
 from sandbox.editor.scene import Scene
 from sandbox.level.checks import CheckDef, bounds_of, window_of
 from sandbox.level.document.model import Level
+from sandbox.level.plan.actuators import actuators, driving_keys
 
 # Metrics that are sums of squares, sizes or counts.
 NEVER_NEGATIVE = frozenset(
@@ -48,6 +49,24 @@ def hopeless_checks(level: Level, scene: Scene) -> Rule:
             items: Selection = frozenset() if slot is None else frozenset([scene.items[int(scene.particle_item[slot])]])
             place = None if slot is None else place_of(scene, slot)
             yield Finding(fault[0], f'Check "{check.name}" {fault[1]}', items, place)
+
+
+def checks_without_hands(level: Level, scene: Scene) -> Rule:
+    """Checks of a level that keys drive, in which nobody presses one."""
+    keys = driving_keys(level)
+    waiting = [check.name for check in level.checks if not check.hold]
+    if not keys or len(waiting) < len(level.checks) or not waiting:
+        return
+    yield None
+    driven = {part for parts in keys.values() for part, _ in parts}
+    name = actuators(level)[min(driven)].name
+    key = next(key for key in sorted(keys) if any(part == min(driven) for part, _ in keys[key])).upper()
+    checks = "The check runs" if len(waiting) == 1 else f"All {len(waiting)} checks run"
+    text = f"{checks} without hands: {name} waits for {key}; hold a key in a check to drive it"
+    item = Item("spring", int(name[1:])) if name.startswith(":") else Item("body", name)
+    box = scene.bounds(frozenset([item]))
+    place = None if box is None else ((box[0] + box[2]) / 2, (box[1] + box[3]) / 2)
+    yield Finding("hint", text, frozenset([item]), place)
 
 
 def _can_break(level: Level) -> bool:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sandbox.editor.lint.checks import hopeless_checks
+from sandbox.editor.lint.checks import checks_without_hands, hopeless_checks
 from sandbox.editor.lint.contacts import buried_particles, overlapping_discs, turning_in_vain
 from sandbox.editor.lint.finding import Finding, Rule, called, falling_particles, listed, middle_of, place_of
 from sandbox.editor.lint.looks import unknown_looks
@@ -25,6 +25,7 @@ def findings(level: Level, scene: Scene) -> Iterator[Finding | None]:
     """Everything found about a level, of which scene is the scene; None = a point at which to let the window draw."""
     rules = (
         hopeless_checks(level, scene),
+        checks_without_hands(level, scene),
         springs_past_limits(level, scene),
         falling_parts(level, scene),
         idle_items(scene),

@@ -20,7 +20,7 @@ def motors_in_vain(level: Level, scene: Scene) -> Rule:
     if not driven:
         return
     yield from _idle(scene, driven)
-    if not SOLVERS[level.settings.solver].carries:
+    if not SOLVERS[level.settings.solver].joints_bear_load:
         items = frozenset(Item("body", body.id) for _, body in driven)
         text = (
             f"the {level.settings.solver.replace('_', ' ')} solver cannot carry wheels under a load, so motors turn "

@@ -32,6 +32,9 @@ Kind = Literal[
     "thing",
 ]
 
+# What can be picked on the sheet in place of typing it.
+Pick = Literal["", "particle", "body", "box"]
+
 # What a description says of null.
 _EMPTY = re.compile(r"empty = ([^.;]+)")
 # Shorter words where the description's do not fit into a field.
@@ -76,7 +79,8 @@ class FieldInfo:
 
     empty: what null stands for. A `point` is of two numbers; `flags` are any number of the choices, `pairs` lists of
     numbers in a list, `outlines` lists of corners in one; a `form` has a table of its own; a `part` is an object, of
-    that model, or null. What has the unit DEGREES is read and typed in them; its value and limits are in radians.
+    that model, or null. labels: words for the choices; pick: what is clicked on the sheet for it. What has the unit
+    DEGREES is read and typed in them; its value and limits are in radians.
     """
 
     kind: Kind
@@ -90,6 +94,8 @@ class FieldInfo:
     optional: bool = False
     empty: str = ""
     model: type[BaseModel] | None = None
+    labels: tuple[str, ...] = ()
+    pick: Pick = ""
 
 
 @cache

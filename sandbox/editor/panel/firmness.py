@@ -16,7 +16,7 @@ from sandbox.level.format.limits import DEFAULT_MATERIAL, FREQUENCY_RANGE, SAG_L
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BodyDef, FirmnessDef
-from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, OutOfReach, Reach
+from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach
 from sandbox.physics.equation import of_body
 from sandbox.physics.forms import Firmness
 
@@ -28,7 +28,7 @@ PERCENT = 100.0
 DIGITS = 3
 
 # The firmness that a body is to have instead of the one that it has; None = that of its material.
-Asked = Callable[[Reach, FirmnessDef | None], Firmness | None]
+Asked = Callable[[FirmnessRange, FirmnessDef | None], Firmness | None]
 
 
 def firmness_properties(level: Level, parts: Mapping[Item, Definition]) -> list[Property]:
@@ -73,8 +73,8 @@ def _material(level: Level, body: BodyDef) -> Any:
     return level.materials.get(body.material, NissenMaterial() if body.material == DEFAULT_MATERIAL else None)
 
 
-def _reach(level: Level, body: BodyDef) -> Reach:
-    return Reach.of(expansion(body).stiff_form, level.settings.gravity, level.settings.tick_rate)
+def _reach(level: Level, body: BodyDef) -> FirmnessRange:
+    return FirmnessRange.of(expansion(body).stiff_form, level.settings.gravity, level.settings.tick_rate)
 
 
 def _reading(level: Level, body: BodyDef) -> tuple[Any, Any, Any]:
@@ -100,7 +100,7 @@ def _word(firmness: FirmnessDef | None) -> str:
     return next((word for word, sag in WORDS.items() if sag == firmness.sag), NUMBERS)
 
 
-def _by_word(word: str, reach: Reach, present: FirmnessDef | None) -> Firmness | None:
+def _by_word(word: str, reach: FirmnessRange, present: FirmnessDef | None) -> Firmness | None:
     if word == OF_MATERIAL:
         return None
     if word in WORDS:
@@ -110,11 +110,11 @@ def _by_word(word: str, reach: Reach, present: FirmnessDef | None) -> Firmness |
     return Firmness(hz=significant(min(hz, FREQUENCY_RANGE[1]), DIGITS), ratio=significant(min(ratio, 1.0), DIGITS))
 
 
-def _by_frequency(hz: float, reach: Reach, present: FirmnessDef | None) -> Firmness:
+def _by_frequency(hz: float, reach: FirmnessRange, present: FirmnessDef | None) -> Firmness:
     return Firmness(hz=hz, ratio=None if present is None else present.ratio)
 
 
-def _by_ratio(ratio: float, reach: Reach, present: FirmnessDef | None) -> Firmness:
+def _by_ratio(ratio: float, reach: FirmnessRange, present: FirmnessDef | None) -> Firmness:
     if present is None:
         raise EditError("its material gives it a frequency; choose a firmness first")
     hz = reach.reading(*reach.coefficients(present.asked))[1] if present.hz is None else present.hz

@@ -18,7 +18,7 @@ from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import KINDS, AnyBody, expansion
 from sandbox.level.kinds.body_def import FirmnessDef
-from sandbox.physics.analysis.firmness import OutOfReach, Reach
+from sandbox.physics.analysis.firmness import FirmnessRange, OutOfReach
 from sandbox.physics.forms import Firmness
 
 AnyBodyOptions = TypeVar("AnyBodyOptions", bound=BodyOptions)
@@ -84,7 +84,7 @@ def firm(document: Document, sag: float) -> Document:
     level, body = document.level, document.level.bodies[-1]
     if isinstance(level.materials.get(body.material), HookeMaterial):
         return document
-    reach = Reach.of(expansion(body).stiff_form, level.settings.gravity, level.settings.tick_rate)
+    reach = FirmnessRange.of(expansion(body).stiff_form, level.settings.gravity, level.settings.tick_rate)
     if reach.lowest_mode == 0.0:
         return document
     try:

@@ -94,6 +94,10 @@ class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
         self._complete = not self._fault
         return self._complete
 
+    def fault_of_outline(self) -> str:
+        """What is wrong with the outline so far, in a few words; empty if nothing is."""
+        return self.fault([point.point for point in self.points]).partition(";")[0]
+
     def close_round(self) -> bool:
         """End the outline by a click on its first corner; whether it is sound."""
         return self.close()

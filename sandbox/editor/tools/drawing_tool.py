@@ -35,6 +35,8 @@ class Drawing(Generic[AnyOptions]):
         self.options: AnyOptions = cast(AnyOptions, self.defaults) if options is None else options
         self.reach = reach
         self.points: list[Snap] = []
+        # Points that were taken back, each with those that were left.
+        self._taken_back: list[tuple[list[Snap], Snap]] = []
         self.pointer: Snap | None = None
         self._pressed = False
         self._began = False
@@ -135,14 +137,24 @@ class Drawing(Generic[AnyOptions]):
             self._end_at(self.pointer)
 
     def back(self) -> None:
-        """Take the last point back, as Backspace asks."""
+        """Take the last point back, as Backspace and Ctrl+Z ask."""
         self._fault = ""
-        del self.points[-1:]
+        if self.points:
+            point = self.points.pop()
+            self._taken_back.append((list(self.points), point))
         # The press that made it moves and ends nothing any more.
         self._pressed = False
 
+    def again(self) -> bool:
+        """Put the point that was taken back last in its place again; whether there is one."""
+        if not self._taken_back or self._taken_back[-1][0] != self.points:
+            return False
+        self.points.append(self._taken_back.pop()[1])
+        return True
+
     def cancel(self) -> None:
         """Give up what is under way, as Escape asks."""
+        self._taken_back.clear()
         self.points, self._pressed, self._complete = [], False, False
         self._fault = self._ghost_fault = ""
 
@@ -179,6 +191,10 @@ class Drawing(Generic[AnyOptions]):
         return True
 
     # ---- between them
+
+    def fault_of_outline(self) -> str:
+        """What is wrong with the outline so far, in a few words; empty if nothing is."""
+        return ""
 
     def _so_far(self) -> list[Snap]:
         """The points of the gesture with the pointer for the one that is still missing."""

@@ -35,6 +35,7 @@ TITLES = {
     "HydraulicDef": "Hydraulic",
     "MotorDef": "Motor",
     "CheckDef": "Acceptance check",
+    "HoldDef": "Key that is held",
     "LevelLook": "Level look",
     "BodyLook": "Body look",
     "ParticleLook": "Particle look",

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from sandbox.level.document.model import HookeMaterial, Level
 from sandbox.level.format.level_error import Fault, shown
 from sandbox.level.plan.plan import Plan
-from sandbox.physics.analysis.firmness import OutOfReach, Reach, lowest_mode_of
+from sandbox.physics.analysis.firmness import FirmnessRange, OutOfReach, lowest_mode_of
 
 
 def firmness_faults(level: Level, plan: Plan) -> Iterator[Fault]:
@@ -25,7 +25,7 @@ def firmness_faults(level: Level, plan: Plan) -> Iterator[Fault]:
             )
             continue
         try:
-            Reach.of(made.stiff_form, level.settings.gravity, level.settings.tick_rate).coefficients(
+            FirmnessRange.of(made.stiff_form, level.settings.gravity, level.settings.tick_rate).coefficients(
                 body.firmness.asked
             )
         except OutOfReach as error:

@@ -7,6 +7,7 @@ from sandbox.level.checks import METRICS, SUBJECTS, CheckDef
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import Fault, shown, suggestion
 from sandbox.level.format.limits import DEFAULT_MATERIAL
+from sandbox.level.plan.actuators import driving_keys
 from sandbox.level.plan.layout import Layout
 
 
@@ -45,8 +46,16 @@ def weld_reference_faults(level: Level, layout: Layout) -> Iterator[Fault]:
 
 def check_faults(level: Level, layout: Layout) -> Iterator[Fault]:
     """Faults of the acceptance checks."""
+    keys = driving_keys(level) if any(check.hold for check in level.checks) else {}
     for index, check in enumerate(level.checks):
         yield from _check_faults(f"checks.{index}", check, layout)
+        for number, hold in enumerate(check.hold):
+            where = f"checks.{index}.hold.{number}"
+            if hold.key not in keys:
+                known = ", ".join(sorted(keys)) or "none"
+                yield f"{where}.key", f"nothing in the level has the key {shown(hold.key)}; keys that drive: {known}"
+            if hold.during[0] > hold.during[1]:
+                yield f"{where}.during", "the earlier time comes first"
 
 
 def _pair_faults(path: str, layout: Layout, references: dict[str, str]) -> Iterator[Fault]:
@@ -73,11 +82,14 @@ def _check_faults(path: str, check: CheckDef, layout: Layout) -> Iterator[Fault]
         if given is None and field in measured.needs:
             yield where, f'is missing; "{check.metric}" is measured of a {_NOUNS[field]}'
         elif given is not None and not measured.takes(field):
-            owner = measured.needs[0] if measured.needs else "the whole level"
-            owner = f"a {owner}" if measured.needs else owner
+            named = measured.needs_one or measured.needs[:1]
+            owner = " or a ".join(["", *named])[4:] if named else "the whole level"
             yield where, f'"{check.metric}" is measured of {owner}; take the {field} out'
         elif given is not None:
             yield from _subject_faults(field, where, given, layout)
+    if measured.needs_one and all(getattr(check, field) is None for field in measured.needs_one):
+        where = f"{path}.{measured.needs_one[0]}"
+        yield where, f'is missing; "{check.metric}" is measured of a particle or a body, name one'
     if check.particle is not None and check.body is not None and measured.takes("body"):
         yield f"{path}.body", "name a particle or a body, not both"
     yield from _window_faults(path, check)

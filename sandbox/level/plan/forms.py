@@ -7,7 +7,7 @@ import numpy as np
 
 from sandbox.level.document.model import HookeMaterial, Level, Material
 from sandbox.level.kinds.expansion import Expansion
-from sandbox.physics.analysis.firmness import Reach, set_firmness
+from sandbox.physics.analysis.firmness import FirmnessRange, set_firmness
 from sandbox.physics.forms import FirmBody
 from sandbox.physics.world import TRIANGLE, World
 
@@ -33,5 +33,5 @@ def add_forms(
             continue
         world.forms += (FirmBody(body.id, made.stiff_form, springs, narrow),)
         if body.firmness is not None:
-            reach = Reach.of(made.stiff_form, level.settings.gravity, level.settings.tick_rate)
+            reach = FirmnessRange.of(made.stiff_form, level.settings.gravity, level.settings.tick_rate)
             set_firmness(world, len(world.forms) - 1, *reach.coefficients(body.firmness.asked))

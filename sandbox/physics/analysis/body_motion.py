@@ -36,7 +36,7 @@ class BodyMotion:
     height: float
     gravity: float
     h: float
-    parts: int
+    substeps: int
     solver: str
     iterations: int
 
@@ -45,16 +45,16 @@ class BodyMotion:
         """That of a form; lowest_mode: where it is known."""
         mode = lowest_mode_of(shape) if lowest_mode is None else lowest_mode
         height, gravity = shape.height(settings.gravity), strength_of(settings.gravity)
-        parts = settings.fewest_substeps
-        return cls(mode, height, gravity, substep_time(settings), parts, settings.solver, settings.iterations)
+        substeps = settings.fewest_substeps
+        return cls(mode, height, gravity, substep_time(settings), substeps, settings.solver, settings.iterations)
 
     def of_substep(self, stiffness: Floats, damping: Floats) -> tuple[Floats, Floats]:
         """Cs and Cd (k,) of a substep from those of a tick, as springs get them that have no firmness."""
         pair, none = (np.array(stiffness, np.float64), np.array(damping, np.float64)), np.zeros(len(stiffness))
         if self.solver == "direct":
-            divide(*pair, none, self.parts, True)
+            divide(*pair, none, self.substeps, True)
         else:
-            halve(*pair, none, self.parts)
+            halve(*pair, none, self.substeps)
         return pair
 
     def whole(self, stiffness: Floats, damping: Floats) -> tuple[Floats, Floats]:
@@ -93,7 +93,7 @@ class BodyMotion:
 
 @dataclass(frozen=True)
 class BodyReading:
-    """What a body of a world shows: its sag as a share (None: not known), its slowest wobble, whether it is rigid.
+    """The firmness of a body as shown: its sag as a share (None: not known), its slowest wobble, whether it is rigid.
 
     Rigid: its springs take back all of their errors, and keep none of their speed.
     """
@@ -113,9 +113,9 @@ def present_coefficients(world: World) -> tuple[Floats, Floats]:
 def read_body(
     world: World, slot: int, lowest_mode: float, present: tuple[Floats, Floats] | None = None
 ) -> BodyReading | None:
-    """What a body shows, by its place in the world's `forms`; None where its springs have several Cs or Cd.
+    """The reading of a body, by its place in the world's `forms`; None where its springs have several Cs or Cd.
 
-    lowest_mode: that of its form; none is shown where it is 0. present: see present_coefficients, None: found anew.
+    lowest_mode: of its form; 0: no wobble is shown. present: see present_coefficients, None: found anew.
     """
     body = world.forms[slot]
     springs = body.springs[world.spring_active[body.springs]]
@@ -138,9 +138,9 @@ def word_edges() -> tuple[list[str], list[float]]:
 
 
 def word_for(sag: float, is_rigid: bool) -> str:
-    """What a body is called that sags by this share of its height: the nearest of WORDS, by ratio.
+    """The word for a body that sags by this share of its height: the nearest of WORDS, by ratio.
 
-    Rigid is only what is so (`BodyReading`), and is seen to sag by nothing.
+    Only a rigid body (`BodyReading`) that does not visibly sag is called rigid.
     """
     if is_rigid and sag <= UNSEEN_SAG:
         return "rigid"

@@ -26,8 +26,7 @@ class ContactPoints(NamedTuple):
 def contact_points(state: World | Snapshot, position: Floats | None = None) -> ContactPoints:
     """The contacts that a state keeps of its last step; position (n, 2) [m]: where particles are, None = as they are.
 
-    Of contacts with what is not there any more nothing is said. force is the mean one of the step, that of impacts over
-    the tick.
+    Contacts with something that is gone are left out. force is the mean one of the step, that of impacts over the tick.
     """
     position = state.position if position is None else position
     kind, number = state.contact_feature % KINDS, state.contact_feature // KINDS

@@ -1,4 +1,4 @@
-"""Firmness: how soft a body is as a whole, by how far it sags or how fast it wobbles, whatever its grid, size and mass.
+"""Firmness: how soft a body is as a whole, by its sag or its wobble, for any grid, size and mass.
 
 A body's slowest wobble moves as one spring with a Cs and Cd of its own (`of_body`). Firmness gives these two: by the
 frequency and damping ratio of the wobble, or by the part of its height by which the body sags under its weight,
@@ -55,8 +55,8 @@ def lowest_mode_of(shape: StiffForm) -> float:
 
 
 @dataclass(frozen=True)
-class Reach:
-    """What firmness a body can have: that of a form of this lowest mode and height [m].
+class FirmnessRange:
+    """The range of firmness of a body whose form has this lowest mode and height [m].
 
     Under gravity [m/s^2], and in ticks of h [s].
     """
@@ -67,7 +67,7 @@ class Reach:
     h: float
 
     @classmethod
-    def of(cls, shape: StiffForm, gravity: tuple[float, float], tick_rate: float) -> "Reach":
+    def of(cls, shape: StiffForm, gravity: tuple[float, float], tick_rate: float) -> "FirmnessRange":
         """That of a form."""
         return cls(lowest_mode_of(shape), shape.height(gravity), strength_of(gravity), 1.0 / tick_rate)
 
@@ -156,7 +156,7 @@ class Reach:
 def set_firmness(world: World, body: int, stiffness: float, damping: float) -> None:
     """Give a body, by its place in the world's `forms`, Cs and Cd as a whole: those of its slowest wobble, Cs <= Cd.
 
-    They are shared out over its springs, areas and bends, whatever its grid, size and mass.
+    They are shared out over its springs, areas and bends.
     """
     form = world.forms[body]
     lowest_mode = lowest_mode_of(form.shape)

@@ -1,4 +1,4 @@
-"""Questions about a state: what is near a point, what a stroke crosses, how far springs are strained."""
+"""Queries of a state: particles and springs near a point, springs that a stroke crosses, strain of springs."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -143,7 +143,7 @@ def load_bearing(state: World | Snapshot) -> NDArray[np.bool_]:
 
 
 def slot_name(world: World, array: str, slot: int) -> str:
-    """What a person calls the owner of a slot of the state array that files call by that name."""
+    """The name, for a person, of the owner of a slot of a state array; the array goes by its name in files."""
     match BY_STORED[array].family:
         case Family.PARTICLE:
             return world.particle_names[slot]

@@ -1,4 +1,4 @@
-"""SpringMotion: what a person sees of one spring of some Cs and Cd, or of a wobble: that it swings or creeps back.
+"""SpringMotion: how one spring of some Cs and Cd, or a wobble, visibly moves: it swings or creeps back.
 
 An error x of the equation, let go, follows  x'' = (2 - Cs - Cd) x' - (1 - Cd) x  from step to step.
 """

@@ -1,4 +1,4 @@
-"""Stability of the single pass: what can be proven about a network of springs, and how close a world is to it.
+"""Stability of the single pass: proven limits of a network of springs, and how close a world is to them.
 
 All springs evaluated on the old velocities are stable where (Cs + 2 Cd) n_eff < 4 for every spring, with
 
@@ -32,7 +32,7 @@ POWER_ITERATIONS = 200
 
 @dataclass(frozen=True)
 class StabilityReport:
-    """What can be said of a world's stability under its solver; coefficients per tick.
+    """The stability of a world under its solver; coefficients per tick.
 
     n_eff and article_limit (1/(n+1)), proven_limit and estimated_limit are for Cs = Cd, of the tightest spring;
     within_limit: whether every spring's own Cs and Cd are proven stable, None where the solver has no proven limit,
@@ -188,10 +188,10 @@ def _summed_loads(world: World, demands: Floats, of_constraints: Floats) -> Floa
 
 
 def spring_loads(world: World) -> Floats:
-    """What must stay below BOUND for every spring, then every constraint: of two proven bounds the one that allows
-    more.
+    """The load that must stay below BOUND for every spring, then every constraint (m + t,): of two proven bounds the
+    one that allows more.
 
-    (m + t,)
+
     """
     demands = _demands(world, world.stiffness, world.damping)
     of_constraints = _constraint_demands(world, world.constraint_stiffness, world.constraint_damping)
@@ -263,7 +263,7 @@ def _energy_bound(world: World) -> str:
 
 
 def report(world: World) -> StabilityReport:
-    """What can be proven about this world's stability under its solver."""
+    """Report the stability of a world under its solver."""
     counts = np.concatenate([effective_count(world), constraint_count(world)])
     solver = world.settings.solver
     if not len(counts) or counts.max() == 0.0:

@@ -49,7 +49,7 @@ class StandingRun:
         return float(y.max() - y.min())
 
     def advance(self, ticks: int) -> bool:
-        """Go on for so many ticks; whether the sag is known, which then is that at rest, or at the end."""
+        """Step a number of ticks; True: the sag is known, at rest or at the end."""
         for _ in range(ticks):
             if self.sag is not None:
                 break

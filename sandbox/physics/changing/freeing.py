@@ -1,6 +1,6 @@
-"""Freeing: a body that is stuck in others, or in itself, is put where nothing is, as near as possible.
+"""Freeing: puts a body that is stuck in others, or in itself, into the nearest free place.
 
-For what does not come apart by itself (collision/parting.py). Not part of a tick: it is a deed of a person's.
+For bodies that do not come apart by themselves (untangling/parting.py). Not part of a tick: a person asks for it.
 """
 
 import math
@@ -47,8 +47,8 @@ def overlapping(world: World) -> list[tuple[int, int]]:
 def free_body(world: World, particle: int) -> None:
     """Move the body of a particle to the nearest place where it touches nothing, at rest and in its own form.
 
-    Its form is that which it was made in, if it is one solid body; what hangs together of several keeps the shape that
-    it has. Raises NothingFree.
+    One solid body gets the form that it was made in; several bodies that hang together keep their present shape. Raises
+    NothingFree.
     """
     body = body_of(world, particle)
     places = world.position[body] + 0.0

@@ -15,8 +15,9 @@ Parts = TypeVar("Parts", Muscles, Hydraulics)
 
 
 class Place(NamedTuple):
-    """Where what joins comes to lie: first slots of its particles, springs, constraints, corners and driven parts;
-    first owner; names of the materials from now on, and which of them (k,) each of its own is."""
+    """The slots of bodies that join: first slots of their particles, springs, constraints, corners and driven parts;
+    first owner; names of the materials from now on, and which of them (k,) each of its own is.
+    """
 
     particle: int
     spring: int

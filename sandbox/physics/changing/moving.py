@@ -1,4 +1,4 @@
-"""Moving: what hangs together is put somewhere else at once. Not part of a tick: it is a deed of a person's."""
+"""Moving: puts everything that hangs together somewhere else at once. Not part of a tick: a person asks for it."""
 
 import numpy as np
 

@@ -8,10 +8,10 @@ from sandbox.physics.world import World
 
 
 def push(world: World, place: tuple[float, float], impulse: tuple[float, float], outward: float, radius: float) -> bool:
-    """Give the free particles nearer to place [m] than radius [m] an impulse [N s] together; whether there are any.
+    """Give the free particles nearer to place [m] than radius [m] an impulse [N s] together; False: there are none.
 
-    outward [N s]: the sum of what each gets straight away from the place, beside that. A particle at a distance d gets
-    the velocity
+    outward [N s]: the sum of the impulses that also drive each one straight away from the place. A particle at a
+    distance d gets the velocity
 
         dv_i = (J + outward n_i) w_i / sum m w,     w_i = 1 - (d_i / radius)^2
 

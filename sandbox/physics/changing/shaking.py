@@ -1,4 +1,4 @@
-"""Shaking: the frame that holds the world, its terrain and its pins, is moved; what can move stays behind it."""
+"""Shaking: moves the frame that holds the world, its terrain and its pins; free particles stay behind."""
 
 import numpy as np
 
@@ -7,9 +7,9 @@ from sandbox.physics.world import World
 
 
 def shake(world: World, acceleration: tuple[float, float]) -> bool:
-    """Accelerate the frame by `acceleration` [m/s^2] for the coming tick; whether there is anything that can move.
+    """Accelerate the frame by `acceleration` [m/s^2] for the coming tick; False: nothing can move.
 
-    Seen from the frame, every free particle gets what the frame's motion leaves behind, whatever its gravity scale:
+    Seen from the frame, every free particle gets the opposite velocity, for any gravity scale:
 
         dv_i = -a / tick_rate
     """

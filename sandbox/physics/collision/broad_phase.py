@@ -28,8 +28,8 @@ WITH_NOTHING, WITH_EDGES, WITH_ALL = 0, 1, 2
 class Boxes(NamedTuple):
     """Boxes of o objects: n particles, then the edges of bodies.
 
-    box [m] (o, 4) = left, bottom, right, top; of what takes no part left is above right. is_target (o,): whether others
-    look for it. filter (n,): what a particle looks for.
+    box [m] (o, 4) = left, bottom, right, top; an object that takes no part has its left above its right. is_target
+    (o,): whether others look for it. filter (n,): the groups that a particle looks for.
     """
 
     box: Floats
@@ -54,14 +54,14 @@ class Grid(NamedTuple):
 
 
 class Pairs(NamedTuple):
-    """What each particle may touch: other[start[p]:start[p + 1]]; there is room for more."""
+    """The objects that each particle may touch: other[start[p]:start[p + 1]]; there is room for more."""
 
     start: Slots
     other: Slots
 
 
 class Candidates(NamedTuple):
-    """What may touch, by boxes: pairs of particles with what moves, and with terrain.
+    """Pairs whose boxes overlap: particles with moving objects, and particles with terrain.
 
     box (n, 4) [m]: those of particles, then of edges.
     """
@@ -253,7 +253,7 @@ def new_boxes(particles: int, objects: int) -> Boxes:
 
 
 def new_grid(objects: int, entries: int) -> Grid:
-    """A grid for so many objects, with room for so many entries."""
+    """A grid for a number of objects, with room for a number of entries."""
     buckets = 16
     while buckets < 4 * objects:
         buckets *= 2
@@ -264,5 +264,5 @@ def new_grid(objects: int, entries: int) -> Grid:
 
 
 def new_pairs(particles: int, room: int) -> Pairs:
-    """Pairs to be filled in, with room for so many."""
+    """Empty pairs, with room for a number of them."""
     return Pairs(np.zeros(particles + 1, np.int64), np.zeros(room, np.int64))

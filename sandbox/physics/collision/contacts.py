@@ -1,4 +1,4 @@
-"""Contacts of a step: what touches, or would touch in it, found anew in every step, in a fixed order.
+"""Contacts of a step: pairs that touch, or would touch in it, found in every step in a fixed order.
 
 Found are pairs of a particle and a disc, an edge of a body, or an edge of terrain, in ascending order of the particle;
 the order within a particle is one of positions. The impulses of the last step are carried over by feature. There is no
@@ -36,7 +36,7 @@ PENETRATION_TICKS = 8
 
 @inner_kernel
 def fill_boxes(colliders: Colliders, dynamic: int, h: float, boxes: Boxes) -> None:
-    """What each particle sweeps in the step, then where each edge of a body is: discs come to edges, not they to discs.
+    """Fill the box that each particle sweeps in the step, then the box of each edge of a body where it is now.
 
     dynamic: edges of bodies. Particles with edges of their own are hit there alone.
     """

@@ -1,4 +1,6 @@
-"""Places of particles beside edges: which place of an edge is nearest, whose a corner is, what is inside an outline."""
+"""Places of particles relative to edges: the nearest place of an edge, the owner of a corner, the inside of an
+outline.
+"""
 
 import math
 
@@ -52,7 +54,7 @@ def closest(p: int, a: int, b: int, position: Floats) -> tuple[float, float, flo
 
 @inner_kernel
 def edge_normal(e: int, colliders: Colliders) -> tuple[float, float]:
-    """Unit normal on the right of the edge, away from what is solid."""
+    """Unit normal on the right of the edge, away from the solid side."""
     dx = colliders.position[colliders.edge_b[e], 0] - colliders.position[colliders.edge_a[e], 0]
     dy = colliders.position[colliders.edge_b[e], 1] - colliders.position[colliders.edge_a[e], 1]
     length = math.sqrt(dx * dx + dy * dy)

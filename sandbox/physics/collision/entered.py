@@ -62,7 +62,7 @@ def find_entered(
 ) -> tuple[int, int]:  # fmt: skip
     """Contact of a disc that has come into a solid body, to be pushed out where it came in.
 
-    kept[first:last]: what it touched in the last step. Returned: the number of contacts then, and a vertex of the body
+    kept[first:last]: its contacts of the last step. Returned: the number of contacts then, and a vertex of the body
     (-1: none).
     """
     chosen = -1

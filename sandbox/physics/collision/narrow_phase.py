@@ -1,7 +1,7 @@
 """Narrow phase: where a particle, a disc, touches or is about to touch discs and edges, and along which direction.
 
-Of what is solid only the outside pushes: a particle whose nearest place of an outline is seen from behind is inside,
-and is pushed out there. What moves fast is followed along its way, and meets what stands first in it.
+Only the outside of a solid body pushes: a particle whose nearest place of an outline is seen from behind is inside, and
+is pushed out there. What moves fast is followed along its way, and meets what stands first in it.
 """
 
 import math
@@ -331,7 +331,7 @@ def _hold_way(p: int, j: int, wx: float, wy: float, h: float, colliders: Collide
 
 @inner_kernel
 def leave_out(owner: int, colliders: Colliders, near: Near, edges: int) -> int:
-    """Strike an owner's edges off what a particle is near; how many are left."""
+    """Strike an owner's edges off the list that a particle is near; how many are left."""
     left = 0
     for i in range(edges):
         if colliders.owner[colliders.edge_a[near.edge[i]]] != owner:

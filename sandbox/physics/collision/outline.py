@@ -1,4 +1,4 @@
-"""What can touch: the edges that springs are, and terrain, as topology alone decides; kept while that stays."""
+"""Outlines: the edges that springs make, and terrain, as topology alone decides; kept until topology changes."""
 
 from typing import NamedTuple
 
@@ -16,15 +16,15 @@ TERRAIN_OWNER = -2_000_000_000
 
 
 class Outline(NamedTuple):
-    """What the edges of a world's springs are, and of its terrain, which topology alone decides; see Colliders.
+    """The edges of a world's springs and of its terrain, which topology alone decides; see Colliders.
 
-    shielded: particles inside a solid body that no torn spring lays bare; discs do not hit them. held (n,): particles
-    that a spring or a constraint holds. solid (k, 2): first edge and one past the last of each owner's edges where any
-    is solid, terrain's last. dynamic (2,): edges of bodies, and how many of those in solid are bodies'. Shapes are the
-    owners of edges of bodies, in the order of their edges: shape, by vertex, -1: none; solid_of = by shape, the row of
-    solid, -1: lines alone; particles of shape s: member[member_start[s]:member_start[s + 1]]. close: edges
-    of lines alone that were made close to each other. spring_end: one particle of each spring. pins: edges of bodies
-    of which both ends are pinned, as terrain; chain = the edge.
+    shielded: particles inside a solid body that no torn spring lays bare; discs do not hit them. attached (n,):
+    particles that a spring or a constraint holds. solid (k, 2): first edge and one past the last of each owner's edges
+    where any is solid, terrain's last. dynamic (2,): edges of bodies, and how many of those in solid are bodies'.
+    Shapes are the owners of edges of bodies, in the order of their edges: shape, by vertex, -1: none; solid_of = by
+    shape, the row of solid, -1: lines alone; particles of shape s: member[member_start[s]:member_start[s + 1]]. close:
+    edges of lines alone that were made close to each other. spring_end: one particle of each spring. pins: edges of
+    bodies of which both ends are pinned, as terrain; chain = the edge.
     """
 
     edge_a: Slots
@@ -38,7 +38,7 @@ class Outline(NamedTuple):
     solid: Slots
     owner: Slots
     shielded: Flags
-    held: Flags
+    attached: Flags
     dynamic: Slots
     shape: Slots
     solid_of: Slots
@@ -50,7 +50,7 @@ class Outline(NamedTuple):
 
 
 def outline_of(world: World) -> Outline:
-    """The outline of a world's bodies, made anew where topology has changed."""
+    """The outline of a world's bodies, made again after a change of topology."""
     return world.derived(_make_outline)
 
 
@@ -69,8 +69,8 @@ def _make_outline(world: World) -> Outline:
     ends = world.particle_a[joined].astype(np.int64), world.particle_b[joined].astype(np.int64)
     edges = np.arange(len(edge_a))
     near_start, near_of = _listed(np.append(*ends), np.append(*ends[::-1]), count)
-    held = np.diff(near_start) > 0
-    held[world.corner_particle[np.repeat(world.constraint_active, world.constraint_corners)]] = True
+    attached = np.diff(near_start) > 0
+    attached[world.corner_particle[np.repeat(world.constraint_active, world.constraint_corners)]] = True
     solid = _solid(owner[edge_a] if len(edge_a) else edge_a, side)
     shape, solid_of, member_start, member = _shapes(world, owner, a, solid)
     return Outline(
@@ -84,7 +84,7 @@ def _make_outline(world: World) -> Outline:
         solid,
         owner,
         _shielded(world, chosen),
-        held,
+        attached,
         np.array([len(chosen), np.count_nonzero(solid[:, 0] < len(chosen))]),
         shape,
         solid_of,
@@ -155,9 +155,9 @@ def _solid(owner: Slots, side: Slots) -> Slots:
 
 
 def colliders_of(world: World, outline: Outline, pairs: int) -> Colliders:
-    """The colliders of an outline: terrain is filled in, what is known of particles is left to each tick and step.
+    """The colliders of an outline: terrain is filled in; each tick and step fills in the particles.
 
-    pairs: room for so many pairs of shapes that part.
+    pairs: room for this many pairs of shapes that are separated.
     """
     terrain, count = world.terrain, world.particle_count
     total = count + len(terrain.vertex)

@@ -15,11 +15,12 @@ SLOWEST_PASSED = 0.05
 
 @inner_kernel
 def find_bounces(
-    contacts: Contacts, count: int, start: Floats, velocity: Floats, held: Flags, h: float, small: float
+    contacts: Contacts, count: int, start: Floats, velocity: Floats, attached: Flags, h: float, small: float
 ) -> None:
     """The bounce [m/s] of every contact, from the velocities before and after gravity and all else from outside.
 
-    held (n,): particles that a spring or a constraint holds, which fall in steps of h [s]; others in those of `small`.
+    attached (n,): particles that a spring or a constraint holds; they fall in steps of h [s], others in those of
+    `small`.
     """
     for c in range(count):
         contacts.bounce[c] = -1.0
@@ -38,7 +39,7 @@ def find_bounces(
         if after < -SLOWEST_BOUNCE and gap + h * after < 0.0:
             p = contacts.particle[c]
             q = contacts.end_a[c]
-            fallen = h if held[p] and (q < 0 or held[q]) else small
+            fallen = h if attached[p] and (q < 0 or attached[q]) else small
             contacts.bounce[c] = bounce_of(contacts.restitution[c], -before, (before - after) / h, gap, fallen, h)
 
 

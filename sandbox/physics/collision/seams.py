@@ -1,4 +1,4 @@
-"""Seams: corners that are none, as what lies beside them goes on there; nothing that glides over them may feel them."""
+"""Seams: corners that are none, since the surface goes on beside them; a body that glides over one must not feel it."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Last of all in a step: whatever the solver has left, no particle's centre crosses terrain in the step."""
+"""The terrain clamp, late in a step: after any solver, no particle's centre crosses terrain in the step."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What contacts are found among, and what is found: arrays for the kernels of a step."""
+"""Types of collision: the arrays in which kernels find contacts, and the contacts that they find."""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -16,7 +16,7 @@ MOST_NEAR = 64
 
 
 class Colliders(NamedTuple):
-    """What can collide: particles, then the vertices of terrain; edges between them, then those of terrain.
+    """Everything that can collide: particles, then the vertices of terrain; edges between them, then those of terrain.
 
     By vertex: position [m], velocity [m/s], origin [m], radius [m], friction, restitution, owner, group, collides,
     inverse_mass [1/kg], turning [1/kg] = the weight of its surface (turning.py), 0: it does not turn, rolling. By edge:
@@ -109,7 +109,7 @@ class LentContacts:
 
 
 class KeptContacts(NamedTuple):
-    """What the next step gets to know of a step's contacts: see Contacts."""
+    """The part of a step's contacts that the next step reads: see Contacts."""
 
     particle: NDArray[np.int32]
     feature: Slots
@@ -145,7 +145,7 @@ def room_for(count: int) -> Contacts:
 
 
 def room_to_keep(count: int) -> KeptContacts:
-    """What is kept of contacts, to be filled in."""
+    """Empty kept contacts, to be filled in."""
     return KeptContacts(np.zeros(count, np.int32), np.zeros(count, np.int64), np.zeros((count, 2)), np.zeros(count))
 
 

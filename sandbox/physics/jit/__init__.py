@@ -65,7 +65,9 @@ class Kernel:
             self.signatures[str(types)] = types
 
     def ready(self) -> Any:
-        """What runs it, made where nobody has called it yet; modules that hold it by its name have that from now on."""
+        """The function that runs it, made at the first call; modules that hold the kernel by its name hold this from
+        now on.
+        """
         with _making:
             if isinstance(self.held, Entry):
                 made = _chosen().make(self)
@@ -77,7 +79,7 @@ class Kernel:
 
 
 class Entry:
-    """What modules hold of a kernel that Python calls, until its first call."""
+    """The object that modules hold in place of a kernel, until Python first calls it."""
 
     def __init__(self, kernel: Kernel) -> None:
         self._kernel = kernel
@@ -188,7 +190,7 @@ def entries() -> list[Kernel]:
     return [kernel for kernel in KERNELS if kernel.role in _ENTRIES]
 
 
-def expect(held: Any, *arguments: Any) -> None:
+def precompile(held: Any, *arguments: Any) -> None:
     """Compile a kernel for such arguments, or load it, as a call would, which is not made."""
     kernel = cast(Kernel, kernel_of(held))
     if _chosen().COMPILED:

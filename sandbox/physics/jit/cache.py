@@ -38,9 +38,9 @@ _FORGOTTEN = 60 * _DAY
 
 
 def cache_folders() -> list[Path]:
-    """Where compiled kernels are looked for, and written to the first that can be.
+    """The folders in which compiled kernels are looked for; they are written to the first that is writable.
 
-    What is chosen by NUMBA_CACHE_DIR, else next to the source, what was shipped with it, and the user's own.
+    That of NUMBA_CACHE_DIR, else one next to the source, the shipped one, and the user's own.
     """
     if numba.config.CACHE_DIR:
         return [Path(numba.config.CACHE_DIR) / "kernels"]
@@ -77,7 +77,7 @@ def _unsealed(sealed: bytes) -> bytes | None:
 
 
 class KernelCache(caching.NullCache):
-    """Loads and saves what is compiled of a function; before: called with its dispatcher, where that has to compile."""
+    """Loads and saves the compiled code of a function. before: called with its dispatcher when that has to compile."""
 
     def __init__(self, dispatcher: Any, function: FunctionType, before: Callable[[Any], object]) -> None:
         self._dispatcher, self._function, self._before = dispatcher, function, before
@@ -94,7 +94,7 @@ class KernelCache(caching.NullCache):
         return f"{name}-{_short(function.__module__, *versions, *processor)}-"
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """What was compiled for these types of arguments, by any process; None where nothing of it can be used."""
+        """The code compiled for these types of arguments, by any process; None: there is none that can be used."""
         with contextlib.suppress(Exception):  # inner parts of numba are others than those below
             found = self._find(sig, target_context)
             if found is not None:
@@ -103,7 +103,7 @@ class KernelCache(caching.NullCache):
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep what was compiled in the first folder that takes it; where none does, say so once."""
+        """Write compiled code to the first folder that takes it; if none does, say so once."""
         try:
             if any(not lifted.can_cache for lifted in data.lifted) or data.library.has_dynamic_globals:
                 return
@@ -132,9 +132,9 @@ def _processors(target_context: Any) -> list[tuple[Any, ...]]:
 
 
 def keep(dispatcher: Any, function: FunctionType, before: Callable[[Any], object]) -> bool:
-    """Let a dispatcher of numba load and save what is compiled of a function; whether it can.
+    """Let a dispatcher of numba load and save compiled code; False: it cannot.
 
-    before: called with the dispatcher where it has to compile.
+    before: called with the dispatcher when it has to compile.
     """
     can = hasattr(dispatcher, "_cache")
     if can:

@@ -18,7 +18,7 @@ unsigned: Any = Unsigned
 
 
 class Bundle:
-    """What kernels get of a bundle, and what went into it."""
+    """A bundle: what kernels get, and the objects that it was made of."""
 
     def __init__(self, items: tuple[Any, ...]) -> None:
         self.given = items

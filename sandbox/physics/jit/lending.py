@@ -64,7 +64,7 @@ def _size(kind: Any) -> int:
 
 
 def lent(kind: Any) -> Any:
-    """The type of what a part of a kernel gets for an argument of some type."""
+    """The type that a part of a kernel gets for an argument of some type."""
     if isinstance(kind, types.BaseNamedTuple):
         return Lent(kind.instance_class.__name__, kind.fields, [lent(part) for part in kind.types])
     return _BUNDLES.get(_bundle_name(kind), kind)

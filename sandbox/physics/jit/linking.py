@@ -185,7 +185,7 @@ def _tried_out() -> float:
 
 @functools.cache
 def links_once() -> bool:
-    """Whether this numba can: what is used of it are inner parts, which another version may not have."""
+    """Whether this numba can: the linker uses inner parts that another version may not have."""
     try:
         return _tried_out() == 6.5
     except Exception:

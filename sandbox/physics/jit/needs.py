@@ -1,4 +1,4 @@
-"""What the machine code of a kernel follows from: its instructions and constants, and those of all that it calls.
+"""The input of a kernel's machine code: its instructions and constants, and those of all kernels that it calls.
 
 Neither the place of a file nor its docstrings, comments and other functions are among it, so none of them throws a
 compiled kernel away; whatever numba reads is, so none is ever used after a change.
@@ -64,7 +64,7 @@ def is_own(module: ModuleType) -> bool:
 
 
 def named(function: FunctionType) -> Iterator[tuple[str, Any]]:
-    """What a function finds by name outside itself. Builtins follow from the version of Python."""
+    """The names that a function reads outside itself. Builtins follow from the version of Python."""
     cells = zip(function.__code__.co_freevars, function.__closure__ or (), strict=True)
     yield from ((name, cell.cell_contents) for name, cell in cells)
     for code in _codes(function.__code__):
@@ -74,7 +74,7 @@ def named(function: FunctionType) -> Iterator[tuple[str, Any]]:
 
 
 def names_in(module: ModuleType, function: FunctionType) -> Iterator[tuple[str, Any]]:
-    """What a function may read of a module."""
+    """The names of a module that a function may read."""
     for code in _codes(function.__code__):
         yield from ((name, getattr(module, name)) for name in code.co_names if hasattr(module, name))
 

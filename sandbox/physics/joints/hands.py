@@ -81,7 +81,7 @@ def _label_bodies(world: World) -> Slots:
 
 
 def grips_of(world: World) -> Grips:
-    """The grips of a world's hands, made anew where topology has changed."""
+    """The grips of a world's hands, made again after a change of topology."""
     return world.derived(_make_grips)
 
 

@@ -16,7 +16,7 @@ from sandbox.physics.joints.limited_springs import (
     load_limited,
 )
 from sandbox.physics.joints.motors import MotorRows, keep_motors, load_motors, motor_groups
-from sandbox.physics.joints.rows import ALONE, FIRST_OF_TWO, SECOND_OF_TWO, JointRows, any_on, new_rows
+from sandbox.physics.joints.rows import PAIR, SCALAR, SECOND_OF_TWO, JointRows, any_on, new_rows
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.world import Floats, World
 
@@ -31,7 +31,7 @@ class JointSet:
 
 
 def joints_of(world: World) -> JointSet | None:
-    """The joints of a world, made anew where its topology has changed; None: it has none."""
+    """The joints of a world, made again after a change of topology; None: it has none."""
     return world.derived(_make_joints)
 
 
@@ -45,7 +45,7 @@ def _make_joints(world: World) -> JointSet | None:
     alone = len(particles)
     for first, last in itertools.pairwise(grips.start.tolist()):
         particles += [grips.particle[first:last]] * 2
-    rows = new_rows(particles, [ALONE] * alone + [FIRST_OF_TWO, SECOND_OF_TWO] * count)
+    rows = new_rows(particles, [SCALAR] * alone + [PAIR, SECOND_OF_TWO] * count)
     middle = rows.first[: len(groups)] + np.array([len(wheel) for wheel, _ in groups], dtype=np.int64)
     of_motors = MotorRows(
         middle, motors.speed, motors.torque, motors.part, world.position, world.mass, world.actuator_value,
@@ -78,7 +78,7 @@ def _keep(lent: Any, form: int, h: float) -> None:
 def _form(world: World) -> int:
     # In which form springs of limited force are rows, see load_limited.
     solver = SOLVERS[world.settings.solver]
-    return 0 if not solver.carries else 1 if solver.bounded else 2
+    return 0 if not solver.joints_bear_load else 1 if solver.bounded else 2
 
 
 def load_joints(joints: JointSet, world: World, springs: tuple[Floats, Floats], h: float) -> None:
@@ -90,5 +90,5 @@ def load_joints(joints: JointSet, world: World, springs: tuple[Floats, Floats], 
 
 
 def keep_joints(joints: JointSet, world: World, h: float) -> None:
-    """Keep what the joints' impulses have become in the state of the world, for the next substep."""
+    """Store the joints' impulses in the state of the world, for the next substep."""
     _keep(joints.lent, _form(world), h)

@@ -11,7 +11,7 @@ import numpy as np
 from sandbox.physics.equation import implicit_update
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import (
-    FIRST_OF_TWO,
+    PAIR,
     SECOND_OF_TWO,
     JointRows,
     clamped,
@@ -30,8 +30,8 @@ class Joints(NamedTuple):
     those of its particles that are in no body last, in the order of its entries. answer_particle (a,), answer (a, 2).
     The same by particle: at[at_first[p]:at_first[p + 1]] are answers, at_row theirs.
 
-    Scratch of a step: response (k, k) = g . Z; velocity (k,) = u; before and direction (k,) as those of contacts; push
-    (n, 2) [N s]: what the joints together give each particle.
+    Scratch of a step: response (k, k) = g . Z; velocity (k,) = u; last_impulse and search_direction (k,) as those of
+    contacts; push (n, 2) [N s]: what the joints together give each particle.
     """
 
     rows: JointRows
@@ -46,8 +46,8 @@ class Joints(NamedTuple):
     at_row: Slots
     response: Floats
     velocity: Floats
-    before: Floats
-    direction: Floats
+    last_impulse: Floats
+    search_direction: Floats
     push: Floats
 
 
@@ -94,7 +94,7 @@ def joints_by_mass(rows: JointRows) -> Joints:
     """Joints whose particles answer by their own mass alone."""
     count = len(rows.limit)
     slots: dict[str, Any] = {name: np.zeros(0, dtype=np.int64) for name in _SLOTS}
-    numbers: dict[str, Any] = {name: np.zeros(count) for name in ("velocity", "before", "direction")}
+    numbers: dict[str, Any] = {name: np.zeros(count) for name in ("velocity", "last_impulse", "search_direction")}
     response = np.zeros((count, count))
     return Joints(rows, **slots, answer=np.zeros((0, 2)), response=response, **numbers, push=np.zeros((0, 2)))
 
@@ -106,7 +106,7 @@ def no_joints() -> Joints:
 
 @inner_kernel
 def push_at(joints: Joints, p: int, jx: float, jy: float) -> None:
-    """What an impulse at a particle does to the velocities of rows."""
+    """Add the effect of an impulse at a particle to the velocities of rows."""
     if joints.at.shape[0] == 0:
         return
     for i in range(joints.at_first[p], joints.at_first[p + 1]):
@@ -148,7 +148,7 @@ def couple_masses(joints: Joints, inverse_mass: Floats) -> None:
     """The same where every particle answers by its own mass: of each row, and of two with each other."""
     rows = joints.rows
     for k in range(rows.limit.shape[0]):
-        other = k + 1 if rows.pair[k] == FIRST_OF_TWO else k
+        other = k + 1 if rows.pair[k] == PAIR else k
         own = 0.0
         both = 0.0
         for e in range(rows.first[k], rows.first[k + 1]):
@@ -195,7 +195,7 @@ def start_joints(joints: Joints, change: Floats) -> None:
     """Apply the impulses that joints bring along."""
     rows = joints.rows
     for k in range(rows.limit.shape[0]):
-        joints.direction[k] = 0.0
+        joints.search_direction[k] = 0.0
         if rows.impulse[k] != 0.0:
             _push(joints, k, rows.impulse[k], change)
 
@@ -206,11 +206,11 @@ def sweep_joints(joints: Joints, change: Floats) -> float:
     rows = joints.rows
     largest = 0.0
     for k in range(rows.limit.shape[0]):
-        joints.before[k] = rows.impulse[k]
+        joints.last_impulse[k] = rows.impulse[k]
     for k in range(rows.limit.shape[0]):
         if rows.pair[k] == SECOND_OF_TWO or not (rows.limit[k] > 0.0 and joints.response[k, k] > 0.0):
             continue
-        if rows.pair[k] == FIRST_OF_TWO:
+        if rows.pair[k] == PAIR:
             first, second = _of_two(joints, k, joints.velocity[k], joints.velocity[k + 1])
             largest = max(largest, _set(joints, k + 1, second, change))
         else:
@@ -232,36 +232,36 @@ def _set(joints: Joints, k: int, impulse: float, change: Floats) -> float:
 
 @inner_kernel
 def swept_by(joints: Joints) -> float:
-    """The square of what the last sweep has changed, in the metric of the responses."""
+    """The squared change of impulses in the last sweep, in the metric of the responses."""
     squared = 0.0
     for k in range(joints.rows.limit.shape[0]):
-        more = joints.rows.impulse[k] - joints.before[k]
+        more = joints.rows.impulse[k] - joints.last_impulse[k]
         squared += joints.response[k, k] * more * more
     return squared
 
 
 @inner_kernel
 def go_on_with_joints(joints: Joints, change: Floats, ratio: float) -> None:
-    """P += ratio p, clamped;  p = ratio p + what the sweep has changed: as contacts do."""
+    """P += ratio p, clamped; p = ratio p + the change of the sweep: as contacts do."""
     rows = joints.rows
     for k in range(rows.limit.shape[0]):
-        more = ratio * joints.direction[k]
-        joints.direction[k] = more + (rows.impulse[k] - joints.before[k])
-        joints.before[k] = rows.impulse[k] + more
+        more = ratio * joints.search_direction[k]
+        joints.search_direction[k] = more + (rows.impulse[k] - joints.last_impulse[k])
+        joints.last_impulse[k] = rows.impulse[k] + more
     for k in range(rows.limit.shape[0]):
         if rows.pair[k] == SECOND_OF_TWO:
             continue
-        if rows.pair[k] == FIRST_OF_TWO:
-            share = shortened(joints.before[k], joints.before[k + 1], rows.limit[k])
-            _set(joints, k, joints.before[k] * share, change)
-            _set(joints, k + 1, joints.before[k + 1] * share, change)
+        if rows.pair[k] == PAIR:
+            share = shortened(joints.last_impulse[k], joints.last_impulse[k + 1], rows.limit[k])
+            _set(joints, k, joints.last_impulse[k] * share, change)
+            _set(joints, k + 1, joints.last_impulse[k + 1] * share, change)
         else:
-            _set(joints, k, clamped(joints.before[k], rows.limit[k]), change)
+            _set(joints, k, clamped(joints.last_impulse[k], rows.limit[k]), change)
 
 
 @inner_kernel
 def gather_push(joints: Joints) -> None:
-    """What the joints together give each particle, into `push`."""
+    """Sum the impulses of all joints for each particle, into `push`."""
     rows = joints.rows
     for p in range(joints.push.shape[0]):
         joints.push[p, 0] = 0.0
@@ -282,7 +282,7 @@ def _give(rows: JointRows, k: int, impulse: float, change: Floats, inverse_mass:
 
 
 @inner_kernel
-def start_masses(joints: Joints, change: Floats, inverse_mass: Floats) -> None:
+def warm_start_joints(joints: Joints, change: Floats, inverse_mass: Floats) -> None:
     """Apply the impulses that joints bring along, to particles that answer by their own mass."""
     couple_masses(joints, inverse_mass)
     for k in range(joints.rows.limit.shape[0]):
@@ -297,7 +297,7 @@ def iterate_joint(joints: Joints, k: int, velocity: Floats, change: Floats, inve
     if rows.pair[k] == SECOND_OF_TWO or not (rows.limit[k] > 0.0 and joints.response[k, k] > 0.0):
         return
     u = row_velocity(rows, k, velocity, change)
-    if rows.pair[k] == FIRST_OF_TWO:
+    if rows.pair[k] == PAIR:
         first, second = _of_two(joints, k, u, row_velocity(rows, k + 1, velocity, change))
         _give(rows, k + 1, second - rows.impulse[k + 1], change, inverse_mass)
         rows.impulse[k + 1] = second

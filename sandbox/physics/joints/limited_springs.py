@@ -77,7 +77,7 @@ def limited_particles(world: World, springs: Slots) -> list[Slots]:
 
 
 def limited_rows(world: World, springs: Slots, first: int) -> LimitedRows:
-    """What kernels fill the rows of these springs from, which begin at the row `first`."""
+    """The input from which kernels fill the rows of these springs, which begin at the row `first`."""
     return LimitedRows(
         np.array([first]), springs, force_limits(world)[springs], world.position, world.velocity, world.inverse_mass,
         world.particle_a, world.particle_b, world.rest_length, world.impulse,

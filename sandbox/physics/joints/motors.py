@@ -34,7 +34,8 @@ class MotorRows(NamedTuple):
 
 
 def motor_groups(world: World) -> list[tuple[Slots, Slots]]:
-    """What each motor turns against each other: particles of its wheel, of its mount; those held by the ground: none.
+    """The two sides that each motor turns against each other: particles of its wheel and of its mount; a side that the
+    ground holds has none.
 
     The mount is the hub and what springs join to it outside the wheel. Where springs hold nothing of the wheel to the
     hub, or nothing but the wheel, both are empty: there is nothing to turn, or to push against. What has come off the

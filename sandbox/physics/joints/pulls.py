@@ -1,4 +1,4 @@
-"""What hands do, for who looks on; no tick depends on it."""
+"""The pulls of hands, to be shown; no tick depends on them."""
 
 from dataclasses import dataclass
 
@@ -13,9 +13,9 @@ AT_LIMIT = 0.99
 
 @dataclass(frozen=True)
 class Pull:
-    """What a hand did in the last tick.
+    """The pull of a hand in the last tick.
 
-    cursor: its slot; particle: that it holds; force, limit [N]; pinned: what it holds is joined to something pinned.
+    cursor: its slot; particle: the one that it holds; force, limit [N]; pinned: the held body has a pinned particle.
     """
 
     cursor: int
@@ -31,7 +31,7 @@ class Pull:
 
 
 def pulls_of(world: World) -> list[Pull]:
-    """What the hands do that hold something which can move."""
+    """The pulls of the hands that hold something movable."""
     grips, pulls = grips_of(world), []
     for i, hand in enumerate(grips.hand.tolist()):
         x, y = world.hand_force[hand].tolist()

@@ -1,4 +1,4 @@
-"""What motors give, for panels, probes and summaries; no tick depends on it."""
+"""The torques of motors, for panels, probes and summaries; no tick depends on them."""
 
 from typing import NamedTuple
 

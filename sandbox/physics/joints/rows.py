@@ -1,4 +1,4 @@
-"""Joint rows: velocities that an impulse of bounded size brings to a target, motors and what holds by hand.
+"""Joint rows: velocities that an impulse of bounded size brings to a target; motors and hands are such rows.
 
 A row is u = sum g . v over some particles, and its impulse P gives each of them g P. It obeys the equation in its
 implicit form, K made as large as it likes, and the impulse is clamped:
@@ -20,13 +20,13 @@ from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import Floats, Slots
 
 # Of a row: alone; the first of two whose impulses together are clamped by their length; the second of them.
-ALONE, FIRST_OF_TWO, SECOND_OF_TWO = 0, 1, -1
+SCALAR, PAIR, SECOND_OF_TWO = 0, 1, -1
 
 
 class JointRows(NamedTuple):
     """The rows of a world's joints; entries of row k: particle and gradient [first[k]:first[k + 1]].
 
-    What topology decides: first (k+1,), particle (e,): free ones, each at most once in a row; pair (k,): ALONE or one
+    What topology decides: first (k+1,), particle (e,): free ones, each at most once in a row; pair (k,): SCALAR or one
     of two that follow each other. Of a substep: gradient (e, 2); target; softness = 1/K; limit of the impulse, 0: the
     row is off; two that are clamped together have the same. impulse: that of the last substep, then of this one.
     """

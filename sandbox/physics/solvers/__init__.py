@@ -1,6 +1,6 @@
 """Solvers: schedules of the one equation, with one signature, by the name that level files use.
 
-A solver, and what it does about contacts, is imported when it is first used: a name needs none of them, a run one.
+A solver is imported when it is first used: a run needs one of them.
 """
 
 from collections.abc import Callable
@@ -20,17 +20,17 @@ class Solver:
     """One solver: another is a module in this folder, and a line in SOLVERS.
 
     proven_limit: whether the limits of `stability` hold for it. bounded: whether it needs none, because it tests the
-    energy of every step. follows: whether it keeps the slow part of velocities, which is all that it does to particles
-    that nothing holds. carries: whether what joints give, such as a motor's torque, carries wheels under a load.
-    has_floors: whether it holds triangles from outside, with an energy of its own. highest: Cs and Cd of a tick are at
-    most this where it has several substeps, as (1, 1) alone would stay so in each of them.
+    energy of every step. tracks_slow_velocity: whether it keeps the slow part of velocities, which is all that it does
+    to particles that nothing holds. joints_bear_load: whether what joints give, such as a motor's torque, carries
+    wheels under a load. has_floors: whether it holds triangles from outside, with an energy of its own. highest: Cs and
+    Cd of a tick are at most this where it has several substeps, as (1, 1) alone would stay so in each of them.
     """
 
     module: str
     proven_limit: bool
     bounded: bool
-    follows: bool = False
-    carries: bool = True
+    tracks_slow_velocity: bool = False
+    joints_bear_load: bool = True
     has_floors: bool = False
     highest: float = 1.0
 
@@ -38,7 +38,8 @@ class Solver:
     def solve(self) -> "Callable[[World, Substep, LentContacts | None], None]":
         """solve(world, substep, contacts): brings world.velocity from after the forces to the end of a substep.
 
-        contacts: what touches, with the impulses that it brings along and then has; None: nothing does.
+        contacts: the contacts of the substep, with impulses to start from, which the solver replaces; None: nothing
+        touches.
         """
         return self._schedule.solve
 
@@ -52,9 +53,9 @@ class Solver:
         """spring_constant(stiffness, damping, reduced_mass [kg], h): k [N/m] of the energy k/2 x^2."""
         return self._schedule.spring_constant
 
-    def expect(self, world: "World") -> None:
+    def precompute(self, world: "World") -> None:
         """Make what topology decides of its substeps, where that takes long, ahead of the tick that needs it."""
-        make = getattr(self._schedule, "expect", None)
+        make = getattr(self._schedule, "precompute", None)
         if make is not None:
             make(world)
 
@@ -64,10 +65,10 @@ class Solver:
 
 
 SOLVERS = {
-    "single_pass": Solver("single_pass", proven_limit=True, bounded=False, carries=False),
+    "single_pass": Solver("single_pass", proven_limit=True, bounded=False, joints_bear_load=False),
     # With 1, what a wheel's springs give way where it meets the ground throws it off again: in a fraction of a tick the
     # velocity that takes an error back is as many times greater, and nothing damps it. Less lets light wheels sink
     # under heavy loads in two substeps, more lets them hop in eight.
     "iterative": Solver("iterative", proven_limit=False, bounded=False, highest=1.0 - 1e-5),
-    "direct": Solver("direct.solve", proven_limit=False, bounded=True, follows=True, has_floors=True),
+    "direct": Solver("direct.solve", proven_limit=False, bounded=True, tracks_slow_velocity=True, has_floors=True),
 }

@@ -15,21 +15,21 @@ from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, constraint
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
 from sandbox.physics.joints.joint_set import joints_of
-from sandbox.physics.joints.joint_sweep import iterate_joints, joints_by_mass, no_joints, start_masses
+from sandbox.physics.joints.joint_sweep import iterate_joints, joints_by_mass, no_joints, warm_start_joints
 from sandbox.physics.joints.limited_springs import unlimited_active
 from sandbox.physics.solvers.contact.body_impacts import pass_on
 from sandbox.physics.solvers.contact.gauss_seidel import (
-    ContactTerms,
+    ContactConstraints,
     Delassus,
     add_change,
     load_biases,
     load_responses,
     load_surfaces,
-    new_terms,
+    new_contact_constraints,
     no_blocks,
-    start_impulses,
     store_spins,
     sweep,
+    warm_start_contacts,
 )
 from sandbox.physics.solvers.lent_substep import LentSubstep, SubstepArrays
 from sandbox.physics.solvers.single_pass import Particles, apply_explicit, particles_of
@@ -96,7 +96,7 @@ class Turning(NamedTuple):
 
 
 class Iteration(NamedTuple):
-    """What steps read of a world and fill in: arrays that stay while its topology does."""
+    """The arrays of a world that steps read and fill in; they stay until its topology changes."""
 
     particles: Particles
     turning: Turning
@@ -253,8 +253,8 @@ def _iterate(
     pass_on(contacts, terms, velocity, change, inverse_mass, step.delassus, h)
     count = _prepare_springs(step.particles, step.springs, order, given, warm_start, h, step.pulling)
     _prepare_constraints(step.particles, step.constraints, given, h, step.wanted)
-    start_impulses(contacts, terms, change, inverse_mass, step.delassus)
-    start_masses(step.delassus.joints, change, inverse_mass)
+    warm_start_contacts(contacts, terms, change, inverse_mass, step.delassus)
+    warm_start_joints(step.delassus.joints, change, inverse_mass)
     for k in range(iterations):
         _iterate_springs(count, inverse_mass, step.springs, step.pulling, alternates and k % 2 == 1)
         _iterate_constraints(inverse_mass, step.constraints, step.wanted, change)
@@ -272,16 +272,16 @@ class IterationRoom:
     """
 
     lent: Any
-    terms: ContactTerms
+    terms: ContactConstraints
     lent_terms: Any
     no_contacts: Any
     hooke: NDArray[np.bool_] | None
     substep: LentSubstep = field(default_factory=LentSubstep)
 
     def grow(self, contacts: int) -> None:
-        """Make room for so many contacts."""
+        """Make room for a number of contacts."""
         if contacts > len(self.terms.bias):
-            self.terms = new_terms(MORE_ROOM * contacts, self.terms.surface)
+            self.terms = new_contact_constraints(MORE_ROOM * contacts, self.terms.surface)
             self.lent_terms = bundle((self.terms,))
 
 
@@ -304,7 +304,7 @@ def _make_room(world: World) -> IterationRoom:
         Wanted(*np.zeros((2, len(world.corner_particle), 2)), *np.zeros((5, world.constraint_count))),
         no_blocks(particles, no_joints() if joints is None else joints_by_mass(joints.rows)),
     )  # fmt: skip
-    terms, hooke = new_terms(0, np.zeros(particles)), world.spring_active & (world.law == LAW_HOOKE)
+    terms, hooke = new_contact_constraints(0, np.zeros(particles)), world.spring_active & (world.law == LAW_HOOKE)
     lent_terms, nothing = bundle((terms,)), bundle((NO_CONTACTS,))
     return IterationRoom(bundle((step,)), terms, lent_terms, nothing, hooke if hooke.any() else None)
 

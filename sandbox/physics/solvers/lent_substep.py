@@ -1,4 +1,4 @@
-"""What a substep is given, as one argument for kernels."""
+"""The input of a substep, as one argument for kernels."""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -9,7 +9,7 @@ from sandbox.physics.world import Floats
 
 
 class SubstepArrays(NamedTuple):
-    """What is the same array in every substep of a tick, often of many ticks.
+    """The arrays that stay the same objects in every substep of a tick, often of many ticks.
 
     Cs and Cd of springs (m,) and constraints (t,) in a substep; start [m/s] (n, 2): velocities before forces.
     """
@@ -29,7 +29,7 @@ class LentSubstep:
     inputs: Any = None
 
     def lend(self, substep: Substep) -> Any:
-        """The arrays of a substep, lent anew where they are others than those of the last."""
+        """The arrays of a substep, lent again if they are not those of the last one."""
         (stiffness, damping), (more_stiffness, more_damping) = substep.springs, substep.constraints
         arrays = self.arrays
         if (
@@ -38,8 +38,8 @@ class LentSubstep:
             or arrays.damping is not damping
             or arrays.constraint_stiffness is not more_stiffness
             or arrays.constraint_damping is not more_damping
-            or arrays.start is not substep.before.velocity
+            or arrays.start is not substep.step_start.velocity
         ):
-            self.arrays = SubstepArrays(stiffness, damping, more_stiffness, more_damping, substep.before.velocity)
+            self.arrays = SubstepArrays(stiffness, damping, more_stiffness, more_damping, substep.step_start.velocity)
             self.inputs = bundle((self.arrays,))
         return self.inputs

@@ -17,7 +17,7 @@ from sandbox.physics.jit import bundle, contents, kernel
 from sandbox.physics.joints.joint_set import joints_of
 from sandbox.physics.joints.joint_sweep import Joints, couple_masses, iterate_joint, joints_by_mass
 from sandbox.physics.joints.limited_springs import force_limits
-from sandbox.physics.joints.rows import ALONE, FIRST_OF_TWO, clamped, row_velocity
+from sandbox.physics.joints.rows import PAIR, SCALAR, clamped, row_velocity
 from sandbox.physics.substeps import Pair, Substep
 from sandbox.physics.world import Floats, World
 
@@ -27,7 +27,7 @@ JOINT_DAMPING = 0.5
 
 
 class Particles(NamedTuple):
-    """What an explicit solver reads of particles (n,): position [m], velocity [m/s], inverse mass [1/kg]."""
+    """The arrays of particles (n,) that an explicit solver reads: position [m], velocity [m/s], inverse mass [1/kg]."""
 
     position: Floats
     velocity: Floats
@@ -35,7 +35,7 @@ class Particles(NamedTuple):
 
 
 class Ends(NamedTuple):
-    """What an explicit solver reads of springs (m,): see StateArrays; stiffness and damping of the substep.
+    """The arrays of springs (m,) that an explicit solver reads: see StateArrays; stiffness and damping of the substep.
 
     limit [N]: the force that each gives at most.
     """
@@ -134,7 +134,7 @@ def apply_explicit(world: World, chosen: NDArray[np.bool_], substep: Substep, co
         place, slope = np.zeros((2, len(world.corner_particle), 2))
         _constraint_pass(particles, world.constraints, *constraints, h, place, slope, impulse)
     _explicit_pass(
-        particles, ends_of(world, substep.springs), chosen, substep.before.velocity, substep.ease, h, impulse
+        particles, ends_of(world, substep.springs), chosen, substep.step_start.velocity, substep.ease, h, impulse
     )
 
 
@@ -157,8 +157,8 @@ def _find_joint_impulses(lent: Any, velocity: Floats, inverse_mass: Floats, stil
     couple_masses(explicit.joints, inverse_mass)
     for k in range(rows.limit.shape[0]):
         response = explicit.joints.response[k, k]
-        explicit.mass[k] = 1.0 / response if response > 0.0 and rows.pair[k] == ALONE else 0.0
-        lag = rows.impulse[k] if rows.pair[k] == ALONE else 0.0
+        explicit.mass[k] = 1.0 / response if response > 0.0 and rows.pair[k] == SCALAR else 0.0
+        lag = rows.impulse[k] if rows.pair[k] == SCALAR else 0.0
         u = row_velocity(rows, k, velocity, still)
         explicit.given[k] = clamped(lag - JOINT_DAMPING * (u - rows.target[k]) * explicit.mass[k], rows.limit[k])
 
@@ -174,10 +174,10 @@ def _give_joint_impulses(lent: Any, velocity: Floats, inverse_mass: Floats, stil
             velocity[p, 1] += rows.gradient[e, 1] * explicit.given[k] * inverse_mass[p]
     # A hand comes last and has its velocity at once, as a pin that is moved: that is stable wherever the springs are.
     for k in range(rows.limit.shape[0]):
-        if rows.pair[k] != ALONE:
+        if rows.pair[k] != SCALAR:
             rows.impulse[k] = 0.0
     for k in range(rows.limit.shape[0]):
-        if rows.pair[k] == FIRST_OF_TWO:
+        if rows.pair[k] == PAIR:
             iterate_joint(joints, k, still, velocity, inverse_mass)
 
 
@@ -189,7 +189,7 @@ def _let_joints_follow(lent: Any, velocity: Floats, still: Floats) -> None:
     for k in range(rows.limit.shape[0]):
         u = row_velocity(rows, k, velocity, still)
         lag = rows.impulse[k] - JOINT_STIFFNESS * (u - rows.target[k]) * explicit.mass[k]
-        rows.impulse[k] = clamped(lag, rows.limit[k]) if rows.pair[k] == ALONE else rows.impulse[k]
+        rows.impulse[k] = clamped(lag, rows.limit[k]) if rows.pair[k] == SCALAR else rows.impulse[k]
 
 
 def _lent_joints(world: World) -> Any:
@@ -214,11 +214,11 @@ def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None
         _give_joint_impulses(joints, world.velocity, world.inverse_mass, still)
     if contacts is not None:
         from sandbox.physics.solvers.contact.body_impacts import sweep_masses
-        from sandbox.physics.solvers.contact.gauss_seidel import lent_masses, new_terms
+        from sandbox.physics.solvers.contact.gauss_seidel import lent_masses, new_contact_constraints
 
         count = world.particle_count
         sweep_masses(
-            contacts.arrays, new_terms(len(contacts.arrays.particle), np.zeros(count)), world.velocity,
+            contacts.arrays, new_contact_constraints(len(contacts.arrays.particle), np.zeros(count)), world.velocity,
             np.zeros((count, 2)), world.inverse_mass, world.spin, world.radius, world.derived(lent_masses),
             world.settings.iterations, substep.h,
         )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Inversion: which jellies are so out of shape that springs and areas alone may not find back.
+"""Inversion: finds jellies so far out of shape that springs and areas alone may not bring them back.
 
 A jelly is a group of triangles that share sides. It is inverted while a triangle of it is turned over, or drawn out to
 LARGEST times its area, or while the triangles about one of its inner particles do not wind round that just once. It is

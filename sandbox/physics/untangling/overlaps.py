@@ -1,4 +1,4 @@
-"""Overlaps: which bodies have come to lie in each other, or in themselves, deeper than contacts can undo.
+"""Overlaps: bodies that lie in each other, or in themselves, deeper than contacts can undo.
 
 Contacts push a particle out where it is nearest, and so hold a body that has gone through another just there. Seen are
 edges that cross, found in the grid of the broad phase, and shapes of which one lies in the other. What is pressed
@@ -17,7 +17,12 @@ from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, Flags, KeptContacts
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import Floats, Slots
-from sandbox.physics.untangling.meeting import Meetings, cross, find_meetings, may_cross
+from sandbox.physics.untangling.crossing_candidates import (
+    ShapeBounds,
+    cross,
+    find_crossing_candidates,
+    is_crossing_candidate,
+)
 
 # Outlines of solid bodies that overlap deeper than this many radii of a particle part, until nothing crosses. Less
 # takes contacts from what is only pressed together, more leaves what has been pushed through.
@@ -46,7 +51,7 @@ class Overlaps(NamedTuple):
 
 
 def new_overlaps(shapes: int, crossings: int, pairs: int) -> Overlaps:
-    """Overlaps to be filled in, with room for so many."""
+    """Empty overlaps, with room for a number of them."""
     return Overlaps(
         np.zeros((crossings, 2), np.int64), np.zeros((crossings, 2)), np.zeros(crossings, np.int64),
         np.zeros((pairs, 2), np.int64), np.zeros(pairs, np.int64), np.zeros(pairs, np.bool_),
@@ -102,19 +107,25 @@ def _compare(
 
 @inner_kernel
 def find_crossings(
-    boxes: Boxes, grid: Grid, larges: int, colliders: Colliders, outline: Outline, meetings: Meetings, found: Overlaps
+    boxes: Boxes,
+    grid: Grid,
+    larges: int,
+    colliders: Colliders,
+    outline: Outline,
+    shape_bounds: ShapeBounds,
+    found: Overlaps,
 ) -> int:
-    """Where outlines cross others or themselves; the number of crossings, counted on where there is no room."""
+    """Find where outlines cross each other or themselves; the number of crossings, even if there is no room for all."""
     count = 0
     # As of the last step some may not touch.
     colliders.parted_count[0] = 0
     cells = grid.cells
     particles = boxes.filter.shape[0]
     buckets = grid.start.shape[0] - 1
-    find_meetings(colliders, outline, meetings)
+    find_crossing_candidates(colliders, outline, shape_bounds)
     for e in range(outline.dynamic[0]):
         k = particles + e
-        if not (boxes.is_target[k] and may_cross(e, colliders, meetings)):
+        if not (boxes.is_target[k] and is_crossing_candidate(e, colliders, shape_bounds)):
             continue
         left = cells[k, 0]
         bottom = cells[k, 1]
@@ -272,8 +283,12 @@ def _is_inside_deep(s: int, t: int, outline: Outline, bounds: Floats, colliders:
 
 
 @inner_kernel
-def give_way(pair: int, colliders: Colliders, outline: Outline, bounds: Floats, found: Overlaps, flags: Flags) -> None:
-    """Flag the particles that part: all of solid bodies; of a line what is inside, and the ends of what crosses."""
+def mark_separating(
+    pair: int, colliders: Colliders, outline: Outline, bounds: Floats, found: Overlaps, flags: Flags
+) -> None:
+    """Flag the particles that are separated: all of solid bodies; of a line those inside, and the ends of crossing
+    edges.
+    """
     for side in range(2):
         s = found.shape[pair, side]
         other = outline.solid_of[found.shape[pair, 1 - side]]
@@ -363,7 +378,7 @@ def pair_overlaps(
             colliders.parted[colliders.parted_count[0], 2] = 1 if alone else 0
             colliders.parted_count[0] += 1
             # Apart: what is caught in itself, as crumpled cloth is all over, must not go through what holds it.
-            give_way(at, colliders, outline, bounds, found, colliders.caught if alone else colliders.parting)
+            mark_separating(at, colliders, outline, bounds, found, colliders.caught if alone else colliders.parting)
             if found.shape[at, 0] == found.shape[at, 1] and not alone and _is_crossed_deep(at, colliders, found):
                 _let_slip(found.shape[at, 0], colliders, outline)
     return pairs

@@ -1,4 +1,4 @@
-"""Parting: bodies whose outlines have come to overlap come apart, whoever pushed them, and keep their form.
+"""Parting: bodies whose outlines overlap come apart and keep their form.
 
 Both are moved as wholes, away from what they share, while contacts between them are left out (overlaps.py): nothing
 holds them, so their springs restore them, until nothing crosses. A line that crosses a solid body, a rope or a cloth,
@@ -14,7 +14,7 @@ from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, Flags
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import Floats
-from sandbox.physics.untangling.overlaps import OVERLAPS, Overlaps, give_way
+from sandbox.physics.untangling.overlaps import OVERLAPS, Overlaps, mark_separating
 from sandbox.physics.world import BANK_UNOPENED
 
 # Bodies that overlap part at this speed [m/s]. Faster frees no more of them, slower takes longer.
@@ -29,7 +29,9 @@ LEAST_LENGTH = 1e-12
 
 
 class MovedParticles(NamedTuple):
-    """What parting reads and changes of particles, see StateArrays; start [m/s] (n, 2): before forces acted."""
+    """The arrays of particles that parting reads and changes, see StateArrays; start [m/s] (n, 2): before forces
+    acted.
+    """
 
     velocity: Floats
     start: Floats
@@ -40,14 +42,14 @@ class MovedParticles(NamedTuple):
 
 
 class Moved(NamedTuple):
-    """What moves as a whole: mass [kg], centre [m], velocity [m/s]; held 1: something pinned is in it."""
+    """A shape that moves as a whole: mass [kg], centre [m], velocity [m/s]; fixed 1: a particle of it is pinned."""
 
     mass: float
     x: float
     y: float
     u: float
     v: float
-    held: int
+    fixed: int
 
 
 @inner_kernel
@@ -58,13 +60,13 @@ def _moved(s: int, outline: Outline, colliders: Colliders, particles: MovedParti
     y = 0.0
     u = 0.0
     v = 0.0
-    held = 0
+    fixed = 0
     for i in range(outline.member_start[s], outline.member_start[s + 1]):
         p = outline.member[i]
         if not flags[p]:
             continue
         if particles.inverse_mass[p] == 0.0:
-            held = 1
+            fixed = 1
             continue
         m = particles.mass[p]
         mass += m
@@ -73,7 +75,7 @@ def _moved(s: int, outline: Outline, colliders: Colliders, particles: MovedParti
         u += m * particles.start[p, 0]
         v += m * particles.start[p, 1]
     if mass > 0.0:
-        return Moved(mass, x / mass, y / mass, u / mass, v / mass, held)
+        return Moved(mass, x / mass, y / mass, u / mass, v / mass, fixed)
     p = outline.member[outline.member_start[s]]
     return Moved(0.0, colliders.position[p, 0], colliders.position[p, 1], 0.0, 0.0, 1)
 
@@ -255,8 +257,8 @@ def _part(
     else:
         nx, ny = _apart(s, t, a, b, outline, colliders)
     # What is held does not move, unless both are.
-    of_a = 1.0 / a.mass if a.mass > 0.0 and a.held <= b.held else 0.0
-    of_b = 1.0 / b.mass if b.mass > 0.0 and b.held <= a.held else 0.0
+    of_a = 1.0 / a.mass if a.mass > 0.0 and a.fixed <= b.fixed else 0.0
+    of_b = 1.0 / b.mass if b.mass > 0.0 and b.fixed <= a.fixed else 0.0
     if not of_a + of_b > 0.0:
         return
     along = 0.0
@@ -294,5 +296,5 @@ def part_overlaps(
             k = found.shape[pair, side]
             for i in range(outline.member_start[k], outline.member_start[k + 1]):
                 flags[outline.member[i]] = False
-        give_way(pair, colliders, outline, bounds, found, flags)
+        mark_separating(pair, colliders, outline, bounds, found, flags)
         _part(pair, outline, colliders, particles, found, flags)

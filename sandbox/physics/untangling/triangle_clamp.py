@@ -1,4 +1,4 @@
-"""The triangle clamp, last of all in a step: whatever the solver has left, no triangle of an area turns over in it.
+"""The triangle clamp, the last phase of a step: after any solver, no triangle of an area turns over in the step.
 
 A jelly of which no triangle is turned over at the start of a step has none at the end, at any Cs and Cd, in every
 solver. Nor do those about a particle of its outline close round that and go on (inversion.py): the gap that they leave,
@@ -60,7 +60,7 @@ class ClampedTriangles(NamedTuple):
     constraint (k,): of the triangle; those of constraint t: corner[start[t]:start[t + 1]]. rest (t, 2) [m^2]: area
     wanted and of the form. By row (n,): position [m], velocity [m/s], which is clamped, mass [kg], inverse_mass [1/kg],
     collides: of corners, 0 of all others. By jelly: inverted = let go. Scratch: label = what a row moves as one with,
-    held: what cannot move, sums.
+    fixed: what cannot move, sums.
     """
 
     corner: Slots
@@ -76,7 +76,7 @@ class ClampedTriangles(NamedTuple):
     collides: Slots
     inverted: Flags
     label: Slots
-    held: Flags
+    fixed: Flags
     sums: Floats
     terrain: Terrain
 
@@ -302,26 +302,26 @@ def _label_alone(first: int, last: int, low: int, high: int, triangles: ClampedT
     # Nothing moves as one with anything else.
     for r in range(low, high):
         triangles.label[r] = r
-        triangles.held[r] = triangles.inverse_mass[r] == 0.0
+        triangles.fixed[r] = triangles.inverse_mass[r] == 0.0
     for k in range(first, last):
         for i in range(3):
             p = triangles.corner[k, i]
             triangles.label[p] = p
-            triangles.held[p] = triangles.inverse_mass[p] == 0.0
+            triangles.fixed[p] = triangles.inverse_mass[p] == 0.0
 
 
 @inner_kernel
 def _unite(k: int, triangles: ClampedTriangles) -> bool:
     # Let the corners of a triangle move as one; whether they did not.
-    label, held = triangles.label, triangles.held
+    label, fixed = triangles.label, triangles.fixed
     found = False
     joined = root_of(label, triangles.corner[k, 0])
     for i in range(1, 3):
         other = root_of(label, triangles.corner[k, i])
         if other != joined:
-            either = held[joined] or held[other]
+            either = fixed[joined] or fixed[other]
             joined = united(label, joined, other)
-            held[joined] = either
+            fixed[joined] = either
             found = True
     return found
 
@@ -365,7 +365,7 @@ def _move_as_one(low: int, high: int, triangles: ClampedTriangles) -> None:
         if triangles.inverse_mass[r] == 0.0 or sums[g, COUNT] == 1.0:
             continue
         turn = sums[g, SPIN] / sums[g, INERTIA] if sums[g, INERTIA] > 0.0 else 0.0
-        if triangles.held[g]:
+        if triangles.fixed[g]:
             velocity[r, 0] = 0.0
             velocity[r, 1] = 0.0
         else:
@@ -381,12 +381,12 @@ def _hold_at_terrain(low: int, high: int, triangles: ClampedTriangles, h: float)
     found = False
     for r in range(low, high):
         g = root_of(triangles.label, r)
-        if triangles.held[g] or triangles.sums[g, COUNT] == 1.0:
+        if triangles.fixed[g] or triangles.sums[g, COUNT] == 1.0:
             continue
         if triangles.collides[r] & TERRAIN_GROUP:
             stops, _, _ = stopped(position[r, 0], position[r, 1], h * velocity[r, 0], h * velocity[r, 1], terrain)
             if stops > 0:
-                triangles.held[g] = True
+                triangles.fixed[g] = True
                 found = True
     return found
 

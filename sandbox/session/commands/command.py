@@ -1,4 +1,4 @@
-"""What commands share: a frozen value, checked strictly, with a name in files, that is carried out on a world."""
+"""The base of commands: a frozen value, checked strictly, with a name in files, that is carried out on a world."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Hashable
@@ -45,11 +45,15 @@ class Command(ABC):
         """Do it. Raises CommandError and changes nothing where it cannot be done."""
 
     def begins(self) -> Hashable | None:
-        """What it sets going until another command that begins the same; None: it is over when it is done."""
+        """A key for the process that it begins, such as the hold of one hand; None: it is over at once. A later
+        command with the same key takes the process over.
+        """
         return None
 
     def ending(self, world: World) -> "Command | None":
-        """The command that ends what this one began, where that is still going on: undoing leaves nothing going."""
+        """The command that ends the process that this one began, if it still goes on: an undo must leave nothing
+        going.
+        """
         return None
 
 
@@ -61,7 +65,7 @@ def adapter(kind: type[Command]) -> TypeAdapter[Any]:
 
 
 def plain_fault(error: ValidationError) -> str:
-    """The first fault of a validation as `field: what is wrong`, in one line."""
+    """The first fault of a validation as `field: fault`, in one line."""
     fault = error.errors(include_url=False, include_context=False, include_input=False)[0]
     place = ".".join(part if part.isprintable() else repr(part) for part in map(str, fault["loc"]))[:80]
     text = fault["msg"].replace("Input should be", "must be").splitlines()[0]

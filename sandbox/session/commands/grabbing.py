@@ -22,8 +22,8 @@ Strength = Annotated[float, Field(gt=0.0, le=STRONGEST_HAND)]
 class Grab(Command):
     """Hold a particle with hand number `grab` (0..9) at target [m].
 
-    strength [m/s^2]: the hand pulls with at most this times the mass of the body. radius [m]: what of the body is
-    nearer to the particle bears the force with it, the nearer the more; 0 = it bears all of it.
+    strength [m/s^2]: the hand pulls with at most this times the mass of the body. radius [m]: particles of
+    the body that are nearer to this one share the force, the nearer the more; 0 = it bears all of it.
     """
 
     type = "grab"

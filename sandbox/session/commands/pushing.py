@@ -18,9 +18,10 @@ Impulse = Annotated[float, Field(ge=-HARDEST_PUSH, le=HARDEST_PUSH, json_schema_
 
 @dataclass(frozen=True)
 class Push(Command):
-    """Give what can move within radius [m] of position [m] an impulse [N s] together, and one outward [N s] in sum.
+    """Push the free particles within radius [m] of position [m].
 
-    What is nearer moves more: all momentum that there is more afterwards is `impulse`, but for what goes outward.
+    Together they get the momentum `impulse` [N s]. Each is also driven straight away from the position, by `outward`
+    [N s] in sum. The nearer a particle is, the more its velocity changes.
     """
 
     type = "push"

@@ -16,7 +16,7 @@ from sandbox.session.commands.named import ParticleSlot, particle_of
 
 @dataclass(frozen=True)
 class Remove(Command):
-    """Take out a body by its name, or a particle with all that hangs on it.
+    """Take out a body by its name, or a particle with everything that springs join to it.
 
     body: its springs, and its particles that no spring of others holds. particle: it, and whatever springs and areas
     join to it by way of particles that are not pinned, with the pinned ones that nothing else holds then.

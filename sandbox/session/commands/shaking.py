@@ -12,7 +12,7 @@ from sandbox.session.commands.command import Command, CommandError
 class Shake(Command):
     """Accelerate the frame of the world, with its terrain and pins, by this [m/s^2] for the coming tick.
 
-    What can move stays behind. A frame that starts and stops is as many commands of one gesture as it takes ticks.
+    Free particles stay behind. A frame that starts and stops is one command for each tick, all of one gesture.
     """
 
     type = "shake"

@@ -19,8 +19,8 @@ TEMPLATE = Path(__file__).with_name("player.html")
 
 @dataclass(frozen=True)
 class PlayerPage:
-    """What a page shows. box [m]; rate: ticks a second; marks: ticks with a word to each; difference: the first tick
-    that differs, and the particle; lines: what is told of it.
+    """The content of a page. box [m]; rate: ticks a second; marks: ticks with a word to each; difference: the first
+    tick that differs, and the particle; lines: the text about it.
     """
 
     title: str

@@ -1,4 +1,4 @@
-"""Reel: what a run looks like from picture to picture, as data that a page can play by itself."""
+"""Reel: the pictures of a run as data, which a page can play by itself."""
 
 import base64
 from collections.abc import Iterable, Iterator
@@ -29,9 +29,9 @@ State = World | Snapshot
 
 
 class Reel:
-    """Gathers the pictures of one side of a page; `data` is what the page reads.
+    """Gathers the pictures of one side of a page; the page reads `data`.
 
-    box [m]: what is shown. name: what the side is called.
+    box [m]: the shown part of the world. name: of the side.
     """
 
     def __init__(self, name: str, level: Level, box: NDArray[np.float64]) -> None:
@@ -101,7 +101,7 @@ class Reel:
 
 
 def shown_box(level: Level, state: State) -> NDArray[np.float64]:
-    """What a page shows of a level [m]: its view, or all that there is, with some room around."""
+    """The part of a level that a page shows [m]: its view, or all of it with some room around."""
     if level.view is not None:
         return np.array(level.view, dtype=np.float64)
     points = np.concatenate([state.position[shown_particles(state)], state.terrain.vertex, np.zeros((0, 2))])

@@ -65,7 +65,7 @@ class RunDifference:
 def difference(
     first: ComparedRun, second: ComparedRun, ticks: int, progress: Callable[[int, int], None] | None = None
 ) -> RunDifference:
-    """Compare two runs for so many ticks, as far as recordings go. Raises ReplayError for commands that fail."""
+    """Compare two runs for a number of ticks, as far as recordings go. Raises ReplayError for commands that fail."""
     for side in (first, second):
         if side.replay is not None:
             ticks = min(ticks, side.replay.ticks)

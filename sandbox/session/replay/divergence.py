@@ -98,7 +98,7 @@ def number_text(value: Any) -> str:
 
 
 def first_difference(tick: int, array: str, wanted: NDArray[Any], world: World) -> Divergence:
-    """The first bit of an array, by its name in files, in which a world differs from what is wanted."""
+    """The first bit of an array, by its name in files, in which a world differs from the expected values."""
     found: NDArray[Any] = getattr(world, BY_STORED[array].name)
     if len(wanted) != len(found):
         return Divergence(tick, array, None, f"{len(wanted)} values", f"{len(found)} values")

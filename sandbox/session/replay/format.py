@@ -7,11 +7,11 @@
                                                                        also "joined", where bodies joined while it ran
     {"end": true, "tick": 900, "hash": "...", "chain": "..."}
 
-`hash` and those of `arrays` are the first digits, at a stored state and at the end `hash` is whole. `arrays` holds that
-of each array that changed since the line before, null of one that is no
-longer in use; at a stored state, of all that are in use. `state` holds the arrays that changed since the state stored
-before. chain = blake2b over the previous line's whole digest and this line's bytes up to its own chain, of which a line
-has the first digits.
+`hash` is of the whole state, `arrays` has a hash for each array; lines hold their first digits, but `hash` is whole at
+a stored state and at the end. `arrays` names the arrays that changed since the line before, with null for one that is
+no longer in use; at a stored state it names all that are in use. `state` holds the arrays that changed since the last
+stored state. chain = the first digits of blake2b over the whole digest of the previous line and this line's bytes
+before its own chain.
 
 Version 1, which is read as well: all arrays in every line, and all digits.
 """

@@ -1,4 +1,4 @@
-"""What lines of replays and of scripts share: JSON objects of stated fields, each fault one line."""
+"""Lines of recordings and of scripts: JSON objects with known fields; each fault is one line."""
 
 import json
 from typing import Annotated, Any, TypeVar

@@ -109,11 +109,11 @@ class _Gathered:
 
     @property
     def state_limit(self) -> int:
-        """What a line that stores a state may hold [bytes]."""
+        """The most bytes of a line that stores a state."""
         return STATE_BYTES + STATE_BYTES_A_SLOT * self.slots
 
     def add(self, line: "_SealedLine", number: int, where: str) -> None:
-        """Add one line to what was read. Raises ReplayError where it does not fit there."""
+        """Add one line to the recording that is read. Raises ReplayError where it does not fit there."""
         tick = len(self.hashes) - 1
         expected = tick + 1 if isinstance(line, _TickLine) else tick
         if line.tick != expected:

@@ -24,7 +24,7 @@ class ReplayError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class TickHashes:
-    """What a replay says of the state after a tick: the first digits of the hash of all, and of that of each array.
+    """The hashes of the state after a tick: the first digits of the whole hash, and of the hash of each array.
 
     arrays: in the order of the table; nothing for one that is not in use.
     """

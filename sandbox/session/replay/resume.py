@@ -1,4 +1,4 @@
-"""Going on with a recording that was cut off, as by a crash: what it holds is run again, compared and written anew."""
+"""Continues a recording that was cut off, as by a crash: it is run again, compared and written again."""
 
 import os
 from collections.abc import Callable

@@ -35,7 +35,9 @@ class Comparison:
     after: int | None
 
     def lines(self) -> list[str]:
-        """What differs, and where the recording cannot give the values at that tick, which states it has stored."""
+        """The difference in lines; if the recording does not hold the values at that tick, also its stored states
+        around it.
+        """
         if self.expected is not None:
             return self.divergence.lines()
         last = "there is none before" if self.before is None else f"the last before is that of tick {self.before}"

@@ -27,7 +27,7 @@ _HOME = Path(__file__).resolve().parents[3]
 class BackgroundSweep:
     """Runs points of a grid by their numbers, those named first soonest, in so many children; nothing here waits.
 
-    error: why it cannot go on. Raises OSError where no child can be started.
+    error: the reason why it cannot go on. Raises OSError where no child can be started.
     """
 
     def __init__(self, grid: SweepGrid, numbers: Sequence[int], processes: int) -> None:
@@ -98,7 +98,7 @@ def _leave_with_parent() -> None:
 
 
 def main() -> None:
-    """Run what is asked for on standard input."""
+    """Run the points that standard input asks for."""
     if hasattr(os, "nice"):
         os.nice(NICENESS)
     task = json.loads(sys.stdin.readline())

@@ -1,4 +1,4 @@
-"""One run of a sweep, and what is measured of it."""
+"""One run of a sweep, and its measurements."""
 
 import math
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.analysis.query import load_bearing, shown_particles, shown_springs, strain
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
-from sandbox.session.check_run import CheckWatch
+from sandbox.session.check_run import CheckRun, CheckWatch, check_runs
 from sandbox.session.commands import SetCoefficients
 from sandbox.session.session import Session
 from sandbox.session.sweep.grid import CD, CS, SweepError, SweepRequest, Value, case_level
@@ -25,15 +25,34 @@ def run_case(request: SweepRequest, case: Sequence[Value]) -> list[Any]:
     if request.physics_version != PHYSICS_VERSION:
         raise SweepError(f"a process has physics version {PHYSICS_VERSION}, this one {request.physics_version}")
     level = case_level(request.level, request.columns, case)
-    session = Session(level)
-    _set_coefficients(session, dict(zip(request.columns, case, strict=True)), request.material)
-    world, watch = session.world, CheckWatch(level, session.world)
+    values = dict(zip(request.columns, case, strict=True))
+    first, *others = check_runs(level)
     held: dict[int, int] = {}
+    figures = _measured(first, request, values, held)
+    for run in others:
+        _set_coefficients(run.session, values, request.material)
+        with np.errstate(over="ignore", invalid="ignore"):
+            while _looked(run, held).waiting:
+                run.advance()
+    finite = [None if isinstance(each, float) and not math.isfinite(each) else each for each in figures]
+    return [*finite, *(held[number] for number in sorted(held))]
+
+
+def _looked(run: CheckRun, held: dict[int, int]) -> CheckWatch:
+    """Look at a tick of a run, and note the checks that are decided."""
+    held.update((number, int(result.passed)) for number, result in run.watch.look())
+    return run.watch
+
+
+def _measured(run: CheckRun, request: SweepRequest, values: dict[str, Value], held: dict[int, int]) -> list[Any]:
+    """The figures of a run without keys."""
+    world = run.session.world
+    _set_coefficients(run.session, values, request.material)
     most_strain, settled, blew_up = 0.0, 0, False
     with np.errstate(over="ignore", invalid="ignore"):
         start = highest = total_energy(world)
         while True:
-            held.update((number, int(result.passed)) for number, result in watch.look())
+            watch = _looked(run, held)
             speed = _fastest(world)
             blew_up = blew_up or bool(world.contained) or not speed < FASTEST
             most_strain = max(most_strain, float(np.max(np.abs(strain(world))[load_bearing(world)], initial=0.0)))
@@ -41,11 +60,9 @@ def run_case(request: SweepRequest, case: Sequence[Value]) -> list[Any]:
             settled = world.tick + 1 if not speed <= STILL else settled
             if world.tick >= request.ticks and not watch.waiting:
                 break
-            session.advance()
+            run.advance()
     settle_time = round(settled / world.settings.tick_rate, 9) if settled <= world.tick else None
-    figures = [settle_time, most_strain, highest - start, _broken(world), int(blew_up)]
-    finite = [None if isinstance(each, float) and not math.isfinite(each) else each for each in figures]
-    return [*finite, *(held[number] for number in sorted(held))]
+    return [settle_time, most_strain, highest - start, _broken(world), int(blew_up)]
 
 
 def _set_coefficients(session: Session, values: dict[str, Value], material: str | None) -> None:

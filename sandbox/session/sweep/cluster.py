@@ -19,10 +19,11 @@ PATIENCE, RETRIES = 30.0, 10
 def swept_by_dask(
     grid: SweepGrid, known: Collection[int], address: str, workers: int
 ) -> Generator[tuple[int, list[Any]], None, None]:
-    """Run the points that are not known; number and row of each as it ends, in whatever order, each once.
+    """Run the points that are not known; number and row of each as it ends, in any order, each once.
 
-    address: of a scheduler, or "local" for a cluster of `workers` processes. What a lost worker had is run by others.
-    Close it if not all are wanted. Raises SweepError, OSError where no scheduler answers, ImportError without dask.
+    address: of a scheduler, or "local" for a cluster of `workers` processes. Other workers run the points of a lost
+    worker. Close it if not all are wanted. Raises SweepError, OSError where no scheduler answers, ImportError without
+    dask.
     """
     from distributed import Client, Future, LocalCluster, as_completed
     from distributed.scheduler import KilledWorker

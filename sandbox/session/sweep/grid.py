@@ -28,9 +28,9 @@ class SweepError(ValueError):
 
 @dataclass(frozen=True)
 class SweepRequest:
-    """What a process is told of a sweep: the level as text, names of columns, ticks of a run.
+    """The sweep as a process gets it: the level as text, names of columns, ticks of a run.
 
-    material: name of that whose springs have the Cs and Cd; None = all springs.
+    material: its springs have the Cs and Cd; None = all springs.
     """
 
     text: str
@@ -93,7 +93,7 @@ class SweepGrid:
 
     @cached_property
     def digest(self) -> str:
-        """What a level is, apart from the swept fields and from what only shows, to sweeps."""
+        """A digest of a level without the swept fields and without looks."""
         level = case_level(self.level, tuple(self.columns), [values[0] for values in self.columns.values()])
         shown = set(SILENT) - {"checks"}
         data = {name: value for name, value in level_data(level).items() if name not in shown}

@@ -11,7 +11,7 @@ from sandbox.session.sweep.table import table_text
 
 
 class Journal:
-    """The rows of a sweep that are known, kept in a file beside its table until that is written.
+    """The finished rows of a sweep, kept in a file beside its table until that is written.
 
     rows: by number; replaced: whether the file was of another level or grid, which is forgotten.
     fresh: forget what was there. Raises OSError.
@@ -36,7 +36,7 @@ class Journal:
         self.save()
 
     def save(self) -> None:
-        """Write the file anew with all rows that are known."""
+        """Write the file again with all finished rows."""
         lines = [self._first, *(json.dumps([number, row]) for number, row in self.rows.items())]
         write_file(self.path, "".join(f"{line}\n" for line in lines).encode())
 

@@ -15,7 +15,7 @@ def missing_points(grid: SweepGrid, known: Collection[int]) -> list[int]:
 
 
 def swept(grid: SweepGrid, known: Collection[int], processes: int) -> Generator[tuple[int, list[Any]], None, None]:
-    """Run the points that are not known; number and row of each as it ends, in whatever order.
+    """Run the unfinished points; number and row of each as it ends, in any order.
 
     Close it if not all are wanted. Raises SweepError, and OSError where a process is gone.
     """

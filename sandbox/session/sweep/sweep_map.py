@@ -1,4 +1,4 @@
-"""What a map of a sweep shows: Cs across, Cd up, one panel for each point of all else, and its proven limits."""
+"""A map of a sweep: Cs across, Cd up, one panel for each point of all else, and its proven limits."""
 
 import itertools
 import math

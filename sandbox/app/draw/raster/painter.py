@@ -276,7 +276,7 @@ def _plain_bodies(surface: pygame.Surface, layer: BodyLayer) -> None:
                 pygame.draw.aalines(surface, _rgb(line), True, corners)
 
 
-def expect_painting() -> None:
+def precompile_painting() -> None:
     """Compile the drawing kernels, or load them from the cache; while kernels are interpreted, note what they take."""
     scratch = _made_scratch((8, 8))
     pixels, clip = np.zeros((8, 8), dtype=np.uint32), np.zeros(4, dtype=np.int64)
@@ -284,8 +284,8 @@ def expect_painting() -> None:
     many = np.zeros((0, 2), dtype=np.int64)
     shapes = Outlines(pairs, np.zeros(1, dtype=np.int64))
     layer = MarkArrays(np.zeros((0, 4)), flat, numbers, flat, pairs, numbers, numbers)
-    jit.expect(paint_marks, pixels, layer, np.zeros((1, ACROSS, ALONG), dtype=np.uint32), clip)
-    jit.expect(
+    jit.precompile(paint_marks, pixels, layer, np.zeros((1, ACROSS, ALONG), dtype=np.uint32), clip)
+    jit.precompile(
         paint_bodies, pixels, shapes,
         BodyRows(many, np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3)), many),
         Skins(
@@ -295,8 +295,8 @@ def expect_painting() -> None:
         Flush(np.zeros((0, 4)), numbers), scratch.bodies, scratch.place, clip,
     )  # fmt: skip
     triangles = CellArrays(np.zeros((0, 6)), np.zeros((0, 6)), np.zeros((0, 3)), numbers)
-    jit.expect(paint_cells, pixels, triangles, np.zeros((1, SHEET, SHEET), dtype=np.int64), np.zeros(9), clip)
+    jit.precompile(paint_cells, pixels, triangles, np.zeros((1, SHEET, SHEET), dtype=np.int64), np.zeros(9), clip)
     thrown = Thrown(np.zeros((0, 5)), np.zeros((0, 3)))
-    jit.expect(paint_shadows, pixels, shapes, thrown, scratch.shadows, np.zeros(2), 0, 0.5, clip)
+    jit.precompile(paint_shadows, pixels, shapes, thrown, scratch.shadows, np.zeros(2), 0, 0.5, clip)
     loops = Loops(numbers, numbers, numbers, flat, numbers)
-    jit.expect(trace_outlines, pairs, loops, flat, pairs, pairs)
+    jit.precompile(trace_outlines, pairs, loops, flat, pairs, pairs)

@@ -1,6 +1,7 @@
 """Gestures of the select tool: moving, scaling, turning, and choosing by a box or a lasso."""
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
 
@@ -14,6 +15,7 @@ from sandbox.app.edit.canvas.handles import Handles, Scaling, Turn
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import move, rotate, scale
 from sandbox.editor.edits.placing import weld
+from sandbox.editor.items import Selection
 from sandbox.editor.pick import Mode, combined, items_in_box, items_in_lasso
 from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap, snap
 
@@ -165,13 +167,13 @@ class Transforming(_Matrix):
 
 
 class Boxing(_Matrix):
-    """Selects what lies in a box."""
+    """Selects what lies in a box; taken: what picking items takes, with the whole of their groups."""
 
     matrix: np.ndarray | None = None
     measure = ""
 
-    def __init__(self, screen: Editing, start: Point) -> None:
-        self._screen, self._start, self._end, self._modifiers = screen, start, start, 0
+    def __init__(self, screen: Editing, start: Point, taken: Callable[[Selection], Selection]) -> None:
+        self._screen, self._start, self._end, self._modifiers, self._taken = screen, start, start, 0, taken
 
     def to(self, point: Point, modifiers: int) -> None:
         """The other corner."""
@@ -179,7 +181,7 @@ class Boxing(_Matrix):
 
     def end(self) -> None:
         """Select."""
-        found = items_in_box(self._screen.scene, (*self._start, *self._end))
+        found = self._taken(items_in_box(self._screen.scene, (*self._start, *self._end)))
         self._screen.select(combined(self._screen.document.selection, found, pick_mode(self._modifiers, False)))
 
     def draw(self, surface: pygame.Surface) -> None:
@@ -193,13 +195,13 @@ class Boxing(_Matrix):
 
 
 class Lassoing(_Matrix):
-    """Selects what lies inside a freehand line."""
+    """Selects what lies inside a freehand line; taken: as of a box."""
 
     matrix: np.ndarray | None = None
     measure = ""
 
-    def __init__(self, screen: Editing, start: Point) -> None:
-        self._screen, self._line, self._modifiers = screen, [start], 0
+    def __init__(self, screen: Editing, start: Point, taken: Callable[[Selection], Selection]) -> None:
+        self._screen, self._line, self._modifiers, self._taken = screen, [start], 0, taken
 
     def to(self, point: Point, modifiers: int) -> None:
         """The line goes on."""
@@ -210,7 +212,7 @@ class Lassoing(_Matrix):
 
     def end(self) -> None:
         """Select."""
-        found = items_in_lasso(self._screen.scene, self._line)
+        found = self._taken(items_in_lasso(self._screen.scene, self._line))
         self._screen.select(combined(self._screen.document.selection, found, pick_mode(self._modifiers, False)))
 
     def draw(self, surface: pygame.Surface) -> None:

@@ -2,7 +2,7 @@
 
 import pygame
 
-from sandbox.app.draw.camera import Point
+from sandbox.app.draw.camera import Box, Camera, Point
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, MUTED, TEXT, WARNING, WELD
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.tools.snap import Snap
@@ -47,6 +47,16 @@ def draw_label(surface: pygame.Surface, ui: Ui, pointer: Point, text: str, viewp
     pygame.draw.rect(surface, BACKGROUND, box, border_radius=ui.px(5))
     pygame.draw.rect(surface, ACCENT, box, 1, border_radius=ui.px(5))
     surface.blit(picture, picture.get_rect(center=box.center))
+
+
+def draw_box(surface: pygame.Surface, camera: Camera, box: Box) -> None:
+    """Draw a box [m] that something has to be inside of."""
+    (left, bottom), (right, top) = camera.to_pixels(box[:2]), camera.to_pixels(box[2:])
+    place = pygame.Rect(round(left), round(top), round(right - left), round(bottom - top))
+    shade = pygame.Surface(place.clip(surface.get_clip()).size, pygame.SRCALPHA)
+    shade.fill((*ACCENT, 24))
+    surface.blit(shade, place.clip(surface.get_clip()))
+    pygame.draw.rect(surface, ACCENT, place, 2)
 
 
 def draw_outline(surface: pygame.Surface, points: list[Point], scale: float) -> None:

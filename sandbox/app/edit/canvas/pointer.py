@@ -14,22 +14,30 @@ from sandbox.app.edit.canvas.gestures import Boxing, Gesture, Lassoing, Moving, 
 from sandbox.app.edit.canvas.handles import Handles
 from sandbox.app.edit.canvas.overlay import draw_outline
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.edits.grouping import with_groups
+from sandbox.editor.edits.grouping import groups_of, taken_groups, with_groups
 from sandbox.editor.edits.terrain import corners_of, delete_corner, move_corner, piece_of
-from sandbox.editor.items import Item, keys
+from sandbox.editor.items import Item, Selection, keys
 from sandbox.editor.pick import combined, edge_at, item_at
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap
+from sandbox.level.document.model import Level
 
 # A drag shorter than this is a click [layout units].
 CLICK_REACH = 4.0
 
 
 class SelectTool:
-    """Selects, and moves what is selected; lasso: a drag in the open draws a lasso and no box."""
+    """Selects, and moves what is selected; lasso: a drag in the open draws a lasso and no box.
+
+    A click takes the whole group; a double click enters it, and until a click elsewhere or Escape its members are taken
+    one by one.
+    """
 
     def __init__(self, screen: Editing, lasso: bool) -> None:
         self._screen, self._lasso = screen, lasso
+        # The group that was entered, and the level in which it was last seen.
+        self._entered: str | None = None
+        self._entered_in: Level | None = None
         self._gesture: Gesture | None = None
         self._pressed: Point | None = None
         self._clicked: Item | None = None
@@ -44,8 +52,32 @@ class SelectTool:
             return "Drag the corner or nudge it by the arrows; Delete takes it out; dots between corners make new ones"
         if self.piece is not None and self._gesture is None:
             return "Drag corners, or dots between them for new ones; drag the piece to move it"
-        around = "Drag around parts" if self._lasso else "Click or drag a box"
-        return f"{around} to select; Shift adds, Ctrl takes away; double click: its group"
+        if self.entered is not None:
+            return f"In group {self.entered}: click its members one by one; Escape leaves it"
+        around = "Drag around things" if self._lasso else "Click or drag a box"
+        return f"{around} to select; Shift adds, Ctrl takes away; double click enters a group"
+
+    @property
+    def entered(self) -> str | None:
+        """The group whose members are taken one by one; None: groups are taken whole."""
+        level = self._screen.document.level
+        if self._entered is not None and self._entered_in is not level:
+            self._entered_in = level
+            self._entered = self._entered if self._entered in taken_groups(level) else None
+        return self._entered
+
+    def _taken(self, items: Selection) -> Selection:
+        """What picking items takes: these alone inside the group that was entered, else with the whole of their groups.
+
+        What is picked outside leaves the group.
+        """
+        level = self._screen.document.level
+        if self.entered is not None and items:
+            groups = groups_of(level)
+            if all(groups.get(item) == self.entered for item in items):
+                return items
+        self._entered = None
+        return with_groups(level, items)
 
     @property
     def measure(self) -> str:
@@ -125,12 +157,12 @@ class SelectTool:
             return
         selection = screen.document.selection
         if clicks == 2:
-            found = with_groups(screen.document.level, frozenset({item}))
-            screen.select(combined(selection, found, "add" if modifiers & pygame.KMOD_SHIFT else "replace"))
+            self._entered = groups_of(screen.document.level).get(item)
+            screen.select(frozenset({item}))
             return
         joins = modifiers & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL | pygame.KMOD_META)
         if joins or (item not in selection and not self._inside_ground(item, point)):
-            screen.select(combined(selection, frozenset({item}), pick_mode(modifiers, True)))
+            screen.select(combined(selection, self._taken(frozenset({item})), pick_mode(modifiers, True)))
 
     def _inside_ground(self, item: Item, point: Point) -> bool:
         """Whether a point is amid ground, where a click selects it, but a drag begins a box: ground is large."""
@@ -163,7 +195,7 @@ class SelectTool:
         screen = self._screen
         if self._clicked is not None and self._clicked in screen.document.selection:
             return Moving(screen, start)
-        return Lassoing(screen, start) if self._lasso else Boxing(screen, start)
+        return Lassoing(screen, start, self._taken) if self._lasso else Boxing(screen, start, self._taken)
 
     def up(self, point: Point, modifiers: int) -> None:
         """End the drag; a click selects what is there alone, in the open nothing."""
@@ -172,18 +204,20 @@ class SelectTool:
             gesture.end()
             self._chosen = gesture.chosen if isinstance(gesture, CornerMoving) else None
         elif pressed is not None and not self._double and pick_mode(modifiers, True) == "replace":
-            self._screen.select(frozenset() if self._clicked is None else frozenset({self._clicked}))
+            self._screen.select(self._taken(frozenset() if self._clicked is None else frozenset({self._clicked})))
 
     def hover(self, point: Point | None, modifiers: int) -> None:
         """Find the item under the pointer."""
         self.hovered = None if point is None else item_at(self._screen.scene, point, self._screen.reach)
 
     def cancel(self) -> bool:
-        """Give the drag up, or else the selection."""
+        """Give the drag up, or else leave the group, or else give the selection up."""
         under_way, self._gesture, self._pressed = self._gesture is not None, None, None
-        if under_way or not self._screen.document.selection:
+        selection = self._screen.document.selection
+        if under_way or not (selection or self.entered):
             return under_way
-        self._screen.select(frozenset())
+        entered, self._entered = self.entered, None
+        self._screen.select(frozenset() if entered is None else with_groups(self._screen.document.level, selection))
         return True
 
     def ghost(self) -> Document | None:
@@ -277,6 +311,18 @@ class DrawTool:
             self._snap = None
         else:
             self.drawing.move(self._snapped(point, modifiers))
+
+    def put_away(self) -> None:
+        """End an outline that is sound, as another tool is taken up; else give the drawing up, and say so."""
+        drawing = self.drawing
+        if drawing.outline:
+            fault = drawing.fault_of_outline()
+            if fault:
+                self._screen.say(f"Not drawn: {fault}.")
+            else:
+                drawing.finish()
+                self._take()
+        drawing.cancel()
 
     def cancel(self) -> bool:
         """Give the drawing up."""

@@ -6,12 +6,12 @@ import numpy as np
 import pygame
 
 from sandbox.app.contracts.editing import Editing
-from sandbox.app.draw.camera import Point
+from sandbox.app.draw.camera import Box, Point
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.edit.canvas.canvas import Part, ScenePainter, SelectionMasks, moved_by
 from sandbox.app.edit.canvas.edited_terrain import Ground
 from sandbox.app.edit.canvas.marks import DriveMarks
-from sandbox.app.edit.canvas.overlay import SPOT_SECONDS, draw_cursor, draw_label, draw_spot
+from sandbox.app.edit.canvas.overlay import SPOT_SECONDS, draw_box, draw_cursor, draw_label, draw_spot
 from sandbox.app.edit.canvas.pointer import SelectTool
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.panel.typed import number_text
@@ -32,6 +32,8 @@ class View:
         self._ghost: Scene | None = None
         self._hanging: tuple[Scene, object, Scene] | None = None
         self._spot: tuple[Point, float] | None = None
+        # The box [m] of what a panel shows.
+        self.shown_box: Box | None = None
 
     def point_out(self, place: Point) -> None:
         """Circle a place [m] for a moment."""
@@ -108,6 +110,8 @@ class View:
         under = tool.hovered if isinstance(tool, SelectTool) and tool.matrix is None else None
         if under is not None and under not in screen.document.selection:
             self._painter.paint_hovered(surface, screen.camera, screen.scene, under)
+        if self.shown_box is not None:
+            draw_box(surface, screen.camera, self.shown_box)
         tool.draw(surface)
         named = self._name_of(under)
         if named and screen.pointer is not None and not tool.measure:

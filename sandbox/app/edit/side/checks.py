@@ -11,10 +11,11 @@ from sandbox.app.edit.side.form import Form
 from sandbox.app.edit.side.list_head import HeadButton, ListHead
 from sandbox.app.widgets.rows import Row
 from sandbox.editor.document import Document
-from sandbox.editor.panel.level_properties import add_check, check_properties, delete_check
-from sandbox.level.checks import METRICS, CheckDef, CheckResult, promise_text, time_text
+from sandbox.editor.panel.check_form import add_check, check_properties, delete_check
+from sandbox.level.checks import METRICS, CheckDef, CheckResult, held_text, promise_text, time_text
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
+from sandbox.level.plan.actuators import driving_keys
 from sandbox.session.check_run import checks_as_they_end
 
 # Part of the page that the list takes.
@@ -87,7 +88,7 @@ class ChecksPage:
             trial = self.trial = None
         results = {} if trial is None else trial.results
         is_running = trial is not None and trial.is_running
-        fresh = (document.level.checks, document.selection, self.chosen, len(results), is_running)
+        fresh = (document.level.checks, document.selection, self.chosen, results, is_running)
         if fresh != self._shown:
             self._shown = fresh
             self._show(document, results, is_running)
@@ -98,12 +99,14 @@ class ChecksPage:
     def _show(self, document: Document, results: dict[CheckDef, CheckResult], is_running: bool) -> None:
         checks = document.level.checks
         self.chosen = min(max(self.chosen, 0), max(len(checks) - 1, 0))
-        rows = [_row(check, results.get(check), is_running) for check in checks]
+        has_keys = bool(driving_keys(document.level))
+        rows = [_row(check, results.get(check), is_running, has_keys) for check in checks]
         self.list.show_rows(rows, self.chosen if checks else None, reveal=True)
         for button in self.buttons[1:]:
             (button.enable if checks else button.disable)()
         self.buttons[2].set_text("Running" if is_running else "Run now")
         self.form.show(check_properties(document, self.chosen))
+        self._screen.show_box(checks[self.chosen].box if checks else None)
 
     def _choose(self, index: int) -> None:
         self.chosen = index
@@ -124,12 +127,17 @@ class ChecksPage:
         """Take the page away."""
         if self.trial is not None:
             self.trial.is_stopped = True
+        self._screen.show_box(None)
         self.form.close()
         self._head.close()
 
 
-def _row(check: CheckDef, result: CheckResult | None, is_running: bool) -> Row:
+def _row(check: CheckDef, result: CheckResult | None, is_running: bool, has_keys: bool) -> Row:
     wanted = f"{promise_text(check)}, {time_text(check)}"
+    if check.hold:
+        wanted += f", while {held_text(check)} is held"
+    elif has_keys and result is not None and not result.passed:
+        wanted += ". Nobody pressed a key: hold one in the check"
     if result is None:
         return Row(check.name, f"running: {wanted}" if is_running else wanted, DISABLED)
     verdict = f"{'holds' if result.passed else 'fails'} with {result.value:.4g} {METRICS[check.metric].unit}".rstrip()

@@ -25,7 +25,9 @@ from sandbox.editor.edits.collision_groups import collision_groups
 from sandbox.editor.panel.extra_values import HOW_TO_ADD
 from sandbox.editor.panel.property import MIXED, Property, Section
 from sandbox.editor.panel.typed import EVERYTHING, NOTHING
+from sandbox.level.document.model import ParticleDef
 from sandbox.level.format.look import COLOUR_PATTERN, colour_of
+from sandbox.level.kinds.body_def import BodyDef
 
 # Sizes in layout units.
 ROW = 28.0
@@ -33,6 +35,7 @@ GAP = 5.0
 LABEL_WIDTH = 108.0
 HEADING = 24.0
 SECTION_GAP = 10.0
+PICK_WIDTH = 44.0
 NOTE_LINES = 3
 NOTE_LINE = 15.0
 # Characters of a line to type into; what is longer is copied and pasted as a whole.
@@ -54,7 +57,13 @@ def _choice_text(each: Property) -> str:
     """What a menu shows of a value."""
     if each.value is None:
         return each.about.empty or NONE
+    if each.about.labels and each.value in each.about.choices:
+        return each.about.labels[each.about.choices.index(each.value)]
     return next((text for text, value in YES_NO.items() if value is each.value), str(each.value))
+
+
+def _kind_of(part: BodyDef | ParticleDef) -> str:
+    return part.type if isinstance(part, BodyDef) else "particle"
 
 
 def _listed(collides: Any) -> Sequence[str]:
@@ -226,7 +235,13 @@ class Form:
             button = ui.button(place, text, partial(self._offer_text, each.field), content, tip=about.tooltip)
             self._keep(button, each.field)
         else:
-            self.fields[each.field] = (self._entry(each, LABEL_WIDTH, width, 0),)
+            room = PICK_WIDTH + GAP if about.pick else 0.0
+            self.fields[each.field] = (self._entry(each, LABEL_WIDTH, width - room, 0),)
+            if about.pick:
+                press = partial(self._screen.pick, about.pick, partial(self._set, each.field))
+                place = self._rect(self._inside - PICK_WIDTH, PICK_WIDTH)
+                tip = "Drag it on the sheet" if about.pick == "box" else f"Click the {about.pick} on the sheet"
+                self._keep(ui.button(place, "Pick", press, content, style="@segment", tip=tip), f"{each.field} pick")
         self._y += ROW + GAP
 
     def _add_label(self, each: Property) -> None:
@@ -313,13 +328,13 @@ class Form:
         first = [Row(about.empty or NONE, colour=MUTED)] if about.optional else []
         if about.kind == "thing":
             level = self._screen.document.level
-            bodies = [Row(body.id, body.type) for body in level.bodies]
-            return [*first, *bodies, *(Row(particle.id, "particle") for particle in level.particles)]
+            return [*first, *(Row(body.id, _kind_of(body)) for body in level.bodies),
+                    *(Row(particle.id, _kind_of(particle)) for particle in level.particles)]  # fmt: skip
         if about.kind != "material":
             if about.kind == "colour":
                 palette = [Row(name, swatch=rgb_of(colour_of(name))) for name in about.choices]
                 return [*first, *palette, Row(OTHER_COLOUR)]
-            return first + [Row(value) for value in (YES_NO if about.kind == "yes_no" else about.choices)]
+            return first + [Row(text) for text in (YES_NO if about.kind == "yes_no" else about.labels or about.choices)]
         colours = material_colours(self._screen.document.level.materials)
         return [*first, *(Row(name, swatch=colour) for name, colour in colours.items())]
 
@@ -395,6 +410,8 @@ class Form:
             self._ask_for_colour(name)
         elif each.about.kind == "yes_no":
             self._set(name, YES_NO[text])
+        elif each.about.labels:
+            self._set(name, each.about.choices[index - each.about.optional])
         elif each.about.kind != "touches":
             self._set(name, text)
         elif index < 2:

@@ -14,7 +14,7 @@ from sandbox.physics.collision.restitution import SLOWEST_PASSED
 from sandbox.physics.collision.types import Contacts
 from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.solvers.contact.gauss_seidel import (
-    ContactTerms,
+    ContactConstraints,
     Delassus,
     add_change,
     approach_of,
@@ -39,89 +39,89 @@ LEAST_WORK = 4000
 
 @inner_kernel
 def _find_hits(
-    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, is_first: bool, h: float
+    contacts: Contacts, terms: ContactConstraints, velocity: Floats, change: Floats, is_first: bool, h: float
 ) -> int:  # fmt: skip
     # direction = impulse in this pass, and the velocity along the normal that is wanted (-inf: no hit); before = the
     # sum of impulses, and how fast forces alone bring it near. How many hits there are.
     hits = 0
     for c in range(contacts.particle.shape[0]):
-        terms.direction[c, 0] = 0.0
-        terms.direction[c, 1] = -math.inf
+        terms.search_direction[c, 0] = 0.0
+        terms.search_direction[c, 1] = -math.inf
         if not terms.normal[c] > 0.0:
             continue
         if is_first:
             if contacts.bounce[c] >= 0.0:
-                terms.direction[c, 1] = contacts.bounce[c]
+                terms.search_direction[c, 1] = contacts.bounce[c]
                 hits += 1
             continue
         u = approach_of(contacts, c, velocity, change)
-        v = u - terms.before[c, 1]
+        v = u - terms.last_impulse[c, 1]
         gap = contacts.gap[c]
         if v < -SLOWEST_PASSED and gap + h * u <= 0.0:
             e = contacts.restitution[c]
-            terms.direction[c, 1] = -e * v if e > 0.0 else -max(0.0, gap) / h
+            terms.search_direction[c, 1] = -e * v if e > 0.0 else -max(0.0, gap) / h
             hits += 1
     return hits
 
 
 @inner_kernel
-def _find_held(contacts: Contacts, terms: ContactTerms, h: float) -> None:
+def _find_held(contacts: Contacts, terms: ContactConstraints, h: float) -> None:
     # What has been hit is stopped where it still approaches.
     for c in range(contacts.particle.shape[0]):
-        terms.direction[c, 0] = 0.0
-        terms.direction[c, 1] = -max(0.0, contacts.gap[c]) / h if terms.before[c, 0] > 0.0 else -math.inf
+        terms.search_direction[c, 0] = 0.0
+        terms.search_direction[c, 1] = -max(0.0, contacts.gap[c]) / h if terms.last_impulse[c, 0] > 0.0 else -math.inf
 
 
 @inner_kernel
 def _solve_pass(
-    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, delassus: Delassus,
-    is_alone: bool,
+    contacts: Contacts, terms: ContactConstraints, velocity: Floats, change: Floats, inverse_mass: Floats,
+    delassus: Delassus, is_alone: bool,
 ) -> int:  # fmt: skip
-    # J = max(0, J + (b - u) / W) in sweeps; how many. Then `before` has what they have given.
+    # J = max(0, J + (b - u) / W) in sweeps; how many. Then `last_impulse` has what they have given.
     count = contacts.particle.shape[0]
     done = 0
     for _ in range(PASS_SWEEPS):
         largest = 0.0
         done += 1
         for c in range(count):
-            wanted = terms.direction[c, 1]
+            wanted = terms.search_direction[c, 1]
             if wanted == -math.inf:
                 continue
-            old = terms.direction[c, 0]
+            old = terms.search_direction[c, 0]
             lacks = wanted - approach_of(contacts, c, velocity, change)
             j = max(0.0, old + lacks / terms.normal[c]) - old
             if j != 0.0:
-                terms.direction[c, 0] += j
+                terms.search_direction[c, 0] += j
                 push_contact(contacts, c, j, 0.0, terms.surface, change, inverse_mass, delassus)
                 largest = max(largest, abs(j) * terms.normal[c])
         if is_alone or largest < SETTLED:
             break
     for c in range(count):
-        terms.before[c, 0] += terms.direction[c, 0]
-        if terms.direction[c, 0] > 0.0:
-            terms.before[c, 1] = 0.0
+        terms.last_impulse[c, 0] += terms.search_direction[c, 0]
+        if terms.search_direction[c, 0] > 0.0:
+            terms.last_impulse[c, 1] = 0.0
     return done
 
 
 @inner_kernel
-def _begins_with_passes(contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats) -> bool:
+def _begins_with_passes(contacts: Contacts, terms: ContactConstraints, velocity: Floats, change: Floats) -> bool:
     # Whether anything bounces at all, and what `before` is then.
     bounces = False
     for c in range(contacts.particle.shape[0]):
         bounces = bounces or (contacts.bounce[c] >= 0.0 and terms.normal[c] > 0.0)
     if bounces:
         for c in range(contacts.particle.shape[0]):
-            terms.before[c, 0] = 0.0
-            terms.before[c, 1] = 0.0
+            terms.last_impulse[c, 0] = 0.0
+            terms.last_impulse[c, 1] = 0.0
             if not contacts.bounce[c] >= 0.0:
-                terms.before[c, 1] = min(0.0, approach_of(contacts, c, velocity, change))
+                terms.last_impulse[c, 1] = min(0.0, approach_of(contacts, c, velocity, change))
     return bounces
 
 
 @inner_kernel
 def pass_on(
-    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, delassus: Delassus,
-    h: float,
+    contacts: Contacts, terms: ContactConstraints, velocity: Floats, change: Floats, inverse_mass: Floats,
+    delassus: Delassus, h: float,
 ) -> None:  # fmt: skip
     """Find how fast all that bounces in a step of h [s] leaves, in passes from what is hit to what that hits in turn.
 
@@ -142,10 +142,10 @@ def pass_on(
     _find_held(contacts, terms, h)
     _solve_pass(contacts, terms, velocity, change, inverse_mass, delassus, False)
     for c in range(count):
-        terms.direction[c, 0] = 0.0
-        terms.direction[c, 1] = 0.0
-        if terms.before[c, 0] > 0.0:
-            contacts.impulse[c, 0] += terms.before[c, 0]
+        terms.search_direction[c, 0] = 0.0
+        terms.search_direction[c, 1] = 0.0
+        if terms.last_impulse[c, 0] > 0.0:
+            contacts.impulse[c, 0] += terms.last_impulse[c, 0]
             if contacts.restitution[c] > 0.0:
                 contacts.bounce[c] = max(0.0, approach_of(contacts, c, velocity, change))
                 terms.bias[c] = -contacts.bounce[c]
@@ -156,7 +156,7 @@ def pass_on(
 
 @kernel
 def sweep_masses(
-    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, spin: Floats,
+    contacts: Contacts, terms: ContactConstraints, velocity: Floats, change: Floats, inverse_mass: Floats, spin: Floats,
     radius: Floats, lent_masses: Any, sweeps: int, h: float,
 ) -> None:  # fmt: skip
     """Solve contacts of particles that answer by their own mass; bring velocities and spins to the end of the step."""

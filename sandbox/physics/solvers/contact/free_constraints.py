@@ -44,7 +44,7 @@ COLUMNS = 28
 VX, VY, WX, WY, SURFACE, PUSHED_X, PUSHED_Y, PUSHED_SURFACE = range(8)
 
 
-class Work(NamedTuple):
+class FreeContactScratch(NamedTuple):
     """Free contacts island by island, and as constraints in the order in which they are solved; and their particles.
 
     Contacts that share no particle that can move are solved in any order with the same result. So those of islands that
@@ -63,7 +63,7 @@ class Work(NamedTuple):
     Of impacts (impacts.py), by place: added [m/s] (m, 2) = what has been added in this small step; stamp, since: the
     pass that it was hit in, and when [s]; first [s]: when its first hit of a pass is. By hit: hit = the constraint;
     pushed, across [N s]; met [s] = when; speed, slip, wanted [m/s]: before it along and across, and after it along;
-    held [N s]: across before the last friction; last [N s]: what pushed for that.
+    last_across [N s]: across before the last friction; last [N s]: what pushed for that.
     """
 
     place: Slots
@@ -97,13 +97,15 @@ class Work(NamedTuple):
     speed: Floats
     wanted: Floats
     slip: Floats
-    held: Floats
+    last_across: Floats
     last: Floats
     first: Floats
 
 
 @inner_kernel
-def _place_of(p: int, colliders: Colliders, start: Floats, spin: Floats, work: Work, count: int) -> tuple[int, int]:
+def _place_of(
+    p: int, colliders: Colliders, start: Floats, spin: Floats, work: FreeContactScratch, count: int
+) -> tuple[int, int]:
     # The place of a particle, and the number of places then.
     if colliders.inverse_mass[p] > 0.0 and work.local[p] >= 0:
         return work.local[p], count
@@ -125,7 +127,7 @@ def _place_of(p: int, colliders: Colliders, start: Floats, spin: Floats, work: W
 
 
 @inner_kernel
-def _place_of_edge(contacts: Contacts, c: int, start: Floats, work: Work, count: int) -> tuple[int, int]:
+def _place_of_edge(contacts: Contacts, c: int, start: Floats, work: FreeContactScratch, count: int) -> tuple[int, int]:
     # The place of an edge that cannot move, be it of terrain or of a body, and the number of places then.
     a = contacts.end_a[c]
     b = contacts.end_b[c]
@@ -168,8 +170,8 @@ def _way_of(contacts: Contacts, c: int, colliders: Colliders) -> float:
 
 @inner_kernel
 def _place_contact(
-    contacts: Contacts, islands: Islands, i: int, colliders: Colliders, start: Floats, spin: Floats, work: Work,
-    count: int,
+    contacts: Contacts, islands: Islands, i: int, colliders: Colliders, start: Floats, spin: Floats,
+    work: FreeContactScratch, count: int,
 ) -> int:  # fmt: skip
     # The places, level and way of an island's contact; the number of places then.
     c = islands.contact[i]
@@ -200,7 +202,9 @@ def _smaller_radius(contacts: Contacts, c: int, colliders: Colliders) -> float:
 
 
 @inner_kernel
-def _plan(contacts: Contacts, islands: Islands, g: int, colliders: Colliders, h: float, work: Work) -> None:
+def _plan(
+    contacts: Contacts, islands: Islands, g: int, colliders: Colliders, h: float, work: FreeContactScratch
+) -> None:
     # Small steps of an island, and its softness: so deep sinks a contact that carries J in each step,
     # SOFTNESS J h / (m OVERLAP_SHARE count^2).
     count = small_steps(h)
@@ -227,7 +231,7 @@ def _plan(contacts: Contacts, islands: Islands, g: int, colliders: Colliders, h:
 @inner_kernel
 def plan_islands(
     contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: Floats, spin: Floats,
-    h: float, work: Work,
+    h: float, work: FreeContactScratch,
 ) -> None:  # fmt: skip
     """The places of all islands, and in how many small steps of h [s] each is solved; places are not known yet.
 
@@ -243,7 +247,9 @@ def plan_islands(
 
 
 @inner_kernel
-def fill_constraints(contacts: Contacts, islands: Islands, colliders: Colliders, besides: int, work: Work) -> int:
+def fill_constraints(
+    contacts: Contacts, islands: Islands, colliders: Colliders, besides: int, work: FreeContactScratch
+) -> int:
     """The constraints of the islands that are solved side by side, so many of work.beside, by level; their number."""
     at = work.at
     total = 0
@@ -267,7 +273,9 @@ def fill_constraints(contacts: Contacts, islands: Islands, colliders: Colliders,
 
 
 @inner_kernel
-def _fill_constraint(contacts: Contacts, c: int, i: int, k: int, colliders: Colliders, work: Work) -> None:
+def _fill_constraint(
+    contacts: Contacts, c: int, i: int, k: int, colliders: Colliders, work: FreeContactScratch
+) -> None:
     row = work.constraint
     p = work.place[i, 0]
     q = work.place[i, 1]
@@ -298,7 +306,7 @@ def _fill_constraint(contacts: Contacts, c: int, i: int, k: int, colliders: Coll
 
 
 @inner_kernel
-def _fill_pair(contacts: Contacts, c: int, k: int, colliders: Colliders, work: Work) -> None:
+def _fill_pair(contacts: Contacts, c: int, k: int, colliders: Colliders, work: FreeContactScratch) -> None:
     # What the constraint of two discs has of their places.
     row = work.constraint
     p = contacts.particle[c]
@@ -316,10 +324,10 @@ def _fill_pair(contacts: Contacts, c: int, k: int, colliders: Colliders, work: W
         row[k, ALONG], row[k, ACROSS] = 0.0, 0.0
 
 
-def new_work(particles: int, contacts: int) -> Work:
+def new_work(particles: int, contacts: int) -> FreeContactScratch:
     """Work to be filled in, with room for so many contacts."""
     places, hits = 2 * contacts, np.zeros((8, contacts))
-    return Work(
+    return FreeContactScratch(
         np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64), np.zeros(contacts),
         np.zeros((contacts, COLUMNS)), np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64),
         np.zeros(contacts + 1, np.int64), np.zeros(contacts + 1, np.int64), np.zeros(contacts, np.int64),

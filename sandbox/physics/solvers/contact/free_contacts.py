@@ -42,7 +42,7 @@ from sandbox.physics.solvers.contact.free_constraints import (
     WEIGHT_Q,
     WX,
     WY,
-    Work,
+    FreeContactScratch,
     fill_constraints,
     plan_islands,
 )
@@ -59,8 +59,8 @@ SOLVED = 0
 
 @inner_kernel
 def _bias(bounce: float, gap: float, rate: float, hardness: float, pushes: bool) -> tuple[float, float]:
-    # The velocity b [m/s] by which a contact is to end apart from its surfaces staying together, and how hard it is,
-    # 1 / (1 + soft); rate: small steps in a second.
+    # The velocity b [m/s] with which the surfaces of a contact are to separate (0: they stay together), and its
+    # hardness, 1 / (1 + soft); rate: small steps in a second.
     if bounce >= 0.0:
         return -bounce, 1.0
     if gap > 0.0:
@@ -71,7 +71,7 @@ def _bias(bounce: float, gap: float, rate: float, hardness: float, pushes: bool)
 
 
 @inlined_kernel
-def _push(work: Work, i: int, nx: float, ny: float, jn: float, jt: float, arm: float) -> None:
+def _push(work: FreeContactScratch, i: int, nx: float, ny: float, jn: float, jt: float, arm: float) -> None:
     # Add what the impulses of a contact do to its particles to what the next small step starts with.
     row = work.constraint
     motion = work.motion
@@ -89,7 +89,7 @@ def _push(work: Work, i: int, nx: float, ny: float, jn: float, jt: float, arm: f
 
 
 @inner_kernel
-def _begin(work: Work, count: int, scale: float) -> None:
+def _begin(work: FreeContactScratch, count: int, scale: float) -> None:
     # The impulses that contacts bring along, as those of a small step.
     row = work.constraint
     for c in range(count):
@@ -100,7 +100,7 @@ def _begin(work: Work, count: int, scale: float) -> None:
 
 
 @inlined_kernel
-def _iterate(work: Work, count: int, small: float, pushes: bool, skips: bool) -> int:
+def _iterate(work: FreeContactScratch, count: int, small: float, pushes: bool, skips: bool) -> int:
     # One Gauss-Seidel iteration over contacts as they were looked at. pushes: what overlaps is pushed apart, softly;
     # with the impulses of the other iteration of a small step the next one starts. skips: what meets fast is an impact,
     # which is left out and noted in `hit`, or one of the next small step. How many impacts there are.
@@ -140,19 +140,19 @@ def _iterate(work: Work, count: int, small: float, pushes: bool, skips: bool) ->
         mass = row[i, MASS] * hard
         new = max(0.0, (old * hard - bias * mass) - along * mass)
         most = row[i, FRICTION] * new
-        held = row[i, ACROSS]
+        last = row[i, ACROSS]
         slip = nx * uy - ny * ux - arm * (motion[p, SURFACE] + motion[q, SURFACE])
-        across = min(most, max(-most, held - slip * row[i, MASS_ACROSS]))
+        across = min(most, max(-most, last - slip * row[i, MASS_ACROSS]))
         row[i, ALONG] = new
         row[i, ACROSS] = across
-        apply(work, i, nx, ny, new - old, across - held, arm, late, not pushes and new > 0.0)
+        apply(work, i, nx, ny, new - old, across - last, arm, late, not pushes and new > 0.0)
         if not pushes and new > 0.0:
             _push(work, i, nx, ny, new, across, arm)
     return hits
 
 
 @inner_kernel
-def _energy(work: Work, begin: int, end: int, gained: float) -> float:
+def _energy(work: FreeContactScratch, begin: int, end: int, gained: float) -> float:
     # Kinetic energy of what can move in an island [J]; gained: with what forces add in the step.
     total = 0.0
     for k in range(begin, end):
@@ -167,7 +167,7 @@ def _energy(work: Work, begin: int, end: int, gained: float) -> float:
 
 
 @inner_kernel
-def _restrain(work: Work, begin: int, end: int, colliders: Colliders, allowed: float) -> None:
+def _restrain(work: FreeContactScratch, begin: int, end: int, colliders: Colliders, allowed: float) -> None:
     # Many bounces at once can gain energy: what moves is slowed down until it has no more than it had; beside its
     # common motion, where it touches nothing that cannot move. What is carried along gets energy from outside.
     motion = work.motion
@@ -209,7 +209,7 @@ class Rigid(NamedTuple):
 
 
 @inner_kernel
-def _rigid_motion(work: Work, begin: int, end: int, colliders: Colliders) -> Rigid:
+def _rigid_motion(work: FreeContactScratch, begin: int, end: int, colliders: Colliders) -> Rigid:
     # That of the same momentum and angular momentum, at the end of the step: spin = L / I, the discs' own included.
     motion = work.motion
     mass = 0.0
@@ -246,7 +246,7 @@ def _rigid_motion(work: Work, begin: int, end: int, colliders: Colliders) -> Rig
 
 
 @inner_kernel
-def _begin_small_step(work: Work, begin: int, end: int, scale: float) -> None:
+def _begin_small_step(work: FreeContactScratch, begin: int, end: int, scale: float) -> None:
     # What forces add in a small step, and what the impulses of the last one do.
     motion = work.motion
     for k in range(begin, end):
@@ -261,14 +261,14 @@ def _begin_small_step(work: Work, begin: int, end: int, scale: float) -> None:
 
 
 @inner_kernel
-def _move(work: Work, begin: int, end: int, small: float) -> None:
+def _move(work: FreeContactScratch, begin: int, end: int, small: float) -> None:
     for k in range(begin, end):
         work.motion[k, WX] += small * work.motion[k, VX]
         work.motion[k, WY] += small * work.motion[k, VY]
 
 
 @inner_kernel
-def _take_small_steps(work: Work, rows: int, besides: int, count: int, h: float) -> None:
+def _take_small_steps(work: FreeContactScratch, rows: int, besides: int, count: int, h: float) -> None:
     # All small steps, so many, of islands side by side, whose contacts are the first rows.
     small = h / count
     scale = 1.0 / count
@@ -288,7 +288,7 @@ def _take_small_steps(work: Work, rows: int, besides: int, count: int, h: float)
 
 
 @inner_kernel
-def _put_beside(work: Work, first: int, island_count: int) -> int:
+def _put_beside(work: FreeContactScratch, first: int, island_count: int) -> int:
     # The islands from the first one on that are solved side by side with it, marked as solved; how many.
     count = work.steps[first]
     work.beside[0] = first
@@ -306,7 +306,13 @@ def _put_beside(work: Work, first: int, island_count: int) -> int:
 
 @inner_kernel
 def _solve_beside(
-    contacts: Contacts, islands: Islands, colliders: Colliders, besides: int, count: int, h: float, work: Work
+    contacts: Contacts,
+    islands: Islands,
+    colliders: Colliders,
+    besides: int,
+    count: int,
+    h: float,
+    work: FreeContactScratch,
 ) -> None:
     # Solve islands side by side, in so many small steps.
     rows = fill_constraints(contacts, islands, colliders, besides, work)
@@ -327,7 +333,7 @@ def _solve_beside(
 @inner_kernel
 def solve_free_contacts(
     contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: Floats, velocity: Floats,
-    spin: Floats, h: float, work: Work,
+    spin: Floats, h: float, work: FreeContactScratch,
 ) -> None:  # fmt: skip
     """Solve the sorted free contacts over a step of h [s]; work.ahead goes with velocity and spin.
 

@@ -1,6 +1,6 @@
-"""Islands of contacts: which hang together by what can move, and which of those a solver's bodies belong to.
+"""Islands of contacts: contacts that movable particles connect.
 
-An island in which a spring or a constraint holds anything that can move is the solver's; the others are free.
+An island with a particle that a spring or a constraint holds belongs to the solver; the other islands are free.
 """
 
 from typing import NamedTuple
@@ -47,17 +47,17 @@ def _join(contacts: Contacts, count: int, inverse_mass: Floats, label: Slots) ->
 
 
 @inner_kernel
-def find_islands(contacts: Contacts, count: int, inverse_mass: Floats, held: Flags, islands: Islands) -> int:
+def find_islands(contacts: Contacts, count: int, inverse_mass: Floats, attached: Flags, islands: Islands) -> int:
     """The islands of the first `count` contacts; how many contacts are bound.
 
-    held (n,): particles that a spring or a constraint holds.
+    attached (n,): particles that a spring or a constraint holds.
     """
     label = islands.label
     _join(contacts, count, inverse_mass, label)
     for p in range(label.shape[0]):
         islands.is_bound[p] = False
     for p in range(label.shape[0]):
-        if held[p] and inverse_mass[p] > 0.0:
+        if attached[p] and inverse_mass[p] > 0.0:
             islands.is_bound[label[p]] = True
     bound = 0
     for c in range(count):

@@ -1,4 +1,4 @@
-"""Where free contacts are within a small step, how fast, and what impulses change of that."""
+"""Position and velocity of free contacts within a small step, and how impulses change them."""
 
 import math
 
@@ -33,7 +33,7 @@ from sandbox.physics.solvers.contact.free_constraints import (
     WEIGHT_Q,
     WX,
     WY,
-    Work,
+    FreeContactScratch,
 )
 
 
@@ -53,7 +53,7 @@ def _time_until(dx: float, dy: float, ux: float, uy: float, reach: float) -> flo
 
 
 @inner_kernel
-def meet(work: Work, i: int, p: int, q: int, small: float) -> float:
+def meet(work: FreeContactScratch, i: int, p: int, q: int, small: float) -> float:
     """When two discs that are coming meet [s], and so the normal then; infinite: not in this small step [s]."""
     row, motion = work.constraint, work.motion
     ux, uy = motion[p, VX] - motion[q, VX], motion[p, VY] - motion[q, VY]
@@ -75,8 +75,8 @@ def meet(work: Work, i: int, p: int, q: int, small: float) -> float:
 
 
 @inner_kernel
-def look(work: Work, first: int, last: int) -> None:
-    """Where contacts are by now: their gaps, and of discs the normals and arms, which follow the centres."""
+def look(work: FreeContactScratch, first: int, last: int) -> None:
+    """Update the gaps of contacts, and the normals and arms of discs, which follow the centres."""
     row, end, motion = work.constraint, work.end, work.motion
     for c in range(first, last):
         i = unsigned(c)
@@ -99,7 +99,7 @@ def look(work: Work, first: int, last: int) -> None:
 
 
 @inner_kernel
-def look_at(work: Work, i: int, late: float) -> None:
+def look_at(work: FreeContactScratch, i: int, late: float) -> None:
     """Where a contact is so much later [s] within the small step; its gap is that of now along this normal."""
     row, motion = work.constraint, work.motion
     p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
@@ -118,7 +118,7 @@ def look_at(work: Work, i: int, late: float) -> None:
 
 @inlined_kernel
 def apply(
-    work: Work, i: int, nx: float, ny: float, jn: float, jt: float, arm: float, late: float, rolls: bool
+    work: FreeContactScratch, i: int, nx: float, ny: float, jn: float, jt: float, arm: float, late: float, rolls: bool
 ) -> None:  # fmt: skip
     """Push both ends of a contact by an impulse [N s], jn along its normal and jt across, so late [s].
 
@@ -155,7 +155,7 @@ def apply(
 
 
 @inlined_kernel
-def approach(work: Work, i: int) -> float:
+def approach(work: FreeContactScratch, i: int) -> float:
     """Velocity of two ends of a contact apart along its normal [m/s]."""
     row, motion = work.constraint, work.motion
     p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
@@ -163,7 +163,7 @@ def approach(work: Work, i: int) -> float:
 
 
 @inlined_kernel
-def slip(work: Work, i: int) -> float:
+def slip(work: FreeContactScratch, i: int) -> float:
     """Velocity of two surfaces against each other across the normal [m/s]."""
     row, motion = work.constraint, work.motion
     p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])

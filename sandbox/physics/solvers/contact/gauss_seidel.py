@@ -1,9 +1,9 @@
 """Projected Gauss-Seidel: contacts as springs that only push, in sweeps with accumulated, clamped impulses.
 
 Along the normal a contact is the spring of Cs and Cd below whose impulse cannot pull; across it is one that stops the
-surfaces, whose impulse is at most friction times the push (Coulomb). Both answer to the effective mass of what they
-terms, 1 / (J W J^T): W of a free particle is 1 / m, of a body that the direct solver has factored its Delassus block.
-What is kept of the last step starts the next, so that what rests is at rest from the first sweep on.
+surfaces, whose impulse is at most friction times the push (Coulomb). Both act on the effective mass at the contact, 1 /
+(J W J^T): W is 1 / m for a free particle, and the Delassus block for a body that the direct solver has factored. Sweeps
+start with the impulses of the last step, so a body at rest is at rest from the first sweep on.
 """
 
 import math
@@ -47,7 +47,8 @@ STALLS_BELOW = 1e-3
 
 
 class Delassus(NamedTuple):
-    """Delassus delassus W of bodies: block and place in it of each particle (n,), -1: free, it answers by its own mass.
+    """The Delassus operator W of bodies: block and place in it of each particle (n,); -1: free, it answers by its own
+    mass.
 
     Points of block k: point[start[k]:start[k + 1]]; its numbers [1/kg], two rows of a square for each point, from
     base[k] on. columns: scratch of one block. joints: those of the bodies and particles.
@@ -63,41 +64,41 @@ class Delassus(NamedTuple):
     joints: Joints
 
 
-class ContactTerms(NamedTuple):
+class ContactConstraints(NamedTuple):
     """By contact: bias [m/s] that it adds to its velocity, and J W J^T [1/kg]: normal, coupling, tangent.
 
-    before, direction [N s] (k, 2): its impulse before a sweep, and where the sweeps so far have led; resisted [N s]:
-    that of its rolling resistance, at the smaller radius. There may be room for more contacts. By particle: surface
-    [m/s] (n,) = its spin times its radius, which sweeps change. By contact again: calm = 1, or 0 where what it touches
-    is fast or not rigid.
+    last_impulse, search_direction [N s] (k, 2): its impulse before a sweep, and where the sweeps so far have led;
+    resisted [N s]: that of its rolling resistance, at the smaller radius. There may be room for more contacts. By
+    particle: surface [m/s] (n,) = its spin times its radius, which sweeps change. By contact again: calm = 1, or 0
+    where what it touches is fast or not rigid.
     """
 
     bias: Floats
     normal: Floats
     coupling: Floats
     tangent: Floats
-    before: Floats
-    direction: Floats
+    last_impulse: Floats
+    search_direction: Floats
     resisted: Floats
     surface: Floats
     calm: Floats
 
 
-def new_terms(count: int, surface: Floats) -> ContactTerms:
-    """Room for so many contacts, of particles whose surfaces move so fast."""
+def new_contact_constraints(count: int, surface: Floats) -> ContactConstraints:
+    """Terms with room for a number of contacts, of particles whose surfaces have these velocities."""
     numbers, pairs = np.zeros((6, count)), np.zeros((2, count, 2))
-    return ContactTerms._make([*numbers[:4], *pairs, numbers[4], surface, numbers[5]])
+    return ContactConstraints._make([*numbers[:4], *pairs, numbers[4], surface, numbers[5]])
 
 
 @inner_kernel
-def load_surfaces(terms: ContactTerms, spin: Floats, radius: Floats) -> None:
+def load_surfaces(terms: ContactConstraints, spin: Floats, radius: Floats) -> None:
     """Let surfaces move as their particles turn now."""
     for p in range(terms.surface.shape[0]):
         terms.surface[p] = spin[p] * radius[p]
 
 
 @inner_kernel
-def store_spins(terms: ContactTerms, spin: Floats, radius: Floats) -> None:
+def store_spins(terms: ContactConstraints, spin: Floats, radius: Floats) -> None:
     """Let particles turn as sweeps have left their surfaces."""
     for p in range(terms.surface.shape[0]):
         spin[p] = spin_of(terms.surface[p], spin[p], radius[p])
@@ -119,7 +120,7 @@ def lent_masses(world: World) -> Any:
 
 @inner_kernel
 def relative_velocity(contacts: Contacts, c: int, velocity: Floats, change: Floats) -> tuple[float, float]:
-    """Velocity of the particle against what it touches, from velocity + change."""
+    """Velocity of the particle relative to the other side of the contact, from velocity + change."""
     p = contacts.particle[c]
     ux = velocity[p, 0] + change[p, 0]
     uy = velocity[p, 1] + change[p, 1]
@@ -222,7 +223,7 @@ def _turns(contacts: Contacts, c: int, by: Floats, surface: Floats) -> tuple[flo
 
 
 @inner_kernel
-def _resist_rolling(contacts: Contacts, c: int, terms: ContactTerms) -> None:
+def _resist_rolling(contacts: Contacts, c: int, terms: ContactConstraints) -> None:
     # A torque against the turn of two surfaces on each other: an impulse at the smaller radius, clamped by the push.
     answer = 0.0
     for end in range(2):
@@ -292,7 +293,7 @@ def _couple_responses(contacts: Contacts, c: int, inverse_mass: Floats, delassus
 
 
 @inner_kernel
-def load_responses(contacts: Contacts, terms: ContactTerms, inverse_mass: Floats, delassus: Delassus) -> None:
+def load_responses(contacts: Contacts, terms: ContactConstraints, inverse_mass: Floats, delassus: Delassus) -> None:
     """J W J^T of every contact: along its normal, between that and its tangent, and along the tangent."""
     for c in range(contacts.particle.shape[0]):
         nx = contacts.normal[c, 0]
@@ -323,11 +324,13 @@ def load_responses(contacts: Contacts, terms: ContactTerms, inverse_mass: Floats
 
 
 @inner_kernel
-def load_biases(contacts: Contacts, terms: ContactTerms, h: float) -> None:
-    """What each contact adds to its velocity, its gap, its penetration or its bounce; sweeps have led nowhere yet."""
+def load_biases(contacts: Contacts, terms: ContactConstraints, h: float) -> None:
+    """Set the bias of each contact, from its gap, its penetration or its bounce, and clear the direction of the
+    sweeps.
+    """
     for c in range(contacts.particle.shape[0]):
-        terms.direction[c, 0] = 0.0
-        terms.direction[c, 1] = 0.0
+        terms.search_direction[c, 0] = 0.0
+        terms.search_direction[c, 1] = 0.0
         gap = contacts.gap[c]
         terms.bias[c] = gap / h if gap >= 0.0 else max(PENETRATION_SHARE * gap / h, -FASTEST_PUSH)
         if contacts.bounce[c] >= 0.0:
@@ -335,8 +338,8 @@ def load_biases(contacts: Contacts, terms: ContactTerms, h: float) -> None:
 
 
 @inner_kernel
-def start_impulses(
-    contacts: Contacts, terms: ContactTerms, change: Floats, inverse_mass: Floats, delassus: Delassus
+def warm_start_contacts(
+    contacts: Contacts, terms: ContactConstraints, change: Floats, inverse_mass: Floats, delassus: Delassus
 ) -> None:
     """Apply the impulses that contacts bring along; that of rolling resistance begins with none."""
     for c in range(contacts.particle.shape[0]):
@@ -355,7 +358,12 @@ def approach_of(contacts: Contacts, c: int, velocity: Floats, change: Floats) ->
 
 @inner_kernel
 def sweep(
-    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, delassus: Delassus
+    contacts: Contacts,
+    terms: ContactConstraints,
+    velocity: Floats,
+    change: Floats,
+    inverse_mass: Floats,
+    delassus: Delassus,
 ) -> tuple[float, float]:
     """One sweep over all contacts; the largest change of a contact's velocity [m/s], and that of the calm ones."""
     # J = max(0, J - (u + b + J / K) / (W + 1 / K)), 1 / K = W (1 - Cd) / Cd;  |J_t| <= friction J, against the slip of
@@ -382,9 +390,9 @@ def sweep(
             if _has_couple(contacts, c):
                 slip += _couple_velocity(contacts, c, velocity, change)
             most = contacts.friction[c] * new
-            held = contacts.impulse[c, 1]
-            jt = min(most, max(-most, held - slip / terms.tangent[c])) - held
-            contacts.impulse[c, 1] = held + jt
+            last = contacts.impulse[c, 1]
+            jt = min(most, max(-most, last - slip / terms.tangent[c])) - last
+            contacts.impulse[c, 1] = last + jt
         if jn != 0.0 or jt != 0.0:
             push_contact(contacts, c, jn, jt, terms.surface, change, inverse_mass, delassus)
             changed = max(abs(jn) * normal, abs(jt) * terms.tangent[c])
@@ -396,7 +404,7 @@ def sweep(
 
 
 @inner_kernel
-def mark_calm(contacts: Contacts, terms: ContactTerms, velocity: Floats, block: Slots, rigid: Flags) -> None:
+def mark_calm(contacts: Contacts, terms: ContactConstraints, velocity: Floats, block: Slots, rigid: Flags) -> None:
     """Which contacts are calm: all that they touch is slow, and rigid."""
     for c in range(contacts.particle.shape[0]):
         terms.calm[c] = 1.0
@@ -410,24 +418,24 @@ def mark_calm(contacts: Contacts, terms: ContactTerms, velocity: Floats, block: 
 
 @inner_kernel
 def solve_contacts(
-    contacts: Contacts, terms: ContactTerms, velocity: Floats, change: Floats, inverse_mass: Floats, delassus: Delassus,
-    sweeps: int, most: int, hasten: bool,
+    contacts: Contacts, terms: ContactConstraints, velocity: Floats, change: Floats, inverse_mass: Floats,
+    delassus: Delassus, sweeps: int, most: int, accelerate: bool,
 ) -> int:  # fmt: skip
     """Sweep until nothing changes, at most so many times, or `most` where what is calm changes still; how many it took.
 
-    hasten: each goes on in the direction of those before it. Joints are swept before contacts.
+    accelerate: each goes on in the direction of those before it. Joints are swept before contacts.
     """
     # Nonlinear conjugate gradients on the sweep as a fixed point (Silcowitz-Poulsen and others 2010).
     joints = delassus.joints
     start_joints(joints, change)
-    start_impulses(contacts, terms, change, inverse_mass, delassus)
+    warm_start_contacts(contacts, terms, change, inverse_mass, delassus)
     previous = 0.0
     done = 0
     checked = math.inf
     while True:
         for c in range(contacts.particle.shape[0]):
-            terms.before[c, 0] = contacts.impulse[c, 0]
-            terms.before[c, 1] = contacts.impulse[c, 1]
+            terms.last_impulse[c, 0] = contacts.impulse[c, 0]
+            terms.last_impulse[c, 1] = contacts.impulse[c, 1]
         largest = sweep_joints(joints, change)
         swept, calm = sweep(contacts, terms, velocity, change, inverse_mass, delassus)
         largest = max(largest, swept)
@@ -440,10 +448,10 @@ def solve_contacts(
             checked = calm
         squared = swept_by(joints)
         for c in range(contacts.particle.shape[0]):
-            jn = contacts.impulse[c, 0] - terms.before[c, 0]
-            jt = contacts.impulse[c, 1] - terms.before[c, 1]
+            jn = contacts.impulse[c, 0] - terms.last_impulse[c, 0]
+            jt = contacts.impulse[c, 1] - terms.last_impulse[c, 1]
             squared += terms.normal[c] * jn * jn + terms.tangent[c] * jt * jt
-        ratio = squared / previous if hasten and previous > 0.0 else 0.0
+        ratio = squared / previous if accelerate and previous > 0.0 else 0.0
         go_on_with_joints(joints, change, ratio if ratio < 1.0 else 0.0)
         _go_on(contacts, terms, change, inverse_mass, delassus, ratio if ratio < 1.0 else 0.0)
         previous = squared
@@ -451,16 +459,21 @@ def solve_contacts(
 
 @inner_kernel
 def _go_on(
-    contacts: Contacts, terms: ContactTerms, change: Floats, inverse_mass: Floats, delassus: Delassus, ratio: float
+    contacts: Contacts,
+    terms: ContactConstraints,
+    change: Floats,
+    inverse_mass: Floats,
+    delassus: Delassus,
+    ratio: float,
 ) -> None:
     # J += ratio p, clamped;  p = ratio p + what the sweep has changed.
     for c in range(contacts.particle.shape[0]):
         old_n = contacts.impulse[c, 0]
         old_t = contacts.impulse[c, 1]
-        more_n = ratio * terms.direction[c, 0]
-        more_t = ratio * terms.direction[c, 1]
-        terms.direction[c, 0] = more_n + (old_n - terms.before[c, 0])
-        terms.direction[c, 1] = more_t + (old_t - terms.before[c, 1])
+        more_n = ratio * terms.search_direction[c, 0]
+        more_t = ratio * terms.search_direction[c, 1]
+        terms.search_direction[c, 0] = more_n + (old_n - terms.last_impulse[c, 0])
+        terms.search_direction[c, 1] = more_t + (old_t - terms.last_impulse[c, 1])
         new_n = max(0.0, old_n + more_n)
         most = contacts.friction[c] * new_n
         new_t = min(most, max(-most, old_t + more_t))

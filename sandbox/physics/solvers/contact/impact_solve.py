@@ -26,7 +26,7 @@ from sandbox.physics.solvers.contact.free_constraints import (
     SURFACE,
     WEIGHT_P,
     WEIGHT_Q,
-    Work,
+    FreeContactScratch,
 )
 from sandbox.physics.solvers.contact.free_motion import apply, approach, slip
 
@@ -46,7 +46,7 @@ ALIKE = 1e-12
 
 
 @inner_kernel
-def _push_hit(work: Work, k: int, jn: float, jt: float) -> None:
+def _push_hit(work: FreeContactScratch, k: int, jn: float, jt: float) -> None:
     i = unsigned(work.hit[k])
     row = work.constraint
     apply(work, i, row[i, NX], row[i, NY], jn, jt, row[i, ARM], work.met[k], False)
@@ -55,7 +55,7 @@ def _push_hit(work: Work, k: int, jn: float, jt: float) -> None:
 
 
 @inner_kernel
-def _answer_between(work: Work, i: int, j: int) -> float:
+def _answer_between(work: FreeContactScratch, i: int, j: int) -> float:
     # What an impulse of 1 along the normal of one contact does to the velocity of another.
     row = work.constraint
     p, q = work.end[i, 0], work.end[i, 1]
@@ -73,7 +73,7 @@ def _answer_between(work: Work, i: int, j: int) -> float:
 
 
 @inner_kernel
-def _solve_two(work: Work) -> None:
+def _solve_two(work: FreeContactScratch) -> None:
     # 0 <= J, W J >= r, one of both; r: what each lacks.
     row = work.constraint
     i, j = unsigned(work.hit[0]), unsigned(work.hit[1])
@@ -98,7 +98,7 @@ def _solve_two(work: Work) -> None:
 
 
 @inner_kernel
-def _restrain(work: Work, hits: int) -> None:
+def _restrain(work: FreeContactScratch, hits: int) -> None:
     # What sweeps have not finished, and friction at several places, gains no energy: dE = sum of J (u + u') / 2, at a
     # share s of all impulses s J u + s^2 J W J / 2.
     begun = 0.0
@@ -115,7 +115,7 @@ def _restrain(work: Work, hits: int) -> None:
 
 
 @inner_kernel
-def _solve_many(work: Work, hits: int, sweeps: int) -> int:
+def _solve_many(work: FreeContactScratch, hits: int, sweeps: int) -> int:
     # The same of many, in sweeps; how many there were.
     row = work.constraint
     settled = SETTLED if hits <= FEW else CROWD_SETTLED
@@ -142,12 +142,12 @@ def _solve_many(work: Work, hits: int, sweeps: int) -> int:
 
 
 @inner_kernel
-def _rub(work: Work, hits: int) -> int:
+def _rub(work: FreeContactScratch, hits: int) -> int:
     # Friction of what `last` of the hits pushes, beyond what there is: sweeps that only take energy.
     row = work.constraint
     settled = SETTLED if hits <= FEW else CROWD_SETTLED
     for k in range(hits):
-        work.held[k] = work.across[k]
+        work.last_across[k] = work.across[k]
     for sweep in range(FRICTION_SWEEPS):
         largest = 0.0
         for k in range(hits):
@@ -156,7 +156,8 @@ def _rub(work: Work, hits: int) -> int:
             if not most > 0.0:
                 continue
             old = work.across[k]
-            j = min(work.held[k] + most, max(work.held[k] - most, old - slip(work, i) * row[i, MASS_ACROSS])) - old
+            last = work.last_across[k]
+            j = min(last + most, max(last - most, old - slip(work, i) * row[i, MASS_ACROSS])) - old
             if j != 0.0:
                 _push_hit(work, k, 0.0, j)
                 largest = max(largest, abs(j) / row[i, MASS_ACROSS])
@@ -166,7 +167,7 @@ def _rub(work: Work, hits: int) -> int:
 
 
 @inner_kernel
-def _solve_rubbing(work: Work, hits: int, sweeps: int) -> int:
+def _solve_rubbing(work: FreeContactScratch, hits: int, sweeps: int) -> int:
     # Several hits with friction: first all that approaches is stopped, then what pushed it gives its share back
     # (Poisson), and rubs again. How many sweeps there were.
     row = work.constraint
@@ -200,7 +201,7 @@ def _solve_rubbing(work: Work, hits: int, sweeps: int) -> int:
 
 
 @inner_kernel
-def _resist(work: Work, hits: int) -> None:
+def _resist(work: FreeContactScratch, hits: int) -> None:
     # Rolling resistance of the hits.
     row, motion = work.constraint, work.motion
     for k in range(hits):
@@ -216,8 +217,10 @@ def _resist(work: Work, hits: int) -> None:
 
 
 @inner_kernel
-def solve_pass(work: Work, hits: int, left: int) -> int:
-    """Push the hits of a pass until each leaves as fast as is wanted; how many pushes it took, of so many left."""
+def solve_pass(work: FreeContactScratch, hits: int, left: int) -> int:
+    """Push the hits of a pass until each leaves as fast as wanted; how many pushes that took. left: how many are
+    allowed.
+    """
     row = work.constraint
     rubs = False
     for k in range(hits):

@@ -16,7 +16,7 @@ from sandbox.physics.solvers.contact.free_constraints import (
     NY,
     RESTITUTION,
     WAY,
-    Work,
+    FreeContactScratch,
 )
 from sandbox.physics.solvers.contact.free_motion import approach, look_at, meet
 from sandbox.physics.solvers.contact.impact_solve import solve_pass
@@ -38,7 +38,7 @@ LOOKS = 16
 
 
 @inner_kernel
-def _find_hits(work: Work, rows: int, passed: int, small: float) -> int:
+def _find_hits(work: FreeContactScratch, rows: int, passed: int, small: float) -> int:
     # The contacts of what the last pass has pushed that approach now; how many.
     found = 0
     for c in range(rows):
@@ -67,7 +67,7 @@ def _find_hits(work: Work, rows: int, passed: int, small: float) -> int:
 
 
 @inner_kernel
-def _leaves_at(work: Work, i: int, u: float, late: float, small: float) -> float:
+def _leaves_at(work: FreeContactScratch, i: int, u: float, late: float, small: float) -> float:
     # The velocity along the normal with which a hit is to end the small step.
     row = work.constraint
     p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
@@ -81,7 +81,7 @@ def _leaves_at(work: Work, i: int, u: float, late: float, small: float) -> float
 
 
 @inner_kernel
-def _look_again(work: Work, hits: int, small: float) -> int:
+def _look_again(work: FreeContactScratch, hits: int, small: float) -> int:
     # Where hits are once what rests has been swept.
     kept = 0
     for k in range(hits):
@@ -97,7 +97,7 @@ def _look_again(work: Work, hits: int, small: float) -> int:
 
 
 @inner_kernel
-def _earliest(work: Work, hits: int, passed: int) -> int:
+def _earliest(work: FreeContactScratch, hits: int, passed: int) -> int:
     # Of hits that share a particle those that come first; the others are looked at again, as they lie by then.
     for k in range(hits):
         for end in range(2):
@@ -123,7 +123,7 @@ def _earliest(work: Work, hits: int, passed: int) -> int:
 
 
 @inner_kernel
-def _mark(work: Work, hits: int, passed: int) -> None:
+def _mark(work: FreeContactScratch, hits: int, passed: int) -> None:
     # What a pass has pushed, and when.
     for k in range(hits):
         i = unsigned(work.hit[k])
@@ -135,8 +135,8 @@ def _mark(work: Work, hits: int, passed: int) -> None:
 
 
 @inner_kernel
-def collide_fast(work: Work, hits: int, rows: int, besides: int, small: float) -> bool:
-    """Let what has been found to meet fast in this small step do so, and what that pushes; whether all is done."""
+def collide_fast(work: FreeContactScratch, hits: int, rows: int, besides: int, small: float) -> bool:
+    """Carry out the fast impacts of this small step, and those that they cause; True: all are done."""
     for b in range(besides):
         g = work.beside[b]
         for k in range(work.begin[g], work.begin[g + 1]):

@@ -65,7 +65,7 @@ def _whole_restoring(k: int, constraints: Constraints, state: State, mass: float
 
 @inner_kernel
 def load_constraints(
-    span: Span, system: System, state: State, inputs: Inputs, parts: int, h: float
+    span: Span, system: System, state: State, inputs: Inputs, auto_substeps: int, h: float
 ) -> tuple[bool, float]:
     """Bring a body's constraints into their scratch, and return what `load_springs` does of springs."""
     rows, constraints = system.rows, system.constraints
@@ -81,18 +81,20 @@ def load_constraints(
         if system.goals.group[k] >= 0 and constraints.rest[k, 0] * constraints.rest[k, 1] > 0.0:
             constraints.floor[k] = FLOOR_STRENGTH * mass * (FLOOR_RATE * h) * (FLOOR_RATE * h)
         stiff, restoring = implicit_masses(constraints.stiffness[k], constraints.damping[k], mass)
-        constraints.stiff[k] = stiff
-        constraints.restoring[k] = restoring
+        constraints.K[k] = stiff
+        constraints.K_beta[k] = restoring
         if restoring > stiff:
             underdamped = True
-        constraints.norm[k] = restoring
-        if parts > 1:
-            constraints.norm[k] = _whole_restoring(k, constraints, state, mass) / (parts * parts * inputs.ease)
-        _look(k, constraints, rows.moved, rows.moved, 0.0)
+        constraints.k_h2[k] = restoring
+        if auto_substeps > 1:
+            constraints.k_h2[k] = _whole_restoring(k, constraints, state, mass) / (
+                auto_substeps * auto_substeps * inputs.ease
+            )
+        _look(k, constraints, rows.x_moved, rows.x_moved, 0.0)
         error = _error(k, constraints, constraints.spare)
         moved += _floor_energy(k, constraints, error, h)
         error /= h
-        moved += 0.5 * constraints.norm[k] * error * error
+        moved += 0.5 * constraints.k_h2[k] * error * error
         _look(k, constraints, rows.position, rows.position, 0.0)
         constraints.error[k] = _error(k, constraints, constraints.spare)
     return underdamped, moved
@@ -103,11 +105,11 @@ def _growth(k: int, system: System, h: float) -> float:
     # (C' - C) / h; of an area dA/dt + h A(v), which does not cancel
     rows, constraints = system.rows, system.constraints
     if constraints.kind[k] != AREA:
-        _look(k, constraints, rows.position, rows.trial, h)
+        _look(k, constraints, rows.position, rows.v, h)
         return (_error(k, constraints, constraints.spare) - constraints.error[k]) / h
     first = constraints.first[k]
     last = constraints.first[k + 1]
-    _look(k, constraints, rows.trial, rows.trial, 0.0)
+    _look(k, constraints, rows.v, rows.v, 0.0)
     growth = h * area_of(constraints.place, first, last)
     base = constraints.row[first]
     before = constraints.row[last - 1]
@@ -115,8 +117,8 @@ def _growth(k: int, system: System, h: float) -> float:
     for c in range(first, last):
         after = constraints.row[c + 1] if c + 1 < last else base
         growth += 0.5 * (
-            (rows.position[after, 1] - rows.position[before, 1]) * (rows.trial[here, 0] - rows.trial[base, 0])
-            - (rows.position[after, 0] - rows.position[before, 0]) * (rows.trial[here, 1] - rows.trial[base, 1])
+            (rows.position[after, 1] - rows.position[before, 1]) * (rows.v[here, 0] - rows.v[base, 0])
+            - (rows.position[after, 0] - rows.position[before, 0]) * (rows.v[here, 1] - rows.v[base, 1])
         )
         before = here
         here = after
@@ -132,18 +134,18 @@ def linearise_constraints(span: Span, system: System, h: float, ahead: float, be
             r = constraints.row[c]
             for axis in range(2):
                 constraints.place[c, axis] = rows.position[r, axis] + h * (
-                    ahead * rows.trial[r, axis] - behind * rows.slow[r, axis]
+                    ahead * rows.v[r, axis] - behind * rows.slow[r, axis]
                 )
         _error(k, constraints, constraints.gradient)
         growth = _growth(k, system, h)
         constraints.impulse[k] = implicit_impulse(
-            constraints.stiff[k], constraints.restoring[k], growth, constraints.error[k], h
+            constraints.K[k], constraints.K_beta[k], growth, constraints.error[k], h
         )  # fmt: skip
         constraints.predicted[k] = constraints.error[k] + h * growth
-        constraints.along[k] = constraints.stiff[k]
+        constraints.K_with_floor[k] = constraints.K[k]
         push = _floor_push(k, constraints, growth, h)
         if push > 0.0:
-            constraints.along[k] += constraints.floor[k] / FLOOR_BETA
+            constraints.K_with_floor[k] += constraints.floor[k] / FLOOR_BETA
             constraints.impulse[k] += push if constraints.rest[k, 0] > 0.0 else -push
 
 
@@ -214,8 +216,8 @@ def assemble_constraints(span: Span, system: System, fronted: bool) -> None:
             r = constraints.row[c]
             gx = constraints.gradient[c, 0]
             gy = constraints.gradient[c, 1]
-            kx = constraints.along[k] * gx
-            ky = constraints.along[k] * gy
+            kx = constraints.K_with_floor[k] * gx
+            ky = constraints.K_with_floor[k] * gy
             if r < free_count:
                 at = system.fronts.diagonal[r] if fronted else r
                 _add_block(system, fronted, r, r, at, kx * gx, kx * gy, kx * gy, ky * gy)
@@ -251,13 +253,13 @@ def push_constraints(span: Span, system: System) -> None:
         for c in range(constraints.first[k], constraints.first[k + 1]):
             r = constraints.row[c]
             if r < free_count:
-                rows.change[r, 0] += constraints.impulse[k] * constraints.gradient[c, 0]
-                rows.change[r, 1] += constraints.impulse[k] * constraints.gradient[c, 1]
+                rows.delta_v[r, 0] += constraints.impulse[k] * constraints.gradient[c, 0]
+                rows.delta_v[r, 1] += constraints.impulse[k] * constraints.gradient[c, 1]
 
 
 @inner_kernel
 def update_constraints(span: Span, system: System, h: float) -> tuple[float, float]:
-    """Bring a body's constraints to `trial`, which D has been added to: their energy [J] after the step and misfit.
+    """Bring a body's constraints to `v`, which D has been added to: their energy [J] after the step and misfit.
 
     The misfit is the largest difference between C and what was predicted, as a share of the area, or [rad]; of a
     triangle that is below its floor, which was not foreseen, the way to it.
@@ -268,10 +270,10 @@ def update_constraints(span: Span, system: System, h: float) -> tuple[float, flo
     energy = 0.0
     misfit = 0.0
     for k in range(span.first_constraint, span.last_constraint):
-        u = gradient_dot(k, constraints, rows.change, free_count)
+        u = gradient_dot(k, constraints, rows.delta_v, free_count)
         constraints.predicted[k] += h * u
-        constraints.impulse[k] -= constraints.along[k] * u
-        _look(k, constraints, rows.position, rows.trial, h)
+        constraints.impulse[k] -= constraints.K_with_floor[k] * u
+        _look(k, constraints, rows.position, rows.v, h)
         error = _error(k, constraints, constraints.spare)
         extent = WHOLE_BEND
         if constraints.kind[k] == AREA:
@@ -281,24 +283,22 @@ def update_constraints(span: Span, system: System, h: float) -> tuple[float, flo
             misfit = missed / extent
         if constraints.floor[k] > 0.0:
             energy += _floor_energy(k, constraints, error, h)
-            if constraints.along[k] == constraints.stiff[k]:
+            if constraints.K_with_floor[k] == constraints.K[k]:
                 misfit = max(misfit, -_above_floor(k, constraints, error) / extent)
         error /= h
-        energy += 0.5 * constraints.norm[k] * error * error
+        energy += 0.5 * constraints.k_h2[k] * error * error
     return energy, misfit
 
 
 @inner_kernel
 def constraint_objective(span: Span, system: System, h: float) -> float:
-    """The constraints' part of f(v') of a body at `trial` [J]."""
+    """The constraints' part of f(v') of a body at `v` [J]."""
     constraints = system.constraints
     total = 0.0
     for k in range(span.first_constraint, span.last_constraint):
         growth = _growth(k, system, h)
         after = constraints.error[k] / h + growth
-        total += 0.5 * (
-            constraints.stiff[k] * growth * growth + constraints.restoring[k] * (after * after - growth * growth)
-        )
+        total += 0.5 * (constraints.K[k] * growth * growth + constraints.K_beta[k] * (after * after - growth * growth))
         push = _floor_push(k, constraints, growth, h)
         if push > 0.0:
             total += 0.5 * push * push * FLOOR_BETA / constraints.floor[k]
@@ -312,7 +312,7 @@ def constraint_slope(span: Span, system: System) -> float:
     free_count = system.matrix.diagonal.shape[0]
     total = 0.0
     for k in range(span.first_constraint, span.last_constraint):
-        total -= constraints.impulse[k] * gradient_dot(k, constraints, system.rows.change, free_count)
+        total -= constraints.impulse[k] * gradient_dot(k, constraints, system.rows.delta_v, free_count)
     return total
 
 

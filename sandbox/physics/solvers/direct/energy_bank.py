@@ -22,15 +22,15 @@ LAST_HALVINGS = 60
 
 @inner_kernel
 def body_energy(body: int, span: Span, system: System, h: float) -> float:
-    """Energy of one body after the step [J]: kinetic at `trial`, and that of its springs and constraints."""
+    """Energy of one body after the step [J]: kinetic at `v`, and that of its springs and constraints."""
     # H = KE(v') + PE(x + h v')
     rows = system.rows
-    return kinetic_at_end(body, span, system, h) + potential(span, system, rows.position, rows.trial, h, h)
+    return kinetic_at_end(body, span, system, h) + potential(span, system, rows.position, rows.v, h, h)
 
 
 @inner_kernel
 def is_open(span: Span, system: System, bank: Floats) -> bool:
-    """Whether a body's bank goes on from the last step; it is begun anew where a particle says so (-1)."""
+    """Whether a body's bank continues from the last step: no particle of the body asks for a new one (-1 or -2)."""
     # After any change from outside.
     begun = True
     for r in range(span.first_row, span.last_row):
@@ -41,7 +41,9 @@ def is_open(span: Span, system: System, bank: Floats) -> bool:
 
 @inner_kernel
 def is_new(span: Span, system: System, bank: Floats) -> bool:
-    """Whether a body's bank is begun for all of it: at its start, not where a hand has let go of a part."""
+    """Whether every particle of a body asks for a new bank (-1): at the start of a run, not after a hand let go
+    (-2).
+    """
     new = True
     for r in range(span.first_row, span.last_row):
         new = new and bank[system.rows.particle[r]] == BANK_UNOPENED
@@ -50,7 +52,9 @@ def is_new(span: Span, system: System, bank: Floats) -> bool:
 
 @inner_kernel
 def open_bank(body: int, span: Span, system: System, bank: Floats, moved: float, h: float) -> float:
-    """What one body's bank holds before the step [J]; moved: energy of its springs once pins and drives have moved."""
+    """The energy in a body's bank before the step [J]; moved: energy of its springs after pins and drives have
+    moved.
+    """
     rows, bodies = system.rows, system.bodies
     lowest = bodies.lowest[body]
     begun = is_open(span, system, bank)
@@ -59,28 +63,28 @@ def open_bank(body: int, span: Span, system: System, bank: Floats, moved: float,
         p = rows.particle[r]
         if p != lowest:
             bank[p] = 0.0
-    held = bank[lowest] if begun else 0.0
+    saved = bank[lowest] if begun else 0.0
     if not bodies.underdamped[body]:
-        return held
-    kinetic_after = kinetic(span, rows.mass, rows.target)
+        return saved
+    kinetic_after = kinetic(span, rows.mass, rows.v_star)
     before = kinetic(span, rows.mass, rows.start)
     present = start_potential(span, system, h)
     if not begun:
-        held += UNDERDAMPED_BANK_SHARE * (before + present)
+        saved += UNDERDAMPED_BANK_SHARE * (before + present)
     # Work done by forces, grabs and drives since then counts as energy of the start.
-    return max(0.0, held + UNDERDAMPED_BANK_SHARE * (kinetic_after - before + moved - present))
+    return max(0.0, saved + UNDERDAMPED_BANK_SHARE * (kinetic_after - before + moved - present))
 
 
 @inner_kernel
 def bank_limit(body: int, system: System) -> float:
     """The most that a body's bank may hold after the step [J]."""
     share = UNDERDAMPED_BANK_SHARE if system.bodies.underdamped[body] else BANK_SHARE
-    return share * system.bodies.before[body]
+    return share * system.bodies.energy0[body]
 
 
 @inner_kernel
 def reserve(body: int, span: Span, system: System, state: State, excess: float) -> float:
-    """Keep of an excess [J], which a body has lost, what its reserve for parting has room for; what is left of it."""
+    """Put an excess [J], which a body has lost, into its parting reserve up to its limit; the rest of the excess."""
     # Where some Cs is above its Cd, energy in this norm comes and goes, and is no loss.
     lowest = system.bodies.lowest[body]
     if not excess > 0.0 or system.bodies.underdamped[body] or state.collides[lowest] == 0:

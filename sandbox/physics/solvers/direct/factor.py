@@ -21,17 +21,17 @@ def solve_linear(span: Span, system: System) -> None:
     load_residual(span, system)
     assemble(span, system)
     if fronts.of_row[span.first_row] >= 0:
-        solve_fronts(False, span.first_row, span.last_row, fronts, rows.change)
+        solve_fronts(False, span.first_row, span.last_row, fronts, rows.delta_v)
     else:
         factorise(span.first_row, span.last_row, system.matrix)
-        back_substitute(span.first_row, span.last_row, system.matrix, rows.change)
+        back_substitute(span.first_row, span.last_row, system.matrix, rows.delta_v)
     if span.last_constraint > span.first_constraint:
         _take_in_wide(span, system)
 
 
 @inner_kernel
 def refine(span: Span, system: System) -> None:
-    """Solve for what is left of the right side, with the impulses found so far; it is left in `change`."""
+    """Solve for the rest of the right side, with the impulses found so far; the solution is in `change`."""
     load_residual(span, system)
     solve_again(span, system)
 
@@ -47,9 +47,9 @@ def solve_again(span: Span, system: System) -> None:
 @inner_kernel
 def respond(span: Span, system: System, vector: Floats) -> None:
     """Solve A x = vector for the rows of one body, in place, with the factor that a linear solve has left."""
-    copy(span, vector, system.rows.change)
+    copy(span, vector, system.rows.delta_v)
     solve_again(span, system)
-    copy(span, system.rows.change, vector)
+    copy(span, system.rows.delta_v, vector)
 
 
 @inner_kernel
@@ -57,9 +57,9 @@ def _substitute(span: Span, system: System) -> None:
     # Without wide constraints.
     rows, fronts = system.rows, system.fronts
     if fronts.of_row[span.first_row] >= 0:
-        solve_fronts(True, span.first_row, span.last_row, fronts, rows.change)
+        solve_fronts(True, span.first_row, span.last_row, fronts, rows.delta_v)
     else:
-        back_substitute(span.first_row, span.last_row, system.matrix, rows.change)
+        back_substitute(span.first_row, span.last_row, system.matrix, rows.delta_v)
 
 
 @inner_kernel
@@ -73,27 +73,27 @@ def _take_in_wide(span: Span, system: System) -> None:
             any_wide = True
     if not any_wide:
         return
-    copy(span, rows.change, rows.held)
+    copy(span, rows.delta_v, rows.saved_delta_v)
     for k in range(span.first_constraint, span.last_constraint):
         number = constraints.wide[k]
         if number < 0:
             continue
         for r in range(span.first_row, span.last_row):
-            rows.change[r, 0] = 0.0
-            rows.change[r, 1] = 0.0
+            rows.delta_v[r, 0] = 0.0
+            rows.delta_v[r, 1] = 0.0
         for c in range(constraints.first[k], constraints.first[k + 1]):
             r = constraints.row[c]
             if r < free_count:
-                rows.change[r, 0] = constraints.gradient[c, 0]
-                rows.change[r, 1] = constraints.gradient[c, 1]
+                rows.delta_v[r, 0] = constraints.gradient[c, 0]
+                rows.delta_v[r, 1] = constraints.gradient[c, 1]
         _substitute(span, system)
         _correct_wide(span, system, k)
         for r in range(span.first_row, span.last_row):
-            constraints.response[number, r, 0] = rows.change[r, 0]
-            constraints.response[number, r, 1] = rows.change[r, 1]
-        yields = gradient_dot(k, constraints, rows.change, free_count)
-        constraints.scale[number] = constraints.stiff[k] / (1.0 + constraints.stiff[k] * max(0.0, yields))
-    copy(span, rows.held, rows.change)
+            constraints.response[number, r, 0] = rows.delta_v[r, 0]
+            constraints.response[number, r, 1] = rows.delta_v[r, 1]
+        yields = gradient_dot(k, constraints, rows.delta_v, free_count)
+        constraints.scale[number] = constraints.K[k] / (1.0 + constraints.K[k] * max(0.0, yields))
+    copy(span, rows.saved_delta_v, rows.delta_v)
     _correct_wide(span, system, span.last_constraint)
 
 
@@ -106,7 +106,7 @@ def _correct_wide(span: Span, system: System, last: int) -> None:
         number = constraints.wide[k]
         if number < 0:
             continue
-        taken = constraints.scale[number] * gradient_dot(k, constraints, rows.change, free_count)
+        taken = constraints.scale[number] * gradient_dot(k, constraints, rows.delta_v, free_count)
         for r in range(span.first_row, span.last_row):
-            rows.change[r, 0] -= taken * constraints.response[number, r, 0]
-            rows.change[r, 1] -= taken * constraints.response[number, r, 1]
+            rows.delta_v[r, 0] -= taken * constraints.response[number, r, 0]
+            rows.delta_v[r, 1] -= taken * constraints.response[number, r, 1]

@@ -40,7 +40,7 @@ CHANGE_AHEAD = SLOW_SHARE / (1.0 - SLOW_SHARE)
 
 @inner_kernel
 def load_rows(system: System, state: State, inputs: Inputs, h: float) -> None:
-    """Bring every row to the start of a step of h [s], with a first guess of its end in `trial`."""
+    """Bring every row to the start of a step of h [s], with a first guess of its end in `v`."""
     rows = system.rows
     free_count = system.matrix.diagonal.shape[0]
     for r in range(rows.particle.shape[0]):
@@ -50,23 +50,23 @@ def load_rows(system: System, state: State, inputs: Inputs, h: float) -> None:
         rows.inverse_mass[r] = state.inverse_mass[p]
         for axis in range(2):
             rows.position[r, axis] = state.position[p, axis]
-            rows.moved[r, axis] = state.position[p, axis]
-            rows.target[r, axis] = state.velocity[p, axis]
-            rows.aim[r, axis] = state.velocity[p, axis]
+            rows.x_moved[r, axis] = state.position[p, axis]
+            rows.v_star[r, axis] = state.velocity[p, axis]
+            rows.v_star_matched[r, axis] = state.velocity[p, axis]
             rows.start[r, axis] = inputs.start[p, axis]
             rows.slow[r, axis] = state.velocity[p, axis]
         if r >= free_count:
-            rows.moved[r, 0] += state.velocity[p, 0] * h
-            rows.moved[r, 1] += state.velocity[p, 1] * h
+            rows.x_moved[r, 0] += state.velocity[p, 0] * h
+            rows.x_moved[r, 1] += state.velocity[p, 1] * h
         for axis in range(2):
-            rows.trial[r, axis] = rows.start[r, axis]
+            rows.v[r, axis] = rows.start[r, axis]
             if r < free_count:
-                rows.trial[r, axis] += CHANGE_AHEAD * (rows.start[r, axis] - state.slow_velocity[p, axis])
+                rows.v[r, axis] += CHANGE_AHEAD * (rows.start[r, axis] - state.slow_velocity[p, axis])
 
 
 @inner_kernel
 def load(
-    span: Span, system: System, state: State, inputs: Inputs, free: bool, parts: int, h: float
+    span: Span, system: System, state: State, inputs: Inputs, free: bool, auto_substeps: int, h: float
 ) -> tuple[bool, float]:
     """Load a body's springs and constraints: whether one is underdamped, and their energy.
 
@@ -75,10 +75,10 @@ def load(
     rows = system.rows
     # Gravity moves a body without anchors as a whole: started there, it falls without rounding.
     if free:
-        copy(span, rows.target, rows.trial)
-    underdamped, moved = load_springs(span, system, state, inputs, parts, h)
+        copy(span, rows.v_star, rows.v)
+    underdamped, moved = load_springs(span, system, state, inputs, auto_substeps, h)
     if span.last_constraint > span.first_constraint:
-        more_underdamped, more_moved = load_constraints(span, system, state, inputs, parts, h)
+        more_underdamped, more_moved = load_constraints(span, system, state, inputs, auto_substeps, h)
         underdamped = underdamped or more_underdamped
         moved += more_moved
     return underdamped, moved
@@ -86,7 +86,7 @@ def load(
 
 @inner_kernel
 def linearise(span: Span, system: System, h: float, ahead: float, behind: float) -> None:
-    """Bring a body to a linear system about `trial`, gradients at x + h (ahead v' - behind s)."""
+    """Bring a body to a linear system about `v`, gradients at x + h (ahead v' - behind s)."""
     linearise_springs(span, system, h, ahead, behind)
     if span.last_constraint > span.first_constraint:
         linearise_constraints(span, system, h, ahead, behind)
@@ -97,8 +97,8 @@ def load_residual(span: Span, system: System) -> None:
     """The right side M (v* - v') + sum of impulses of one body, into `change`."""
     rows = system.rows
     for r in range(span.first_row, span.last_row):
-        rows.change[r, 0] = rows.inertia[r] * (rows.aim[r, 0] - rows.trial[r, 0])
-        rows.change[r, 1] = rows.inertia[r] * (rows.aim[r, 1] - rows.trial[r, 1])
+        rows.delta_v[r, 0] = rows.inertia[r] * (rows.v_star_matched[r, 0] - rows.v[r, 0])
+        rows.delta_v[r, 1] = rows.inertia[r] * (rows.v_star_matched[r, 1] - rows.v[r, 1])
     push_springs(span, system)
     if span.last_constraint > span.first_constraint:
         push_constraints(span, system)
@@ -132,7 +132,7 @@ def assemble(span: Span, system: System) -> None:
 
 @inner_kernel
 def update(span: Span, system: System, h: float) -> tuple[float, float, bool]:
-    """Bring a body's impulses to `trial`, which D has been added to: energy [J] after the step, misfit, if to refine.
+    """Bring a body's impulses to `v`, which D has been added to: energy [J] after the step, misfit, if to refine.
 
     See `update_springs`.
     """
@@ -154,14 +154,14 @@ def keep_tension(span: Span, system: System) -> None:
 
 @inner_kernel
 def find_tension(span: Span, system: System, h: float) -> None:
-    """The same of springs whose impulses are not known at `trial`."""
+    """The same of springs whose impulses are not known at `v`."""
     linearise_springs(span, system, h, 1.0, 0.0)
     keep_tension(span, system)
 
 
 @inner_kernel
 def objective(span: Span, system: System, h: float) -> float:
-    """f(v') of one body at `trial` [J] (spring_terms.py)."""
+    """f(v') of one body at `v` [J] (spring_terms.py)."""
     springs_hold = spring_objective(span, system, h)
     return springs_hold + constraint_objective(span, system, h)
 
@@ -175,7 +175,7 @@ def slope(span: Span, system: System) -> float:
 @inner_kernel
 def _constraint_energy(span: Span, system: System, position: Floats, velocity: Floats, time: float, h: float) -> float:
     # With what is below its floor.
-    return constraint_potential(span, system, position, velocity, system.constraints.norm, time, h) + floor_potential(
+    return constraint_potential(span, system, position, velocity, system.constraints.k_h2, time, h) + floor_potential(
         span, system, position, velocity, time, h
     )
 
@@ -184,7 +184,7 @@ def _constraint_energy(span: Span, system: System, position: Floats, velocity: F
 def potential(span: Span, system: System, position: Floats, velocity: Floats, time: float, h: float) -> float:
     """Energy of one body's springs and constraints at position + time velocity [J]."""
     springs = system.springs
-    return spring_potential(span, system, position, velocity, springs.norm, springs.rest, time, h) + _constraint_energy(
+    return spring_potential(span, system, position, velocity, springs.k_h2, springs.rest, time, h) + _constraint_energy(
         span, system, position, velocity, time, h
     )
 
@@ -194,5 +194,5 @@ def start_potential(span: Span, system: System, h: float) -> float:
     """Energy of one body's springs and constraints before forces, pins and drives have moved [J]."""
     rows, springs = system.rows, system.springs
     return spring_potential(
-        span, system, rows.position, rows.start, springs.norm, springs.start_rest, 0.0, h
+        span, system, rows.position, rows.start, springs.k_h2, springs.start_rest, 0.0, h
     ) + _constraint_energy(span, system, rows.position, rows.start, 0.0, h)

@@ -1,4 +1,4 @@
-"""The energy test of islands: bodies that touch each other together never have more than they had and have saved.
+"""The energy test of islands: bodies that touch never have more energy together than they had and have saved.
 
 The norm is H = KE(v') + PE(x + h v') of bodies and free particles, less 1/2 sum m (v* - v).(v' - v*): then the work of
 forces in the step is that of their impulses at the mean of the velocities v and v', as in free fall. What a step loses
@@ -12,7 +12,7 @@ from sandbox.physics.collision.terrain_clamp import STOPS, stopped
 from sandbox.physics.collision.turning import SURFACE_WEIGHT
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH, PENETRATION_SHARE, ContactTerms
+from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH, PENETRATION_SHARE, ContactConstraints
 from sandbox.physics.solvers.direct.energy_bank import (
     BANK_SHARE,
     ENERGY_ROUNDING,
@@ -23,7 +23,7 @@ from sandbox.physics.solvers.direct.energy_bank import (
     reserve,
 )
 from sandbox.physics.solvers.direct.families import find_tension
-from sandbox.physics.solvers.direct.islands import BODIES, ISLANDS, MEMBERS, BodyIslands, Touch
+from sandbox.physics.solvers.direct.islands import BODIES, ISLANDS, MEMBERS, BodyIslands, IslandWorkspace
 from sandbox.physics.solvers.direct.joint_response import work_of_joints
 from sandbox.physics.solvers.direct.motion import copy, hold_triangles, scale
 from sandbox.physics.solvers.direct.rigid_turn import damp_within
@@ -62,13 +62,13 @@ def clamp_rows(span: Span, rows: Rows, state: State, h: float) -> bool:
     for r in range(span.first_row, span.last_row):
         if not state.collides[rows.particle[r]] & TERRAIN_GROUP:
             continue
-        wx = h * rows.trial[r, 0]
-        wy = h * rows.trial[r, 1]
+        wx = h * rows.v[r, 0]
+        wy = h * rows.v[r, 1]
         stops, x, y = stopped(rows.position[r, 0], rows.position[r, 1], wx, wy, state.terrain)
         if stops > 0:
             found = True
-            rows.trial[r, 0] = 0.0 if stops > STOPS else rows.trial[r, 0] + (x - wx) / h
-            rows.trial[r, 1] = 0.0 if stops > STOPS else rows.trial[r, 1] + (y - wy) / h
+            rows.v[r, 0] = 0.0 if stops > STOPS else rows.v[r, 0] + (x - wx) / h
+            rows.v[r, 1] = 0.0 if stops > STOPS else rows.v[r, 1] + (y - wy) / h
     return found
 
 
@@ -79,33 +79,35 @@ def clamp_free(islands: BodyIslands, state: State, h: float) -> None:
         p = islands.free[i]
         if not state.collides[p] & TERRAIN_GROUP:
             continue
-        wx = h * (islands.given[p, 0] + islands.change[p, 0])
-        wy = h * (islands.given[p, 1] + islands.change[p, 1])
+        wx = h * (islands.given[p, 0] + islands.delta_v[p, 0])
+        wy = h * (islands.given[p, 1] + islands.delta_v[p, 1])
         stops, x, y = stopped(state.position[p, 0], state.position[p, 1], wx, wy, state.terrain)
         if stops > STOPS:
-            islands.change[p, 0] = -islands.given[p, 0]
-            islands.change[p, 1] = -islands.given[p, 1]
+            islands.delta_v[p, 0] = -islands.given[p, 0]
+            islands.delta_v[p, 1] = -islands.given[p, 1]
         elif stops > 0:
-            islands.change[p, 0] += (x - wx) / h
-            islands.change[p, 1] += (y - wy) / h
+            islands.delta_v[p, 0] += (x - wx) / h
+            islands.delta_v[p, 1] += (y - wy) / h
 
 
 @inner_kernel
 def work_of_forces(span: Span, rows: Rows, underdamped: bool) -> float:
-    """What the norm of a body takes off its energy after the step [J]; underdamped ones are topped up by its work."""
+    """The work of forces in the step [J], by which the norm of a body is below its energy; it tops up underdamped
+    bodies.
+    """
     total = 0.0
     for r in range(span.first_row, span.last_row):
         total += rows.mass[r] * (
-            (rows.target[r, 0] - rows.start[r, 0]) * (rows.trial[r, 0] - rows.target[r, 0])
-            + (rows.target[r, 1] - rows.start[r, 1]) * (rows.trial[r, 1] - rows.target[r, 1])
+            (rows.v_star[r, 0] - rows.start[r, 0]) * (rows.v[r, 0] - rows.v_star[r, 0])
+            + (rows.v_star[r, 1] - rows.start[r, 1]) * (rows.v[r, 1] - rows.v_star[r, 1])
         )
     return 0.5 * total * (1.0 + UNDERDAMPED_BANK_SHARE if underdamped else 1.0)
 
 
 @inner_kernel
-def _work_at_ends(body: int, span: Span, system: System, touch: Touch, driven: bool, h: float) -> float:
+def _work_at_ends(body: int, span: Span, system: System, workspace: IslandWorkspace, driven: bool, h: float) -> float:
     # What forces and joints do at the velocities of the ends of a step beyond what they do at those of its chords [J].
-    rows, bodies, push = system.rows, system.bodies, touch.delassus.joints.push
+    rows, bodies, push = system.rows, system.bodies, workspace.delassus.joints.push
     before, after = bodies.spin[body, INWARD], bodies.spin[body, END_INWARD]
     spared = bodies.spared[body]
     if not bodies.spin[body, END_INERTIA] > 0.0 or (before == 0.0 and after == 0.0 and spared == 0.0):
@@ -116,13 +118,13 @@ def _work_at_ends(body: int, span: Span, system: System, touch: Touch, driven: b
     for r in range(span.first_row, span.last_row):
         dx = rows.position[r, 0] - bodies.spin[body, SPIN_X]
         dy = rows.position[r, 1] - bodies.spin[body, SPIN_Y]
-        ex = rows.position[r, 0] + h * rows.trial[r, 0] - bodies.spin[body, END_X]
-        ey = rows.position[r, 1] + h * rows.trial[r, 1] - bodies.spin[body, END_Y]
+        ex = rows.position[r, 0] + h * rows.v[r, 0] - bodies.spin[body, END_X]
+        ey = rows.position[r, 1] + h * rows.v[r, 1] - bodies.spin[body, END_Y]
         ux, uy = -before * dx - turn * dy, -before * dy + turn * dx
         vx, vy = -after * ex - turned * ey, -after * ey + turned * ex
         if pivots:
-            total += rows.mass[r] * (rows.target[r, 0] - rows.start[r, 0]) * (vx - ux)
-            total += rows.mass[r] * (rows.target[r, 1] - rows.start[r, 1]) * (vy - uy)
+            total += rows.mass[r] * (rows.v_star[r, 0] - rows.start[r, 0]) * (vx - ux)
+            total += rows.mass[r] * (rows.v_star[r, 1] - rows.start[r, 1]) * (vy - uy)
         if driven:
             p = rows.particle[r]
             total += push[p, 0] * (ux + vx) + push[p, 1] * (uy + vy)
@@ -130,16 +132,16 @@ def _work_at_ends(body: int, span: Span, system: System, touch: Touch, driven: b
 
 
 @inner_kernel
-def measure_body(k: int, span: Span, system: System, touch: Touch, energy: float, h: float) -> None:
-    """Note the norm of one body after the step, whose motion and springs then hold so much [J]."""
-    islands, rows = touch.islands, system.rows
+def measure_body(k: int, span: Span, system: System, workspace: IslandWorkspace, energy: float, h: float) -> None:
+    """Store the norm of one body after the step; its motion and springs then have this energy [J]."""
+    islands, rows = workspace.islands, system.rows
     underdamped = system.bodies.underdamped[islands.body[k]]
-    islands.after[k] = energy - work_of_forces(span, rows, underdamped)
+    islands.energy[k] = energy - work_of_forces(span, rows, underdamped)
     work = 0.0
     if islands.driven[k]:
-        work = work_of_joints(span, rows, touch.delassus.joints.push)
-    work += _work_at_ends(islands.body[k], span, system, touch, islands.driven[k], h)
-    islands.after[k] -= work * (1.0 + UNDERDAMPED_BANK_SHARE if underdamped else 1.0)
+        work = work_of_joints(span, rows, workspace.delassus.joints.push)
+    work += _work_at_ends(islands.body[k], span, system, workspace, islands.driven[k], h)
+    islands.energy[k] -= work * (1.0 + UNDERDAMPED_BANK_SHARE if underdamped else 1.0)
 
 
 @inner_kernel
@@ -160,8 +162,8 @@ def open_free(islands: BodyIslands, state: State) -> None:
         islands.mass[k] = state.mass[p]
         ux, uy = islands.given[p, 0], islands.given[p, 1]
         surface = state.spin[p] * state.radius[p]
-        islands.before[k] = 0.5 * state.mass[p] * (ux * ux + uy * uy + surface * surface / SURFACE_WEIGHT)
-        islands.held[k] = max(0.0, state.energy_bank[p])
+        islands.energy0[k] = 0.5 * state.mass[p] * (ux * ux + uy * uy + surface * surface / SURFACE_WEIGHT)
+        islands.bank[k] = max(0.0, state.energy_bank[p])
         islands.fresh[k] = state.energy_bank[p] == BANK_UNOPENED
 
 
@@ -172,7 +174,7 @@ def _part_speed(gap: float, h: float) -> float:
 
 
 @inner_kernel
-def _stored(c: int, contacts: Contacts, terms: ContactTerms, h: float) -> float:
+def _stored(c: int, contacts: Contacts, terms: ContactConstraints, h: float) -> float:
     # What it costs to bring what penetrates to the velocity at which it is to part [J].
     if not (contacts.gap[c] < 0.0 and terms.normal[c] > 0.0):
         return 0.0
@@ -181,34 +183,36 @@ def _stored(c: int, contacts: Contacts, terms: ContactTerms, h: float) -> float:
 
 
 @inner_kernel
-def credit_penetration(contacts: Contacts, touch: Touch, inverse_mass: Floats, h: float) -> None:
-    """Where a bank is begun, what it costs to part what penetrates then and there counts as energy of the start."""
-    islands = touch.islands
+def credit_penetration(contacts: Contacts, workspace: IslandWorkspace, inverse_mass: Floats, h: float) -> None:
+    """Where a new bank begins, count the energy that separates bodies which overlap at that moment as energy of the
+    start.
+    """
+    islands = workspace.islands
     for c in range(contacts.particle.shape[0]):
         for end in range(3):
             p, _ = weight_of(contacts, c, end)
             if p >= 0 and inverse_mass[p] > 0.0 and islands.fresh[islands.member[p]]:
-                islands.held[islands.member[p]] += _stored(c, contacts, touch.terms, h)
+                islands.bank[islands.member[p]] += _stored(c, contacts, workspace.terms, h)
                 break
 
 
 @inner_kernel
-def _draw(k: int, wanted: float, touch: Touch, system: System, state: State) -> float:
+def _draw(k: int, wanted: float, workspace: IslandWorkspace, system: System, state: State) -> float:
     # Move up to so much [J] of what one member saved for parting into its bank; how much it was.
-    islands = touch.islands
+    islands = workspace.islands
     if k >= islands.counts[BODIES] or not wanted > 0.0:
         return 0.0
     lowest = system.bodies.lowest[islands.body[k]]
     drawn = min(wanted, state.parting_reserve[lowest])
     state.parting_reserve[lowest] -= drawn
-    islands.held[k] += drawn
+    islands.bank[k] += drawn
     return drawn
 
 
 @inner_kernel
-def draw_on_reserves(contacts: Contacts, touch: Touch, system: System, state: State) -> None:
-    """Where two bodies lie deep in each other, let them pay for being pushed apart as they would for parting."""
-    islands = touch.islands
+def draw_on_reserves(contacts: Contacts, workspace: IslandWorkspace, system: System, state: State) -> None:
+    """Where two bodies overlap deeply, pay for pushing them apart from their parting reserves."""
+    islands = workspace.islands
     for c in range(contacts.particle.shape[0]):
         if not contacts.gap[c] < -DEEP * state.radius[contacts.particle[c]]:
             continue
@@ -221,15 +225,15 @@ def draw_on_reserves(contacts: Contacts, touch: Touch, system: System, state: St
                 other = islands.member[p] if end > 0 else other
         if one >= 0 and other >= 0 and one != other:
             reduced = 1.0 / (1.0 / islands.mass[one] + 1.0 / islands.mass[other])
-            wanted = 0.5 * reduced * PARTING_SPEED * PARTING_SPEED - islands.held[one] - islands.held[other]
-            wanted -= _draw(one, wanted, touch, system, state)
-            _draw(other, wanted, touch, system, state)
+            wanted = 0.5 * reduced * PARTING_SPEED * PARTING_SPEED - islands.bank[one] - islands.bank[other]
+            wanted -= _draw(one, wanted, workspace, system, state)
+            _draw(other, wanted, workspace, system, state)
 
 
 @inner_kernel
-def check_energies(touch: Touch, mass: Floats, start: Floats) -> bool:
+def check_energies(workspace: IslandWorkspace, mass: Floats, start: Floats) -> bool:
     """Check the energy of every island; whether any fails."""
-    islands, surface, push = touch.islands, touch.terms.surface, touch.delassus.joints.push
+    islands, surface, push = workspace.islands, workspace.terms.surface, workspace.delassus.joints.push
     bodies = islands.counts[BODIES]
     for island in range(islands.counts[ISLANDS]):
         islands.total[island] = 0.0
@@ -237,16 +241,16 @@ def check_energies(touch: Touch, mass: Floats, start: Floats) -> bool:
     for i in range(islands.counts[MEMBERS] - bodies):
         p = islands.free[i]
         ux, uy = islands.given[p, 0], islands.given[p, 1]
-        vx, vy = ux + islands.change[p, 0], uy + islands.change[p, 1]
-        work = (ux - start[p, 0]) * islands.change[p, 0] + (uy - start[p, 1]) * islands.change[p, 1]
+        vx, vy = ux + islands.delta_v[p, 0], uy + islands.delta_v[p, 1]
+        work = (ux - start[p, 0]) * islands.delta_v[p, 0] + (uy - start[p, 1]) * islands.delta_v[p, 1]
         turning = surface[p] * surface[p] / SURFACE_WEIGHT
-        islands.after[bodies + i] = 0.5 * mass[p] * (vx * vx + vy * vy + turning - work)
+        islands.energy[bodies + i] = 0.5 * mass[p] * (vx * vx + vy * vy + turning - work)
         if push.shape[0] > 0:
             given = push[p, 0] * (start[p, 0] + vx) + push[p, 1] * (start[p, 1] + vy)
-            islands.after[bodies + i] -= 0.5 * given
+            islands.energy[bodies + i] -= 0.5 * given
     for k in range(islands.counts[MEMBERS]):
-        islands.total[islands.island[k]] += islands.after[k]
-        islands.allowed[islands.island[k]] += islands.before[k] * (1.0 + ENERGY_ROUNDING) + islands.held[k]
+        islands.total[islands.island[k]] += islands.energy[k]
+        islands.allowed[islands.island[k]] += islands.energy0[k] * (1.0 + ENERGY_ROUNDING) + islands.bank[k]
     failing = False
     for island in range(islands.counts[ISLANDS]):
         islands.fails[island] = not islands.total[island] <= islands.allowed[island]
@@ -265,30 +269,32 @@ def _member_of(c: int, contacts: Contacts, islands: BodyIslands, inverse_mass: F
 
 
 @inner_kernel
-def only_hold(contacts: Contacts, touch: Touch, inverse_mass: Floats, parts: bool, h: float) -> None:
+def drop_biases(
+    contacts: Contacts, workspace: IslandWorkspace, inverse_mass: Floats, separates: bool, h: float
+) -> None:
     """Let contacts of islands that fail begin with no impulse and not bounce, and push apart as banks can pay or not.
 
-    parts: whether they push apart at all.
+    separates: whether they push apart at all.
     """
     # From there each sweep that is not hastened takes energy: it lowers 1/2 J.W J + J.u, which is what contacts add.
-    islands = touch.islands
+    islands = workspace.islands
     for island in range(islands.counts[ISLANDS]):
         islands.total[island] = 0.0
         islands.allowed[island] = 0.0
     for k in range(islands.counts[MEMBERS]):
-        islands.allowed[islands.island[k]] += islands.held[k]
+        islands.allowed[islands.island[k]] += islands.bank[k]
     for c in range(contacts.particle.shape[0]):
         k = _member_of(c, contacts, islands, inverse_mass)
         if k >= 0:
-            islands.total[islands.island[k]] += _stored(c, contacts, touch.terms, h)
+            islands.total[islands.island[k]] += _stored(c, contacts, workspace.terms, h)
     for c in range(contacts.particle.shape[0]):
         k = _member_of(c, contacts, islands, inverse_mass)
         if k >= 0 and islands.fails[islands.island[k]]:
             cost, saved = islands.total[islands.island[k]], islands.allowed[islands.island[k]]
             pushed = 0.0
-            if parts and cost > 0.0:
+            if separates and cost > 0.0:
                 pushed = _part_speed(contacts.gap[c], h) * math.sqrt(min(1.0, saved / cost))
-            touch.terms.bias[c] = max(0.0, contacts.gap[c]) / h - pushed
+            workspace.terms.bias[c] = max(0.0, contacts.gap[c]) / h - pushed
             contacts.impulse[c, 0] = 0.0
             contacts.impulse[c, 1] = 0.0
 
@@ -302,9 +308,9 @@ def _slower(halving: int) -> float:
 
 
 @inner_kernel
-def _damp_bodies(touch: Touch, system: System, state: State, halving: int, h: float) -> None:
+def _damp_bodies(workspace: IslandWorkspace, system: System, state: State, halving: int, h: float) -> None:
     # One halving of every body of an island that fails.
-    islands, bodies, rows = touch.islands, system.bodies, system.rows
+    islands, bodies, rows = workspace.islands, system.bodies, system.rows
     for k in range(islands.counts[BODIES]):
         if not islands.fails[islands.island[k]]:
             continue
@@ -318,7 +324,7 @@ def _damp_bodies(touch: Touch, system: System, state: State, halving: int, h: fl
                 islands.unpushed[r, 1] += islands.pushed[r, 1]
         turns = bodies.spin[body, INERTIA] > 0.0
         # Contacts hold what is to stop, and springs what is to come back; joints alone drive what goes round.
-        fine = turns and islands.driven[k] and touch.delassus.start[k] == touch.delassus.start[k + 1]
+        fine = turns and islands.driven[k] and workspace.delassus.start[k] == workspace.delassus.start[k + 1]
         if halving < INNER_HALVINGS or (fine and halving < DRIVEN_HALVINGS):
             if turns:
                 damp_within(body, span, system, islands.unpushed, 0.5, h)
@@ -328,31 +334,31 @@ def _damp_bodies(touch: Touch, system: System, state: State, halving: int, h: fl
             damp_within(body, span, system, islands.unpushed, 0.0, h)
         else:
             scale(span, 0.5 if halving < LAST_HALVINGS else 0.0, islands.unpushed)
-            copy(span, islands.unpushed, rows.trial)
+            copy(span, islands.unpushed, rows.v)
         clamp_rows(span, rows, state, h)
         hold_triangles(span, system, h)
-        measure_body(k, span, system, touch, body_energy(body, span, system, h), h)
+        measure_body(k, span, system, workspace, body_energy(body, span, system, h), h)
 
 
 @inner_kernel
-def damp_islands(touch: Touch, system: System, state: State, start: Floats, h: float) -> None:
+def damp_islands(workspace: IslandWorkspace, system: System, state: State, start: Floats, h: float) -> None:
     """Slow down what moves within the bodies of islands that fail, else all that moves, until they pass."""
     # All that moves slowly enough along what contacts and springs want loses energy, and at rest they pass.
-    islands, surface = touch.islands, touch.terms.surface
+    islands, surface = workspace.islands, workspace.terms.surface
     bodies = islands.counts[BODIES]
     for k in range(bodies):
         islands.due[k] = False
     for halving in range(LAST_HALVINGS + 1):
-        _damp_bodies(touch, system, state, halving, h)
+        _damp_bodies(workspace, system, state, halving, h)
         for i in range(islands.counts[MEMBERS] - bodies):
             if halving >= INNER_HALVINGS and islands.fails[islands.island[bodies + i]]:
                 p = islands.free[i]
                 factor = 0.5 if halving < LAST_HALVINGS else 0.0
                 for axis in range(2):
-                    v = islands.given[p, axis] + islands.change[p, axis]
-                    islands.change[p, axis] = factor * v - islands.given[p, axis]
+                    v = islands.given[p, axis] + islands.delta_v[p, axis]
+                    islands.delta_v[p, axis] = factor * v - islands.given[p, axis]
                 surface[p] *= factor
-        if not check_energies(touch, state.mass, start):
+        if not check_energies(workspace, state.mass, start):
             break
     for k in range(bodies):
         if islands.due[k]:
@@ -360,34 +366,34 @@ def damp_islands(touch: Touch, system: System, state: State, start: Floats, h: f
 
 
 @inner_kernel
-def _load_limits(contacts: Contacts, touch: Touch, system: System, state: State, h: float) -> None:
+def _load_limits(contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, h: float) -> None:
     # The most that each bank may hold: a share of the member's energy; or what penetrations cost, of what it has itself
     # lost: what a light body loses as it hits a heavy one would push that out of what it lies in.
-    islands, bodies = touch.islands, touch.islands.counts[BODIES]
+    islands, bodies = workspace.islands, workspace.islands.counts[BODIES]
     for k in range(islands.counts[MEMBERS]):
         islands.limit[k] = 0.0
     for c in range(contacts.particle.shape[0]):
         k = _member_of(c, contacts, islands, state.inverse_mass)
         if k >= 0:
-            islands.limit[k] += _stored(c, contacts, touch.terms, h)
+            islands.limit[k] += _stored(c, contacts, workspace.terms, h)
     for k in range(islands.counts[MEMBERS]):
-        share = bank_limit(islands.body[k], system) if k < bodies else BANK_SHARE * islands.before[k]
-        lost = islands.held[k] + islands.before[k] - islands.after[k]
+        share = bank_limit(islands.body[k], system) if k < bodies else BANK_SHARE * islands.energy0[k]
+        lost = islands.bank[k] + islands.energy0[k] - islands.energy[k]
         islands.limit[k] = max(share, min(islands.limit[k], 0.5 * islands.mass[k] * PAID_PUSH * PAID_PUSH, lost))
 
 
 @inner_kernel
-def store_energies(contacts: Contacts, touch: Touch, system: System, state: State, h: float) -> None:
-    """Store what each island has left of what it was allowed, up to the limits of its banks."""
-    islands, bodies = touch.islands, system.bodies
-    _load_limits(contacts, touch, system, state, h)
+def store_energies(contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, h: float) -> None:
+    """Store the rest of each island's allowed energy, up to the limits of its banks."""
+    islands, bodies = workspace.islands, system.bodies
+    _load_limits(contacts, workspace, system, state, h)
     for k in range(islands.counts[MEMBERS]):
         island = islands.island[k]
         limit = islands.limit[k]
         is_body = k < islands.counts[BODIES]
         # As in solve.py: an inverted body keeps all that it lost for the way back to its form.
         if is_body and bodies.inverted[islands.body[k]] and not bodies.anchored[islands.body[k]]:
-            limit = max(limit, islands.held[k] + islands.before[k] - islands.after[k])
+            limit = max(limit, islands.bank[k] + islands.energy0[k] - islands.energy[k])
         stored = max(0.0, min(islands.allowed[island] - islands.total[island], limit))
         islands.allowed[island] -= stored
         if is_body:

@@ -16,7 +16,7 @@ from sandbox.physics.joints.joint_sweep import gather_push
 from sandbox.physics.joints.rows import any_on
 from sandbox.physics.solvers.contact.body_impacts import pass_on
 from sandbox.physics.solvers.contact.gauss_seidel import (
-    ContactTerms,
+    ContactConstraints,
     Delassus,
     couple_of,
     load_biases,
@@ -42,8 +42,8 @@ from sandbox.physics.solvers.direct.island_energy import (
     credit_penetration,
     damp_islands,
     draw_on_reserves,
+    drop_biases,
     measure_body,
-    only_hold,
     open_free,
     store_energies,
     weigh_body,
@@ -52,8 +52,8 @@ from sandbox.physics.solvers.direct.islands import (
     BODIES,
     MEMBERS,
     BodyIslands,
-    IslandRoom,
-    Touch,
+    IslandScratch,
+    IslandWorkspace,
     find_body_islands,
     new_islands,
 )
@@ -88,7 +88,7 @@ CALM_SWEEPS = 200
 # as many sweeps a tick machines take three times as long.
 RIGID = 0.9999
 # Solves in which contacts only hold.
-HOLDS = 2
+SOLVES_WITHOUT_BIAS = 2
 # Linear solves more, while an island with a joint fails its energy test: wheels turn fast. With none of them a cart of
 # 120 kg fails in 9 to 61 of 240 steps, is slowed down, and drives at a fifth of its speed.
 DRIVEN_SOLVES = 5
@@ -104,30 +104,32 @@ def _is_rigid(body: int, system: System, inputs: Inputs) -> bool:
 
 
 @inner_kernel
-def _open(touch: Touch, system: System, state: State, inputs: Inputs, parts: int, h: float) -> None:
+def _open(
+    workspace: IslandWorkspace, system: System, state: State, inputs: Inputs, auto_substeps: int, h: float
+) -> None:
     # Load the families and energies of every body that is touched, and the free particles; no contact has acted.
-    islands, bodies = touch.islands, system.bodies
+    islands, bodies = workspace.islands, system.bodies
     for p in range(state.velocity.shape[0]):
         for axis in range(2):
             islands.given[p, axis] = state.velocity[p, axis]
-            islands.change[p, axis] = 0.0
+            islands.delta_v[p, axis] = 0.0
     for k in range(islands.counts[BODIES]):
         body = islands.body[k]
         span = span_of(system, body)
         islands.fresh[k] = is_new(span, system, state.energy_bank)
-        open_body(body, span, system, state, inputs, 0.0, parts, h)
+        open_body(body, span, system, state, inputs, 0.0, auto_substeps, h)
         islands.rigid[k] = _is_rigid(body, system, inputs)
         weigh_body(k, span, system.rows, islands)
-        islands.before[k] = bodies.before[body]
-        islands.held[k] = bodies.held[body]
+        islands.energy0[k] = bodies.energy0[body]
+        islands.bank[k] = bodies.bank[body]
         islands.due[k] = True
     open_free(islands, state)
 
 
 @inner_kernel
-def _solve_due(touch: Touch, system: System, h: float, ahead: float, behind: float) -> None:
+def _solve_due(workspace: IslandWorkspace, system: System, h: float, ahead: float, behind: float) -> None:
     # Linearise and factor the bodies that are due: their velocities without contacts, and their Delassus blocks.
-    islands, delassus = touch.islands, touch.delassus
+    islands, delassus = workspace.islands, workspace.delassus
     for k in range(islands.counts[BODIES]):
         if not islands.due[k]:
             continue
@@ -147,10 +149,10 @@ def _solve_due(touch: Touch, system: System, h: float, ahead: float, behind: flo
 
 @inner_kernel
 def _leave_unpushed(span: Span, rows: Rows, unpushed: Floats) -> None:
-    # What a body does without contacts; `trial` stays where the body was linearised.
+    # What a body does without contacts; `v` stays where the body was linearised.
     for r in range(span.first_row, span.last_row):
-        unpushed[r, 0] = rows.trial[r, 0] + rows.change[r, 0]
-        unpushed[r, 1] = rows.trial[r, 1] + rows.change[r, 1]
+        unpushed[r, 0] = rows.v[r, 0] + rows.delta_v[r, 0]
+        unpushed[r, 1] = rows.v[r, 1] + rows.delta_v[r, 1]
 
 
 @inner_kernel
@@ -179,20 +181,20 @@ def _cost_of(contacts: Contacts, delassus: Delassus) -> int:
 
 @inner_kernel
 def _push_all(
-    contacts: Contacts, islands: BodyIslands, terms: ContactTerms, delassus: Delassus, state: State,
-    sweeps: int, most: int, hasten: bool, begins: bool, h: float,
+    contacts: Contacts, islands: BodyIslands, terms: ContactConstraints, delassus: Delassus, state: State,
+    sweeps: int, most: int, accelerate: bool, begins: bool, h: float,
 ) -> int:  # fmt: skip
     # Sweep all contacts and joints, and look for impacts before where the step begins; how many sweeps. The impulses
     # J^T lambda of bodies are left in `pushed`.
     inverse_mass = state.inverse_mass
     load_responses(contacts, terms, inverse_mass, delassus)
-    _clear(islands.change)
+    _clear(islands.delta_v)
     load_surfaces(terms, state.spin, state.radius)
     if begins:
         mark_calm(contacts, terms, state.velocity, delassus.block, islands.rigid)
-        pass_on(contacts, terms, islands.given, islands.change, inverse_mass, delassus, h)
+        pass_on(contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, h)
     done = solve_contacts(
-        contacts, terms, islands.given, islands.change, inverse_mass, delassus, sweeps, most, hasten
+        contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, sweeps, most, accelerate
     )  # fmt: skip
     _clear(islands.pushed)
     push = delassus.joints.push
@@ -216,9 +218,9 @@ def _push_all(
 
 
 @inner_kernel
-def _answer(touch: Touch, system: System, state: State, h: float) -> None:
+def _answer(workspace: IslandWorkspace, system: System, state: State, h: float) -> None:
     # v' = unpushed + A^-1 J^T lambda of every body, clamped; its energy and misfit.
-    islands, rows = touch.islands, system.rows
+    islands, rows = workspace.islands, system.rows
     for k in range(islands.counts[BODIES]):
         span = span_of(system, islands.body[k])
         spin = spin_of_body(islands.body[k], system)
@@ -227,16 +229,16 @@ def _answer(touch: Touch, system: System, state: State, h: float) -> None:
         for r in range(span.first_row, span.last_row):
             for axis in range(2):
                 v = islands.unpushed[r, axis] + islands.pushed[r, axis]
-                rows.change[r, axis] = v - rows.trial[r, axis]
-                rows.trial[r, axis] = v
+                rows.delta_v[r, axis] = v - rows.v[r, axis]
+                rows.v[r, axis] = v
         hold_spin(span, rows, spin, system.bodies.pivot[islands.body[k]] >= 0, True, momentum, h)
-        held, misfit, _ = update(span, system, h)
+        elastic, misfit, _ = update(span, system, h)
         keep_tension(span, system)
         clamped = clamp_rows(span, rows, state, h)
         if hold_triangles(span, system, h) != AS_IT_WAS or clamped:
-            held = potential(span, system, rows.position, rows.trial, h, h)
+            elastic = potential(span, system, rows.position, rows.v, h, h)
             find_tension(span, system, h)
-        measure_body(k, span, system, touch, kinetic_at_end(islands.body[k], span, system, h) + held, h)
+        measure_body(k, span, system, workspace, kinetic_at_end(islands.body[k], span, system, h) + elastic, h)
         islands.misfit[k] = misfit
     clamp_free(islands, state, h)
 
@@ -247,14 +249,14 @@ def _finish(islands: BodyIslands, surface: Floats, system: System, state: State)
     for k in range(islands.counts[BODIES]):
         body = islands.body[k]
         for r in range(bodies.row_start[body], bodies.row_start[body + 1]):
-            state.velocity[rows.particle[r], 0] = rows.trial[r, 0]
-            state.velocity[rows.particle[r], 1] = rows.trial[r, 1]
+            state.velocity[rows.particle[r], 0] = rows.v[r, 0]
+            state.velocity[rows.particle[r], 1] = rows.v[r, 1]
         for s in range(bodies.spring_start[body], bodies.spring_start[body + 1]):
             state.tension[springs.slot[s]] = springs.tension[s]
     for i in range(islands.counts[MEMBERS] - islands.counts[BODIES]):
         p = islands.free[i]
-        state.velocity[p, 0] = islands.given[p, 0] + islands.change[p, 0]
-        state.velocity[p, 1] = islands.given[p, 1] + islands.change[p, 1]
+        state.velocity[p, 0] = islands.given[p, 0] + islands.delta_v[p, 0]
+        state.velocity[p, 1] = islands.given[p, 1] + islands.delta_v[p, 1]
         state.spin[p] = spin_of(surface[p], state.spin[p], state.radius[p])
 
 
@@ -266,71 +268,77 @@ def _begin_again(islands: BodyIslands, system: System, share: float) -> None:
         if islands.due[k]:
             body = islands.body[k]
             span = span_of(system, body)
-            copy(span, rows.target, rows.trial)
-            copy(span, rows.target, rows.aim)
-            scale(span, share, rows.trial)
+            copy(span, rows.v_star, rows.v)
+            copy(span, rows.v_star, rows.v_star_matched)
+            scale(span, share, rows.v)
             if bodies.matched[body]:
                 release_shape(span, rows)
                 bodies.matched[body] = False
 
 
 @kernel
-def _solve_touched(
+def _solve_bodies(
     lent_contacts: Any, lent_room: Any, lent_system: Any, lent_state: Any, lent_inputs: Any, start_length: Floats,
-    ease: float, parts: int, h: float,
+    ease: float, auto_substeps: int, h: float,
 ) -> bool:  # fmt: skip
     # Bring islands, and then all other bodies, to the end of a step of h [s]; False: there is too little room.
     (contacts,) = contents(lent_contacts)
     (system,) = contents(lent_system)
     (state,) = contents(lent_state)
-    (touch,) = contents(lent_room)
+    (workspace,) = contents(lent_room)
     (given,) = contents(lent_inputs)
     inputs = Inputs(
         given.stiffness, given.damping, given.constraint_stiffness, given.constraint_damping, given.start, start_length,
         ease,
     )  # fmt: skip
-    if not find_body_islands(contacts, state.inverse_mass, system, touch):
+    if not find_body_islands(contacts, state.inverse_mass, system, workspace):
         return False
     load_rows(system, state, inputs, h)
-    _solve_islands(contacts, touch, system, state, inputs, parts, h)
-    step_bodies(system, state, inputs, True, parts, h)
+    _solve_islands(contacts, workspace, system, state, inputs, auto_substeps, h)
+    step_bodies(system, state, inputs, True, auto_substeps, h)
     return True
 
 
 @inner_kernel
 def _solve_islands(
-    contacts: Contacts, touch: Touch, system: System, state: State, inputs: Inputs, parts: int, h: float
+    contacts: Contacts,
+    workspace: IslandWorkspace,
+    system: System,
+    state: State,
+    inputs: Inputs,
+    auto_substeps: int,
+    h: float,
 ) -> None:
     # Bring what contacts touch to the end of a step of h [s]; rows are loaded.
-    islands, terms, delassus = touch.islands, touch.terms, touch.delassus
+    islands, terms, delassus = workspace.islands, workspace.terms, workspace.delassus
     load_biases(contacts, terms, h)
-    _open(touch, system, state, inputs, parts, h)
-    open_joints(touch, state.inverse_mass)
+    _open(workspace, system, state, inputs, auto_substeps, h)
+    open_joints(workspace, state.inverse_mass)
     affordable = int(WORK * h) // max(1, _cost_of(contacts, delassus))
     driven_solves = DRIVEN_SOLVES if any_on(delassus.joints.rows) else 0
     failing = False
     # Linear solves while springs miss the lengths predicted, a second where the test fails; then contacts only hold, at
     # Newton steps on f from v* and from rest: the last one takes energy if it is made short enough.
     stage = 0
-    while stage < LINEAR_SOLVES + HOLDS:
+    while stage < LINEAR_SOLVES + SOLVES_WITHOUT_BIAS:
         if stage < LINEAR_SOLVES:
-            _solve_due(touch, system, h, AHEAD, AHEAD)
+            _solve_due(workspace, system, h, AHEAD, AHEAD)
         else:
-            only_hold(contacts, touch, state.inverse_mass, stage == LINEAR_SOLVES, h)
-            release_joints(touch)
+            drop_biases(contacts, workspace, state.inverse_mass, stage == LINEAR_SOLVES, h)
+            release_joints(workspace)
             _begin_again(islands, system, 1.0 if stage == LINEAR_SOLVES else 0.0)
-            _solve_due(touch, system, h, 1.0, 0.0)
-        prepare_joints(touch)
+            _solve_due(workspace, system, h, 1.0, 0.0)
+        prepare_joints(workspace)
         sweeps = max(FEWEST_SWEEPS, min(SWEEPS, affordable))
         most = max(sweeps, min(CALM_SWEEPS, affordable))
         affordable -= _push_all(
             contacts, islands, terms, delassus, state, sweeps, most, stage < LINEAR_SOLVES, stage == 0, h
         )  # fmt: skip
         if stage == 0:
-            credit_penetration(contacts, touch, state.inverse_mass, h)
-            draw_on_reserves(contacts, touch, system, state)
-        _answer(touch, system, state, h)
-        failing = check_energies(touch, state.mass, inputs.start)
+            credit_penetration(contacts, workspace, state.inverse_mass, h)
+            draw_on_reserves(contacts, workspace, system, state)
+        _answer(workspace, system, state, h)
+        failing = check_energies(workspace, state.mass, inputs.start)
         inexact = False
         for k in range(islands.counts[BODIES]):
             missed = stage < LINEAR_SOLVES - 1 and affordable > 0 and islands.misfit[k] > MISFIT_RATE * h * h
@@ -340,27 +348,27 @@ def _solve_islands(
             break
         stage += 1
         if failing and affordable <= 0:
-            stage = max(stage, LINEAR_SOLVES + HOLDS - 1)
+            stage = max(stage, LINEAR_SOLVES + SOLVES_WITHOUT_BIAS - 1)
         elif failing and not inexact and stage > 1:
             stage = max(stage, LINEAR_SOLVES)
-        if stage == LINEAR_SOLVES and driven_solves > 0 and fails_driven(touch):
+        if stage == LINEAR_SOLVES and driven_solves > 0 and fails_driven(workspace):
             stage -= 1
             driven_solves -= 1
     if failing:
-        damp_islands(touch, system, state, inputs.start, h)
-    store_energies(contacts, touch, system, state, h)
+        damp_islands(workspace, system, state, inputs.start, h)
+    store_energies(contacts, workspace, system, state, h)
     _finish(islands, terms.surface, system, state)
 
 
-def _islands_of(world: World) -> IslandRoom:
+def _islands_of(world: World) -> IslandScratch:
     joints = joints_of(world)
     rows = None if joints is None else joints.rows
     return new_islands(layout_of(world).system, world.particle_count, rows)
 
 
-def solve_touched(
+def solve_islands(
     contacts: LentContacts | None, world: World, system: Any, state: Any, inputs: Any, start_length: Floats,
-    ease: float, parts: int, h: float,
+    ease: float, auto_substeps: int, h: float,
 ) -> None:  # fmt: skip
     """Solve the islands of what contacts touch or joints act on, and all other bodies; arguments as `solve` has them.
 
@@ -368,5 +376,5 @@ def solve_touched(
     """
     room = world.derived(_islands_of)
     count, lent = (0, room.no_contacts) if contacts is None else (len(contacts.arrays.particle), contacts.lent)
-    while not _solve_touched(lent, room.lent, system, state, inputs, start_length, ease, parts, h):
+    while not _solve_bodies(lent, room.lent, system, state, inputs, start_length, ease, auto_substeps, h):
         room.grow(count)

@@ -10,7 +10,7 @@ from sandbox.physics.components import root_of, united
 from sandbox.physics.jit import bundle, inner_kernel
 from sandbox.physics.joints.joint_sweep import Joints, new_joints, no_joints
 from sandbox.physics.joints.rows import JointRows
-from sandbox.physics.solvers.contact.gauss_seidel import ContactTerms, Delassus, new_terms
+from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus, new_contact_constraints
 from sandbox.physics.solvers.direct.system import Flags, System
 from sandbox.physics.world import Floats, Slots
 
@@ -25,11 +25,12 @@ class BodyIslands(NamedTuple):
     """The bodies and free particles that contacts touch or joints act on, in this order the members of islands.
 
     There is room for all bodies and particles; counts (5,) says how many there are. body: their numbers; free: slots of
-    particles. By member: island, mass [kg], before, held, after, limit [J], fresh: its bank is begun for all of it. By
-    particle (n,): member, -1: none, row in the matrix, -1: none; given, change [m/s]: velocities without contacts, and
-    what those add. By touched body: misfit; due: to be solved again; rigid: all its springs are; driven: a joint acts
-    on it. By body: number among the touched. By island: total, allowed [J], fails. By row: unpushed [m/s] = velocities
-    without contacts, pushed [m/s] = what contacts and joints add. label, marked: scratch.
+    particles. By member: island, mass [kg], bank, energies where the step begins (energy0) and ends (energy), limit
+    [J]; fresh: its bank is begun for all of it. By particle (n,): member, -1: none, row in the matrix, -1: none; given,
+    delta_v [m/s]: velocities without contacts, and what those add. By touched body: misfit; due: to be solved again;
+    rigid: all its springs are; driven: a joint acts on it. By body: number among the touched. By island: total, allowed
+    [J], fails. By row: unpushed [m/s] = velocities without contacts, pushed [m/s] = what contacts and joints add.
+    label, marked: scratch.
     """
 
     counts: Slots
@@ -39,9 +40,9 @@ class BodyIslands(NamedTuple):
     member: Slots
     row: Slots
     mass: Floats
-    before: Floats
-    held: Floats
-    after: Floats
+    energy0: Floats
+    bank: Floats
+    energy: Floats
     limit: Floats
     fresh: Flags
     misfit: Floats
@@ -55,46 +56,46 @@ class BodyIslands(NamedTuple):
     unpushed: Floats
     pushed: Floats
     given: Floats
-    change: Floats
+    delta_v: Floats
     label: Slots
     marked: Flags
 
 
-class Touch(NamedTuple):
+class IslandWorkspace(NamedTuple):
     """Islands of bodies with what solves their contacts, as kernels take them."""
 
     islands: BodyIslands
     delassus: Delassus
-    terms: ContactTerms
+    terms: ContactConstraints
 
 
 @dataclass(eq=False)
-class IslandRoom:
+class IslandScratch:
     """The scratch of a world's islands: made when its topology changes, with more room where a step wants it.
 
     lent: the same as one argument for kernels; no_contacts: what only joints act on is solved with.
     """
 
-    touch: Touch
+    workspace: IslandWorkspace
     lent: Any
     no_contacts: Any
 
     def grow(self, contacts: int) -> None:
-        """Make room for what the islands want that were found, and for so many contacts."""
-        islands, delassus, terms = self.touch
+        """Make room for the islands that were found, and for a number of contacts."""
+        islands, delassus, terms = self.workspace
         numbers, columns = int(islands.counts[NUMBERS]), int(islands.counts[COLUMNS])
         if numbers > len(delassus.numbers):
             delassus = delassus._replace(numbers=np.zeros(SPARE * numbers))
         if columns > len(delassus.columns):
             delassus = delassus._replace(columns=np.zeros(SPARE * columns))
         if contacts > len(terms.bias):
-            terms = new_terms(SPARE * contacts, terms.surface)
-        self.touch = Touch(islands, delassus, terms)
-        self.lent = bundle((self.touch,))
+            terms = new_contact_constraints(SPARE * contacts, terms.surface)
+        self.workspace = IslandWorkspace(islands, delassus, terms)
+        self.lent = bundle((self.workspace,))
 
 
-def new_islands(system: System, particle_count: int, rows: JointRows | None) -> IslandRoom:
-    """Room for the islands of a system in a world of so many particles; rows: those of its joints."""
+def new_islands(system: System, particle_count: int, rows: JointRows | None) -> IslandScratch:
+    """Empty islands for a system, in a world with a number of particles; rows: those of its joints."""
     bodies, free_rows = len(system.bodies.lowest), len(system.matrix.diagonal)
     members = bodies + particle_count
     row = np.full(particle_count, -1, dtype=np.int64)
@@ -103,13 +104,13 @@ def new_islands(system: System, particle_count: int, rows: JointRows | None) -> 
     islands = BodyIslands(
         counts=np.zeros(5, dtype=np.int64), body=np.zeros(bodies, dtype=np.int64),
         free=np.zeros(particle_count, dtype=np.int64), island=slots[0],
-        member=np.full(particle_count, -1, dtype=np.int64), row=row, before=energies[0], held=energies[1],
-        after=energies[2], limit=energies[3], fresh=np.zeros(members, dtype=np.bool_), misfit=np.zeros(bodies),
+        member=np.full(particle_count, -1, dtype=np.int64), row=row, energy0=energies[0], bank=energies[1],
+        energy=energies[2], limit=energies[3], fresh=np.zeros(members, dtype=np.bool_), misfit=np.zeros(bodies),
         due=np.zeros(bodies, dtype=np.bool_), driven=np.zeros(bodies, dtype=np.bool_),
         rigid=np.zeros(bodies, dtype=np.bool_), number=np.zeros(bodies, dtype=np.int64), total=energies[4],
         allowed=energies[5], mass=energies[6],
         fails=np.zeros(members, dtype=np.bool_), unpushed=np.zeros((free_rows, 2)), pushed=np.zeros((free_rows, 2)),
-        given=np.zeros((particle_count, 2)), change=np.zeros((particle_count, 2)), label=slots[1],
+        given=np.zeros((particle_count, 2)), delta_v=np.zeros((particle_count, 2)), label=slots[1],
         marked=np.zeros(particle_count, dtype=np.bool_),
     )  # fmt: skip
     block, place = np.full((2, particle_count), -1, dtype=np.int64)
@@ -119,8 +120,8 @@ def new_islands(system: System, particle_count: int, rows: JointRows | None) -> 
         np.zeros(free_rows, dtype=np.int64), np.zeros(bodies + 1, dtype=np.int64), np.zeros(0), np.zeros(0),
         joints,
     )  # fmt: skip
-    touch = Touch(islands, delassus, new_terms(0, np.zeros(particle_count)))
-    return IslandRoom(touch, bundle((touch,)), bundle((NO_CONTACTS,)))
+    workspace = IslandWorkspace(islands, delassus, new_contact_constraints(0, np.zeros(particle_count)))
+    return IslandScratch(workspace, bundle((workspace,)), bundle((NO_CONTACTS,)))
 
 
 @inner_kernel
@@ -179,9 +180,9 @@ def _join_driven(joints: Joints, islands: BodyIslands, label: Slots) -> None:
 
 
 @inner_kernel
-def _find_members(contacts: Contacts, system: System, inverse_mass: Floats, touch: Touch) -> None:
+def _find_members(contacts: Contacts, system: System, inverse_mass: Floats, workspace: IslandWorkspace) -> None:
     # The bodies that contacts touch, with their points by row, and the free particles by slot.
-    islands, delassus, bodies, rows = touch.islands, touch.delassus, system.bodies, system.rows
+    islands, delassus, bodies, rows = workspace.islands, workspace.delassus, system.bodies, system.rows
     for p in range(islands.member.shape[0]):
         islands.marked[p] = False
         islands.member[p] = -1
@@ -227,9 +228,9 @@ def _find_members(contacts: Contacts, system: System, inverse_mass: Floats, touc
 
 
 @inner_kernel
-def _number_islands(contacts: Contacts, inverse_mass: Floats, touch: Touch) -> None:
+def _number_islands(contacts: Contacts, inverse_mass: Floats, workspace: IslandWorkspace) -> None:
     # The island of each member, in the order of their first ones.
-    islands, delassus = touch.islands, touch.delassus
+    islands, delassus = workspace.islands, workspace.delassus
     particles = islands.member.shape[0]
     bodies = islands.counts[BODIES]
     for node in range(particles + bodies):
@@ -251,9 +252,9 @@ def _number_islands(contacts: Contacts, inverse_mass: Floats, touch: Touch) -> N
 
 
 @inner_kernel
-def _find_room(system: System, touch: Touch) -> None:
+def _find_room(system: System, workspace: IslandWorkspace) -> None:
     # Where the Delassus blocks of the bodies begin, and what room they want.
-    islands, delassus, bodies = touch.islands, touch.delassus, system.bodies
+    islands, delassus, bodies = workspace.islands, workspace.delassus, system.bodies
     base = 0
     columns = 0
     for k in range(islands.counts[BODIES]):
@@ -269,14 +270,14 @@ def _find_room(system: System, touch: Touch) -> None:
 
 
 @inner_kernel
-def find_body_islands(contacts: Contacts, inverse_mass: Floats, system: System, touch: Touch) -> bool:
+def find_body_islands(contacts: Contacts, inverse_mass: Floats, system: System, workspace: IslandWorkspace) -> bool:
     """Find the bodies and free particles that contacts touch, and their islands; whether there is room for them."""
-    _find_members(contacts, system, inverse_mass, touch)
-    _number_islands(contacts, inverse_mass, touch)
-    _find_room(system, touch)
-    counts, delassus = touch.islands.counts, touch.delassus
+    _find_members(contacts, system, inverse_mass, workspace)
+    _number_islands(contacts, inverse_mass, workspace)
+    _find_room(system, workspace)
+    counts, delassus = workspace.islands.counts, workspace.delassus
     return (
         counts[NUMBERS] <= delassus.numbers.shape[0]
         and counts[COLUMNS] <= delassus.columns.shape[0]
-        and contacts.particle.shape[0] <= touch.terms.bias.shape[0]
+        and contacts.particle.shape[0] <= workspace.terms.bias.shape[0]
     )

@@ -3,20 +3,20 @@
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_sweep import Joints, couple_joints
 from sandbox.physics.solvers.direct.factor import respond
-from sandbox.physics.solvers.direct.islands import Touch
+from sandbox.physics.solvers.direct.islands import IslandWorkspace
 from sandbox.physics.solvers.direct.system import Rows, Span, System
 from sandbox.physics.world import Floats, Slots
 
 
 @inner_kernel
-def open_joints(touch: Touch, inverse_mass: Floats) -> None:
+def open_joints(workspace: IslandWorkspace, inverse_mass: Floats) -> None:
     """The answers of particles that are in no body, which are their own mass's."""
-    joints, rows = touch.delassus.joints, touch.delassus.joints.rows
+    joints, rows = workspace.delassus.joints, workspace.delassus.joints.rows
     for k in range(rows.limit.shape[0]):
         a = joints.answer_first[k + 1]
         for e in range(rows.first[k + 1] - 1, rows.first[k] - 1, -1):
             p = rows.particle[e]
-            if touch.islands.row[p] < 0:
+            if workspace.islands.row[p] < 0:
                 a -= 1
                 joints.answer[a, 0] = rows.gradient[e, 0] * inverse_mass[p]
                 joints.answer[a, 1] = rows.gradient[e, 1] * inverse_mass[p]
@@ -48,9 +48,9 @@ def load_answers(body: int, span: Span, system: System, joints: Joints, row: Slo
 
 
 @inner_kernel
-def prepare_joints(touch: Touch) -> None:
+def prepare_joints(workspace: IslandWorkspace) -> None:
     """Responses of joints, and their velocities without them and without contacts."""
-    islands, joints, rows = touch.islands, touch.delassus.joints, touch.delassus.joints.rows
+    islands, joints, rows = workspace.islands, workspace.delassus.joints, workspace.delassus.joints.rows
     couple_joints(joints)
     for k in range(rows.limit.shape[0]):
         u = 0.0
@@ -65,30 +65,30 @@ def prepare_joints(touch: Touch) -> None:
 
 
 @inner_kernel
-def island_of_joint(k: int, touch: Touch) -> int:
+def island_of_joint(k: int, workspace: IslandWorkspace) -> int:
     """The island that a joint acts in."""
-    islands, joints = touch.islands, touch.delassus.joints
+    islands, joints = workspace.islands, workspace.delassus.joints
     if joints.body_first[k] < joints.body_first[k + 1]:
         return islands.island[islands.number[joints.body[joints.body_first[k]]]]
     return islands.island[islands.member[joints.rows.particle[joints.rows.first[k]]]]
 
 
 @inner_kernel
-def fails_driven(touch: Touch) -> bool:
+def fails_driven(workspace: IslandWorkspace) -> bool:
     """Whether an island fails the energy test in which a joint acts."""
-    limit = touch.delassus.joints.rows.limit
+    limit = workspace.delassus.joints.rows.limit
     found = False
     for k in range(limit.shape[0]):
-        found = found or (limit[k] > 0.0 and touch.islands.fails[island_of_joint(k, touch)])
+        found = found or (limit[k] > 0.0 and workspace.islands.fails[island_of_joint(k, workspace)])
     return found
 
 
 @inner_kernel
-def release_joints(touch: Touch) -> None:
+def release_joints(workspace: IslandWorkspace) -> None:
     """Let joints of islands that fail begin with no impulse."""
-    rows = touch.delassus.joints.rows
+    rows = workspace.delassus.joints.rows
     for k in range(rows.limit.shape[0]):
-        if rows.limit[k] > 0.0 and touch.islands.fails[island_of_joint(k, touch)]:
+        if rows.limit[k] > 0.0 and workspace.islands.fails[island_of_joint(k, workspace)]:
             rows.impulse[k] = 0.0
 
 
@@ -99,6 +99,6 @@ def work_of_joints(span: Span, rows: Rows, push: Floats) -> float:
     total = 0.0
     for r in range(span.first_row, span.last_row):
         p = rows.particle[r]
-        total += push[p, 0] * (rows.start[r, 0] + rows.trial[r, 0])
-        total += push[p, 1] * (rows.start[r, 1] + rows.trial[r, 1])
+        total += push[p, 0] * (rows.start[r, 0] + rows.v[r, 0])
+        total += push[p, 1] * (rows.start[r, 1] + rows.v[r, 1])
     return 0.5 * total

@@ -1,6 +1,6 @@
-"""Layout of the direct solver's system: what springs and constraints join, in what order particles are eliminated.
+"""Layout of the direct solver's system: which rows springs and constraints join, and the order of elimination.
 
-Symbolic work alone: made anew when topology or pins change, kept on the World meanwhile, no part of its state.
+Symbolic work alone: made again when topology or pins change, kept on the World meanwhile, no part of its state.
 """
 
 from collections.abc import Callable
@@ -14,7 +14,15 @@ from sandbox.physics.components import label_bodies
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import bundle
 from sandbox.physics.joints.limited_springs import unlimited_active
-from sandbox.physics.solvers.direct.system import SPIN_NUMBERS, Bodies, Constraints, Goals, Rows, Springs, System
+from sandbox.physics.solvers.direct.system import (
+    SPIN_NUMBERS,
+    Bodies,
+    Constraints,
+    Rows,
+    ShapeMatchGroups,
+    Springs,
+    System,
+)
 from sandbox.physics.solvers.linear.dissection import Dissection, dissect_bodies, make_fronts, spring_places
 from sandbox.physics.solvers.linear.fronts import Fronts
 from sandbox.physics.solvers.linear.minimum_degree import (
@@ -25,7 +33,7 @@ from sandbox.physics.solvers.linear.minimum_degree import (
     minimum_degree,
     update_targets,
 )
-from sandbox.physics.solvers.linear.parallel import hire
+from sandbox.physics.solvers.linear.parallel import start_helper
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix
 from sandbox.physics.untangling.inversion import Jellies, group_triangles
 from sandbox.physics.untangling.triangle_clamp import ClampedTriangles, new_triangles
@@ -54,13 +62,13 @@ class SystemLayout:
 
 
 def layout_of(world: World) -> SystemLayout:
-    """The layout of a world's system, made anew where topology or pins have changed since the last step."""
+    """The layout of a world's system, made again after a change of topology or pins."""
     return world.derived(_hired_layout)
 
 
 def _hired_layout(world: World) -> SystemLayout:
     layout = make_layout(world)
-    hire(layout, layout.system.fronts, layout.system.rows.change)
+    start_helper(layout, layout.system.fronts, layout.system.rows.delta_v)
     return layout
 
 
@@ -85,16 +93,18 @@ def make_layout(world: World) -> SystemLayout:
     kind = np.where(unlimited_active(world), world.law, -1).astype(np.int64)
     a, b = world.particle_a.astype(np.int64), world.particle_b.astype(np.int64)
     chosen = np.flatnonzero((kind == LAW_NISSEN) & (free[a] | free[b]))
-    parts = _choose_constraints(world, free)
+    picked = _choose_constraints(world, free)
     used = np.zeros(world.particle_count, dtype=np.bool_)
-    used[a[chosen]] = used[b[chosen]] = used[parts.particle] = True
+    used[a[chosen]] = used[b[chosen]] = used[picked.particle] = True
     nodes = np.flatnonzero(used & free)
     anchors = np.flatnonzero(used & ~free)
     # Rows before the elimination order is known; anchors come after every free particle, in any order.
     index = np.full(world.particle_count, -1, dtype=np.int64)
     index[np.concatenate([nodes, anchors])] = np.arange(len(nodes) + len(anchors))
     end_a, end_b = index[a[chosen]], index[b[chosen]]
-    link_a, link_b = (np.concatenate([end, more]) for end, more in zip((end_a, end_b), index[parts.links], strict=True))
+    link_a, link_b = (
+        np.concatenate([end, more]) for end, more in zip((end_a, end_b), index[picked.links], strict=True)
+    )
     links = np.flatnonzero((link_a < len(nodes)) & (link_b < len(nodes)))
     order, label, columns, large = _eliminate(len(nodes), link_a[links], link_b[links], world.origin[nodes])
     rank = np.arange(len(nodes) + len(anchors))
@@ -110,9 +120,9 @@ def make_layout(world: World) -> SystemLayout:
     in_front = np.append(fronts.of_row, -1)[np.minimum(low, len(nodes))] >= 0
     grouped = np.lexsort((np.where(in_front, low, 0), spring_body))
     matrix, place = lay_out_matrix(len(nodes), columns, rank, fronts)
-    constraints, constraint_body = _lay_out_constraints(parts, rank[index[parts.particle]], body_number, place)
+    constraints, constraint_body = _lay_out_constraints(picked, rank[index[picked.particle]], body_number, place)
     row_a, row_b, spring_body = row_a[grouped], row_b[grouped], spring_body[grouped]
-    held = spring_body[np.maximum(row_a, row_b) >= len(nodes)], constraint_body[_anchored(constraints, len(nodes))]
+    anchoring = spring_body[np.maximum(row_a, row_b) >= len(nodes)], constraint_body[_anchored(constraints, len(nodes))]
     rows = _lay_out_rows(np.concatenate([nodes[order], anchors]))
     triangles = _triangles_among(constraints, world)
     goals = _lay_out_goals(constraints, triangles, constraint_body, len(first_rows), world)
@@ -122,7 +132,7 @@ def make_layout(world: World) -> SystemLayout:
             nodes[body_of_row[first_rows]],
             spring_body,
             constraint_body,
-            held,
+            anchoring,
             _pivots(spring_body, np.maximum(row_a, row_b), constraint_body, constraints, len(nodes), len(first_rows)),
             len(nodes),
         ),
@@ -230,13 +240,13 @@ def _links(start: Slots, particle: Slots, free: NDArray[np.bool_]) -> Slots:
 
 
 def _lay_out_constraints(
-    parts: _Chosen, corner_row: Slots, body_of_row: Slots, place: Callable[[Slots, Slots], Slots]
+    picked: _Chosen, corner_row: Slots, body_of_row: Slots, place: Callable[[Slots, Slots], Slots]
 ) -> tuple[Constraints, Slots]:
     """The constraints, grouped by body, ready for a step, and the body of each, ascending.
 
     corner_row (q,): the row of each corner. place: the block that two rows share.
     """
-    count, sizes = len(parts.slot), np.diff(parts.start)
+    count, sizes = len(picked.slot), np.diff(picked.start)
     owner = np.repeat(np.arange(count), sizes)
     lowest = np.full(count, np.iinfo(np.int64).max)
     np.minimum.at(lowest, owner, corner_row)
@@ -252,8 +262,13 @@ def _lay_out_constraints(
     for side in range(3):
         block[narrow, side] = place(three[:, side], three[:, (side + 1) % 3])
     wide, most = _number_wide(narrow, body[grouped])
-    given = {"slot": parts.slot[grouped], "kind": parts.kind[grouped], "first": first, "row": row}
-    given |= {"corner": parts.corner[corners], "block": block, "wide": wide}
+    given = {
+        "slot": picked.slot[grouped],
+        "kind": picked.kind[grouped],
+        "first": first,
+        "row": row,
+    }
+    given |= {"corner": picked.corner[corners], "block": block, "wide": wide}
     shapes = {"rest": (count, 2), "weight": len(row), "scale": most}
     shapes |= {name: (len(row), 2) for name in ("place", "gradient", "spare")}
     shapes |= {"response": (most, len(body_of_row) if most else 0, 2)}
@@ -297,18 +312,18 @@ def _lay_out_bodies(
     lowest: Slots,
     spring_body: Slots,
     constraint_body: Slots,
-    held: tuple[Slots, Slots],
+    anchoring: tuple[Slots, Slots],
     pivot: Slots,
     free_count: int,
 ) -> Bodies:
-    """The bodies; held: those of springs and constraints that something pinned holds; pivot: see _pivots."""
+    """The bodies; anchoring: those of springs and constraints with a pinned end; pivot: see _pivots."""
     count = len(first_rows)
     every_body = np.arange(count + 1)
     scratch = (*np.zeros((4, count), dtype=np.bool_), *np.zeros((3, count)), np.zeros((count, SPIN_NUMBERS)))
     return Bodies(
         np.append(first_rows, free_count), np.searchsorted(spring_body, every_body),
         np.searchsorted(constraint_body, every_body), lowest, pivot,
-        np.isin(every_body[:-1], np.concatenate(held)), *scratch,
+        np.isin(every_body[:-1], np.concatenate(anchoring)), *scratch,
     )  # fmt: skip
 
 
@@ -344,14 +359,16 @@ def _triangles_among(constraints: Constraints, world: World) -> _Triangles:
     return _Triangles(chosen, corners, rows, group_triangles(rows, world.constraint_rest[constraints.slot[chosen], 1]))
 
 
-def _lay_out_goals(constraints: Constraints, triangles: _Triangles, body: Slots, bodies: int, world: World) -> Goals:
+def _lay_out_goals(
+    constraints: Constraints, triangles: _Triangles, body: Slots, bodies: int, world: World
+) -> ShapeMatchGroups:
     """The jellies among a world's constraints; body (t,): of each constraint."""
     count, chosen, jellies = len(constraints.slot), triangles.constraint, triangles.jellies
     group, member = np.full(count, -1, dtype=np.int64), np.full((count, 3), -1, dtype=np.int64)
     group[chosen], member[chosen] = jellies.group, jellies.member
     # Constraints lie by body, and so do their groups, in the order of the first of each.
     sample = chosen[jellies.first]
-    return Goals(
+    return ShapeMatchGroups(
         of_body=np.searchsorted(body[sample], np.arange(bodies + 1)),
         start=jellies.start,
         row=jellies.particle,
@@ -369,10 +386,10 @@ def _lay_out_goals(constraints: Constraints, triangles: _Triangles, body: Slots,
 
 
 def _lay_out_triangles(
-    rows: Rows, constraints: Constraints, triangles: _Triangles, goals: Goals, world: World
+    rows: Rows, constraints: Constraints, triangles: _Triangles, goals: ShapeMatchGroups, world: World
 ) -> ClampedTriangles:
     """The triangles of all jellies, over the rows."""
-    motion = rows.position, rows.trial, rows.mass, rows.inverse_mass
+    motion = rows.position, rows.v, rows.mass, rows.inverse_mass
     collides = world.collides[rows.particle]
     return new_triangles(
         triangles.constraint, triangles.row, triangles.jellies, constraints.rest, motion, collides, goals.inverted,

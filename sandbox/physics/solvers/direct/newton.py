@@ -21,31 +21,31 @@ NEWTON_TOLERANCE = 1e-6
 def _start(span: Span, system: System, h: float) -> float:
     # From the best of the candidate, v* and all at rest, none of which turns over a triangle; f there.
     rows = system.rows
-    copy(span, rows.trial, rows.best)
+    copy(span, rows.v, rows.v_best)
     lowest = objective(span, system, h)
-    copy(span, rows.target, rows.trial)
+    copy(span, rows.v_star, rows.v)
     hold_triangles(span, system, h)
     value = objective(span, system, h)
     if not lowest <= value:
         lowest = value
-        copy(span, rows.trial, rows.best)
-    scale(span, 0.0, rows.trial)
+        copy(span, rows.v, rows.v_best)
+    scale(span, 0.0, rows.v)
     value = objective(span, system, h)
     if lowest <= value:
-        copy(span, rows.best, rows.trial)
+        copy(span, rows.v_best, rows.v)
         value = lowest
     return value
 
 
 @inner_kernel
 def minimise(span: Span, system: System, h: float) -> None:
-    """Bring a body's `trial` towards the minimum of f, no triangle turned over, and its springs' tension too."""
+    """Bring a body's `v` towards the minimum of f, no triangle turned over, and its springs' tension too."""
     # Newton's method on f with A = M + sum [K n' n'^T + h^2 max(0, t) / l' (I - n' n'^T)].
     rows = system.rows
     value = _start(span, system, h)
     for _ in range(NEWTON_ROUNDS):
         linearise(span, system, h, 1.0, 0.0)
-        copy(span, rows.trial, rows.best)
+        copy(span, rows.v, rows.v_best)
         solve_linear(span, system)
         descent = slope(span, system)
         if not descent < 0.0:
@@ -54,8 +54,8 @@ def minimise(span: Span, system: System, h: float) -> None:
         better = False
         for _halving in range(NEWTON_HALVINGS):
             for r in range(span.first_row, span.last_row):
-                rows.trial[r, 0] = rows.best[r, 0] + length * rows.change[r, 0]
-                rows.trial[r, 1] = rows.best[r, 1] + length * rows.change[r, 1]
+                rows.v[r, 0] = rows.v_best[r, 0] + length * rows.delta_v[r, 0]
+                rows.v[r, 1] = rows.v_best[r, 1] + length * rows.delta_v[r, 1]
             hold_triangles(span, system, h)
             reached = objective(span, system, h)
             if reached <= value + ARMIJO * length * descent:
@@ -64,7 +64,7 @@ def minimise(span: Span, system: System, h: float) -> None:
                 break
             length *= 0.5
         if not better:
-            copy(span, rows.best, rows.trial)
+            copy(span, rows.v_best, rows.v)
             break
         if not -descent > NEWTON_TOLERANCE * value:
             break

@@ -123,7 +123,7 @@ def _find_spin(body: int, span: Span, system: System) -> float:
     if pivot >= 0:
         x = rows.position[pivot, 0]
         y = rows.position[pivot, 1]
-        if rows.target[pivot, 0] != 0.0 or rows.target[pivot, 1] != 0.0:
+        if rows.v_star[pivot, 0] != 0.0 or rows.v_star[pivot, 1] != 0.0:
             return 0.0
     elif pivot == -1:
         for r in range(span.first_row, span.last_row):
@@ -131,8 +131,8 @@ def _find_spin(body: int, span: Span, system: System) -> float:
             total += m
             x += m * rows.position[r, 0]
             y += m * rows.position[r, 1]
-            u += m * rows.target[r, 0]
-            v += m * rows.target[r, 1]
+            u += m * rows.v_star[r, 0]
+            v += m * rows.v_star[r, 1]
         u /= total
         v /= total
         x /= total
@@ -144,7 +144,7 @@ def _find_spin(body: int, span: Span, system: System) -> float:
         dx = rows.position[r, 0] - x
         dy = rows.position[r, 1] - y
         inertia += m * (dx * dx + dy * dy)
-        after += m * (dx * (rows.target[r, 1] - v) - dy * (rows.target[r, 0] - u))
+        after += m * (dx * (rows.v_star[r, 1] - v) - dy * (rows.v_star[r, 0] - u))
         before += m * (dx * (rows.start[r, 1] - v) - dy * (rows.start[r, 0] - u))
     spin[body, SPIN_X] = x
     spin[body, SPIN_Y] = y
@@ -183,13 +183,13 @@ def begin_turn(body: int, span: Span, system: System, state: State, arc: float, 
             dy = rows.position[r, 1] - spin.y
             x = rate * dx - turn * dy
             y = rate * dy + turn * dx
-            for vector in (rows.start, rows.target, rows.aim):
+            for vector in (rows.start, rows.v_star, rows.v_star_matched):
                 vector[r, 0] += x
                 vector[r, 1] += y
-            x += rows.trial[r, 0] - spin.u
-            y += rows.trial[r, 1] - spin.v
-            rows.trial[r, 0] = spin.u + (cosine * x - sine * y)
-            rows.trial[r, 1] = spin.v + (sine * x + cosine * y)
+            x += rows.v[r, 0] - spin.u
+            y += rows.v[r, 1] - spin.v
+            rows.v[r, 0] = spin.u + (cosine * x - sine * y)
+            rows.v[r, 1] = spin.v + (sine * x + cosine * y)
     find_slow(span, rows, state)
 
 
@@ -218,17 +218,17 @@ def _turn_on(span: Span, rows: Rows, state: State, sine: float, cosine: float) -
 
 @inner_kernel
 def kinetic_at_end(body: int, span: Span, system: System, h: float) -> float:
-    """Kinetic energy of a body [J] by `trial`, as it is at the end of the step."""
+    """Kinetic energy of a body [J] by `v`, as it is at the end of the step."""
     rows = system.rows
     pivot, spared = system.bodies.pivot[body], system.bodies.spared[body]
     spin = spin_of_body(body, system)
     if not spin.inertia > 0.0:
-        return kinetic(span, rows.mass, rows.trial)
+        return kinetic(span, rows.mass, rows.v)
     doubled = total = u = v = inertia = momentum = outward = 0.0
     for r in range(span.first_row, span.last_row):
         m = rows.mass[r]
-        vx = rows.trial[r, 0]
-        vy = rows.trial[r, 1]
+        vx = rows.v[r, 0]
+        vy = rows.v[r, 1]
         dx = rows.position[r, 0] - spin.x + h * vx
         dy = rows.position[r, 1] - spin.y + h * vy
         doubled += m * (vx * vx + vy * vy)
@@ -314,7 +314,7 @@ def torque_of(span: Span, rows: Rows, spin: Spin, impulse: Floats) -> float:
 
 @inner_kernel
 def hold_spin(span: Span, rows: Rows, spin: Spin, pivots: bool, aims: bool, momentum: float, h: float) -> None:
-    """Turn where `trial` leads to, as a whole, until it has this angular momentum: nothing within a body turns it.
+    """Turn where `v` leads to, as a whole, until it has this angular momentum: nothing within a body turns it.
 
     Directions taken ahead do, as does the minimum of f. pivots: it turns about a pin. aims: the next linear solve
     starts from there, and is to stay there.
@@ -330,8 +330,8 @@ def hold_spin(span: Span, rows: Rows, spin: Spin, pivots: bool, aims: bool, mome
         m = rows.mass[r]
         dx = rows.position[r, 0] - spin.x
         dy = rows.position[r, 1] - spin.y
-        vx = rows.trial[r, 0] - spin.u
-        vy = rows.trial[r, 1] - spin.v
+        vx = rows.v[r, 0] - spin.u
+        vy = rows.v[r, 1] - spin.v
         missing -= m * (dx * vy - dy * vx)
         across += h * m * (dx * vx + dy * vy)
         total += m
@@ -351,18 +351,18 @@ def hold_spin(span: Span, rows: Rows, spin: Spin, pivots: bool, aims: bool, mome
         ahead = 0.0
     turn = missing / across
     for r in range(span.first_row, span.last_row):
-        dx = rows.position[r, 0] - spin.x + ahead * (rows.trial[r, 0] - spin.u - u)
-        dy = rows.position[r, 1] - spin.y + ahead * (rows.trial[r, 1] - spin.v - v)
-        rows.trial[r, 0] -= turn * dy
-        rows.trial[r, 1] += turn * dx
+        dx = rows.position[r, 0] - spin.x + ahead * (rows.v[r, 0] - spin.u - u)
+        dy = rows.position[r, 1] - spin.y + ahead * (rows.v[r, 1] - spin.v - v)
+        rows.v[r, 0] -= turn * dy
+        rows.v[r, 1] += turn * dx
         if aims:
-            rows.aim[r, 0] -= turn * dy
-            rows.aim[r, 1] += turn * dx
+            rows.v_star_matched[r, 0] -= turn * dy
+            rows.v_star_matched[r, 1] += turn * dx
 
 
 @inner_kernel
 def damp_within(body: int, span: Span, system: System, found: Floats, share: float, h: float) -> None:
-    """Leave in `trial` a share of what moves within a body, beside the rigid motion of its momenta.
+    """Leave in `v` a share of what moves within a body, beside the rigid motion of its momenta.
 
     found (n, 2) [m/s]: the velocities whose momenta those are.
     """
@@ -381,7 +381,7 @@ def damp_within(body: int, span: Span, system: System, found: Floats, share: flo
     else:
         u *= 1.0 / total
         v *= 1.0 / total
-    halve_within(span, rows, Spin(spin.x, spin.y, u, v, spin.inertia, momentum), share, h, rows.trial)
+    halve_within(span, rows, Spin(spin.x, spin.y, u, v, spin.inertia, momentum), share, h, rows.v)
 
 
 @inner_kernel

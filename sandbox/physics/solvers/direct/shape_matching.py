@@ -1,4 +1,5 @@
-"""Shape matching of jellies out of shape: what springs and areas cannot find alone, since a step up lies before it.
+"""Shape matching brings tangled jellies back to their form, which springs and areas cannot find: the energy rises on
+the way.
 
 While a jelly is inverted or wound (inversion.py), each of its particles is joined by a spring of the jelly's own Cs
 and Cd to its target: its place in the form, moved and turned to fit the particles (Mueller and others 2005). Those push
@@ -9,7 +10,7 @@ import math
 
 from sandbox.physics.equation import implicit_masses
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.solvers.direct.system import Goals, Rows, Span, System
+from sandbox.physics.solvers.direct.system import Rows, ShapeMatchGroups, Span, System
 from sandbox.physics.untangling.inversion import is_out_of_shape, is_wound, wind
 
 # No turn fits where the fit of the best is below this share [1] of what it is to itself: in one point, or a square
@@ -55,7 +56,7 @@ def find_inverted(body: int, span: Span, system: System) -> tuple[bool, bool]:
 
 
 @inner_kernel
-def _fit(g: int, rows: Rows, goals: Goals) -> tuple[float, float, float, float, float, float, float, float]:
+def _fit(g: int, rows: Rows, goals: ShapeMatchGroups) -> tuple[float, float, float, float, float, float, float, float]:
     # Centres of a jelly and of its form, its velocity, and cosine and sine of the turn that fits best; 0, 0: none.
     mass = 0.0
     x = y = p = q = u = v = 0.0
@@ -67,8 +68,8 @@ def _fit(g: int, rows: Rows, goals: Goals) -> tuple[float, float, float, float, 
         y += m * rows.position[r, 1]
         p += m * goals.form[i, 0]
         q += m * goals.form[i, 1]
-        u += m * rows.target[r, 0]
-        v += m * rows.target[r, 1]
+        u += m * rows.v_star[r, 0]
+        v += m * rows.v_star[r, 1]
     x /= mass
     y /= mass
     p /= mass
@@ -92,7 +93,9 @@ def _fit(g: int, rows: Rows, goals: Goals) -> tuple[float, float, float, float, 
 
 @inner_kernel
 def match_shape(body: int, span: Span, system: System, h: float) -> bool:
-    """Join the jellies of a body that are out of shape to their form: into `inertia` and `aim`; whether there are any.
+    """Join the jellies of a body that are out of shape to their form: into `inertia` and `v_star_matched`.
+
+    True: there are such jellies.
 
     K |v' - w|^2 / 2 with w = the jelly's velocity - Cs / Cd times the way from the target to the particle / h.
     """
@@ -121,8 +124,8 @@ def match_shape(body: int, span: Span, system: System, h: float) -> bool:
             wy = v - share * (rows.position[r, 1] - (y + ex * sine + ey * cosine))
             mass = stiff * rows.mass[r]
             total = rows.inertia[r] + mass
-            rows.aim[r, 0] = (rows.inertia[r] * rows.aim[r, 0] + mass * wx) / total
-            rows.aim[r, 1] = (rows.inertia[r] * rows.aim[r, 1] + mass * wy) / total
+            rows.v_star_matched[r, 0] = (rows.inertia[r] * rows.v_star_matched[r, 0] + mass * wx) / total
+            rows.v_star_matched[r, 1] = (rows.inertia[r] * rows.v_star_matched[r, 1] + mass * wy) / total
             rows.inertia[r] = total
     return matched
 
@@ -132,5 +135,5 @@ def release_shape(span: Span, rows: Rows) -> None:
     """Join the rows of a body to nothing: their inertia is their mass, and they aim at v*."""
     for r in range(span.first_row, span.last_row):
         rows.inertia[r] = rows.mass[r]
-        rows.aim[r, 0] = rows.target[r, 0]
-        rows.aim[r, 1] = rows.target[r, 1]
+        rows.v_star_matched[r, 0] = rows.v_star[r, 0]
+        rows.v_star_matched[r, 1] = rows.v_star[r, 1]

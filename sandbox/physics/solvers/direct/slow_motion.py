@@ -1,4 +1,4 @@
-"""Directions of springs are taken ahead, by the fast part of velocities: what is slow then keeps its energy.
+"""Directions of springs are taken ahead, by the fast part of velocities: slow motion then keeps its energy.
 
     s += c,  c = SLOW_SHARE (v' - s);   r += SLOW_SHARE (c - r)                   per step (integrate.py)
     directions at  x + h FAST [(2 - SLOW_SHARE) SLOW_SHARE (v' - s) - (1 - SLOW_SHARE) r]  =  x + h AHEAD (v' - slow)

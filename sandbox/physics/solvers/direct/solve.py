@@ -29,7 +29,7 @@ _STATE = attrgetter(*State._fields)
 
 @kernel
 def _solve_bodies(
-    lent_system: Any, lent_state: Any, lent_inputs: Any, start_length: Floats, ease: float, parts: int, h: float
+    lent_system: Any, lent_state: Any, lent_inputs: Any, start_length: Floats, ease: float, auto_substeps: int, h: float
 ) -> None:  # fmt: skip
     # Bring all bodies to the end of a step of h [s], where nothing touches any.
     (system,) = contents(lent_system)
@@ -40,7 +40,7 @@ def _solve_bodies(
         ease,
     )  # fmt: skip
     load_rows(system, state, inputs, h)
-    step_bodies(system, state, inputs, False, parts, h)
+    step_bodies(system, state, inputs, False, auto_substeps, h)
 
 
 @dataclass(eq=False)
@@ -73,7 +73,7 @@ def settle(world: World, moves: bool, h: float) -> None:
 spring_constant = implicit_spring_constant
 
 
-def expect(world: World) -> None:
+def precompute(world: World) -> None:
     """Order and lay out the system that this solver makes of a world."""
     layout_of(world)
     world.derived(_lent)
@@ -82,16 +82,19 @@ def expect(world: World) -> None:
 def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None:
     """Bring the velocities to the end of a substep; slow_velocity, energy_bank and tension go with them.
 
-    contacts: what touches, with the impulses that it brings along and then has; None: nothing does.
+    contacts: the contacts of the substep, with impulses to start from, which the solver replaces; None: nothing
+    touches.
     """
     layout, lent, joints = layout_of(world), world.derived(_lent), joints_of(world)
     if layout.has_hooke:
         apply_explicit(world, layout.hooke, substep)
-    inputs, start_length = lent.substep.lend(substep), substep.before.rest_length
-    parts = substep.substeps if world.settings.substeps == AUTO else 0
+    inputs, start_length = lent.substep.lend(substep), substep.step_start.rest_length
+    auto_substeps = substep.substeps if world.settings.substeps == AUTO else 0
     if contacts is not None or (joints is not None and joints.on):
-        from sandbox.physics.solvers.direct.island_solve import solve_touched
+        from sandbox.physics.solvers.direct.island_solve import solve_islands
 
-        solve_touched(contacts, world, layout.lent, lent.state, inputs, start_length, substep.ease, parts, substep.h)
+        solve_islands(
+            contacts, world, layout.lent, lent.state, inputs, start_length, substep.ease, auto_substeps, substep.h
+        )
     else:
-        _solve_bodies(layout.lent, lent.state, inputs, start_length, substep.ease, parts, substep.h)
+        _solve_bodies(layout.lent, lent.state, inputs, start_length, substep.ease, auto_substeps, substep.h)

@@ -6,7 +6,7 @@ minimum over v' of
     f(v') = 1/2 |v' - v*|^2_M + sum over springs of [K (x' - x)^2 + K beta (x'^2 - (x' - x)^2)] / (2 h^2)
 
 v* = the velocities after gravity, x' = |d + h (v'_b - v'_a)| - L. Here K is `stiff`, K beta is `restoring`, v* is
-`target`, v' is `trial`. The Jacobian of a spring's length is its direction n, at its ends with opposite signs.
+`v_star`, v' is `v`. The Jacobian of a spring's length is its direction n, at its ends with opposite signs.
 """
 
 import math
@@ -32,10 +32,13 @@ ROUNDING_MISFIT = 1e-10
 
 
 @inner_kernel
-def load_springs(span: Span, system: System, state: State, inputs: Inputs, parts: int, h: float) -> tuple[bool, float]:
+def load_springs(
+    span: Span, system: System, state: State, inputs: Inputs, auto_substeps: int, h: float
+) -> tuple[bool, float]:
     """Bring the springs of a body into their scratch; whether any has Cs > Cd.
 
-    Also their energy [J] once pinned particles have moved. parts: 0, or those of a tick that chooses them.
+    Also their energy [J] once pinned particles have moved. auto_substeps: those of a tick that chooses their number,
+    else 0.
     """
     rows, springs = system.rows, system.springs
     free_count = system.matrix.diagonal.shape[0]
@@ -47,15 +50,15 @@ def load_springs(span: Span, system: System, state: State, inputs: Inputs, parts
         b = springs.row_b[k]
         mass = reduced_mass(rows.inverse_mass[a], rows.inverse_mass[b])
         stiff, restoring = implicit_masses(inputs.stiffness[s], inputs.damping[s], mass)
-        springs.stiff[k] = stiff
-        springs.restoring[k] = restoring
+        springs.K[k] = stiff
+        springs.K_beta[k] = restoring
         if restoring > stiff:
             underdamped = True
-        springs.norm[k] = restoring
-        if parts > 1:
+        springs.k_h2[k] = restoring
+        if auto_substeps > 1:
             # Of the whole tick, to the bit: that of a part has other digits where Cd is near 1.
             _, whole = implicit_masses(state.stiffness[s], state.damping[s], mass)
-            springs.norm[k] = whole / (parts * parts * inputs.ease)
+            springs.k_h2[k] = whole / (auto_substeps * auto_substeps * inputs.ease)
         rest = state.rest_length[s]
         springs.rest[k] = rest
         springs.start_rest[k] = inputs.start_length[s]
@@ -66,17 +69,17 @@ def load_springs(span: Span, system: System, state: State, inputs: Inputs, parts
         springs.error[k] = length - rest
         springs.tension[k] = state.tension[s]
         if a >= free_count or b >= free_count:
-            dx = rows.moved[b, 0] - rows.moved[a, 0]
-            dy = rows.moved[b, 1] - rows.moved[a, 1]
+            dx = rows.x_moved[b, 0] - rows.x_moved[a, 0]
+            dy = rows.x_moved[b, 1] - rows.x_moved[a, 1]
             length = math.sqrt(dx * dx + dy * dy)
         error = (length - rest) / h
-        moved += 0.5 * springs.norm[k] * error * error
+        moved += 0.5 * springs.k_h2[k] * error * error
     return underdamped, moved
 
 
 @inner_kernel
 def linearise_springs(span: Span, system: System, h: float, ahead: float, behind: float) -> None:
-    """Directions, geometric stiffness and impulses of a body's springs for one linear solve about `trial`.
+    """Directions, geometric stiffness and impulses of a body's springs for one linear solve about `v`.
 
     Directions are those at x + h (ahead v' - behind s). behind = 0 is Newton's method on f; else the geometric
     stiffness comes from the springs' `tension` [N s], and never exceeds K.
@@ -87,8 +90,8 @@ def linearise_springs(span: Span, system: System, h: float, ahead: float, behind
         b = springs.row_b[k]
         dx = rows.position[b, 0] - rows.position[a, 0]
         dy = rows.position[b, 1] - rows.position[a, 1]
-        ux = rows.trial[b, 0] - rows.trial[a, 0]
-        uy = rows.trial[b, 1] - rows.trial[a, 1]
+        ux = rows.v[b, 0] - rows.v[a, 0]
+        uy = rows.v[b, 1] - rows.v[a, 1]
         px = dx + h * (ahead * ux - behind * (rows.slow[b, 0] - rows.slow[a, 0]))
         py = dy + h * (ahead * uy - behind * (rows.slow[b, 1] - rows.slow[a, 1]))
         growth = _growth(dx, dy, ux, uy, springs.length[k], h)
@@ -101,8 +104,8 @@ def linearise_springs(span: Span, system: System, h: float, ahead: float, behind
         nx, ny, length = direction(px, py, ux, uy)
         springs.normal[k, 0] = nx
         springs.normal[k, 1] = ny
-        stiff = springs.stiff[k]
-        impulse = implicit_impulse(stiff, springs.restoring[k], growth, springs.error[k], h)
+        stiff = springs.K[k]
+        impulse = implicit_impulse(stiff, springs.K_beta[k], growth, springs.error[k], h)
         springs.impulse[k] = impulse
         springs.predicted[k] = springs.error[k] + h * growth
         springs.tangential[k] = 0.0
@@ -140,7 +143,7 @@ def assemble_springs(span: Span, system: System) -> None:
     springs, matrix = system.springs, system.matrix
     free_count = matrix.diagonal.shape[0]
     for k in range(span.first_spring, span.last_spring):
-        xx, xy, yy = _block(springs.normal[k, 0], springs.normal[k, 1], springs.stiff[k], springs.transverse[k])
+        xx, xy, yy = _block(springs.normal[k, 0], springs.normal[k, 1], springs.K[k], springs.transverse[k])
         a = springs.row_a[k]
         b = springs.row_b[k]
         if a < free_count:
@@ -168,7 +171,7 @@ def assemble_springs_in_fronts(span: Span, system: System) -> None:
     diagonal = fronts.diagonal
     width = fronts.row_width
     for k in range(span.first_spring, span.last_spring):
-        xx, xy, yy = _block(springs.normal[k, 0], springs.normal[k, 1], springs.stiff[k], springs.transverse[k])
+        xx, xy, yy = _block(springs.normal[k, 0], springs.normal[k, 1], springs.K[k], springs.transverse[k])
         a = springs.row_a[k]
         b = springs.row_b[k]
         if a < free_count:
@@ -192,16 +195,16 @@ def push_springs(span: Span, system: System) -> None:
         a = springs.row_a[k]
         b = springs.row_b[k]
         if a < free_count:
-            rows.change[a, 0] -= jx
-            rows.change[a, 1] -= jy
+            rows.delta_v[a, 0] -= jx
+            rows.delta_v[a, 1] -= jy
         if b < free_count:
-            rows.change[b, 0] += jx
-            rows.change[b, 1] += jy
+            rows.delta_v[b, 0] += jx
+            rows.delta_v[b, 1] += jy
 
 
 @inner_kernel
 def update_springs(span: Span, system: System, h: float) -> tuple[float, float, bool]:
-    """Bring one body's springs to `trial`, which D has been added to: J = q - K n.(D_b - D_a), the like across, x'.
+    """Bring one body's springs to `v`, which D has been added to: J = q - K n.(D_b - D_a), the like across, x'.
 
     Returned are their energy [J] after the step, the largest difference between a length then and the length predicted,
     as a share of its length, and whether D wants refining.
@@ -218,28 +221,28 @@ def update_springs(span: Span, system: System, h: float) -> tuple[float, float, 
         ux = 0.0
         uy = 0.0
         if b < free_count:
-            ux += rows.change[b, 0]
-            uy += rows.change[b, 1]
+            ux += rows.delta_v[b, 0]
+            uy += rows.delta_v[b, 1]
         if a < free_count:
-            ux -= rows.change[a, 0]
-            uy -= rows.change[a, 1]
+            ux -= rows.delta_v[a, 0]
+            uy -= rows.delta_v[a, 1]
         nx = springs.normal[k, 0]
         ny = springs.normal[k, 1]
         u = nx * ux + ny * uy
         predicted = springs.predicted[k] + h * u
         springs.predicted[k] = predicted
-        taken = springs.stiff[k] * u
+        taken = springs.K[k] * u
         springs.impulse[k] -= taken
         springs.tangential[k] -= springs.transverse[k] * (nx * uy - ny * ux)
         before += abs(taken)
         after += abs(springs.impulse[k])
-        dx = rows.position[b, 0] - rows.position[a, 0] + h * (rows.trial[b, 0] - rows.trial[a, 0])
-        dy = rows.position[b, 1] - rows.position[a, 1] + h * (rows.trial[b, 1] - rows.trial[a, 1])
+        dx = rows.position[b, 0] - rows.position[a, 0] + h * (rows.v[b, 0] - rows.v[a, 0])
+        dy = rows.position[b, 1] - rows.position[a, 1] + h * (rows.v[b, 1] - rows.v[a, 1])
         rest = springs.rest[k]
         error = math.sqrt(dx * dx + dy * dy) - rest
         missed = abs(error - predicted)
         error /= h
-        energy += 0.5 * springs.norm[k] * error * error
+        energy += 0.5 * springs.k_h2[k] * error * error
         extent = rest + springs.length[k]
         # One of rest length 0 has no strain to be spared.
         if rest > 0.0 and extent > SHORTEST and missed > misfit * extent:
@@ -249,24 +252,24 @@ def update_springs(span: Span, system: System, h: float) -> tuple[float, float, 
 
 @inner_kernel
 def spring_objective(span: Span, system: System, h: float) -> float:
-    """1/2 |v' - v*|^2_M and the springs' part of f(v') of one body at `trial` [J]."""
+    """1/2 |v' - v*|^2_M and the springs' part of f(v') of one body at `v` [J]."""
     rows, springs = system.rows, system.springs
     total = 0.0
     for r in range(span.first_row, span.last_row):
-        ux = rows.trial[r, 0] - rows.target[r, 0]
-        uy = rows.trial[r, 1] - rows.target[r, 1]
+        ux = rows.v[r, 0] - rows.v_star[r, 0]
+        uy = rows.v[r, 1] - rows.v_star[r, 1]
         total += 0.5 * rows.mass[r] * (ux * ux + uy * uy)
     for k in range(span.first_spring, span.last_spring):
         a = springs.row_a[k]
         b = springs.row_b[k]
         dx = rows.position[b, 0] - rows.position[a, 0]
         dy = rows.position[b, 1] - rows.position[a, 1]
-        ux = rows.trial[b, 0] - rows.trial[a, 0]
-        uy = rows.trial[b, 1] - rows.trial[a, 1]
+        ux = rows.v[b, 0] - rows.v[a, 0]
+        uy = rows.v[b, 1] - rows.v[a, 1]
         growth = _growth(dx, dy, ux, uy, springs.length[k], h)
         error = springs.error[k] / h
         after = error + growth
-        total += 0.5 * (springs.stiff[k] * growth * growth + springs.restoring[k] * (after * after - growth * growth))
+        total += 0.5 * (springs.K[k] * growth * growth + springs.K_beta[k] * (after * after - growth * growth))
     return total
 
 
@@ -279,8 +282,8 @@ def spring_slope(span: Span, system: System) -> float:
     total = 0.0
     for r in range(span.first_row, span.last_row):
         total -= rows.mass[r] * (
-            (rows.target[r, 0] - rows.trial[r, 0]) * rows.change[r, 0]
-            + (rows.target[r, 1] - rows.trial[r, 1]) * rows.change[r, 1]
+            (rows.v_star[r, 0] - rows.v[r, 0]) * rows.delta_v[r, 0]
+            + (rows.v_star[r, 1] - rows.v[r, 1]) * rows.delta_v[r, 1]
         )
     for k in range(span.first_spring, span.last_spring):
         a = springs.row_a[k]
@@ -288,9 +291,9 @@ def spring_slope(span: Span, system: System) -> float:
         jx = springs.impulse[k] * springs.normal[k, 0]
         jy = springs.impulse[k] * springs.normal[k, 1]
         if a < free_count:
-            total += jx * rows.change[a, 0] + jy * rows.change[a, 1]
+            total += jx * rows.delta_v[a, 0] + jy * rows.delta_v[a, 1]
         if b < free_count:
-            total -= jx * rows.change[b, 0] + jy * rows.change[b, 1]
+            total -= jx * rows.delta_v[b, 0] + jy * rows.delta_v[b, 1]
     return total
 
 

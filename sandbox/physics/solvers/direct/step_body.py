@@ -1,4 +1,4 @@
-"""One body's step in the direct solver, where nothing touches it.
+"""One body's step in the direct solver, where no contact and no joint acts on it.
 
 A step is one linear solve with the springs' directions taken ahead of the present ones, less the slow part of the
 velocity: that damps fast vibration and leaves slow turning alone. It is taken only if the body's energy stays within
@@ -49,14 +49,14 @@ RIGID_ROUNDING = 1e-10
 
 @inner_kernel
 def open_body(
-    body: int, span: Span, system: System, state: State, inputs: Inputs, arc: float, parts: int, h: float
+    body: int, span: Span, system: System, state: State, inputs: Inputs, arc: float, auto_substeps: int, h: float
 ) -> None:
     """Load a body's springs and constraints, its energies and its bank, and match its shape where that is lost."""
     bodies, rows = system.bodies, system.rows
-    underdamped, moved = load(span, system, state, inputs, not bodies.anchored[body], parts, h)
+    underdamped, moved = load(span, system, state, inputs, not bodies.anchored[body], auto_substeps, h)
     bodies.underdamped[body] = underdamped
-    bodies.before[body] = kinetic(span, rows.mass, rows.target) + moved
-    bodies.held[body] = open_bank(body, span, system, state.energy_bank, moved, h)
+    bodies.energy0[body] = kinetic(span, rows.mass, rows.v_star) + moved
+    bodies.bank[body] = open_bank(body, span, system, state.energy_bank, moved, h)
     begin_turn(body, span, system, state, arc, h)
     bodies.inverted[body] = False
     bodies.matched[body] = False
@@ -73,26 +73,26 @@ def _take_candidate(body: int, span: Span, system: System, spin: Spin, h: float)
     rows, bodies = system.rows, system.bodies
     linearise(span, system, h, AHEAD, AHEAD)
     solve_linear(span, system)
-    held = 0.0
+    elastic = 0.0
     misfit = 0.0
     for _refinement in range(2):
         for r in range(span.first_row, span.last_row):
-            rows.trial[r, 0] += rows.change[r, 0]
-            rows.trial[r, 1] += rows.change[r, 1]
+            rows.v[r, 0] += rows.delta_v[r, 0]
+            rows.v[r, 1] += rows.delta_v[r, 1]
         hold_spin(span, rows, spin, bodies.pivot[body] >= 0, True, spin.momentum, h)
-        held, misfit, rounded = update(span, system, h)
+        elastic, misfit, rounded = update(span, system, h)
         if not rounded:
             break
         refine(span, system)
     keep_tension(span, system)
     taken = hold_triangles(span, system, h)
     if taken != AS_IT_WAS:
-        held = potential(span, system, rows.position, rows.trial, h, h)
+        elastic = potential(span, system, rows.position, rows.v, h, h)
         find_tension(span, system, h)
     if taken == JOINED:
         # So far from what is possible that it would stand still: f has to show the way.
         return math.inf, misfit
-    return kinetic_at_end(body, span, system, h) + held, misfit
+    return kinetic_at_end(body, span, system, h) + elastic, misfit
 
 
 @inner_kernel
@@ -105,11 +105,11 @@ def _solve_within(body: int, span: Span, system: System, spin: Spin, allowed: fl
         once = after
         within = solves > 0 and once <= allowed
         if within:
-            copy(span, rows.trial, rows.best)
+            copy(span, rows.v, rows.v_best)
         after, misfit = _take_candidate(body, span, system, spin, h)
         solves += 1
         if within and not after <= allowed:
-            copy(span, rows.best, rows.trial)
+            copy(span, rows.v_best, rows.v)
             find_tension(span, system, h)
             after = once
             break
@@ -120,30 +120,30 @@ def _solve_within(body: int, span: Span, system: System, spin: Spin, allowed: fl
             bodies.matched[body] = False
             solves = 0
             release_shape(span, rows)
-            copy(span, rows.target, rows.trial)
+            copy(span, rows.v_star, rows.v)
     return after
 
 
 @inner_kernel
 def step_body(body: int, span: Span, system: System, state: State, h: float) -> None:
-    """Bring a body that was opened to the end of a step of h [s], in `trial`, and its bank."""
+    """Bring a body that was opened to the end of a step of h [s], in `v`, and its bank."""
     bodies, rows = system.bodies, system.rows
-    before = bodies.before[body]
-    held = bodies.held[body]
-    allowed = before * (1.0 + ENERGY_ROUNDING) + held
+    energy0 = bodies.energy0[body]
+    bank = bodies.bank[body]
+    allowed = energy0 * (1.0 + ENERGY_ROUNDING) + bank
     spin = spin_of_body(body, system)
     after = _solve_within(body, span, system, spin, allowed, h)
     if not after <= allowed:
-        copy(span, rows.target, rows.aim)
+        copy(span, rows.v_star, rows.v_star_matched)
         minimise(span, system, h)
         hold_spin(span, rows, spin, bodies.pivot[body] >= 0, False, spin.momentum, h)
-        copy(span, rows.trial, rows.best)
+        copy(span, rows.v, rows.v_best)
         hold_triangles(span, system, h)
         after = body_energy(body, span, system, h)
         if not after <= allowed:
             after = _damp(body, span, system, spin, allowed, h)
     limit = bank_limit(body, system)
-    saved = held + before - after
+    saved = bank + energy0 - after
     # An inverted body keeps all that it lost for the way back to its form; one that grabs move, no more than others do.
     if saved > limit and not (bodies.inverted[body] and not bodies.anchored[body]):
         reserve(body, span, system, state, saved - limit)
@@ -158,17 +158,17 @@ def _damp(body: int, span: Span, system: System, spin: Spin, allowed: float, h: 
     rows = system.rows
     after = 0.0
     if spin.inertia > 0.0:
-        copy(span, rows.best, rows.change)
+        copy(span, rows.v_best, rows.delta_v)
         for _halving in range(INNER_HALVINGS):
-            halve_within(span, rows, spin, 0.5, h, rows.change)
-            copy(span, rows.change, rows.trial)
+            halve_within(span, rows, spin, 0.5, h, rows.delta_v)
+            copy(span, rows.delta_v, rows.v)
             hold_triangles(span, system, h)
             after = body_energy(body, span, system, h)
             if after <= allowed:
                 find_tension(span, system, h)
                 return after
         # That motion itself: no length changes in it.
-        halve_within(span, rows, spin, 0.0, h, rows.trial)
+        halve_within(span, rows, spin, 0.0, h, rows.v)
         hold_triangles(span, system, h)
         after = body_energy(body, span, system, h)
         if after <= allowed * (1.0 + RIGID_ROUNDING):
@@ -176,23 +176,23 @@ def _damp(body: int, span: Span, system: System, spin: Spin, allowed: float, h: 
             return after
     for _halving in range(LAST_HALVINGS):
         # Not of what triangles have left: what was found leads downwards, once it is so short that none turns over.
-        scale(span, 0.5, rows.best)
-        copy(span, rows.best, rows.trial)
+        scale(span, 0.5, rows.v_best)
+        copy(span, rows.v_best, rows.v)
         hold_triangles(span, system, h)
         after = body_energy(body, span, system, h)
         if after <= allowed:
             break
     if not after <= allowed:
         for r in range(span.first_row, span.last_row):
-            rows.trial[r, 0] = 0.0
-            rows.trial[r, 1] = 0.0
+            rows.v[r, 0] = 0.0
+            rows.v[r, 1] = 0.0
         after = body_energy(body, span, system, h)
     find_tension(span, system, h)
     return after
 
 
 @inner_kernel
-def step_bodies(system: System, state: State, inputs: Inputs, touched: bool, parts: int, h: float) -> None:
+def step_bodies(system: System, state: State, inputs: Inputs, touched: bool, auto_substeps: int, h: float) -> None:
     """Bring what nothing touches to the end of a step of h [s], and s += 0.3 (v' - s) of all; rows are loaded.
 
     touched: some bodies are, and at that end already.
@@ -202,11 +202,11 @@ def step_bodies(system: System, state: State, inputs: Inputs, touched: bool, par
         if touched and bodies.touched[body]:
             continue
         span = span_of(system, body)
-        open_body(body, span, system, state, inputs, 1.0, parts, h)
+        open_body(body, span, system, state, inputs, 1.0, auto_substeps, h)
         step_body(body, span, system, state, h)
         for r in range(span.first_row, span.last_row):
-            state.velocity[rows.particle[r], 0] = rows.trial[r, 0]
-            state.velocity[rows.particle[r], 1] = rows.trial[r, 1]
+            state.velocity[rows.particle[r], 0] = rows.v[r, 0]
+            state.velocity[rows.particle[r], 1] = rows.v[r, 1]
         for k in range(span.first_spring, span.last_spring):
             state.tension[springs.slot[k]] = springs.tension[k]
     follow(state.velocity, state.slow_velocity, state.slow_change, state.particle_active)

@@ -1,4 +1,4 @@
-"""The system of a world: what the direct solver solves, as one bundle of arrays that every kernel takes.
+"""The system of a world, which the direct solver solves: one bundle of arrays that every kernel takes.
 
 Rows are particles, springs and constraints join them, bodies are the blocks of rows that nothing joins to others. Where
 things lie is decided when topology or pins change (layout.py); all else is scratch of a step, no part of the state.
@@ -53,7 +53,7 @@ class State(NamedTuple):
 
 
 class Inputs(NamedTuple):
-    """What a substep is given: Cs and Cd of springs (m,) and constraints (t,) in it, and its start.
+    """The input of a substep: Cs and Cd of springs (m,) and constraints (t,) in it, and its start.
 
     start [m/s] (n, 2), start_length [m] (m,): velocities and rest lengths before forces and drives. ease: 1 + drag h.
     """
@@ -80,7 +80,7 @@ class Bodies(NamedTuple):
     pivot: the row of the one pinned particle that holds it; -1: none does, -2: several do.
 
     The rest is scratch: touched by contacts; underdamped: some Cs is above its Cd; inverted, matched: see
-    shape_matching.py; before [J]: energy once forces, pins and drives have moved; held [J]: what its energy bank holds;
+    shape_matching.py; energy0 [J]: once forces, pins and drives have moved; bank [J]: what its energy bank has;
     spared [kg m^2/s], spin (b, SPIN_NUMBERS): see rigid_turn.py.
     """
 
@@ -94,8 +94,8 @@ class Bodies(NamedTuple):
     underdamped: Flags
     inverted: Flags
     matched: Flags
-    before: Floats
-    held: Floats
+    energy0: Floats
+    bank: Floats
     spared: Floats
     spin: Floats
 
@@ -103,9 +103,9 @@ class Bodies(NamedTuple):
 class Rows(NamedTuple):
     """One row for every particle that springs of the matrix touch: free ones in elimination order, then pinned ones.
 
-    position [m], moved [m]: once pins have moved; velocities [m/s]: start, target = v* after forces, aim = target or
-    what shape matching makes of it, slow, trial = v', best, change = D, held. inertia [kg] = mass, or what shape
-    matching makes of it.
+    position [m]; x_moved [m]: once pins have moved; velocities [m/s]: start, v_star = v* after forces, v_star_matched =
+    v* or what shape matching makes of it, slow, v = v', v_best, delta_v = D, saved_delta_v. inertia [kg] = mass, or
+    what shape matching makes of it.
     """
 
     particle: Slots
@@ -114,21 +114,21 @@ class Rows(NamedTuple):
     inertia: Floats
     position: Floats
     start: Floats
-    target: Floats
-    aim: Floats
+    v_star: Floats
+    v_star_matched: Floats
     slow: Floats
-    moved: Floats
-    trial: Floats
-    best: Floats
-    change: Floats
-    held: Floats
+    x_moved: Floats
+    v: Floats
+    v_best: Floats
+    delta_v: Floats
+    saved_delta_v: Floats
 
 
 class Springs(NamedTuple):
     """The springs of the matrix by body: ends as rows, the block they share (-1: one end is pinned), and scratch.
 
-    rest, start_rest [m]: rest length, and at the start of the step; stiff = K [kg], restoring = K beta [kg],
-    transverse [kg] = the geometric stiffness h T / l; norm [kg] = k h^2 of their energy, that of a tick in one part
+    rest, start_rest [m]: rest length, and at the start of the step; K, K_beta [kg]: K and K beta of the equation,
+    transverse [kg] = the geometric stiffness h T / l; k_h2 [kg]: k h^2 of their energy, that of a tick in one part
     where ticks choose their parts; length, error, predicted [m]; normal; impulse, tangential, tension [N s].
     """
 
@@ -138,10 +138,10 @@ class Springs(NamedTuple):
     block: Slots
     rest: Floats
     start_rest: Floats
-    stiff: Floats
-    restoring: Floats
+    K: Floats
+    K_beta: Floats
     transverse: Floats
-    norm: Floats
+    k_h2: Floats
     length: Floats
     error: Floats
     predicted: Floats
@@ -159,7 +159,7 @@ class Constraints(NamedTuple):
     rest and weight are those of the step, copied; stiffness, damping too, as the solver caps them. response (w, n, 2)
     and scale (w,): z and 1 / (1 / K + g . z) of the wide ones. All else is scratch, as that of springs: error and
     predicted of C; gradient, spare, place (q, 2); floor [kg] = k h^2 of what holds a triangle from outside, 0: nothing,
-    along [kg] = K with that of the floor where it is foreseen to push.
+    K_with_floor [kg]: K with that of the floor where it is foreseen to push.
     """
 
     slot: Slots
@@ -176,11 +176,11 @@ class Constraints(NamedTuple):
     spare: Floats
     stiffness: Floats
     damping: Floats
-    stiff: Floats
-    restoring: Floats
-    along: Floats
+    K: Floats
+    K_beta: Floats
+    K_with_floor: Floats
     floor: Floats
-    norm: Floats
+    k_h2: Floats
     error: Floats
     predicted: Floats
     impulse: Floats
@@ -188,7 +188,7 @@ class Constraints(NamedTuple):
     scale: Floats
 
 
-class Goals(NamedTuple):
+class ShapeMatchGroups(NamedTuple):
     """The jellies of the matrix by body: g groups of triangles that share sides, of k particles in all.
 
     of_body (b+1,): first group of each body; start (g+1,): first particle of each; row (k,), form [m] (k, 2); sample
@@ -214,7 +214,7 @@ class Goals(NamedTuple):
 class System(NamedTuple):
     """All of it. matrix: the columns of large bodies are empty, those are in the fronts.
 
-    triangles: the narrow areas among the constraints, by their numbers, over the rows and `trial`.
+    triangles: the narrow areas among the constraints, by their numbers, over the rows and their `v`.
     """
 
     bodies: Bodies
@@ -223,7 +223,7 @@ class System(NamedTuple):
     constraints: Constraints
     matrix: Matrix
     fronts: Fronts
-    goals: Goals
+    goals: ShapeMatchGroups
     triangles: ClampedTriangles
 
 

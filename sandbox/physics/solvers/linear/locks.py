@@ -17,13 +17,13 @@ def has_locks() -> bool:
 
 @inner_kernel
 def take(lock: int, wait: int) -> bool:
-    """Take a lock, waiting for it where `wait` is 1; whether it was had."""
+    """Take a lock; wait for it if `wait` is 1. False: another thread has it."""
     return _acquire(lock, wait) == 1
 
 
 @inner_kernel
 def give(lock: int) -> None:
-    """Give a lock that is taken to whoever takes it next, in whatever thread."""
+    """Release a lock, so that any thread can take it."""
     _release(lock)
 
 

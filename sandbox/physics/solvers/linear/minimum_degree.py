@@ -14,7 +14,7 @@ from sandbox.physics.state import Slots
 
 
 class QuotientGraph(NamedTuple):
-    """What nodes (n,) are joined to: near_count nodes and element_count elements each, in rows that begin at start."""
+    """The neighbours of nodes (n,): near_count nodes and element_count elements each, in rows that begin at start."""
 
     start: Slots
     near: Slots
@@ -24,7 +24,7 @@ class QuotientGraph(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """What eliminating a node joins, which is its element: node[start[k]:start[k + 1]] for the k-th."""
+    """The nodes that eliminating a node joins, its element: node[start[k]:start[k + 1]] for the k-th."""
 
     start: Slots
     node: Slots

@@ -11,7 +11,7 @@ from threading import Thread
 
 import numpy as np
 
-from sandbox.physics.jit import expect, inner_kernel, waiting_kernel
+from sandbox.physics.jit import inner_kernel, precompile, waiting_kernel
 from sandbox.physics.solvers.linear.fronts import Fronts, Scratch, eliminate_rows, factorise_fronts, substitute_fronts
 from sandbox.physics.solvers.linear.locks import Lock, give, has_locks, take
 from sandbox.physics.world import Floats, Slots
@@ -119,7 +119,7 @@ def _dismiss(call: Slots, offered: Lock, done: Lock) -> None:
     offered.give()
 
 
-def hire(owner: object, fronts: Fronts, change: Floats) -> Thread | None:
+def start_helper(owner: object, fronts: Fronts, change: Floats) -> Thread | None:
     """Start a thread that takes second halves of what kernels do with fronts and change (n, 2).
 
     It ends with `owner`, which must hold both while kernels use them. None where a thread would be of no use, or has
@@ -142,5 +142,5 @@ def _processor_count() -> int:
 
 
 def warm_up(fronts: Fronts, change: Floats) -> None:
-    """Compile what a second thread runs."""
-    expect(_help, fronts, change)
+    """Compile the kernels that a second thread runs."""
+    precompile(_help, fronts, change)

@@ -1,4 +1,4 @@
-"""Where lines may cross at all: what of a shape is near others, and which shapes cannot cross themselves.
+"""Candidates for crossings: the edges of a shape that are near others, and shapes that cannot cross themselves.
 
 A truss or a wheel that has kept its form crosses itself nowhere but where it was made so, and a car on a bridge meets
 it under its wheels alone. So most edges need not be compared with any other to know where lines cross (overlaps.py).
@@ -21,29 +21,29 @@ APART_X, APART_Y = 1e-3, 0.6e-3
 SURE = 0.99
 
 
-class Meetings(NamedTuple):
-    """Of shapes in a step: box [m] (s, 4) = left, bottom, right, top, radii included; meeting (s, 4): around all that
+class ShapeBounds(NamedTuple):
+    """Of shapes in a step: box [m] (s, 4) = left, bottom, right, top, radii included; crossing (s, 4): around all that
     the boxes of others share with it, left above right: nothing. group, collides (s,): those of all its particles.
     intact (s,): it crosses itself nowhere but where it was made so.
     """
 
     box: Floats
-    meeting: Floats
+    crossing: Floats
     group: Slots
     collides: Slots
     intact: Flags
 
 
-def new_meetings(shapes: int) -> Meetings:
-    """Meetings to be filled in."""
-    box, meeting = np.zeros((2, shapes, 4))
+def new_shape_bounds(shapes: int) -> ShapeBounds:
+    """ShapeBounds to be filled in."""
+    box, crossing = np.zeros((2, shapes, 4))
     group, collides = np.zeros((2, shapes), np.int64)
-    return Meetings(box, meeting, group, collides, np.zeros(shapes, np.bool_))
+    return ShapeBounds(box, crossing, group, collides, np.zeros(shapes, np.bool_))
 
 
 @inner_kernel
-def _bound(s: int, colliders: Colliders, outline: Outline, meetings: Meetings) -> None:
-    box = meetings.box
+def _bound(s: int, colliders: Colliders, outline: Outline, shape_bounds: ShapeBounds) -> None:
+    box = shape_bounds.box
     group = 0
     collides = 0
     box[s, 0] = box[s, 1] = math.inf
@@ -55,8 +55,8 @@ def _bound(s: int, colliders: Colliders, outline: Outline, meetings: Meetings) -
         for axis in range(2):
             box[s, axis] = min(box[s, axis], colliders.position[p, axis] - colliders.radius[p])
             box[s, 2 + axis] = max(box[s, 2 + axis], colliders.position[p, axis] + colliders.radius[p])
-    meetings.group[s] = group
-    meetings.collides[s] = collides
+    shape_bounds.group[s] = group
+    shape_bounds.collides[s] = collides
 
 
 @inlined_kernel
@@ -67,7 +67,7 @@ def _side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> f
 
 @inner_kernel
 def cross(e: int, f: int, apart: float, position: Floats, colliders: Colliders) -> tuple[float, float]:
-    """Where edge e crosses edge f, which is looked at a little apart: the shares along both; -1: nowhere."""
+    """Where edge e crosses edge f, which is widened a little: the shares along both; -1: they do not cross."""
     a = colliders.edge_a[e]
     b = colliders.edge_b[e]
     c = colliders.edge_a[f]
@@ -156,38 +156,40 @@ def _is_intact(s: int, colliders: Colliders, outline: Outline) -> bool:
 
 
 @inner_kernel
-def find_meetings(colliders: Colliders, outline: Outline, meetings: Meetings) -> None:
+def find_crossing_candidates(colliders: Colliders, outline: Outline, shape_bounds: ShapeBounds) -> None:
     """Look where shapes are, and which of them have kept their form."""
     shapes = outline.solid_of.shape[0]
-    box, meeting = meetings.box, meetings.meeting
+    box, crossing = shape_bounds.box, shape_bounds.crossing
     for s in range(shapes):
-        _bound(s, colliders, outline, meetings)
-        meetings.intact[s] = _is_intact(s, colliders, outline)
+        _bound(s, colliders, outline, shape_bounds)
+        shape_bounds.intact[s] = _is_intact(s, colliders, outline)
     for s in range(shapes):
-        meeting[s, 0] = meeting[s, 1] = math.inf
-        meeting[s, 2] = meeting[s, 3] = -math.inf
-        for t in range(shapes if meetings.intact[s] else 0):
-            if t == s or not (meetings.collides[s] & meetings.group[t] and meetings.collides[t] & meetings.group[s]):
+        crossing[s, 0] = crossing[s, 1] = math.inf
+        crossing[s, 2] = crossing[s, 3] = -math.inf
+        for t in range(shapes if shape_bounds.intact[s] else 0):
+            if t == s or not (
+                shape_bounds.collides[s] & shape_bounds.group[t] and shape_bounds.collides[t] & shape_bounds.group[s]
+            ):
                 continue
             left, bottom = max(box[s, 0], box[t, 0]), max(box[s, 1], box[t, 1])
             right, top = min(box[s, 2], box[t, 2]), min(box[s, 3], box[t, 3])
             if left <= right and bottom <= top:
-                meeting[s, 0], meeting[s, 1] = min(meeting[s, 0], left), min(meeting[s, 1], bottom)
-                meeting[s, 2], meeting[s, 3] = max(meeting[s, 2], right), max(meeting[s, 3], top)
+                crossing[s, 0], crossing[s, 1] = min(crossing[s, 0], left), min(crossing[s, 1], bottom)
+                crossing[s, 2], crossing[s, 3] = max(crossing[s, 2], right), max(crossing[s, 3], top)
 
 
 @inner_kernel
-def may_cross(e: int, colliders: Colliders, meetings: Meetings) -> bool:
+def is_crossing_candidate(e: int, colliders: Colliders, shape_bounds: ShapeBounds) -> bool:
     """Whether an edge of a body may cross any other edge that it was not made to cross."""
     a = colliders.edge_a[e]
     b = colliders.edge_b[e]
     s = colliders.shape[a]
-    if not meetings.intact[s]:
+    if not shape_bounds.intact[s]:
         return True
-    meeting = meetings.meeting
+    crossing = shape_bounds.crossing
     reach = max(colliders.radius[a], colliders.radius[b])
     for axis in range(2):
         x, y = colliders.position[a, axis], colliders.position[b, axis]
-        if max(x, y) + reach < meeting[s, axis] or min(x, y) - reach > meeting[s, 2 + axis]:
+        if max(x, y) + reach < crossing[s, axis] or min(x, y) - reach > crossing[s, 2 + axis]:
             return False
     return True

@@ -1,0 +1,31 @@
+"""PlayTool: all that the window knows of one tool in play; each stands with its tool, `play_tools` lists them."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from sandbox.tools.tool import Tool
+
+# Where the page of all shortcuts has a tool; those of "Parts" are buttons of the strip at the left, too.
+Group = Literal["Tools", "Parts"]
+
+
+@dataclass(frozen=True)
+class PlayTool:
+    """A tool: its name, the keys that take it up, its line on the help page and in its tip, and its group.
+
+    make: the tool, for a function that gives the number of a new gesture. icon: draws its button with an IconPen; None:
+    the strip has a picture of its own for it.
+    """
+
+    name: str
+    keys: tuple[str, ...]
+    label: str
+    group: Group
+    make: Callable[[Callable[[], int]], Tool]
+    icon: Callable[[Any], None] | None = None
+
+    @property
+    def action(self) -> str:
+        """The action that takes it up."""
+        return f"tool_{self.name}"
