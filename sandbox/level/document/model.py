@@ -307,3 +307,5 @@ def keys_of(model: type[BaseModel]) -> list[str]:
 
 
 LEVEL_KEYS = keys_of(Level)
+# Settings that a person may change while a world runs: all but the tick rate, which is that of its whole run.
+CHANGEABLE_SETTINGS = tuple(name for name in Settings.model_fields if name != "tick_rate")
