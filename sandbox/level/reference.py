@@ -57,6 +57,16 @@ is the place for other tools' data.
 `sandbox check FILE` says what is wrong with a level and runs its checks, `sandbox format FILE` rewrites it in
 canonical form, `sandbox schema` prints the JSON Schema for an editor that completes keys.
 
+An editor such as VS Code completes and checks a level whose first line is `"$schema": "./level.schema.json"`, with the
+schema beside it: `sandbox schema > level.schema.json`. Or, for every level of a folder, in `.vscode/settings.json`:
+
+```
+{{"json.schemas": [{{"fileMatch": ["levels/*.json"], "url": "./level.schema.json"}}]}}
+```
+
+The program ships the same file as `sandbox/level/level.schema.json`. `$schema` is kept on
+saving and means nothing else.
+
 Files of older versions open as what they were, and are of this version once they are saved. In version 1 substeps of
 the direct solver left the motion of each spring as it was; from version 2 on they leave k and c. So Cs and Cd of a file
 of version 1 that has several are changed when it is read, such that each of its substeps does what it did.

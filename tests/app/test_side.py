@@ -523,7 +523,20 @@ def test_results_go_with_every_part_of_the_level_that_runs():
     before = small_level(**LOOSE, walls={"box": [-9, -9, 9, 9]}, contacts={})
     trial = Trial(before)
     trial.is_stopped = True
-    said = {"format", "version", "name", "description", "author", "licence", "tags", "view", "checks", "look", "extras"}
+    said = {
+        "schema_link",
+        "format",
+        "version",
+        "name",
+        "description",
+        "author",
+        "licence",
+        "tags",
+        "view",
+        "checks",
+        "look",
+        "extras",
+    }
     changed = {part: replaced(before, **{part: object()}) for part in Level.model_fields}
     assert {part for part, level in changed.items() if trial.holds_for(level)} == said
 

@@ -12,6 +12,7 @@ from sandbox.editor.edits.placing import add_body, add_particle
 from sandbox.editor.items import Item, items_of
 from sandbox.editor.scene import make_scene
 from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_text
 from sandbox.level.document.model import ParticleDef
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.bridge import BridgeDef
@@ -283,3 +284,26 @@ def test_the_outline_holes_and_pins_of_a_fitted_jelly_go_where_a_motion_takes_th
     for place in pinned:
         assert np.hypot(*(new.form[list(new.body.pinned)] - place).T).min() < 0.2
     assert new.mass.sum() == pytest.approx(old.mass.sum(), rel=0.3)
+
+
+def test_moves_turns_scales_and_mirrors_leave_no_dust_of_arithmetic_in_the_file():
+    document = Document(zoo())
+    document = Document(document.level, frozenset(items_of(document.level)))
+    for edit in (
+        lambda each: move(each, 0.1, 0.2),
+        lambda each: move(each, 0.7, -0.1),
+        lambda each: mirror(each, "x", (0.3, 0.1)),
+        lambda each: rotate(each, 0.5, (0.1, 0.2)),
+        lambda each: scale(each, 1.1, 1.1, (0.1, 0.3)),
+    ):
+        document = edit(document)
+    body = document.level.bodies[0]
+    numbers = [*body.__dict__.get("position", ()), *body.__dict__.get("start", ())]
+    numbers += [value for particle in document.level.particles for value in (*particle.position, particle.radius)]
+    assert numbers and all(round(value, 12) == value for value in numbers)
+
+
+def test_a_move_there_and_back_is_the_level_as_it_was():
+    level = zoo()
+    document = Document(level, frozenset(items_of(level)))
+    assert level_text(move(move(document, 0.1, 0.7), -0.1, -0.7).level) == level_text(level)

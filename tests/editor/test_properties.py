@@ -92,7 +92,18 @@ def test_every_field_of_every_kind_of_item_can_be_reached(level):
 
 def test_every_field_of_the_level_and_its_settings_can_be_reached(level):
     first, second, third, fourth = level_properties(Document(level))
-    parts = {"format", "version", "settings", "materials", "bodies", "particles", "springs", "welds", "checks"}
+    parts = {
+        "schema_link",
+        "format",
+        "version",
+        "settings",
+        "materials",
+        "bodies",
+        "particles",
+        "springs",
+        "welds",
+        "checks",
+    }
     shown = {each.field.partition(".")[0] for section in (first, third, fourth) for each in section.properties}
     assert shown == set(Level.model_fields) - parts - {"terrain"}
     assert {each.field for each in second.properties} == set(Settings.model_fields)

@@ -1,12 +1,17 @@
 """The reference in docs/ and the schema: generated, equal, and true."""
 
 import json
+from importlib import resources
 from pathlib import Path
 
-from sandbox.level.document.model import Level
-from sandbox.level.document.schema import schema
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.document.canonical import level_text
+from sandbox.level.document.model import LEVEL_KEYS
+from sandbox.level.document.schema import SCHEMA_ID, schema, schema_text
+from sandbox.level.format.look import BALLS, GROUNDS, LINES, PALETTE, SKINS
 from sandbox.level.reading.files import parse_level
 from sandbox.level.reference import EXAMPLE, format_reference
+from sandbox.physics.snapshot import state_hash
 from tests.support.malformed_levels import GOOD, encoded
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "level-format.md"
@@ -61,6 +66,38 @@ def test_every_definition_refuses_unknown_keys():
 def test_the_schema_is_json_and_knows_the_keys_of_a_good_level():
     whole = json.loads(json.dumps(schema()))
     assert whole["title"] == "Spring Sandbox level"
-    assert set(GOOD) <= set(whole["properties"]) == set(Level.model_fields)
+    assert set(GOOD) <= set(whole["properties"]) == set(LEVEL_KEYS)
     assert whole["required"] == ["format", "version", "name"]
     assert parse_level(encoded(GOOD), "x")
+
+
+def test_the_shipped_schema_is_that_of_the_program():
+    stale = "write it anew: python -m sandbox.level.document.schema > sandbox/level/level.schema.json"
+    shipped = resources.files("sandbox.level").joinpath("level.schema.json").read_text(encoding="utf-8")
+    assert shipped == schema_text(), stale
+    assert schema()["$id"] == SCHEMA_ID
+
+
+def test_a_level_may_name_its_schema_which_is_kept_first_and_means_nothing():
+    linked = parse_level(encoded({**GOOD, "$schema": "level.schema.json"}), "x")
+    text = level_text(linked)
+    assert text.splitlines()[1] == '  "$schema": "level.schema.json",'
+    assert level_text(parse_level(text.encode(), "x")) == text
+    plain = parse_level(encoded(GOOD), "x")
+    assert "$schema" not in level_text(plain)
+    assert state_hash(build_world(linked)) == state_hash(build_world(plain))
+
+
+def test_terrain_of_neither_form_and_of_both_is_beyond_the_schema():
+    forms = schema()["$defs"]["TerrainDef"]["allOf"][0]["oneOf"]
+    assert [form["required"] for form in forms] == [["polyline"], ["polygon"]]
+    assert all(next(iter(form["properties"].values())) == {"type": "array"} for form in forms)
+
+
+def test_the_schema_completes_what_things_can_look_like():
+    found = schema()["$defs"]
+    looks = {"BodyLook": {"skin": SKINS, "line": LINES, "colour": PALETTE}, "ParticleLook": {"ball": BALLS}}
+    for model, field, names in [(model, *each) for model, fields in looks.items() for each in fields.items()]:
+        assert found[model]["properties"][field]["anyOf"][0]["examples"] == list(names)
+    ground = found["LevelLook"]["properties"]["ground"]["patternProperties"]
+    assert next(iter(ground.values()))["examples"] == list(GROUNDS)

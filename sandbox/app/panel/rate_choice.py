@@ -10,11 +10,8 @@ from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.bake import keep_coefficients
 from sandbox.editor.edits.fields import set_setting
 from sandbox.editor.edits.pace import set_rate_in_pace
-from sandbox.level.document.model import Level
+from sandbox.level.document.model import CHANGEABLE_SETTINGS, Level
 from sandbox.physics.world import World
-
-# What a person may have set in a run, beside springs.
-KEPT = ("gravity", "wind", "drag", "solver", "substeps", "iterations", "warm_start")
 
 
 def level_at_rate(level: Level, world: World, rate: int, in_pace: bool) -> Level:
@@ -23,7 +20,7 @@ def level_at_rate(level: Level, world: World, rate: int, in_pace: bool) -> Level
     in_pace: Cs and Cd are worked out anew so that springs move per second as they do. Raises EditError.
     """
     document = keep_coefficients(Document(level), world)
-    for name in KEPT:
+    for name in CHANGEABLE_SETTINGS:
         document = set_setting(document, name, getattr(world.settings, name))
     return (set_rate_in_pace(document, rate) if in_pace else set_setting(document, "tick_rate", rate)).level
 

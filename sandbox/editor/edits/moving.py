@@ -3,18 +3,20 @@
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from sandbox.editor.document import Document, EditError, all_validated, check_places, check_terrain, subject, validated
 from sandbox.editor.edits.names import owner_of
 from sandbox.editor.edits.placement import (
+    DECIMALS,
     Placed,
     mapped_body,
     mapped_particle,
     mapped_terrain,
     shifted,
+    without_dust,
 )
 from sandbox.editor.edits.remap import rebuilt
 from sandbox.editor.items import (
@@ -58,6 +60,11 @@ def scale(document: Document, sx: float, sy: float, centre: Point) -> Document:
     if min(sx, sy) <= 0.0:
         raise EditError("a scale is a number above 0; to turn something over, mirror it")
     return _mapped(document, Motion(centre, sx=sx, sy=sy))
+
+
+def scale_exactly(document: Document, factor: float) -> Document:
+    """Make the selection as much larger about [0, 0], to the last bit, for what is to run as it did."""
+    return _mapped(document, Motion((0.0, 0.0), sx=factor, sy=factor), lambda part: part)
 
 
 def can_scale_unevenly(document: Document) -> bool:
@@ -104,15 +111,15 @@ def _moved(document: Document, by: Callable[[list[str]], Points]) -> Document:
     level = document.level
     bodies = chosen_bodies(level, document.selection)
     particles = chosen_particles(level, document.selection)
-    places = positions(particles) + by([particle.id for particle in particles])
+    places = np.round(positions(particles) + by([particle.id for particle in particles]), DECIMALS) + 0.0
     outside = np.flatnonzero(np.any(np.abs(places) > COORDINATE_LIMIT, axis=1))
     if len(outside):
         raise _beyond(particles[outside[0]])
     shifts = zip(bodies, by([body.id for body in bodies]).tolist(), strict=True)
-    moved = [_within(shifted(body, dx, dy)) for body, (dx, dy) in shifts]
+    moved = [_within(without_dust(shifted(body, dx, dy))) for body, (dx, dy) in shifts]
     terrain = chosen_terrain(level, document.selection)
     ways = zip(terrain, by([piece.id for piece in terrain]).tolist(), strict=True)
-    ground = [_within(shifted(piece, dx, dy)) for piece, (dx, dy) in ways]
+    ground = [_within(without_dust(shifted(piece, dx, dy))) for piece, (dx, dy) in ways]
     check_places(moved)
     rows = zip(particles, zip(*places.T.tolist(), strict=True), strict=True)
     placed = [replaced(particle, position=place) for particle, place in rows]
@@ -143,25 +150,26 @@ def _within(body: Placed) -> Placed:
     return body
 
 
-def _mapped(document: Document, motion: Motion) -> Document:
+def _mapped(document: Document, motion: Motion, tidy: Callable[[Any], Any] = without_dust) -> Document:
     if (motion.angle, motion.sx, motion.sy) == (0.0, 1.0, 1.0):
         return document
     level, selection = document.level, document.selection
     chosen = chosen_bodies(level, selection)
     mapped = [mapped_body(body, motion) for body in chosen]
-    bodies = {body.id: body for body in all_validated([body for body, _ in mapped])}
+    bodies = {body.id: body for body in all_validated([tidy(body) for body, _ in mapped])}
     images = {body.id: image for body, image in mapped}
-    particles = all_validated([mapped_particle(part, motion) for part in chosen_particles(level, selection)])
-    terrain = all_validated([mapped_terrain(piece, motion) for piece in chosen_terrain(level, selection)])
+    loose, ground = chosen_particles(level, selection), chosen_terrain(level, selection)
+    particles = all_validated([tidy(mapped_particle(part, motion)) for part in loose])
+    terrain = all_validated([tidy(mapped_terrain(piece, motion)) for piece in ground])
     moved = exchanged(level, selection, chosen, particles, terrain)
     if motion.factor != 1.0 or not motion.is_even:
-        moved = _stretched(level, moved, _placed(selection), motion)
+        moved = _stretched(level, moved, _placed(selection), motion, tidy)
     if terrain:
         check_terrain(moved)
     return replace(document, level=rebuilt(moved, bodies, images) if bodies else moved)
 
 
-def _stretched(old: Level, new: Level, selection: Selection, motion: Motion) -> Level:
+def _stretched(old: Level, new: Level, selection: Selection, motion: Motion, tidy: Callable[[Any], Any]) -> Level:
     """The new level with what a motion makes of the given rest lengths between selected things of the old."""
     springs = _inside_springs(old, selection)
     scene = make_scene(old)
@@ -169,7 +177,7 @@ def _stretched(old: Level, new: Level, selection: Selection, motion: Motion) -> 
     def part(spring: Definition) -> Definition:
         if not isinstance(spring, SpringDef):
             return spring
-        return validated(_scaled(spring, _spring_stretch(scene, spring, motion)))
+        return validated(tidy(_scaled(spring, _spring_stretch(scene, spring, motion))))
 
     return changed(new, springs, part)
 

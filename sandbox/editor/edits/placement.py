@@ -7,12 +7,40 @@ import numpy as np
 from sandbox.editor.document import EditError, subject
 from sandbox.editor.kinds.motion import Motion, mapped_velocity
 from sandbox.editor.kinds.table import editing
+from sandbox.editor.panel.field_info import DEGREES, abouts
 from sandbox.level.document.model import ParticleDef, TerrainDef
-from sandbox.level.format.quantities import replaced
+from sandbox.level.format.quantities import Description, replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
 from sandbox.level.kinds.geometry import Points
 
 Placed = TypeVar("Placed", AnyBody, TerrainDef)
+Described = TypeVar("Described", bound=Description)
+# Lengths, angles and speeds that an edit works out are rounded to 1e-12, far below what is seen, so that
+# a file holds 2.28 and not 2.2800000000000002.
+DECIMALS = 12
+_MEASURES = ("m", "rad", "m/s")
+
+
+def _rounded(value: Any) -> Any:
+    """A number, or all in a tuple of tuples of them, without the dust of arithmetic."""
+    if isinstance(value, tuple):
+        return tuple(map(_rounded, value))
+    return round(value, DECIMALS) + 0.0 if isinstance(value, float) else value
+
+
+def without_dust(part: Described) -> Described:
+    """A body, particle, spring or piece of terrain, its lengths, angles and speeds rounded, in what it holds too."""
+    changes: dict[str, Any] = {}
+    about = abouts(type(part))
+    for name, value in part.__dict__.items():
+        if isinstance(value, Description):
+            changes[name] = without_dust(value)
+        elif isinstance(value, float | tuple) and (about[name].unit in _MEASURES or about[name].unit == DEGREES):
+            new = _rounded(value)
+            # What would be nothing is left: a size is above 0.
+            changes[name] = new if new or not value else value
+    changes = {name: new for name, new in changes.items() if new != part.__dict__[name]}
+    return replaced(part, **changes) if changes else part
 
 
 def shifted(body: Placed, dx: float, dy: float) -> Placed:

@@ -3,7 +3,7 @@
 from typing import Any
 
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.edits.moving import scale
+from sandbox.editor.edits.moving import scale_exactly
 from sandbox.editor.items import items_of
 from sandbox.editor.panel.field_info import abouts
 from sandbox.level.document.canonical import level_text
@@ -27,7 +27,7 @@ def sized(part: Level, factor: float) -> Level:
     """
     if factor == 1.0:
         return part
-    scaled = scale(Document(part, frozenset(items_of(part))), factor, factor, (0.0, 0.0)).level
+    scaled = scale_exactly(Document(part, frozenset(items_of(part))), factor).level
     made = replaced(
         scaled,
         materials={name: _heavier(each, factor) for name, each in scaled.materials.items()},

@@ -17,8 +17,8 @@ Values = Mapping[str, Any]
 ChangeExtras = Callable[[Document, Callable[[dict[str, Any]], dict[str, Any]]], Document]
 
 HOW_TO_ADD = (
-    "A name, = and a value: speed = 3 is a number, title = Cave a text, "
-    "secret = yes is yes or no, path = 1, 2, 3 a list."
+    "A name, = and a value: speed = 3 is a number, title = Cave a text, secret = yes is yes or no, "
+    "path = 1, 2, 3 a list."
 )
 _WORDS = {"yes": True, "no": False, "true": True, "false": False}
 

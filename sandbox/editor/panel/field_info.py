@@ -101,7 +101,7 @@ class FieldInfo:
 @cache
 def abouts(model: type[BaseModel]) -> dict[str, FieldInfo]:
     """What is known of every field of a model, by name, in its order."""
-    fields = model.model_json_schema()["properties"]
+    fields = model.model_json_schema(by_alias=False)["properties"]
     return {name: _about(name, fields[name], _part(field.annotation)) for name, field in model.model_fields.items()}
 
 

@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from sandbox.editor.document import EditError
+from sandbox.editor.panel.arithmetic import NoSum, value_of
 from sandbox.level.format.level_error import shown
 from sandbox.level.format.quantities import significant
 
 # Digits that a number is shown with where they say all of it.
 DIGITS = 9
+# Digits that a sum is taken with: 0.1+0.2 is 0.3.
+SUM_DIGITS = 15
 # What differs by less than this share is one number, as 0.30000000000000004 and 0.3 are.
 DUST = 1e-14
 # What is typed for all groups, and for none.
@@ -76,11 +79,14 @@ def read_line(text: str) -> str:
 
 
 def read_number(title: str, text: str) -> float:
-    """A finite number; a comma counts as a point. Raises EditError."""
+    """A finite number, or a sum such as 2*3 or 1+0.5; a comma counts as a point. Raises EditError."""
     try:
         value = float(text.strip().replace(",", ".").replace("_", " "))
     except ValueError:
-        _refuse(title, text, "a number")
+        try:
+            value = significant(value_of(text), SUM_DIGITS)
+        except NoSum:
+            _refuse(title, text, "a number")
     if not math.isfinite(value):
         _refuse(title, text, "a finite number")
     return value

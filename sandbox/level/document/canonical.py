@@ -4,7 +4,7 @@ import json
 import math
 from typing import Any
 
-from sandbox.level.document.model import Level, Settings
+from sandbox.level.document.model import LEVEL_KEYS, Level, Settings
 from sandbox.level.kinds.body_def import file_order
 
 # A value goes on one line where it fits into this many columns; otherwise its items go one to a line.
@@ -22,7 +22,7 @@ def level_data(level: Level) -> dict[str, Any]:
     data["settings"] = {name: settings[name] for name in Settings.model_fields if name in settings}
     if "bodies" in data:
         data["bodies"] = [{name: body[name] for name in file_order(body)} for body in data["bodies"]]
-    return {name: data[name] for name in Level.model_fields if name in data}
+    return {name: data[name] for name in LEVEL_KEYS if name in data}
 
 
 def level_text(level: Level) -> str:

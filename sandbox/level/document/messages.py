@@ -6,7 +6,7 @@ from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel, Tag
 
-from sandbox.level.document.model import Level
+from sandbox.level.document.model import Level, keys_of
 from sandbox.level.format.level_error import Fault, json_path, shown, suggestion
 from sandbox.level.format.look import COLOUR_PATTERN, PALETTE
 from sandbox.level.format.quantities import ARROW_KEYS, ID_PATTERN, KEY_PATTERN
@@ -52,7 +52,7 @@ def _fault(error: dict[str, Any]) -> Fault:
     if kind.startswith("union_tag") or (kind == "dict_type" and len(parts) == 2 and parts[0] == "bodies"):
         return _kind_fault(parts, kind, value)
     if kind == "extra_forbidden":
-        keys = [key for model in _models(Level, location[:-1]) for key in model.model_fields]
+        keys = [key for model in _models(Level, location[:-1]) for key in keys_of(model)]
         known = suggestion(parts[-1], keys) or "; the keys here are " + ", ".join(keys)
         return json_path(parts), "unknown key" + known
     if kind in _WORDS:

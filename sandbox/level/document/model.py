@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag, field_validator
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, field_validator
 from pydantic_core import PydanticKnownError
 
 from sandbox.level.checks import CheckDef
@@ -245,9 +245,15 @@ class TerrainDef(Description):
 class Level(Description):
     """A level: who made it, how time passes, and what is in it."""
 
+    model_config = ConfigDict(serialize_by_alias=True)
     # What its check has made of it, kept for its world: no field, so neither written nor compared nor copied.
     __slots__ = ("_plan",)
 
+    schema_link: Line | None = Field(
+        default=None,
+        alias="$schema",
+        description="Address of the schema, for editors that complete keys; kept and ignored.",
+    )
     format: Literal["spring-sandbox/level"] = Field(description="Says that this is a level.")
     version: int = Field(description="Version of the format.", json_schema_extra={"const": VERSION})
     name: Name = Field(description="Title, as the gallery shows it.")
@@ -293,3 +299,13 @@ class Level(Description):
         if version == VERSION:
             return version
         raise ValueError(f"this program reads version {VERSION} of the format")
+
+
+def keys_of(model: type[BaseModel]) -> list[str]:
+    """The keys that an object of a model has in a file, in its order."""
+    return [field.alias or name for name, field in model.model_fields.items()]
+
+
+LEVEL_KEYS = keys_of(Level)
+# Settings that a person may change while a world runs: all but the tick rate, which is that of its whole run.
+CHANGEABLE_SETTINGS = tuple(name for name in Settings.model_fields if name != "tick_rate")

@@ -1,10 +1,18 @@
-"""JSON Schema of the level format, from the models."""
+"""JSON Schema of the level format, from the models.
 
+`python -m sandbox.level.document.schema > sandbox/level/level.schema.json` writes the file that is shipped.
+"""
+
+import json
 from typing import Any
 
 from sandbox.level.document.model import Level
+from sandbox.level.format.limits import VERSION
 from sandbox.level.kinds.bodies import EXPANSIONS, KINDS
 from sandbox.level.kinds.body_def import file_order
+
+# What the schema is called; it needs no address on the web.
+SCHEMA_ID = f"urn:spring-sandbox:level:{VERSION}"
 
 # Titles of the definitions, in the order in which the reference explains them.
 TITLES = {
@@ -44,4 +52,17 @@ def schema() -> dict[str, Any]:
         definition["properties"] = {
             name: definition["properties"][name] for name in file_order(definition["properties"])
         }
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **result, "title": "Spring Sandbox level"}
+    # A piece of terrain is a line or solid.
+    forms = [{"required": [form], "properties": {form: {"type": "array"}}} for form in ("polyline", "polygon")]
+    result["$defs"]["TerrainDef"]["allOf"] = [{"oneOf": forms}]
+    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": SCHEMA_ID}
+    return {**head, **result, "title": "Spring Sandbox level"}
+
+
+def schema_text() -> str:
+    """The schema as the text of the file that is shipped."""
+    return json.dumps(schema(), indent=2) + "\n"
+
+
+if __name__ == "__main__":
+    print(schema_text(), end="")

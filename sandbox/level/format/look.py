@@ -23,8 +23,13 @@ PALETTE = {
     "lime": 0x8EDB6B, "bubblegum": 0xFF9BD2, "lagoon": 0x2FC4B2,
 }  # fmt: skip
 
+
 COLOUR_PATTERN = rf"^({'|'.join(PALETTE)}|#[0-9A-Fa-f]{{6}})$"
-ColourName = Annotated[str, Field(pattern=COLOUR_PATTERN)]
+ColourName = Annotated[str, Field(pattern=COLOUR_PATTERN, json_schema_extra={"examples": [*PALETTE]})]
+SkinName = Annotated[Line, Field(json_schema_extra={"examples": [*SKINS]})]
+LineName = Annotated[Line, Field(json_schema_extra={"examples": [*LINES]})]
+BallName = Annotated[Line, Field(json_schema_extra={"examples": [*BALLS]})]
+GroundName = Annotated[Line, Field(json_schema_extra={"examples": [*GROUNDS]})]
 
 
 def colour_of(name: str) -> int:
@@ -38,7 +43,7 @@ class LevelLook(Description):
     theme: Literal["dark", "light"] | None = Field(
         default=None, description="Theme that it is meant for; null = the person's."
     )
-    ground: dict[Line, Line] = Field(
+    ground: dict[Line, GroundName] = Field(
         default={},
         max_length=1_000,
         description=f"What pieces of terrain are made of, by their ids: {', '.join(GROUNDS)}.",
@@ -57,10 +62,10 @@ class LevelLook(Description):
 class BodyLook(Description):
     """How a body looks, or all that is made of a material."""
 
-    skin: Line | None = Field(
+    skin: SkinName | None = Field(
         default=None, description=f"What it is filled with: {', '.join(SKINS)}; null = automatic."
     )
-    line: Line | None = Field(
+    line: LineName | None = Field(
         default=None, description=f"What its springs are drawn as: {', '.join(LINES)}; null = automatic."
     )
     colour: ColourName | None = Field(
@@ -79,7 +84,7 @@ class BodyLook(Description):
 class ParticleLook(Description):
     """How a loose particle looks."""
 
-    ball: Line | None = Field(default=None, description=f"What ball it is: {', '.join(BALLS)}; null = automatic.")
+    ball: BallName | None = Field(default=None, description=f"What ball it is: {', '.join(BALLS)}; null = automatic.")
     colour: ColourName | None = Field(
         default=None, description='Colour: a name of the palette, or "#RRGGBB"; null = automatic.'
     )

@@ -15,7 +15,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from sandbox.level.document.messages import place, worded
-from sandbox.level.document.model import Level
+from sandbox.level.document.model import LEVEL_KEYS, Level
 from sandbox.level.faults.validate import check_level
 from sandbox.level.format.early_end import early_end
 from sandbox.level.format.foreign import foreign_bytes, foreign_keys
@@ -222,11 +222,11 @@ def _piece(raw: dict[str, Any], start: int) -> list[Fault]:
 
 
 def _known(raw: dict[str, Any]) -> Iterator[tuple[str, Any]]:
-    return ((key, value) for key, value in raw.items() if key in Level.model_fields)
+    return ((key, value) for key, value in raw.items() if key in LEVEL_KEYS)
 
 
 def _unknown(raw: dict[str, Any]) -> Iterator[tuple[str, Any]]:
-    return ((key, value) for key, value in raw.items() if key not in Level.model_fields)
+    return ((key, value) for key, value in raw.items() if key not in LEVEL_KEYS)
 
 
 def _cut(value: Any) -> Any:

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from sandbox.level.checks import CheckDef
 from sandbox.level.document.messages import place, worded
-from sandbox.level.document.model import Level, ParticleDef, SpringDef, TerrainDef
+from sandbox.level.document.model import LEVEL_KEYS, Level, ParticleDef, SpringDef, TerrainDef
 from sandbox.level.faults.validate import level_faults
 from sandbox.level.format.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.format.limits import FAULT_LIMIT, FILE_LIMIT, FORMAT, VERSION
@@ -129,10 +129,10 @@ class _Remains:
         self.parts: dict[str, Any] = dict(_HEAD)
         if "name" not in raw:
             faults.append(("name", f"is missing; it is taken for {shown(_NAME)}"))
-        for key in Level.model_fields:
+        for key in LEVEL_KEYS:
             if key in raw and key not in ("format", "version"):
                 self._take(key, raw[key])
-        for key in itertools.islice((key for key in raw if key not in Level.model_fields), FAULT_LIMIT + 1):
+        for key in itertools.islice((key for key in raw if key not in LEVEL_KEYS), FAULT_LIMIT + 1):
             self._mended([key], None)
 
     def level(self) -> Level:

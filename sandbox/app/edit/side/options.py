@@ -15,6 +15,7 @@ from sandbox.app.widgets.fields import Field
 from sandbox.app.widgets.rows import Picker, Row
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.moving import move, rotate, scale
+from sandbox.editor.panel.typed import read_number
 from sandbox.editor.tools.drawing_options import OptionInfo, described, stepped
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import PLACE_DECIMALS, SHOWN_DECIMALS
@@ -263,13 +264,10 @@ class OptionsRow:
 
     def _number(self, label: str, text: str) -> float | None:
         try:
-            value = float(text.strip().replace(",", "."))
-        except ValueError:
-            value = math.nan
-        if math.isfinite(value):
-            return value
-        self._screen.say(f"{label}: {text.strip() or 'nothing'!r} is not a number.")
-        return None
+            return read_number(label, text)
+        except EditError as error:
+            self._screen.say(sentence(error))
+            return None
 
     def _type_number(self, name: str, text: str) -> bool:
         """Move, scale or turn the selection to what was typed."""

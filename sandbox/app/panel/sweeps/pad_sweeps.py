@@ -14,7 +14,7 @@ from sandbox.app.kernels.compiling import usual_processes
 from sandbox.app.panel.sweeps.sweep_layer import SweepLayer
 from sandbox.app.panel.sweeps.sweep_measures import measure_of
 from sandbox.app.widgets.coefficient_scale import PLAIN
-from sandbox.level.document.model import Level
+from sandbox.level.document.model import CHANGEABLE_SETTINGS, Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.physics.settings import WorldSettings
 from sandbox.session.replay.again import with_settings
@@ -28,8 +28,6 @@ from sandbox.session.sweep.table import Rows, read_table
 SIDE, SECONDS = 13, 10.0
 # Sweeps that are kept, those used last.
 KEPT = 60
-# Settings of a world that a person may change while it runs, and that a level has.
-SETTINGS = ("solver", "substeps", "iterations", "warm_start", "gravity")
 SOLVER, SUBSTEPS = "settings.solver", "settings.substeps"
 
 
@@ -183,7 +181,7 @@ def measures_of(level: Level) -> dict[str, str]:
 
 def _present(level: Level, settings: WorldSettings) -> Level:
     """The level with the settings that a person may have changed."""
-    now = {name: getattr(settings, name) for name in SETTINGS}
+    now = {name: getattr(settings, name) for name in CHANGEABLE_SETTINGS}
     if all(getattr(level.settings, name) == value for name, value in now.items()):
         return level
     return with_settings(level, json.loads(json.dumps(now)), "the level with these settings")
